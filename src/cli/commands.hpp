@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The commands of the program, one file each. Each adds itself to the command line and puts the exit status of its
+/// run into `status`; errors are exceptions, which main turns into a line and a status.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace leapmap::cli {
+
+void add_sweep(CLI::App& app, int& status);
+void add_hop(CLI::App& app, int& status);
+void add_info(CLI::App& app, int& status);
+
+}  // namespace leapmap::cli

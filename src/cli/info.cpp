@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap info: what is in a map.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "cli/commands.hpp"
+#include "map/reader.hpp"
+#include "map/schema.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct Extreme {
+  double value;
+  std::size_t design;
+};
+
+/// What a field's values come to. Codes have no extremes worth telling: they are counted.
+struct Summary {
+  std::size_t missing = 0;
+  Extreme least{std::numeric_limits<double>::infinity(), 0}, most{-std::numeric_limits<double>::infinity(), 0};
+  std::array<std::size_t, 256> counts{};
+};
+
+/// Calls visit(first design's number, values) on a field block by block, so that no map is too large.
+template <class Visit>
+void for_each_block(const MapReader& map, const std::string& field, const Visit& visit) {
+  const std::vector<std::size_t> shape = map.shape();
+  std::size_t row = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) row *= shape[i];
+  const std::size_t rows_at_once = std::max<std::size_t>(1, 4'000'000 / std::max<std::size_t>(row, 1));
+  for (std::size_t first = 0; first < shape[0]; first += rows_at_once) {
+    Tile block{std::vector<std::size_t>(shape.size(), 0), shape, 0};
+    block.start[0] = first;
+    block.extent[0] = std::min(rows_at_once, shape[0] - first);
+    block.count = block.extent[0] * row;
+    visit(first * row, map.read(field, block));
+  }
+}
+
+Summary summarise(const MapReader& map, const std::string& name) {
+  const Field* field = find_field(name);
+  const bool code = field && std::holds_alternative<Code>(field->source);
+  Summary summary;
+  for_each_block(map, name, [&](std::size_t first, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double value = values[i];
+      if (code) ++summary.counts[static_cast<std::uint8_t>(value)];
+      if (std::isnan(value)) ++summary.missing;
+      if (value < summary.least.value) summary.least = {value, first + i};
+      if (value > summary.most.value) summary.most = {value, first + i};
+    }
+  });
+  return summary;
+}
+
+std::string place(const MapReader& map, std::size_t design) {
+  std::vector<std::size_t> position;
+  unravel(design, map.shape(), position);
+  std::vector<std::string> coordinates;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const auto& dimension = map.dimensions()[i];
+    coordinates.push_back(fmt::format("{} {:.6g}", dimension.name, dimension.values[position[i]]));
+  }
+  return fmt::format("{}", fmt::join(coordinates, ", "));
+}
+
+void print_counts(const Code& code, const Summary& summary, std::size_t designs) {
+  for (std::size_t i = 0; i < summary.counts.size(); ++i) {
+    if (summary.counts[i] == 0) continue;
+    std::string meaning = i < code.names.size() ? std::string(code.names[i]) : i == code.fill ? "(no lift-off)" : fmt::format("{}", i);
+    fmt::print("  {:>12} {:5.1f} %  {}\n", summary.counts[i],
+               100.0 * static_cast<double>(summary.counts[i]) / static_cast<double>(designs), meaning);
+  }
+}
+
+int run(const std::string& path, bool with_spec) {
+  const MapReader map(path);
+  std::size_t designs = 1;
+  fmt::print("{}\n", map.attribute("title"));
+  fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {:.3g} s\n", map.attribute("date"), map.attribute("host"),
+             map.attribute("program_version"), map.attribute("git_revision"), map.attribute("threads"),
+             map.attribute("wall_time").empty() ? 0.0 : std::stod(map.attribute("wall_time")));
+  fmt::print("method {}, tolerance {}\n", map.attribute("method"), map.attribute("tolerance"));
+  if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
+    fmt::print("audit: {} designs again by {}: height within {} diameters, time within {} relative, {} flags differ\n", audited,
+               map.attribute("audit_method"), map.attribute("audit_max_abs_height_error"),
+               map.attribute("audit_max_rel_time_error"), map.attribute("audit_flag_mismatches"));
+  fmt::print("\ndimensions\n");
+  for (const auto& dimension : map.dimensions()) {
+    const auto [least, most] = std::ranges::minmax(dimension.values);
+    fmt::print("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", dimension.name, dimension.values.size(), least, most,
+               dimension.unit == "1" ? "" : dimension.unit);
+    designs *= dimension.values.size();
+  }
+  fmt::print("\nfields, {} designs\n", designs);
+  for (const std::string& name : map.fields()) {
+    const Field* field = find_field(name);
+    const Summary summary = summarise(map, name);
+    fmt::print("{}\n", name);
+    if (field && std::holds_alternative<Code>(field->source)) {
+      print_counts(std::get<Code>(field->source), summary, designs);
+    } else if (summary.missing == designs) {
+      fmt::print("  none\n");
+    } else {
+      const std::string unit = map.unit(name) == "1" ? "" : " " + map.unit(name);
+      fmt::print("  least {:<12.8g}{} at {}\n", summary.least.value, unit, place(map, summary.least.design));
+      fmt::print("  most  {:<12.8g}{} at {}\n", summary.most.value, unit, place(map, summary.most.design));
+      if (summary.missing > 0) fmt::print("  none  in {} designs\n", summary.missing);
+    }
+  }
+  if (with_spec) fmt::print("\n{}", map.attribute("spec"));
+  return 0;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("info", "tell what is in a map: axes, statuses, extremes and where they are");
+  auto path = std::make_shared<std::string>();
+  auto with_spec = std::make_shared<bool>(false);
+  command->add_option("MAP", *path, "the map, HDF5")->required();
+  command->add_flag("--spec", *with_spec, "print the resolved spec that made it as well");
+  command->callback([path, with_spec, &status] { status = run(*path, *with_spec); });
+}
+
+}  // namespace leapmap::cli

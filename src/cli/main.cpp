@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap: which slope, mass ratio and L/R make a passive hoop jump, how high and how soon.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "cli/commands.hpp"
+#include "support/errors.hpp"
+#include "support/version.hpp"
+
+namespace {
+
+enum ExitStatus { done = 0, other_failure = 1, bad_input = 2, io_failure = 3 };
+
+int complain(int status, std::string_view what) {
+  fmt::print(stderr, "leapmap: {}\n", what);
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int status = done;
+  CLI::App app{"leapmap maps the jumps of passive hoops: thin hoops with an off-centre mass that roll down a plane and leap."};
+  app.footer(
+      "Examples:\n"
+      "  leapmap hop                                       the paper's hoop: phases, times, the jump\n"
+      "  leapmap hop --slope 30deg --trace hop.h5          another slope, its motion written to a file\n"
+      "  leapmap sweep sweeps/slope_mass_ratio.toml        a map of 61,696 designs\n"
+      "  leapmap info maps/slope_mass_ratio.h5             what is in it\n"
+      "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 interrupted.");
+  app.set_version_flag("--version", fmt::format("leapmap {} (git {})", leapmap::program_version(), leapmap::git_revision()));
+  app.require_subcommand(1);
+  leapmap::cli::add_sweep(app, status);
+  leapmap::cli::add_hop(app, status);
+  leapmap::cli::add_info(app, status);
+  try {
+    app.parse(argc, argv);
+    if (std::fflush(stdout) != 0) throw leapmap::IoError("standard output: cannot be written");
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    return complain(bad_input, fmt::format("{} (leapmap --help, leapmap COMMAND --help)", error.what()));
+  } catch (const leapmap::InputError& error) {
+    return complain(bad_input, error.what());
+  } catch (const leapmap::IoError& error) {
+    return complain(io_failure, error.what());
+  } catch (const std::bad_alloc&) {
+    return complain(other_failure, "out of memory");
+  } catch (const std::exception& error) {
+    return complain(other_failure, error.what());
+  }
+  return status;
+}

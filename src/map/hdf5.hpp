@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A thin layer over the HDF5 C API: handles that close themselves, errors that are exceptions, attributes by value.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace leapmap::hdf5 {
+
+/// Throws IoError with `what` and HDF5's innermost reason. HDF5's own printing is off.
+[[noreturn]] void fail(const std::string& what);
+
+/// Initialises HDF5 for this process: quiet, and without its handler at exit, which can hang after a full disk.
+void initialise();
+
+/// Owns an identifier of any kind.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle() = default;
+  /// Throws IoError with `what` if id is not valid.
+  Handle(hid_t id, Close closer, const std::string& what) : id_(id), close_(closer) {
+    if (id < 0) fail(what);
+  }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }
+  /// Closes now; false if HDF5 could not, for instance because the disk is full.
+  bool close() { return id_ < 0 || close_(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+  Close close_ = nullptr;
+};
+
+/// Throws IoError with `what` unless an HDF5 call succeeded.
+inline void check(herr_t status, const std::string& what) {
+  if (status < 0) fail(what);
+}
+
+/// A new file, replacing an old one: V18 format, link and attribute creation order tracked (netCDF readers need it).
+Handle create_file(const std::string& path);
+
+/// An existing file, read-only.
+Handle open_file(const std::string& path);
+
+/// A dataset to be created: creation order tracked, chunked if chunk is not empty.
+struct DatasetPlan {
+  std::string name;
+  hid_t type;
+  std::span<const hsize_t> shape;
+  std::span<const hsize_t> chunk = {};
+  const void* fill = nullptr;  ///< of `type`; unset: zero
+};
+Handle create_dataset(hid_t file, const DatasetPlan& plan);
+
+/// Attributes: UTF-8 text of variable length, or numbers of the given file type.
+void write_attribute(hid_t object, const std::string& name, std::string_view text);
+void write_attribute(hid_t object, const std::string& name, double value);
+void write_attribute(hid_t object, const std::string& name, std::span<const double> values);
+void write_attribute(hid_t object, const std::string& name, std::int64_t value);
+void write_attribute(hid_t object, const std::string& name, std::span<const std::int32_t> values);
+void write_attribute(hid_t object, const std::string& name, std::span<const std::uint8_t> values);
+
+/// A named value of a file's root.
+using Attribute = std::pair<std::string, std::variant<std::string, double, std::int64_t>>;
+void annotate(hid_t object, std::span<const Attribute> attributes);
+
+/// Closes a file written under the name `part`, brings it to disk and gives it its name, in place of an older file.
+void finish_file(Handle file, const std::string& part, const std::string& path);
+
+bool has_attribute(hid_t object, const std::string& name);
+std::string read_text(hid_t object, const std::string& name);
+
+/// A dataset's number of values along each dimension.
+std::vector<hsize_t> shape_of(hid_t dataset);
+
+}  // namespace leapmap::hdf5

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Each dataset of a map, declared once: name, type, unit, meaning, and where its value comes from.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "trajectory/outcome.hpp"
+
+namespace leapmap {
+
+inline constexpr std::string_view map_filetype = "leapmap map";
+inline constexpr std::string_view trace_filetype = "leapmap trace";
+inline constexpr int format_major = 1;  ///< readers refuse a newer one
+inline constexpr int format_minor = 0;
+
+/// A measured quantity, stored as f8, NaN where it does not apply.
+struct Quantity {
+  double Outcome::*member;
+  bool is_time = false;  ///< stored in seconds: multiplied by time_unit(scene)
+};
+
+/// A small code, stored as u1.
+struct Code {
+  std::uint8_t (*value)(const Outcome&);
+  std::uint8_t fill;                       ///< what a design not computed shows
+  std::span<const std::string_view> names;  ///< flag_meanings of 0, 1, 2, ...; empty: a count
+};
+
+struct Field {
+  std::string_view name;
+  std::variant<Quantity, Code> source;
+  std::string_view unit;  ///< as UDUNITS reads it; "1": a pure number
+  std::string_view long_name;
+};
+
+/// Every field of a map, in the order of the file.
+std::span<const Field> map_fields();
+
+/// The field of that name, or nullptr.
+const Field* find_field(std::string_view name);
+
+}  // namespace leapmap

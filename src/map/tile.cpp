@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/tile.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+namespace leapmap {
+namespace {
+
+std::size_t product(const std::vector<std::size_t>& extents) {
+  return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
+}
+
+/// Doubles the shortest side that can still grow until the tile is as large as it should be.
+std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape) {
+  constexpr std::size_t smallest = 64, largest = 16384, wanted_tiles = 64;
+  const std::size_t target = std::bit_floor(std::clamp(product(shape) / wanted_tiles, smallest, largest));
+  std::vector<std::size_t> tile(shape.size(), 1);
+  while (product(tile) < target) {
+    std::size_t shortest = shape.size();
+    for (std::size_t i = shape.size(); i-- > 0;)
+      if (tile[i] < shape[i] && (shortest == shape.size() || tile[i] < tile[shortest])) shortest = i;
+    if (shortest == shape.size()) break;
+    tile[shortest] = std::min(2 * tile[shortest], shape[shortest]);
+  }
+  return tile;
+}
+
+}  // namespace
+
+Tiling::Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_shape)
+    : shape_(std::move(shape)), tile_shape_(std::move(tile_shape)), designs_(product(shape_)) {
+  assert(shape_.size() == tile_shape_.size());
+  for (std::size_t i = 0; i < shape_.size(); ++i) {
+    assert(tile_shape_[i] > 0 && tile_shape_[i] <= shape_[i]);
+    tiles_along_.push_back((shape_[i] + tile_shape_[i] - 1) / tile_shape_[i]);
+  }
+  tiles_ = product(tiles_along_);
+}
+
+Tiling::Tiling(std::vector<std::size_t> shape) : Tiling(shape, balanced_tile(shape)) {}
+
+Tile Tiling::tile(std::size_t number) const {
+  Tile tile;
+  unravel(number, tiles_along_, tile.start);
+  tile.extent.resize(shape_.size());
+  for (std::size_t i = 0; i < shape_.size(); ++i) {
+    tile.start[i] *= tile_shape_[i];
+    tile.extent[i] = std::min(tile_shape_[i], shape_[i] - tile.start[i]);
+  }
+  tile.count = product(tile.extent);
+  return tile;
+}
+
+void unravel(std::size_t index, const std::vector<std::size_t>& extent, std::vector<std::size_t>& position) {
+  position.resize(extent.size());
+  for (std::size_t i = extent.size(); i-- > 0;) {
+    position[i] = index % extent[i];
+    index /= extent[i];
+  }
+}
+
+}  // namespace leapmap

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Rolling without slip: the paper's equations (10), (11) and (12), divided by (m + m_p) g R or (m + m_p) g.
+///
+/// Forces are in units of the weight, phi in rad, spin w = dphi/dt in sqrt(g/R), time in sqrt(R/g).
+#pragma once
+
+#include <cmath>
+
+#include "physics/parameters.hpp"
+
+namespace leapmap {
+
+/// Sine, cosine and versine (1 - cos) of an angle. The versine keeps its relative accuracy near multiples of
+/// 2 pi, where the inertia about the contact is least and 1 - cos would have lost all digits.
+template <class T>
+struct Trig {
+  T sin, cos, versine;
+};
+
+template <class T>
+Trig<T> trig(const T& angle) {
+  using std::cos, std::sin;
+  const T half = angle * T(0.5);
+  const T s = sin(half), c = cos(half);
+  const T versine = T(2) * s * s;
+  return {T(2) * s * c, T(1) - versine, versine};
+}
+
+/// Inertia about the contact, J(phi) = J0 + 1 - 2 rho cos phi.
+template <class T>
+T contact_inertia(const Hoop<T>& hoop, const Trig<T>& phi) {
+  return hoop.J_min + T(2) * hoop.rho * phi.versine;
+}
+
+/// sin(theta + phi) and cos(theta + phi), the direction of gravity seen from the mass.
+template <class T>
+T sin_from_vertical(const Hoop<T>& hoop, const Trig<T>& phi) {
+  return hoop.sin_slope * phi.cos + hoop.cos_slope * phi.sin;
+}
+template <class T>
+T cos_from_vertical(const Hoop<T>& hoop, const Trig<T>& phi) {
+  return hoop.cos_slope * phi.cos - hoop.sin_slope * phi.sin;
+}
+
+/// (10) solved for phi'' [g/R].
+template <class T>
+T angular_acceleration(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin) {
+  return (hoop.sin_slope - hoop.rho * (sin_from_vertical(hoop, phi) + phi.sin * spin * spin)) /
+         contact_inertia(hoop, phi);
+}
+
+/// (11) lambda_n, the normal force over the weight; it lifts off where this falls through zero.
+template <class T>
+T normal_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
+  return hoop.cos_slope + hoop.rho * (phi.sin * acceleration + phi.cos * spin * spin);
+}
+
+/// (12) lambda_f, the friction force over the weight, positive downhill.
+template <class T>
+T friction_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
+  return (T(1) - hoop.rho * phi.cos) * acceleration + hoop.rho * phi.sin * spin * spin - hoop.sin_slope;
+}
+
+/// Partial derivatives of angular_acceleration by angle and by spin.
+template <class T>
+struct AccelerationGradient {
+  T by_angle, by_spin;
+};
+
+template <class T>
+AccelerationGradient<T> acceleration_gradient(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin,
+                                              const T& acceleration) {
+  const T J = contact_inertia(hoop, phi);
+  return {-hoop.rho * (cos_from_vertical(hoop, phi) + phi.cos * spin * spin + T(2) * phi.sin * acceleration) / J,
+          T(-2) * hoop.rho * phi.sin * spin / J};
+}
+
+/// d/dt of normal_force along the motion, by the chain rule with phi''' = gradient . (w, phi'').
+template <class T>
+T normal_force_rate(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
+  const AccelerationGradient<T> gradient = acceleration_gradient(hoop, phi, spin, acceleration);
+  const T jerk = gradient.by_angle * spin + gradient.by_spin * acceleration;
+  return hoop.rho * (phi.sin * (jerk - spin * spin * spin) + T(3) * phi.cos * spin * acceleration);
+}
+
+/// Kinetic plus potential energy over (m + m_p) g R: constant while rolling, (3) + (4) under (1) and (2).
+template <class T>
+T rolling_energy(const Hoop<T>& hoop, const T& angle, const T& spin) {
+  const Trig<T> phi = trig(angle);
+  return T(0.5) * contact_inertia(hoop, phi) * spin * spin - angle * hoop.sin_slope -
+         hoop.rho * cos_from_vertical(hoop, phi);
+}
+
+}  // namespace leapmap

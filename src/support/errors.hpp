@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The errors a user can cause or cure, each with its exit status. One line each: file, key, value, what is allowed.
+#pragma once
+
+#include <stdexcept>
+
+namespace leapmap {
+
+/// Bad usage or input: exit status 2.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A file that cannot be read or written: exit status 3.
+struct IoError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/designs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "sweep/options.hpp"
+
+namespace leapmap {
+
+std::vector<std::size_t> shape_of(const Spec& spec) {
+  if (spec.axes.empty()) return {spec.list.count};
+  std::vector<std::size_t> shape;
+  for (const Axis& axis : spec.axes) shape.push_back(axis.values.size());
+  return shape;
+}
+
+DesignSpace::DesignSpace(const Spec& spec) : spec_(spec) {
+  for (const Axis& axis : spec.axes.empty() ? spec.list.columns : spec.axes)
+    members_.push_back(std::get<ParameterSlot>(find_option("design", axis.key)->slot).member);
+}
+
+Design DesignSpace::at_position(const std::vector<std::size_t>& position) const {
+  Design design = spec_.design;
+  const bool list = spec_.axes.empty();
+  for (std::size_t i = 0; i < members_.size(); ++i)
+    design.*members_[i] = list ? spec_.list.columns[i].values[position[0]] : spec_.axes[i].values[position[i]];
+  return design;
+}
+
+Design DesignSpace::at(std::size_t index) const {
+  std::vector<std::size_t> position;
+  unravel(index, shape_of(spec_), position);
+  return at_position(position);
+}
+
+void DesignSpace::fill(const Tile& tile, std::span<Design> designs) const {
+  assert(designs.size() == tile.count);
+  std::vector<std::size_t> position;
+  for (std::size_t i = 0; i < tile.count; ++i) {
+    unravel(i, tile.extent, position);
+    for (std::size_t k = 0; k < position.size(); ++k) position[k] += tile.start[k];
+    designs[i] = at_position(position);
+  }
+}
+
+std::string hop_command(const Spec& spec, const Design& design) {
+  std::string command = "leapmap hop";
+  for (const Option* parameter : design_parameters()) {
+    std::string flag(parameter->key);
+    std::ranges::replace(flag, '_', '-');
+    command += fmt::format(" --{} {}", flag, design.*std::get<ParameterSlot>(parameter->slot).member);
+  }
+  command += fmt::format(" --set runway={} --set hop_height={} --set radius={} --set gravity={}", spec.scene.runway,
+                         spec.scene.hop_height, spec.scene.radius, spec.scene.gravity);
+  command += fmt::format(" --set method={} --set tolerance={}", resolved_method(spec.numerics), spec.numerics.tolerance);
+  if (spec.numerics.absolute_tolerance > 0.0)
+    command += fmt::format(" --set absolute_tolerance={}", spec.numerics.absolute_tolerance);
+  if (spec.numerics.fixed_step > 0.0) command += fmt::format(" --set fixed_step={}", spec.numerics.fixed_step);
+  return command;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Every key of a spec, declared once: name, meaning, unit, range, and where its value goes.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "sweep/spec.hpp"
+
+namespace leapmap {
+
+/// The values a number may take.
+struct Range {
+  double least, most;
+  bool least_allowed = true, most_allowed = true;
+};
+
+/// A number that every design has of its own, so that it takes an axis or a column of a list.
+struct ParameterSlot {
+  double Design::*member;
+};
+using NumberSlot = double& (*)(Spec&);
+using IntegerSlot = long& (*)(Spec&);
+using TextSlot = std::string& (*)(Spec&);
+using TextsSlot = std::vector<std::string>& (*)(Spec&);
+
+struct Option {
+  std::string_view section;
+  std::string_view key;
+  std::variant<ParameterSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot> slot;
+  std::string_view unit;  ///< "rad" marks an angle, which may be written "30 deg"; "1": a pure number
+  std::string_view meaning;
+  Range range{};                                    ///< numbers and integers
+  std::vector<std::string_view> (*choices)() = {};  ///< texts: what is allowed; unset: anything
+};
+
+/// All keys, in the order of the documentation.
+std::span<const Option> spec_options();
+
+/// The parameters of a design, those of spec_options that take an axis.
+std::vector<const Option*> design_parameters();
+
+/// The option of that section and key, or nullptr; an empty section means any.
+const Option* find_option(std::string_view section, std::string_view key);
+
+/// "slope must be in [0, 90 deg)" and the like: what values the option takes.
+std::string allowed_values(const Option& option);
+
+/// True if a number is finite and inside the option's range.
+bool in_range(const Option& option, double value);
+
+/// "0.5", "30 deg", "-1.2e3 rad" as a number in the option's own unit; throws InputError saying what is wrong.
+double parse_number(const Option& option, std::string_view text);
+
+/// The table of keys for --help: name, default, meaning, what is allowed.
+std::string options_help();
+
+}  // namespace leapmap

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Designs one by one, from a CSV file.
+#pragma once
+
+#include <string>
+
+#include "sweep/spec.hpp"
+
+namespace leapmap {
+
+/// Reads a list of designs. The header names parameters of a design; each line below holds one number for each
+/// (angles in rad). Throws InputError naming line and column, IoError if the file cannot be read.
+PointList read_points(const std::string& path);
+
+}  // namespace leapmap

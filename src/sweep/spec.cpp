@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/spec.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "support/errors.hpp"
+#include "sweep/options.hpp"
+#include "sweep/point_list.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr std::int64_t most_designs = 1'000'000'000'000;  // a map of 10^12 designs is terabytes: surely a typing error
+
+/// One key as written: where, and its value.
+struct Entry {
+  const Option* option;
+  std::string place;  // "file:line" or "--set"
+  toml::source_position position;
+  const toml::node* node;
+};
+
+/// "key = value" as the user wrote it, on one line.
+std::string quoted(const Option& option, const toml::node& node) {
+  std::ostringstream text;
+  node.visit([&](const auto& value) { text << value; });
+  std::string flat = text.str();
+  std::ranges::replace(flat, '\n', ' ');
+  return fmt::format("{}.{} = {}", option.section, option.key, flat);
+}
+
+[[noreturn]] void refuse(const Entry& entry, std::string_view what, std::string_view allowed) {
+  throw InputError(fmt::format("{}: {}: {}; allowed: {}", entry.place, quoted(*entry.option, *entry.node), what, allowed));
+}
+
+double to_number(const Entry& entry, const toml::node& node, std::string_view part = "") {
+  const Option& option = *entry.option;
+  const std::string where = part.empty() ? "" : fmt::format("'{}' ", part);
+  if (const auto* text = node.as_string(); text && option.unit == "rad") {
+    try {
+      return parse_number(option, text->get());
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}.{}: {}{}", entry.place, option.section, option.key, where, error.what()));
+    }
+  }
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!value) refuse(entry, where + "is not a number", allowed_values(option));
+  if (!in_range(option, *value)) refuse(entry, where + "is out of range", allowed_values(option));
+  return *value;
+}
+
+/// { from, to, count, scale } or { values }.
+std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
+  constexpr std::string_view forms = "{ from, to, count, scale = \"linear\" | \"log\" } or { values = [...] }";
+  const bool list = table.contains("values");
+  for (const auto& [key, node] : table) {
+    const std::string_view name = key.str();
+    const bool known = list ? name == "values" : name == "from" || name == "to" || name == "count" || name == "scale";
+    if (!known) refuse(entry, fmt::format("'{}' does not belong to this axis", name), forms);
+  }
+  std::vector<double> values;
+  if (list) {
+    const toml::array* array = table["values"].as_array();
+    if (!array || array->empty()) refuse(entry, "'values' is not a list of numbers", forms);
+    for (const toml::node& node : *array) values.push_back(to_number(entry, node, "values"));
+    return values;
+  }
+  for (const std::string_view bound : {"from", "to", "count"})
+    if (!table.contains(bound)) refuse(entry, fmt::format("'{}' is missing", bound), forms);
+  const double from = to_number(entry, *table.get("from"), "from"), to = to_number(entry, *table.get("to"), "to");
+  const auto count = table["count"].is_integer() ? table["count"].value<std::int64_t>() : std::nullopt;
+  if (!count || *count < 1 || *count > most_designs)
+    refuse(entry, "'count' is not a number of values", "a whole number from 1 on");
+  if (*count > 1 && from == to) refuse(entry, "'from' and 'to' are the same", "two different bounds, or count = 1");
+  if (*count == 1 && from != to) refuse(entry, "'count' is 1", "2 or more, or 'from' equal to 'to'");
+  const std::string scale = table["scale"].value_or(std::string(table.contains("scale") ? "?" : "linear"));
+  if (scale != "linear" && scale != "log") refuse(entry, "'scale' is unknown", "\"linear\" or \"log\"");
+  const bool log = scale == "log";
+  if (log && !(from > 0.0 && to > 0.0)) refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
+
+  const auto last = static_cast<double>(*count - 1);
+  values.reserve(static_cast<std::size_t>(*count));
+  for (std::int64_t i = 0; i < *count; ++i) {
+    const double x = *count > 1 ? static_cast<double>(i) / last : 0.0;
+    values.push_back(log ? from * std::pow(to / from, x) : from + (to - from) * x);
+  }
+  values.back() = to;
+  return values;
+}
+
+/// Puts one key's value where its option says.
+struct Assign {
+  const Entry& entry;
+  Spec& spec;
+
+  void operator()(const ParameterSlot& slot) const {
+    if (const toml::table* table = entry.node->as_table()) {
+      spec.axes.push_back({std::string(entry.option->key), to_axis(entry, *table)});
+    } else {
+      spec.design.*slot.member = to_number(entry, *entry.node);
+    }
+  }
+  void operator()(NumberSlot slot) const {
+    if (entry.node->is_table()) refuse(entry, "takes no axis", allowed_values(*entry.option));
+    slot(spec) = to_number(entry, *entry.node);
+  }
+  void operator()(IntegerSlot slot) const {
+    const auto value = entry.node->is_integer() ? entry.node->value<std::int64_t>() : std::nullopt;
+    if (!value) refuse(entry, "is not a whole number", allowed_values(*entry.option));
+    if (!in_range(*entry.option, static_cast<double>(*value)))
+      refuse(entry, "is out of range", allowed_values(*entry.option));
+    slot(spec) = *value;
+  }
+  void operator()(TextSlot slot) const { slot(spec) = text(*entry.node); }
+  void operator()(TextsSlot slot) const {
+    const toml::array* array = entry.node->as_array();
+    if (!array) refuse(entry, "is not a list", "a list with " + allowed_values(*entry.option));
+    slot(spec).clear();
+    for (const toml::node& node : *array) {
+      const std::string name = text(node);
+      if (std::ranges::find(slot(spec), name) != slot(spec).end())
+        refuse(entry, fmt::format("'{}' is there twice", name), "each once");
+      slot(spec).push_back(name);
+    }
+  }
+  std::string text(const toml::node& node) const {
+    const toml::value<std::string>* value = node.as_string();
+    if (!value) refuse(entry, "is not a string", allowed_values(*entry.option));
+    if (entry.option->choices) {
+      const auto choices = entry.option->choices();
+      if (std::ranges::find(choices, value->get()) == choices.end())
+        refuse(entry, fmt::format("'{}' is unknown", value->get()), allowed_values(*entry.option));
+    }
+    return value->get();
+  }
+};
+
+[[noreturn]] void refuse_key(const std::string& place, std::string_view section, std::string_view key) {
+  std::vector<std::string_view> keys;
+  for (const Option& option : spec_options())
+    if (section.empty() || option.section == section) keys.push_back(option.key);
+  throw InputError(fmt::format("{}: {}{}{}: unknown key; allowed: {}", place, section, section.empty() ? "" : ".", key,
+                               fmt::join(keys, ", ")));
+}
+
+/// Every key of a file's tables, in the order they were written.
+std::vector<Entry> entries_of(const toml::table& file, const std::string& origin) {
+  std::vector<Entry> entries;
+  for (const auto& [section, node] : file) {
+    const std::string place = fmt::format("{}:{}", origin, node.source().begin.line);
+    const toml::table* table = node.as_table();
+    const bool known = std::ranges::any_of(spec_options(), [&](const Option& o) { return o.section == section.str(); });
+    if (!known || !table)
+      throw InputError(fmt::format("{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [output]", place,
+                                   section.str()));
+    for (const auto& [key, value] : *table) {
+      const Option* option = find_option(section.str(), key.str());
+      const auto position = value.source().begin;
+      if (!option) refuse_key(fmt::format("{}:{}", origin, position.line), section.str(), key.str());
+      entries.push_back({option, fmt::format("{}:{}", origin, position.line), position, &value});
+    }
+  }
+  std::ranges::stable_sort(entries, {}, [](const Entry& e) { return std::pair(e.position.line, e.position.column); });
+  return entries;
+}
+
+/// KEY=VALUE as a table { v = VALUE }; a bare word is a string.
+toml::table parse_override(const std::string& text, std::string_view value) {
+  try {
+    return toml::parse(fmt::format("v = {}", value));
+  } catch (const toml::parse_error&) {
+    if (value.find_first_of("{}[]\"'\n") != std::string_view::npos)
+      throw InputError(fmt::format("--set {}: the value is not TOML; allowed: a number, a word, [..] or {{..}}", text));
+    return toml::table{{"v", std::string(value)}};
+  }
+}
+
+/// The same key set twice: the later one holds, at the place of the first, so that overriding an axis keeps its turn.
+void override_with(std::vector<Entry>& entries, const Entry& entry) {
+  const auto found = std::ranges::find(entries, entry.option, &Entry::option);
+  found == entries.end() ? entries.push_back(entry) : void(*found = entry);
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  if (!file || std::filesystem::is_directory(path) || !(text << file.rdbuf() || file.eof()))
+    throw InputError(fmt::format("{}: cannot be read; allowed: a spec in TOML", path));
+  return text.str();
+}
+
+/// A points file is looked for beside the spec first, then from the working folder.
+std::string find_points(const Spec& spec) {
+  namespace fs = std::filesystem;
+  const fs::path beside = fs::path(spec.origin).parent_path() / spec.points;
+  std::error_code ignored;
+  return fs::exists(beside, ignored) ? beside.string() : spec.points;
+}
+
+}  // namespace
+
+Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {
+  Spec spec;
+  spec.origin = path;
+  toml::table file;
+  try {
+    if (!path.empty()) file = toml::parse(read_text(path));
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: not TOML: {}", path, error.source().begin.line, error.description()));
+  }
+  std::vector<Entry> entries = entries_of(file, path);
+
+  std::vector<toml::table> values;
+  values.reserve(overrides.size());  // entries point into it
+  for (const std::string& text : overrides) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) throw InputError(fmt::format("--set {}: allowed: KEY=VALUE", text));
+    const std::string name = text.substr(0, equals);
+    const std::size_t dot = name.find('.');
+    const std::string section = dot == std::string::npos ? "" : name.substr(0, dot);
+    const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
+    const Option* option = find_option(section, key);
+    if (!option) refuse_key("--set " + text, section, key);
+    values.push_back(parse_override(text, std::string_view(text).substr(equals + 1)));
+    override_with(entries, {option, "command line", {}, values.back().get("v")});
+  }
+
+  const auto given = [&](std::string_view key) {
+    return std::ranges::any_of(entries, [&](const Entry& e) { return e.option->key == key; });
+  };
+  for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
+  if (!given("mu_kinetic")) spec.coulomb.mu_kinetic = spec.coulomb.mu_static;
+
+  if (!spec.points.empty()) {
+    if (!spec.axes.empty())
+      throw InputError(fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
+                                   path.empty() ? "--set" : path, spec.axes.front().key));
+    spec.list = read_points(find_points(spec));
+  }
+  double designs = 1.0;
+  for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
+  if (designs > static_cast<double>(most_designs))
+    throw InputError(fmt::format("{}: {:.3g} designs; allowed: at most {:.0e}", path, designs,
+                                 static_cast<double>(most_designs)));
+  return spec;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A sweep's specification: which designs, in which scene, by which method, to which file.
+///
+/// Written in TOML (see README, "The spec"). Every key is declared once, in options.cpp; parsing, validation, --help,
+/// the resolved text and the map's axes all read that table.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "trajectory/rolling_integration.hpp"
+#include "trajectory/scene.hpp"
+
+namespace leapmap {
+
+/// Coulomb friction's parameters. Read and checked so that a spec can carry them; with friction = "sticking", the
+/// only model so far, they have no effect.
+struct Coulomb {
+  double mu_static = 0.5;    ///< >= 0
+  double mu_kinetic = 0.5;   ///< >= 0
+  double restitution = 0.0;  ///< Poisson's, in [0, 1]
+  double rest_speed = 1e-3;  ///< a rebound slower than this counts as none [sqrt(g R)]
+};
+
+struct Numerics {
+  std::string method = "auto";    ///< "auto" or a stepper's name
+  double tolerance = 1e-10;       ///< relative error allowed per step
+  double absolute_tolerance = 0;  ///< absolute error allowed per step; 0: the same as tolerance
+  double fixed_step = 0;          ///< > 0: constant steps [sqrt(R/g)], errors unchecked
+  long max_steps = 1'000'000;     ///< a design that needs more has status failed
+  double audit = 0.001;           ///< share of designs solved again by an independent method
+};
+
+struct Output {
+  std::string file;                 ///< the map; -o overrides it
+  std::vector<std::string> fields;  ///< datasets to store; empty: all
+};
+
+/// One parameter that varies over a grid of designs: values in the parameter's own unit (angles in rad).
+struct Axis {
+  std::string key;
+  std::vector<double> values;
+};
+
+/// Designs one by one: a column of values for each parameter named, all equally long.
+struct PointList {
+  std::string path;           ///< the CSV file
+  std::vector<Axis> columns;  ///< empty: the list is the one design of the spec itself
+  std::size_t count = 1;
+};
+
+struct Spec {
+  std::string origin;  ///< the file it was read from, for messages
+  std::string friction = "sticking";
+  Scene scene;
+  Coulomb coulomb;
+  Design design;  ///< what axes and points leave out
+  Numerics numerics;
+  Output output;
+  std::string points;      ///< design.points as written
+  std::vector<Axis> axes;  ///< in spec order, the first varying slowest; empty: `list` holds the designs
+  PointList list;
+};
+
+/// Reads a spec from a TOML file; overrides are KEY=VALUE, applied in order, KEY with or without its section.
+/// An empty path means an empty spec: every key at its default. Throws InputError (see support/errors.hpp) for
+/// anything that is not allowed, IoError if the file cannot be read.
+Spec read_spec(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The spec as resolved: TOML that read_spec turns into the same Spec again, every key and value written out.
+std::string resolved_text(const Spec& spec);
+
+/// The stepper and its controls that numerics asks for; "auto" is settled here.
+IntegrationOptions integration_options(const Numerics& numerics);
+
+/// The name of the method that numerics.method stands for: "auto" is settled here.
+std::string resolved_method(const Numerics& numerics);
+
+}  // namespace leapmap

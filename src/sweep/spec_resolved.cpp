@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What a spec comes to once its defaults and "auto" are settled.
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "sweep/options.hpp"
+#include "sweep/spec.hpp"
+
+namespace leapmap {
+
+std::string resolved_text(const Spec& original) {
+  Spec spec = original;
+  spec.numerics.method = resolved_method(spec.numerics);
+  std::string text;
+  std::string_view section;
+  const auto line = [&](const Option& option, const std::string& value) {
+    if (option.section != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section = option.section);
+    text += fmt::format("{} = {}\n", option.key, value);
+  };
+  // A number that TOML reads back as the same float: fmt's shortest form, which may look like an integer.
+  const auto number = [](double value) {
+    std::string digits = fmt::format("{}", value);
+    return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
+  };
+  const auto string = [](const std::string& value) {
+    std::ostringstream quoted_text;
+    quoted_text << toml::value<std::string>(value);
+    return quoted_text.str();
+  };
+  for (const Option& option : spec_options()) {
+    const auto is_axis = [&](const Axis& axis) { return axis.key == option.key; };
+    if (option.section == "design" && std::ranges::any_of(spec.axes, is_axis)) continue;
+    std::visit(
+        [&](const auto& slot) {
+          using Slot = std::decay_t<decltype(slot)>;
+          if constexpr (std::is_same_v<Slot, ParameterSlot>) {
+            line(option, number(spec.design.*slot.member));
+          } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
+            line(option, number(slot(spec)));
+          } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {
+            line(option, fmt::format("{}", slot(spec)));
+          } else if constexpr (std::is_same_v<Slot, TextSlot>) {
+            if (!slot(spec).empty()) line(option, string(slot(spec)));
+          } else if (!slot(spec).empty()) {
+            std::vector<std::string> names;
+            for (const std::string& name : slot(spec)) names.push_back(string(name));
+            line(option, fmt::format("[{}]", fmt::join(names, ", ")));
+          }
+        },
+        option.slot);
+    if (option.key != "release_spin") continue;
+    for (const Axis& axis : spec.axes) {  // in spec order, which is the order of the map's dimensions
+      std::vector<std::string> values;
+      for (const double value : axis.values) values.push_back(number(value));
+      text += fmt::format("{} = {{ values = [{}] }}\n", axis.key, fmt::join(values, ", "));
+    }
+  }
+  return text;
+}
+
+std::string resolved_method(const Numerics& numerics) {
+  return numerics.method == "auto" ? "gsl-rk8pd" : numerics.method;
+}
+
+IntegrationOptions integration_options(const Numerics& numerics) {
+  IntegrationOptions options;
+  options.stepper = find_gsl_stepper(resolved_method(numerics));
+  options.control.relative = numerics.tolerance;
+  options.control.absolute = numerics.absolute_tolerance > 0.0 ? numerics.absolute_tolerance : numerics.tolerance;
+  options.control.fixed_step = numerics.fixed_step;
+  options.max_steps = numerics.max_steps;
+  return options;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The answer for one design, and the rule that picks the jump among its lift-offs.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+#include "physics/flight.hpp"
+#include "physics/parameters.hpp"
+#include "trajectory/scene.hpp"
+
+namespace leapmap {
+
+/// How a design ended. Stored in maps: numbers are never reused or changed.
+enum class Status : std::uint8_t {
+  not_computed = 0,         ///< nothing is known; holes in an unfinished map
+  jumped = 1,               ///< every jump_ field is valid
+  no_jump = 2,              ///< the runway ended first
+  stalled = 3,              ///< the spin fell to zero first, or the hoop starts uphill
+  airborne_at_release = 4,  ///< the plane would have to pull at t = 0
+  indeterminate = 5,        ///< Painleve: the rigid-body equations have no answer or two
+  failed = 6,               ///< the method gave up; no field is valid
+};
+inline constexpr int status_count = 7;
+
+/// The status as written in maps and tables, for example "jumped".
+constexpr std::string_view name_of(Status status) {
+  constexpr std::array<std::string_view, status_count> names{
+      "not_computed", "jumped", "no_jump", "stalled", "airborne_at_release", "indeterminate", "failed"};
+  return names[static_cast<std::size_t>(status)];
+}
+
+/// Dimensionless: lengths in R, times in sqrt(R/g), heights and dip in hoop diameters. NaN: does not apply.
+struct Outcome {
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  static constexpr std::uint8_t no_lift_off = 255;     ///< spurious_first_jump where there is no lift-off at all
+  static constexpr std::uint8_t most_candidates = 254;  ///< candidates stops counting here
+
+  Status status = Status::not_computed;
+  std::uint8_t spurious_first_jump = no_lift_off;  ///< 1: the first lift-off stayed below hop_height
+  std::uint8_t candidates = 0;                     ///< lift-offs looked at, the jump included
+  double jump_height = none;
+  double jump_time = none;      ///< from release to lift-off
+  double jump_angle = none;     ///< phi at lift-off [rad]
+  double jump_spin = none;      ///< w at lift-off
+  double jump_distance = none;  ///< rolled since release
+  double apex_time = none;      ///< from lift-off
+  double flight_time = none;    ///< from lift-off to landing
+  double dip = none;            ///< how far the flight first enters the plane, <= 0
+  double first_jump_height = none;
+  double first_jump_time = none;
+};
+
+/// Counts a lift-off and its flight, in order of time. True if it is the jump, which ends the search: the jump is
+/// the first lift-off that reaches scene.hop_height.
+bool consider(Outcome& outcome, const Scene& scene, const Design& design, const LiftOff<double>& lift_off,
+              const Flight<double>& flight);
+
+/// The outcome of a design that a method gave up on.
+inline Outcome failed_outcome() {
+  Outcome outcome;
+  outcome.status = Status::failed;
+  return outcome;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One design by integrating (10) in time with one of GSL's steppers.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "numerics/gsl_integrator.hpp"
+#include "trajectory/outcome.hpp"
+
+namespace leapmap {
+
+/// (phi, w), the state of a rolling hoop.
+using RollingState = State<2>;
+
+struct IntegrationOptions {
+  const GslStepper* stepper = nullptr;  ///< never null when used
+  StepControl control;
+  long max_steps = 1'000'000;  ///< a design that needs more is given up as failed
+};
+
+/// A place where the normal force touched zero, or nearly so, without an obvious answer.
+struct Graze {
+  double time;          ///< since release [sqrt(R/g)]
+  double angle;         ///< phi [rad]
+  double normal_force;  ///< at its extremum [weights]; < 0: counted as a lift-off, >= 0: not
+};
+
+/// Looks on while a design is solved; unset functions cost nothing.
+struct RollingObserver {
+  /// Every step, in order; retake gives the method's own state inside it; only [0, end] of the step was rolled.
+  std::function<void(const GslIntegrator<2>& integrator, double end)> step;
+  std::function<void(const LiftOff<double>&, const Flight<double>&)> lift_off;
+  std::function<void(const Graze&)> graze;
+};
+
+/// A thread's own workspace: GSL's memory is allocated here once, and every design restarts it.
+class RollingIntegration {
+ public:
+  explicit RollingIntegration(const IntegrationOptions& options);
+  RollingIntegration(const RollingIntegration&) = delete;
+  RollingIntegration& operator=(const RollingIntegration&) = delete;
+
+  /// Rolls the design until its jump, its stall or the end of the runway. Never throws for a bad design: what the
+  /// method cannot do has status failed.
+  Outcome solve(const Design& design, const Scene& scene, const RollingObserver& observer = {});
+
+ private:
+  IntegrationOptions options_;
+  Hoop<double> hoop_;
+  GslIntegrator<2> integrator_;
+  Falls<2> lift_offs_, stalls_;
+};
+
+}  // namespace leapmap

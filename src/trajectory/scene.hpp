@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What all designs of a study share: the plane, the rule that says what a jump is, and the units of the answer.
+#pragma once
+
+#include <cmath>
+
+namespace leapmap {
+
+/// Rolling without slip, the paper's model.
+struct Scene {
+  double runway = 5.0;       ///< where the search for a jump ends [revolutions rolled since release], > 0
+  double hop_height = 0.05;  ///< a lift-off this high is the jump [hoop diameters], >= 0; 0: the first one is
+  double radius = 0.041;     ///< R [m], > 0; scales times only
+  double gravity = 9.81;     ///< g [m/s^2], > 0; scales times only
+};
+
+/// sqrt(R/g) [s], the unit of time inside the solvers.
+inline double time_unit(const Scene& scene) { return std::sqrt(scene.radius / scene.gravity); }
+
+}  // namespace leapmap

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/trace.hpp"
+
+#include <cmath>
+
+#include "physics/rolling.hpp"
+
+namespace leapmap {
+namespace {
+
+TracePoint rolling_point(const Hoop<double>& hoop, const Design& design, double t, const RollingState& y) {
+  const Trig<double> phi = trig(y[0]);
+  const double acceleration = angular_acceleration(hoop, phi, y[1]);
+  return {t,
+          y[0],
+          y[1],
+          y[0] - design.release_angle,
+          0.0,
+          normal_force(hoop, phi, y[1], acceleration),
+          friction_force(hoop, phi, y[1], acceleration),
+          Phase::rolling};
+}
+
+TracePoint flight_point(const Hoop<double>& hoop, const Design& design, const LiftOff<double>& from, double flown) {
+  return {from.time + flown,
+          from.angle + from.spin * flown,
+          from.spin,
+          from.angle - design.release_angle + travel_in_flight(hoop, trig(from.angle), from.spin, flown),
+          height_above_plane(hoop, trig(from.angle), from.spin, flown).value,
+          0.0,
+          0.0,
+          Phase::flight};
+}
+
+}  // namespace
+
+Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval,
+           double graze_limit) {
+  const Hoop<double> hoop = derive<double>(design);
+  Story story;
+  double next_sample = 0.0;
+  const auto sample_until = [&](double end, const auto& point_at) {
+    for (; next_sample <= end; next_sample = interval * std::round(next_sample / interval + 1.0))
+      story.points.push_back(point_at(next_sample));
+  };
+
+  RollingObserver observer;
+  observer.lift_off = [&](const LiftOff<double>& lift_off, const Flight<double>& flight) {
+    story.candidates.push_back({lift_off, flight});
+  };
+  observer.graze = [&](const Graze& graze) {
+    if (std::abs(graze.normal_force) < graze_limit) story.grazes.push_back(graze);
+  };
+  if (interval > 0.0) {
+    observer.step = [&](const GslIntegrator<2>& integrator, double end) {
+      const double t0 = integrator.step().t0;
+      sample_until(t0 + end, [&](double t) {
+        RollingState y = integrator.step().y0;
+        integrator.retake(t - t0, y);
+        return rolling_point(hoop, design, t, y);
+      });
+    };
+  }
+  story.outcome = RollingIntegration(options).solve(design, scene, observer);
+
+  if (interval > 0.0 && story.outcome.status == Status::jumped) {
+    const Candidate& jump = story.candidates.back();
+    const double start = jump.lift_off.time, flown = jump.flight.flight_time;
+    story.points.push_back(rolling_point(hoop, design, start, {jump.lift_off.angle, jump.lift_off.spin}));
+    sample_until(start + flown, [&](double t) { return flight_point(hoop, design, jump.lift_off, t - start); });
+    story.points.push_back(flight_point(hoop, design, jump.lift_off, flown));
+  }
+  return story;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One design's story: every lift-off on the way, and, if wanted, its motion sampled over time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "trajectory/outcome.hpp"
+#include "trajectory/rolling_integration.hpp"
+
+namespace leapmap {
+
+/// Stored in traces: numbers are never reused or changed.
+enum class Phase : std::uint8_t { rolling = 1, sliding = 2, flight = 3 };
+
+/// The motion at one time. Lengths in R, times in sqrt(R/g), forces in weights.
+struct TracePoint {
+  double t;             ///< since release
+  double phi;           ///< angle [rad]
+  double spin;          ///< w
+  double x;             ///< travel of the hoop's centre along the plane since release
+  double y;             ///< height of the hoop's lowest point above the plane; 0 in contact
+  double normal_force;  ///< (11); negative where rolling without slip would need a plane that pulls
+  double friction;      ///< (12), positive downhill
+  Phase phase;
+};
+
+/// A lift-off that was looked at, and the flight it would begin.
+struct Candidate {
+  LiftOff<double> lift_off;
+  Flight<double> flight;
+};
+
+struct Story {
+  Outcome outcome;
+  std::vector<Candidate> candidates;
+  std::vector<Graze> grazes;      ///< zeros of the normal force decided by a hair, see Graze
+  std::vector<TracePoint> points;  ///< from release to the end: the jump's landing, the stall, the runway's end
+};
+
+/// Solves one design and tells everything about it. interval > 0: samples the motion that often [sqrt(R/g)], and at
+/// the jump's lift-off and landing. Grazes are told if |N| there is below graze_limit.
+Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval = 0.0,
+           double graze_limit = 1e-6);
+
+}  // namespace leapmap
