@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "cli/commands.hpp"
+#include "cli/provenance.hpp"
 #include "map/schema.hpp"
 #include "map/trace_file.hpp"
 #include "support/errors.hpp"
-#include "support/version.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap::cli {
@@ -120,13 +120,8 @@ int run(const HopArguments& arguments) {
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval / time_unit(spec.scene);
   const Story story = tell(spec.design, spec.scene, integration_options(spec.numerics), interval);
   if (!arguments.trace.empty()) {
-    const std::vector<hdf5::Attribute> attributes{{"Conventions", "CF-1.8"},
-                                                  {"title", "Motion of one passive hoop"},
-                                                  {"filetype", std::string(trace_filetype)},
-                                                  {"program_version", std::string(program_version())},
-                                                  {"git_revision", std::string(git_revision())},
-                                                  {"spec", resolved_text(spec)},
-                                                  {"status", std::string(name_of(story.outcome.status))}};
+    std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
+    attributes.emplace_back("status", std::string(name_of(story.outcome.status)));
     write_trace(arguments.trace, story, spec.scene, attributes);
   }
   if (arguments.json) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// leapmap sweep: solves the designs of a spec into a map.
-#include <fmt/chrono.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <chrono>
@@ -12,9 +9,9 @@
 
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
+#include "cli/provenance.hpp"
 #include "map/writer.hpp"
 #include "support/errors.hpp"
-#include "support/version.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
@@ -62,22 +59,6 @@ std::string title_of(const Spec& spec) {
   for (const Axis& axis : spec.axes) names.push_back(axis.key);
   return spec.axes.empty() ? fmt::format("Jumps of {} hoop designs", spec.list.count)
                            : fmt::format("Jumps of passive hoops over {}", fmt::join(names, " x "));
-}
-
-std::vector<hdf5::Attribute> provenance(const Spec& spec, int threads) {
-  std::array<char, 256> host{};
-  if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
-  return {{"Conventions", "CF-1.8"},
-          {"title", title_of(spec)},
-          {"filetype", std::string(map_filetype)},
-          {"program_version", std::string(program_version())},
-          {"git_revision", std::string(git_revision())},
-          {"spec", resolved_text(spec)},
-          {"date", fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::now()))},
-          {"host", std::string(host.data())},
-          {"threads", std::int64_t{threads}},
-          {"method", resolved_method(spec.numerics)},
-          {"tolerance", spec.numerics.tolerance}};
 }
 
 /// "61,696"
@@ -153,7 +134,9 @@ int run(const SweepArguments& arguments) {
 
   int status = 0;
   const auto begin = Clock::now();
-  MapWriter writer(map, layout, tiling, provenance(spec, threads), arguments.overwrite);
+  std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
+  opening.emplace_back("threads", std::int64_t{threads});
+  MapWriter writer(map, layout, tiling, opening, arguments.overwrite);
   note_signals();
   std::array<std::size_t, status_count> totals{};
   std::size_t done = 0;

@@ -77,7 +77,7 @@ void write_attribute(hid_t object, const std::string& name, std::span<const std:
 void write_attribute(hid_t object, const std::string& name, std::span<const std::uint8_t> values);
 
 /// A named value of a file's root.
-using Attribute = std::pair<std::string, std::variant<std::string, double, std::int64_t>>;
+using Attribute = std::pair<std::string, std::variant<std::string, double, std::int64_t, std::vector<std::int32_t>>>;
 void annotate(hid_t object, std::span<const Attribute> attributes);
 
 /// Closes a file written under the name `part`, brings it to disk and gives it its name, in place of an older file.

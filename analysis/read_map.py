@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads leapmap's files: maps of many designs and traces of one.
+
+    from read_map import read_map
+    m = read_map("maps/slope_mass_ratio.h5")
+    m.dims["slope"]            # values of an axis
+    m.fields["jump_height"]    # an array along all axes, NaN where there is no jump
+    m.code("status", "jumped") # where a code has a meaning, as a boolean array
+"""
+from dataclasses import dataclass, field
+
+import h5py
+import numpy as np
+
+FORMAT_MAJOR = 1  # the newest format this reader knows
+
+
+class NotAMap(Exception):
+    """The file is of another type, or of a newer format."""
+
+
+@dataclass
+class Map:
+    path: str
+    attributes: dict
+    dims: dict = field(default_factory=dict)  # name -> values, in the order of the fields' dimensions
+    fields: dict = field(default_factory=dict)  # name -> array
+    about: dict = field(default_factory=dict)  # name -> its attributes (units, long_name, ...)
+
+    def code(self, name, meaning):
+        """Where the code `name` has this meaning."""
+        about = self.about[name]
+        value = about["flag_values"][about["flag_meanings"].split().index(meaning)]
+        return self.fields[name] == value
+
+    def label(self, name):
+        """'long_name [unit]' for an axis."""
+        about = self.about[name]
+        unit = about.get("units", "1")
+        return about["long_name"] + ("" if unit == "1" else f" [{unit}]")
+
+
+def _read(path, filetype):
+    try:
+        file = h5py.File(path, "r")
+    except OSError as error:
+        raise NotAMap(f"{path}: cannot be read as HDF5 ({error})") from None
+    with file:
+        attributes = dict(file.attrs)
+        if attributes.get("filetype") != filetype:
+            raise NotAMap(f'{path}: is not a {filetype} (its attribute filetype is {attributes.get("filetype")!r})')
+        if attributes["version"][0] > FORMAT_MAJOR:
+            raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
+                          "use a newer leapmap")
+        result = Map(path, attributes)
+        for name, dataset in file.items():
+            result.about[name] = dict(dataset.attrs)
+            if h5py.h5ds.is_scale(dataset.id):
+                continue
+            result.fields[name] = dataset[()]
+            for dimension in dataset.dims:  # the order of dimensions is the fields' own
+                scale = dimension[0]
+                result.dims.setdefault(scale.name.lstrip("/"), scale[()])
+    return result
+
+
+def read_map(path):
+    """A map, as `leapmap sweep` writes it. Raises NotAMap with one clear line for anything else."""
+    return _read(path, "leapmap map")
+
+
+def read_trace(path):
+    """One design's motion, as `leapmap hop --trace` writes it."""
+    return _read(path, "leapmap trace")
+
+
+def sliced(m, name, keep):
+    """Cuts a field into planes along the two axes `keep`: yields (fixed coordinates, plane with keep[0] first)."""
+    names = list(m.dims)
+    others = [n for n in names if n not in keep]
+    array = np.moveaxis(m.fields[name], [names.index(k) for k in keep], [-2, -1])
+    for index in np.ndindex(*(len(m.dims[o]) for o in others)):
+        yield {o: m.dims[o][i] for o, i in zip(others, index)}, array[index]

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/provenance.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+
+#include "map/schema.hpp"
+#include "support/version.hpp"
+
+namespace leapmap::cli {
+
+std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filetype, const std::string& title) {
+  std::array<char, 256> host{};
+  if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
+  return {{"Conventions", "CF-1.8"},
+          {"title", title},
+          {"filetype", std::string(filetype)},
+          {"version", std::vector<std::int32_t>{format_major, format_minor}},
+          {"program_version", std::string(program_version())},
+          {"git_revision", std::string(git_revision())},
+          {"spec", resolved_text(spec)},
+          {"date", fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::now()))},
+          {"host", std::string(host.data())},
+          {"method", resolved_method(spec.numerics)},
+          {"tolerance", spec.numerics.tolerance}};
+}
+
+}  // namespace leapmap::cli

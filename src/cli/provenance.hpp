@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What every file of ours says about itself.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "map/hdf5.hpp"
+#include "sweep/spec.hpp"
+
+namespace leapmap::cli {
+
+/// Root attributes: conventions, title, file type and version, program, resolved spec, date, host, method.
+std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filetype, const std::string& title);
+
+}  // namespace leapmap::cli

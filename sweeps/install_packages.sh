@@ -1,0 +1,28 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs what leapmap needs from Debian 12's packages, as root or with sudo; does nothing if all is there.
+#   install_packages.sh main    to build, to run and to draw
+#   install_packages.sh tests   for the tests and benchmarks as well
+set -eu
+packages="g++ cmake ninja-build git libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev libcli11-dev
+  python3 python3-numpy python3-h5py python3-matplotlib"
+if [ "${1:-main}" = tests ]; then
+  packages="$packages libgtest-dev libeigen3-dev libbenchmark-dev clang-format hdf5-tools netcdf-bin
+    python3-pytest python3-xarray python3-netcdf4 python3-h5netcdf"
+fi
+missing=""
+for package in $packages; do
+  [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing="$missing $package"
+done
+[ -z "$missing" ] && exit 0
+echo "installing:$missing"
+if [ "$(id -u)" = 0 ]; then
+  root=""
+elif command -v sudo > /dev/null; then
+  root="sudo"
+else
+  echo "install_packages.sh: these Debian packages are missing and neither root nor sudo is at hand:$missing" >&2
+  exit 1
+fi
+$root apt-get update -qq
+$root env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends $missing
