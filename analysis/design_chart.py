@@ -110,7 +110,7 @@ def chart(m, name):
     for axis in axes.flat[len(panels):]:
         axis.set_visible(False)
     figure.supxlabel("slope [degrees]", fontsize=9)
-    figure.supylabel("mass ratio m$_p$/m", fontsize=9)
+    figure.supylabel("mass ratio mₚ/m", fontsize=9)
     if filled is not None:
         bar = figure.colorbar(filled, ax=axes, label=label, ticks=levels, shrink=0.9, pad=0.015)
         bar.ax.set_yticklabels([f"{v:g}" for v in levels])

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The commands of the program, one file each. Each adds itself to the command line and puts the exit status of its
-/// run into `status`; errors are exceptions, which main turns into a line and a status.
+/// The commands of the program, one file each. Each adds itself to the command line and puts the exit status
+/// of its run into `status`; errors are exceptions, which main turns into a line and a status.
 #pragma once
 
 #include <CLI/CLI.hpp>

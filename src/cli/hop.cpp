@@ -29,12 +29,17 @@ std::string verdict(const Story& story, const Scene& scene) {
   switch (story.outcome.status) {
     case Status::jumped:
       return story.outcome.spurious_first_jump == 1
-                 ? fmt::format("It jumps, after a spurious first lift-off below {} diameters.", scene.hop_height)
+                 ? fmt::format("It jumps, after a spurious first lift-off below {} diameters.",
+                               scene.hop_height)
                  : "It jumps at its first lift-off.";
-    case Status::no_jump: return fmt::format("No jump within {} revolutions.", scene.runway);
-    case Status::stalled: return "It stalls: the spin falls to zero, or it starts uphill.";
-    case Status::airborne_at_release: return "The plane would have to pull at release: it is airborne from the start.";
-    default: return "The method gave up; try a tighter tolerance, more max_steps or another method.";
+    case Status::no_jump:
+      return fmt::format("No jump within {} revolutions.", scene.runway);
+    case Status::stalled:
+      return "It stalls: the spin falls to zero, or it starts uphill.";
+    case Status::airborne_at_release:
+      return "The plane would have to pull at release: it is airborne from the start.";
+    default:
+      return "The method gave up; try a tighter tolerance, more max_steps or another method.";
   }
 }
 
@@ -43,32 +48,38 @@ void print_table(const Spec& spec, const Story& story) {
   for (const Option* parameter : design_parameters()) {
     const double value = spec.design.*std::get<ParameterSlot>(parameter->slot).member;
     fmt::print("{:<15} {:<12.8g} {}\n", parameter->key, value,
-               parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", degrees(value)) : parameter->unit == "1" ? "" : parameter->unit);
+               parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", degrees(value))
+               : parameter->unit == "1" ? ""
+                                        : parameter->unit);
   }
   fmt::print("{:<15} {:<12.8g} m, gravity {:g} m/s^2, sqrt(R/g) = {:.6g} s\n", "radius", spec.scene.radius,
              spec.scene.gravity, second);
-  fmt::print("{:<15} {}, tolerance {:g}\n\n", "method", resolved_method(spec.numerics), spec.numerics.tolerance);
+  fmt::print("{:<15} {}, tolerance {:g}\n\n", "method", resolved_method(spec.numerics),
+             spec.numerics.tolerance);
 
-  fmt::print("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]", "spin [rad/s]",
-             "height [2R]", "landing [s]");
-  fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f}\n", "R  rolls from release", 0.0, degrees(spec.design.release_angle),
-             spec.design.release_spin / second);
+  fmt::print("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]",
+             "spin [rad/s]", "height [2R]", "landing [s]");
+  fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f}\n", "R  rolls from release", 0.0,
+             degrees(spec.design.release_angle), spec.design.release_spin / second);
   const auto& candidates = story.candidates;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const bool jump = story.outcome.status == Status::jumped && i + 1 == candidates.size();
     const auto& [lift_off, flight] = candidates[i];
     fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f} {:>12.6f} {:>12.6f}\n",
                jump ? "F  jumps" : fmt::format("   lift-off {}, too low", i + 1), lift_off.time * second,
-               degrees(lift_off.angle), lift_off.spin / second, flight.height, (lift_off.time + flight.flight_time) * second);
+               degrees(lift_off.angle), lift_off.spin / second, flight.height,
+               (lift_off.time + flight.flight_time) * second);
   }
   fmt::print("\n{}\n", verdict(story, spec.scene));
   if (story.outcome.status == Status::jumped)
-    fmt::print("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off; the flight first dips {:.4g} diameters.\n",
-               story.outcome.jump_height, 2.0 * spec.scene.radius * story.outcome.jump_height,
-               story.outcome.apex_time * second, story.outcome.flight_time * second, story.outcome.dip);
+    fmt::print(
+        "Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off; the flight "
+        "first dips {:.4g} diameters.\n",
+        story.outcome.jump_height, 2.0 * spec.scene.radius * story.outcome.jump_height,
+        story.outcome.apex_time * second, story.outcome.flight_time * second, story.outcome.dip);
   for (const Graze& graze : story.grazes)
-    fmt::print("Graze: at {:.6f} s the normal force comes to {:.3g} weights and is counted as {}.\n", graze.time * second,
-               graze.normal_force, graze.normal_force < 0.0 ? "a lift-off" : "contact");
+    fmt::print("Graze: at {:.6f} s the normal force comes to {:.3g} weights and is counted as {}.\n",
+               graze.time * second, graze.normal_force, graze.normal_force < 0.0 ? "a lift-off" : "contact");
 }
 
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
@@ -78,7 +89,8 @@ std::string json_text(const Spec& spec, const Story& story) {
   const double second = time_unit(spec.scene);
   std::vector<std::string> design, outcome, candidates, grazes;
   for (const Option* parameter : design_parameters())
-    design.push_back(fmt::format("\"{}\": {}", parameter->key, json_number(spec.design.*std::get<ParameterSlot>(parameter->slot).member)));
+    design.push_back(fmt::format("\"{}\": {}", parameter->key,
+                                 json_number(spec.design.*std::get<ParameterSlot>(parameter->slot).member)));
   for (const Field& field : map_fields()) {
     std::string value;
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
@@ -92,18 +104,21 @@ std::string json_text(const Spec& spec, const Story& story) {
     outcome.push_back(fmt::format("\"{}\": {}", field.name, value));
   }
   for (const auto& [lift_off, flight] : story.candidates)
-    candidates.push_back(fmt::format(R"({{"time": {}, "angle": {}, "spin": {}, "height": {}, "apex_time": {}, "flight_time": {}, "dip": {}}})",
-                                     lift_off.time * second, lift_off.angle, lift_off.spin, flight.height,
-                                     flight.apex_time * second, flight.flight_time * second, flight.dip));
+    candidates.push_back(fmt::format(
+        R"({{"time": {}, "angle": {}, "spin": {}, "height": {}, "apex_time": {}, "flight_time": {}, "dip": {}}})",
+        lift_off.time * second, lift_off.angle, lift_off.spin, flight.height, flight.apex_time * second,
+        flight.flight_time * second, flight.dip));
   for (const Graze& graze : story.grazes)
-    grazes.push_back(fmt::format(R"({{"time": {}, "angle": {}, "normal_force": {}}})", graze.time * second, graze.angle,
-                                 graze.normal_force));
+    grazes.push_back(fmt::format(R"({{"time": {}, "angle": {}, "normal_force": {}}})", graze.time * second,
+                                 graze.angle, graze.normal_force));
   return fmt::format(
-      "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, \"radius\": {}, "
-      "\"gravity\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  \"lift_offs\": [{}],\n  \"grazes\": [{}]\n}}\n",
+      "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
+      "\"radius\": {}, "
+      "\"gravity\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  \"lift_offs\": [{}],\n  "
+      "\"grazes\": [{}]\n}}\n",
       fmt::join(design, ", "), spec.friction, spec.scene.runway, spec.scene.hop_height, spec.scene.radius,
-      spec.scene.gravity, resolved_method(spec.numerics), spec.numerics.tolerance, fmt::join(outcome, ",\n  "),
-      fmt::join(candidates, ", "), fmt::join(grazes, ", "));
+      spec.scene.gravity, resolved_method(spec.numerics), spec.numerics.tolerance,
+      fmt::join(outcome, ",\n  "), fmt::join(candidates, ", "), fmt::join(grazes, ", "));
 }
 
 int run(const HopArguments& arguments) {
@@ -112,10 +127,12 @@ int run(const HopArguments& arguments) {
     overrides.push_back(fmt::format("design.{}={}", option->key, value));
   const Spec spec = read_spec(arguments.spec, overrides);
   if (!spec.axes.empty())
-    throw InputError(fmt::format("{}: design.{} is an axis; allowed: one number for a hop, for example --set {}={}",
-                                 arguments.spec, spec.axes[0].key, spec.axes[0].key, spec.axes[0].values[0]));
+    throw InputError(
+        fmt::format("{}: design.{} is an axis; allowed: one number for a hop, for example --set {}={}",
+                    arguments.spec, spec.axes[0].key, spec.axes[0].key, spec.axes[0].values[0]));
   if (!spec.points.empty())
-    throw InputError(fmt::format("{}: design.points is a list; allowed: one design for a hop", arguments.spec));
+    throw InputError(
+        fmt::format("{}: design.points is a list; allowed: one design for a hop", arguments.spec));
 
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval / time_unit(spec.scene);
   const Story story = tell(spec.design, spec.scene, integration_options(spec.numerics), interval);
@@ -128,7 +145,8 @@ int run(const HopArguments& arguments) {
     fmt::print("{}", json_text(spec, story));
   } else {
     print_table(spec, story);
-    if (!arguments.trace.empty()) fmt::print("Trace of {} points: {}\n", story.points.size(), arguments.trace);
+    if (!arguments.trace.empty())
+      fmt::print("Trace of {} points: {}\n", story.points.size(), arguments.trace);
   }
   return story.outcome.status == Status::failed ? 1 : 0;
 }
@@ -143,12 +161,19 @@ void add_hop(CLI::App& app, int& status) {
     std::string flag = fmt::format("--{}", parameter->key);
     std::ranges::replace(flag, '_', '-');
     command->add_option_function<std::string>(
-        flag, [arguments, parameter](const std::string& value) { arguments->parameters.emplace_back(parameter, value); },
+        flag,
+        [arguments, parameter](const std::string& value) {
+          arguments->parameters.emplace_back(parameter, value);
+        },
         fmt::format("{}; {}", parameter->meaning, allowed_values(*parameter)));
   }
-  command->add_option("--set", arguments->overrides, "KEY=VALUE: override a key of the spec")->expected(1)->take_all();
+  command->add_option("--set", arguments->overrides, "KEY=VALUE: override a key of the spec")
+      ->expected(1)
+      ->take_all();
   command->add_option("--trace", arguments->trace, "write the motion over time to this HDF5 file");
-  command->add_option("--trace-interval", arguments->trace_interval, "seconds between its samples; default 0.001")
+  command
+      ->add_option("--trace-interval", arguments->trace_interval,
+                   "seconds between its samples; default 0.001")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", arguments->json, "print JSON, under the map's names and units");
   command->footer(options_help());

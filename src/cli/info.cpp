@@ -22,7 +22,8 @@ struct Extreme {
 /// What a field's values come to. Codes have no extremes worth telling: they are counted.
 struct Summary {
   std::size_t missing = 0;
-  Extreme least{std::numeric_limits<double>::infinity(), 0}, most{-std::numeric_limits<double>::infinity(), 0};
+  Extreme least{std::numeric_limits<double>::infinity(), 0},
+      most{-std::numeric_limits<double>::infinity(), 0};
   std::array<std::size_t, 256> counts{};
 };
 
@@ -72,7 +73,9 @@ std::string place(const MapReader& map, std::size_t design) {
 void print_counts(const Code& code, const Summary& summary, std::size_t designs) {
   for (std::size_t i = 0; i < summary.counts.size(); ++i) {
     if (summary.counts[i] == 0) continue;
-    std::string meaning = i < code.names.size() ? std::string(code.names[i]) : i == code.fill ? "(no lift-off)" : fmt::format("{}", i);
+    std::string meaning = i < code.names.size() ? std::string(code.names[i])
+                          : i == code.fill      ? "(no lift-off)"
+                                                : fmt::format("{}", i);
     fmt::print("  {:>12} {:5.1f} %  {}\n", summary.counts[i],
                100.0 * static_cast<double>(summary.counts[i]) / static_cast<double>(designs), meaning);
   }
@@ -82,19 +85,22 @@ int run(const std::string& path, bool with_spec) {
   const MapReader map(path);
   std::size_t designs = 1;
   fmt::print("{}\n", map.attribute("title"));
-  fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {:.3g} s\n", map.attribute("date"), map.attribute("host"),
-             map.attribute("program_version"), map.attribute("git_revision"), map.attribute("threads"),
+  fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {:.3g} s\n", map.attribute("date"),
+             map.attribute("host"), map.attribute("program_version"), map.attribute("git_revision"),
+             map.attribute("threads"),
              map.attribute("wall_time").empty() ? 0.0 : std::stod(map.attribute("wall_time")));
   fmt::print("method {}, tolerance {}\n", map.attribute("method"), map.attribute("tolerance"));
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
-    fmt::print("audit: {} designs again by {}: height within {} diameters, time within {} relative, {} flags differ\n", audited,
-               map.attribute("audit_method"), map.attribute("audit_max_abs_height_error"),
-               map.attribute("audit_max_rel_time_error"), map.attribute("audit_flag_mismatches"));
+    fmt::print(
+        "audit: {} designs again by {}: height within {} diameters, time within {} relative, {} flags "
+        "differ\n",
+        audited, map.attribute("audit_method"), map.attribute("audit_max_abs_height_error"),
+        map.attribute("audit_max_rel_time_error"), map.attribute("audit_flag_mismatches"));
   fmt::print("\ndimensions\n");
   for (const auto& dimension : map.dimensions()) {
     const auto [least, most] = std::ranges::minmax(dimension.values);
-    fmt::print("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", dimension.name, dimension.values.size(), least, most,
-               dimension.unit == "1" ? "" : dimension.unit);
+    fmt::print("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", dimension.name, dimension.values.size(),
+               least, most, dimension.unit == "1" ? "" : dimension.unit);
     designs *= dimension.values.size();
   }
   fmt::print("\nfields, {} designs\n", designs);
@@ -120,7 +126,8 @@ int run(const std::string& path, bool with_spec) {
 }  // namespace
 
 void add_info(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("info", "tell what is in a map: axes, statuses, extremes and where they are");
+  CLI::App* command =
+      app.add_subcommand("info", "tell what is in a map: axes, statuses, extremes and where they are");
   auto path = std::make_shared<std::string>();
   auto with_spec = std::make_shared<bool>(false);
   command->add_option("MAP", *path, "the map, HDF5")->required();

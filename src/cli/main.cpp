@@ -23,15 +23,19 @@ int complain(int status, std::string_view what) {
 
 int main(int argc, char** argv) {
   int status = done;
-  CLI::App app{"leapmap maps the jumps of passive hoops: thin hoops with an off-centre mass that roll down a plane and leap."};
+  CLI::App app{
+      "leapmap maps the jumps of passive hoops: thin hoops with an off-centre mass that roll down a plane "
+      "and leap."};
   app.footer(
       "Examples:\n"
       "  leapmap hop                                       the paper's hoop: phases, times, the jump\n"
       "  leapmap hop --slope 30deg --trace hop.h5          another slope, its motion written to a file\n"
       "  leapmap sweep sweeps/slope_mass_ratio.toml        a map of 61,696 designs\n"
       "  leapmap info maps/slope_mass_ratio.h5             what is in it\n"
-      "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 interrupted.");
-  app.set_version_flag("--version", fmt::format("leapmap {} (git {})", leapmap::program_version(), leapmap::git_revision()));
+      "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 "
+      "interrupted.");
+  app.set_version_flag(
+      "--version", fmt::format("leapmap {} (git {})", leapmap::program_version(), leapmap::git_revision()));
   app.require_subcommand(1);
   leapmap::cli::add_sweep(app, status);
   leapmap::cli::add_hop(app, status);

@@ -16,7 +16,8 @@ extern "C" void note_signal(int signal) { signal_noted = signal; }
 
 }  // namespace
 
-Progress::Progress(std::size_t total, bool quiet) : total_(total), shown_(!quiet && ::isatty(STDERR_FILENO)) {}
+Progress::Progress(std::size_t total, bool quiet)
+    : total_(total), shown_(!quiet && ::isatty(STDERR_FILENO)) {}
 
 Progress::~Progress() {
   if (shown_) fmt::print(stderr, "\r\033[K");

@@ -8,7 +8,8 @@
 
 namespace leapmap::cli {
 
-/// One line on stderr, rewritten a few times a second, and only if stderr is a terminal: done, rate, time to go.
+/// One line on stderr, rewritten a few times a second, and only if stderr is a terminal: done, rate, time to
+/// go.
 class Progress {
  public:
   Progress(std::size_t total, bool quiet);
@@ -26,8 +27,8 @@ class Progress {
 /// "1 h 02 min", "3 min 20 s", "4.2 s".
 std::string spoken_duration(double seconds);
 
-/// From now on the first SIGINT or SIGTERM is only noted, so that work can be brought to a good end; the second one
-/// ends the program at once.
+/// From now on the first SIGINT or SIGTERM is only noted, so that work can be brought to a good end; the
+/// second one ends the program at once.
 void note_signals();
 /// The signal noted, or 0.
 int noted_signal();

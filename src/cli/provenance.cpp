@@ -13,7 +13,8 @@
 
 namespace leapmap::cli {
 
-std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filetype, const std::string& title) {
+std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filetype,
+                                        const std::string& title) {
   std::array<char, 256> host{};
   if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
   return {{"Conventions", "CF-1.8"},

@@ -12,6 +12,7 @@
 namespace leapmap::cli {
 
 /// Root attributes: conventions, title, file type and version, program, resolved spec, date, host, method.
-std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filetype, const std::string& title);
+std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filetype,
+                                        const std::string& title);
 
 }  // namespace leapmap::cli

@@ -32,12 +32,14 @@ struct SweepArguments {
 
 MapAxis describe(const Option& option, std::vector<double> values) {
   return {std::string(option.key), std::string(option.unit == "sqrt(g/R)" ? "1" : option.unit),
-          fmt::format("{}{}", option.meaning, option.unit == "sqrt(g/R)" ? ", in sqrt(g/R)" : ""), std::move(values)};
+          fmt::format("{}{}", option.meaning, option.unit == "sqrt(g/R)" ? ", in sqrt(g/R)" : ""),
+          std::move(values)};
 }
 
 MapLayout layout_of(const Spec& spec) {
   MapLayout layout;
-  for (const Axis& axis : spec.axes) layout.axes.push_back(describe(*find_option("design", axis.key), axis.values));
+  for (const Axis& axis : spec.axes)
+    layout.axes.push_back(describe(*find_option("design", axis.key), axis.values));
   if (spec.axes.empty()) {
     for (const Option* parameter : design_parameters()) {
       const double constant = spec.design.*std::get<ParameterSlot>(parameter->slot).member;
@@ -79,12 +81,13 @@ std::string spoken_bytes(double bytes) {
   return fmt::format("{:.3g} {}", bytes, units[unit]);
 }
 
-void plan(const Spec& spec, const std::string& map, const MapLayout& layout, const Tiling& tiling, int threads) {
+void plan(const Spec& spec, const std::string& map, const MapLayout& layout, const Tiling& tiling,
+          int threads) {
   fmt::print("map      {}\n", map.empty() ? "(none: give -o or output.file)" : map);
   if (spec.axes.empty()) fmt::print("list     {} designs {}\n", grouped(spec.list.count), spec.list.path);
   for (const Axis& axis : spec.axes)
-    fmt::print("axis     {} from {:.6g} to {:.6g}, {} values\n", axis.key, axis.values.front(), axis.values.back(),
-               axis.values.size());
+    fmt::print("axis     {} from {:.6g} to {:.6g}, {} values\n", axis.key, axis.values.front(),
+               axis.values.back(), axis.values.size());
   fmt::print("designs  {} in {} tiles of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
              fmt::join(tiling.tile_shape(), " x "));
   fmt::print("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
@@ -98,14 +101,17 @@ void plan(const Spec& spec, const std::string& map, const MapLayout& layout, con
   fmt::print("time     about {} on {} threads\n", spoken_duration(seconds), threads);
 }
 
-/// Runs the audit; its result as attributes. A disagreement sets status and is told with the command to see it.
+/// Runs the audit; its result as attributes. A disagreement sets status and is told with the command to see
+/// it.
 std::vector<hdf5::Attribute> run_audit(const Spec& spec, const SweepArguments& arguments, int& status) {
   if (spec.numerics.audit <= 0.0) return {};
   const AuditReport report = audit(spec, arguments.threads);
   if (!arguments.quiet)
-    fmt::print("audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags differ\n",
-               grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
-               report.flag_mismatches);
+    fmt::print(
+        "audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
+        "differ\n",
+        grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
+        report.flag_mismatches);
   if (report.first_mismatch) {
     status = 1;
     fmt::print(stderr, "leapmap: audit: {} and {} disagree on design {}; see it by: {}\n",
@@ -130,7 +136,8 @@ int run(const SweepArguments& arguments) {
     return 0;
   }
   if (map.empty())
-    throw InputError(fmt::format("{}: output.file is not set; allowed: a file's name there or with -o", arguments.spec));
+    throw InputError(
+        fmt::format("{}: output.file is not set; allowed: a file's name there or with -o", arguments.spec));
 
   int status = 0;
   const auto begin = Clock::now();
@@ -159,14 +166,17 @@ int run(const SweepArguments& arguments) {
                grouped(tiling.designs()), part);
     return 128 + noted_signal();
   }
+  writer.flush();  // a full disk is told before the audit takes its time
   std::vector<hdf5::Attribute> closing = run_audit(spec, arguments, status);
   closing.emplace_back("wall_time", seconds());
   writer.finish(closing);
   if (arguments.quiet) return status;
-  fmt::print("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done), spoken_duration(solving),
-             static_cast<double>(done) / solving, threads, resolved_method(spec.numerics));
+  fmt::print("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done),
+             spoken_duration(solving), static_cast<double>(done) / solving, threads,
+             resolved_method(spec.numerics));
   for (std::size_t i = 0; i < totals.size(); ++i)
-    if (totals[i] > 0) fmt::print("         {:>12} {}\n", grouped(totals[i]), name_of(static_cast<Status>(i)));
+    if (totals[i] > 0)
+      fmt::print("         {:>12} {}\n", grouped(totals[i]), name_of(static_cast<Status>(i)));
   fmt::print("map      {}\n", map);
   return status;
 }
@@ -178,12 +188,16 @@ void add_sweep(CLI::App& app, int& status) {
   auto arguments = std::make_shared<SweepArguments>();
   command->add_option("SPEC", arguments->spec, "the sweep's spec, TOML")->required();
   command->add_option("-o,--output", arguments->map, "the map to write; default: output.file of the spec");
-  command->add_option("--set", arguments->overrides, "KEY=VALUE: override a key of the spec, for example --set tolerance=1e-12")
+  command
+      ->add_option("--set", arguments->overrides,
+                   "KEY=VALUE: override a key of the spec, for example --set tolerance=1e-12")
       ->expected(1)
       ->take_all();
-  command->add_option("--threads", arguments->threads, "threads to use; default: all")->check(CLI::Range(1, 4096));
+  command->add_option("--threads", arguments->threads, "threads to use; default: all")
+      ->check(CLI::Range(1, 4096));
   command->add_flag("--overwrite", arguments->overwrite, "replace an existing map");
-  command->add_flag("--dry-run", arguments->dry_run, "tell designs, memory, file size and time, and compute nothing else");
+  command->add_flag("--dry-run", arguments->dry_run,
+                    "tell designs, memory, file size and time, and compute nothing else");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->footer(options_help());
   command->callback([arguments, &status] { status = run(*arguments); });

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -20,9 +21,23 @@ herr_t keep_description(unsigned, const H5E_error2_t* error, void* reason) {
   return 0;
 }
 
+/// Of a system call's failure HDF5 tells time, name, buffer and offset, over several lines: the system's own
+/// words do.
+std::string in_one_line(std::string reason) {
+  constexpr std::string_view system_words = "error message = '";
+  if (const std::size_t found = reason.find(system_words); found != std::string::npos) {
+    const std::size_t start = found + system_words.size();
+    return reason.substr(start, reason.find('\'', start) - start);
+  }
+  std::ranges::replace(reason, '\n', ' ');
+  return reason;
+}
+
 Handle scalar() { return {H5Screate(H5S_SCALAR), H5Sclose, "creating a dataspace"}; }
 
-Handle simple(hsize_t count) { return {H5Screate_simple(1, &count, nullptr), H5Sclose, "creating a dataspace"}; }
+Handle simple(hsize_t count) {
+  return {H5Screate_simple(1, &count, nullptr), H5Sclose, "creating a dataspace"};
+}
 
 Handle text_type() {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "creating a string type");
@@ -31,9 +46,11 @@ Handle text_type() {
   return type;
 }
 
-void write(hid_t object, const std::string& name, hid_t file_type, hid_t memory_type, hid_t space, const void* values) {
+void write(hid_t object, const std::string& name, hid_t file_type, hid_t memory_type, hid_t space,
+           const void* values) {
   const std::string what = fmt::format("writing attribute {}", name);
-  const Handle attribute(H5Acreate2(object, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, what);
+  const Handle attribute(H5Acreate2(object, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, what);
   check(H5Awrite(attribute, memory_type, values), what);
 }
 
@@ -43,7 +60,7 @@ void fail(const std::string& what) {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_description, &reason);
   H5Eclear2(H5E_DEFAULT);
-  throw IoError(reason.empty() ? what : fmt::format("{}: {}", what, reason));
+  throw IoError(reason.empty() ? what : fmt::format("{}: {}", what, in_one_line(reason)));
 }
 
 void initialise() {
@@ -78,8 +95,10 @@ Handle create_dataset(hid_t file, const DatasetPlan& plan) {
   if (!plan.chunk.empty())
     check(H5Pset_chunk(creation, static_cast<int>(plan.chunk.size()), plan.chunk.data()), what);
   if (plan.fill) check(H5Pset_fill_value(creation, plan.type, plan.fill), what);
-  const Handle space(H5Screate_simple(static_cast<int>(plan.shape.size()), plan.shape.data(), nullptr), H5Sclose, what);
-  return {H5Dcreate2(file, plan.name.c_str(), plan.type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose, what};
+  const Handle space(H5Screate_simple(static_cast<int>(plan.shape.size()), plan.shape.data(), nullptr),
+                     H5Sclose, what);
+  return {H5Dcreate2(file, plan.name.c_str(), plan.type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose,
+          what};
 }
 
 void write_attribute(hid_t object, const std::string& name, std::string_view text) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A thin layer over the HDF5 C API: handles that close themselves, errors that are exceptions, attributes by value.
+/// A thin layer over the HDF5 C API: handles that close themselves, errors that are exceptions, attributes by
+/// value.
 #pragma once
 
 #include <hdf5.h>
@@ -17,7 +18,8 @@ namespace leapmap::hdf5 {
 /// Throws IoError with `what` and HDF5's innermost reason. HDF5's own printing is off.
 [[noreturn]] void fail(const std::string& what);
 
-/// Initialises HDF5 for this process: quiet, and without its handler at exit, which can hang after a full disk.
+/// Initialises HDF5 for this process: quiet, and without its handler at exit, which can hang after a full
+/// disk.
 void initialise();
 
 /// Owns an identifier of any kind.
@@ -52,7 +54,8 @@ inline void check(herr_t status, const std::string& what) {
   if (status < 0) fail(what);
 }
 
-/// A new file, replacing an old one: V18 format, link and attribute creation order tracked (netCDF readers need it).
+/// A new file, replacing an old one: V18 format, link and attribute creation order tracked (netCDF readers
+/// need it).
 Handle create_file(const std::string& path);
 
 /// An existing file, read-only.
@@ -77,10 +80,12 @@ void write_attribute(hid_t object, const std::string& name, std::span<const std:
 void write_attribute(hid_t object, const std::string& name, std::span<const std::uint8_t> values);
 
 /// A named value of a file's root.
-using Attribute = std::pair<std::string, std::variant<std::string, double, std::int64_t, std::vector<std::int32_t>>>;
+using Attribute =
+    std::pair<std::string, std::variant<std::string, double, std::int64_t, std::vector<std::int32_t>>>;
 void annotate(hid_t object, std::span<const Attribute> attributes);
 
-/// Closes a file written under the name `part`, brings it to disk and gives it its name, in place of an older file.
+/// Closes a file written under the name `part`, brings it to disk and gives it its name, in place of an older
+/// file.
 void finish_file(Handle file, const std::string& part, const std::string& path);
 
 bool has_attribute(hid_t object, const std::string& name);

@@ -45,13 +45,15 @@ MapReader::MapReader(const std::string& path) : path_(path) {
   if (!std::filesystem::exists(path, ignored)) throw IoError(path + ": there is no such file");
   file_ = hdf5::open_file(path);
   if (!hdf5::has_attribute(file_, "filetype") || hdf5::read_text(file_, "filetype") != map_filetype)
-    throw IoError(fmt::format("{}: is not a leapmap map (its attribute filetype is not \"{}\")", path, map_filetype));
+    throw IoError(
+        fmt::format("{}: is not a leapmap map (its attribute filetype is not \"{}\")", path, map_filetype));
   if (const int major = format_version(file_, path); major > format_major)
-    throw IoError(fmt::format("{}: has format version {}; this program reads up to {}: use a newer leapmap", path,
-                              major, format_major));
+    throw IoError(fmt::format("{}: has format version {}; this program reads up to {}: use a newer leapmap",
+                              path, major, format_major));
 
   std::vector<std::string> names;
-  check(H5Literate(file_, H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect_name, &names), path + ": listing datasets");
+  check(H5Literate(file_, H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect_name, &names),
+        path + ": listing datasets");
   for (const std::string& name : names) {
     const Handle dataset = open(name);
     if (H5DSis_scale(dataset) > 0) {
@@ -73,7 +75,9 @@ std::vector<std::size_t> MapReader::shape() const {
   return shape;
 }
 
-bool MapReader::has(const std::string& field) const { return std::ranges::find(fields_, field) != fields_.end(); }
+bool MapReader::has(const std::string& field) const {
+  return std::ranges::find(fields_, field) != fields_.end();
+}
 
 std::string MapReader::unit(const std::string& field) const { return hdf5::read_text(open(field), "units"); }
 
@@ -96,14 +100,16 @@ std::vector<double> MapReader::read(const std::string& field, const Tile& block)
       extent(block.extent.begin(), block.extent.end());
   const Handle space(H5Dget_space(dataset), H5Sclose, what);
   check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr), what);
-  const Handle memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose, what);
+  const Handle memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose,
+                      what);
   std::vector<double> values(block.count);
   check(H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()), what);
   return values;
 }
 
 Handle MapReader::open(const std::string& dataset) const {
-  return {H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT), H5Dclose, fmt::format("{}: opening {}", path_, dataset)};
+  return {H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT), H5Dclose,
+          fmt::format("{}: opening {}", path_, dataset)};
 }
 
 }  // namespace leapmap

@@ -12,26 +12,32 @@ constexpr std::array<std::string_view, status_count> status_names = [] {
   for (int i = 0; i < status_count; ++i) names[static_cast<std::size_t>(i)] = name_of(static_cast<Status>(i));
   return names;
 }();
-constexpr std::array<std::string_view, 2> spurious_names{"first_lift_off_is_the_jump", "first_lift_off_is_spurious"};
+constexpr std::array<std::string_view, 2> spurious_names{"first_lift_off_is_the_jump",
+                                                         "first_lift_off_is_spurious"};
 
 const std::array fields{
-    Field{"jump_height", Quantity{&Outcome::jump_height}, "1", "apex of the jump above the plane, in hoop diameters"},
-    Field{"jump_time", Quantity{&Outcome::jump_time, true}, "s", "time from release to the lift-off of the jump"},
+    Field{"jump_height", Quantity{&Outcome::jump_height}, "1",
+          "apex of the jump above the plane, in hoop diameters"},
+    Field{"jump_time", Quantity{&Outcome::jump_time, true}, "s",
+          "time from release to the lift-off of the jump"},
     Field{"spurious_first_jump",
-          Code{[](const Outcome& o) { return o.spurious_first_jump; }, Outcome::no_lift_off, spurious_names}, "1",
-          "whether the first lift-off stays below hop_height"},
-    Field{"status", Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.status); }, 0, status_names}, "1",
+          Code{[](const Outcome& o) { return o.spurious_first_jump; }, Outcome::no_lift_off, spurious_names},
+          "1", "whether the first lift-off stays below hop_height"},
+    Field{"status",
+          Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.status); }, 0, status_names}, "1",
           "how the design ended"},
     Field{"jump_angle", Quantity{&Outcome::jump_angle}, "rad", "angle phi at the lift-off of the jump"},
     Field{"jump_spin", Quantity{&Outcome::jump_spin}, "1", "spin at the lift-off of the jump, in sqrt(g/R)"},
     Field{"jump_distance", Quantity{&Outcome::jump_distance}, "1",
           "distance rolled from release to the lift-off of the jump, in R"},
-    Field{"apex_time", Quantity{&Outcome::apex_time, true}, "s", "time from the lift-off of the jump to its apex"},
+    Field{"apex_time", Quantity{&Outcome::apex_time, true}, "s",
+          "time from the lift-off of the jump to its apex"},
     Field{"flight_time", Quantity{&Outcome::flight_time, true}, "s",
           "time from the lift-off of the jump to its landing"},
     Field{"first_jump_height", Quantity{&Outcome::first_jump_height}, "1",
           "apex of the first lift-off above the plane, in hoop diameters"},
-    Field{"first_jump_time", Quantity{&Outcome::first_jump_time, true}, "s", "time from release to the first lift-off"},
+    Field{"first_jump_time", Quantity{&Outcome::first_jump_time, true}, "s",
+          "time from release to the first lift-off"},
     Field{"dip", Quantity{&Outcome::dip}, "1",
           "how far the flight of the jump first enters the plane, in hoop diameters, <= 0"},
     Field{"candidates", Code{[](const Outcome& o) { return o.candidates; }, 255, {}}, "1",

@@ -25,7 +25,7 @@ struct Quantity {
 /// A small code, stored as u1.
 struct Code {
   std::uint8_t (*value)(const Outcome&);
-  std::uint8_t fill;                       ///< what a design not computed shows
+  std::uint8_t fill;                        ///< what a design not computed shows
   std::span<const std::string_view> names;  ///< flag_meanings of 0, 1, 2, ...; empty: a count
 };
 

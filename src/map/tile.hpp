@@ -7,7 +7,8 @@
 
 namespace leapmap {
 
-/// A block of a map: where it starts and how far it reaches along each dimension; designs in C order, last fastest.
+/// A block of a map: where it starts and how far it reaches along each dimension; designs in C order, last
+/// fastest.
 struct Tile {
   std::vector<std::size_t> start, extent;
   std::size_t count = 0;  ///< designs in it
@@ -19,7 +20,8 @@ class Tiling {
   /// tile_shape 0 along no dimension, and no longer than shape.
   Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_shape);
   /// Cuts a map into tiles of neighbours about equally long along each dimension: so many that work divides
-  /// evenly, so large that a tile's overhead does not matter. Depends on the shape only, never on the machine.
+  /// evenly, so large that a tile's overhead does not matter. Depends on the shape only, never on the
+  /// machine.
   explicit Tiling(std::vector<std::size_t> shape);
 
   std::size_t size() const { return tiles_; }

@@ -21,10 +21,12 @@ Handle write_series(hid_t file, const std::string& name, std::string_view unit, 
                     const std::vector<double>& values, const Handle* scale) {
   const hsize_t count = values.size();
   Handle dataset = hdf5::create_dataset(file, {name, H5T_IEEE_F64LE, {&count, 1}});
-  check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "writing " + name);
+  check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "writing " + name);
   hdf5::write_attribute(dataset, "long_name", long_name);
   hdf5::write_attribute(dataset, "units", unit);
-  check(scale ? H5DSattach_scale(dataset, *scale, 0) : H5DSset_scale(dataset, name.c_str()), "scaling " + name);
+  check(scale ? H5DSattach_scale(dataset, *scale, 0) : H5DSset_scale(dataset, name.c_str()),
+        "scaling " + name);
   return dataset;
 }
 
@@ -55,11 +57,15 @@ void write_trace(const std::string& path, const Story& story, const Scene& scene
       for (const TracePoint& point : story.points) values.push_back(point.*member * unit);
       return values;
     };
-    const Handle t = write_series(file, "t", "s", "time since release", points(&TracePoint::t, second), nullptr);
+    const Handle t =
+        write_series(file, "t", "s", "time since release", points(&TracePoint::t, second), nullptr);
     write_series(file, "phi", "rad", "angle; 0: mass on the plane", points(&TracePoint::phi, 1.0), &t);
-    write_series(file, "spin", "rad s-1", "spin, positive downhill", points(&TracePoint::spin, 1.0 / second), &t);
-    write_series(file, "x", "m", "travel of the hoop's centre along the plane", points(&TracePoint::x, metre), &t);
-    write_series(file, "y", "m", "height of the hoop's lowest point above the plane", points(&TracePoint::y, metre), &t);
+    write_series(file, "spin", "rad s-1", "spin, positive downhill", points(&TracePoint::spin, 1.0 / second),
+                 &t);
+    write_series(file, "x", "m", "travel of the hoop's centre along the plane", points(&TracePoint::x, metre),
+                 &t);
+    write_series(file, "y", "m", "height of the hoop's lowest point above the plane",
+                 points(&TracePoint::y, metre), &t);
     write_series(file, "normal_force", "1", "normal force over the weight (11)",
                  points(&TracePoint::normal_force, 1.0), &t);
     write_series(file, "friction", "1", "friction force over the weight, positive downhill (12)",
@@ -74,7 +80,8 @@ void write_trace(const std::string& path, const Story& story, const Scene& scene
       spins.push_back(candidate.lift_off.spin / second);
       heights.push_back(candidate.flight.height);
     }
-    const Handle candidate = write_series(file, "candidate", "1", "lift-offs in order, from 1", numbers, nullptr);
+    const Handle candidate =
+        write_series(file, "candidate", "1", "lift-offs in order, from 1", numbers, nullptr);
     write_series(file, "candidate_time", "s", "time since release of the lift-off", times, &candidate);
     write_series(file, "candidate_angle", "rad", "angle at the lift-off", angles, &candidate);
     write_series(file, "candidate_spin", "rad s-1", "spin at the lift-off", spins, &candidate);

@@ -28,7 +28,8 @@ void describe(hid_t dataset, std::string_view unit, std::string_view long_name) 
 Handle write_values(hid_t file, const MapAxis& axis) {
   const hsize_t count = axis.values.size();
   Handle dataset = hdf5::create_dataset(file, {axis.name, H5T_IEEE_F64LE, {&count, 1}});
-  check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, axis.values.data()), "writing " + axis.name);
+  check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, axis.values.data()),
+        "writing " + axis.name);
   describe(dataset, axis.unit, axis.long_name);
   return dataset;
 }
@@ -42,7 +43,8 @@ std::vector<Handle> write_scales(hid_t file, const MapLayout& layout, std::size_
     for (std::size_t i = 0; i < designs; ++i) numbers[i] = static_cast<std::int64_t>(i);
     const hsize_t count = designs;
     scales.push_back(hdf5::create_dataset(file, {"design", H5T_STD_I64LE, {&count, 1}}));
-    check(H5Dwrite(scales[0], H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), "writing design");
+    check(H5Dwrite(scales[0], H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
+          "writing design");
     describe(scales[0], "1", "number of the design in its list, from 0");
   }
   for (std::size_t i = 0; i < scales.size(); ++i)
@@ -56,7 +58,8 @@ void attach(hid_t dataset, const std::vector<Handle>& scales) {
     check(H5DSattach_scale(dataset, scales[i], static_cast<unsigned>(i)), "attaching a dimension scale");
 }
 
-Handle create_field(hid_t file, const Field& field, std::span<const hsize_t> shape, std::span<const hsize_t> chunk) {
+Handle create_field(hid_t file, const Field& field, std::span<const hsize_t> shape,
+                    std::span<const hsize_t> chunk) {
   const std::string name(field.name);
   const auto* code = std::get_if<Code>(&field.source);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -76,7 +79,9 @@ Handle create_field(hid_t file, const Field& field, std::span<const hsize_t> sha
   return dataset;
 }
 
-std::vector<hsize_t> to_hsize(const std::vector<std::size_t>& extents) { return {extents.begin(), extents.end()}; }
+std::vector<hsize_t> to_hsize(const std::vector<std::size_t>& extents) {
+  return {extents.begin(), extents.end()};
+}
 
 }  // namespace
 
@@ -84,9 +89,11 @@ void refuse_existing(const std::string& path, bool overwrite) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw InputError(path + ": is a folder; allowed: a file's name");
   if (overwrite) return;
-  if (fs::exists(path, ignored)) throw InputError(path + ": exists already; allowed: another -o, or --overwrite");
+  if (fs::exists(path, ignored))
+    throw InputError(path + ": exists already; allowed: another -o, or --overwrite");
   if (fs::exists(path + ".part", ignored))
-    throw InputError(path + ".part: is what an interrupted sweep left; allowed: another -o, or --overwrite to start anew");
+    throw InputError(
+        path + ".part: is what an interrupted sweep left; allowed: another -o, or --overwrite to start anew");
 }
 
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
@@ -114,7 +121,7 @@ MapWriter::MapWriter(const std::string& path, const MapLayout& layout, const Til
       datasets_.push_back(create_field(file_, *field, shape, chunk));
       attach(datasets_.back(), scales);
     }
-    check(H5Fflush(file_, H5F_SCOPE_LOCAL), part_ + ": cannot be written");
+    flush();
   } catch (...) {
     ::unlink(part_.c_str());
     throw;
@@ -132,7 +139,8 @@ void MapWriter::write(const Tile& tile, std::span<const Outcome> outcomes) {
   assert(outcomes.size() == tile.count);
   const std::string what = part_ + ": cannot be written";
   const std::vector<hsize_t> start = to_hsize(tile.start), extent = to_hsize(tile.extent);
-  const Handle memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose, what);
+  const Handle memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose,
+                      what);
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const Handle space(H5Dget_space(datasets_[i]), H5Sclose, what);
     check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr), what);
@@ -149,6 +157,8 @@ void MapWriter::write(const Tile& tile, std::span<const Outcome> outcomes) {
     }
   }
 }
+
+void MapWriter::flush() { check(H5Fflush(file_, H5F_SCOPE_LOCAL), part_ + ": cannot be written"); }
 
 void MapWriter::close_datasets() {
   for (hdf5::Handle& dataset : datasets_)

@@ -31,8 +31,8 @@ struct MapLayout {
 
 class MapWriter {
  public:
-  /// Creates FILE.part and everything in it but the values. Refuses (InputError) to replace FILE or FILE.part unless
-  /// overwrite is set; throws IoError if it cannot be written. Folders on the way are made.
+  /// Creates FILE.part and everything in it but the values. Refuses (InputError) to replace FILE or FILE.part
+  /// unless overwrite is set; throws IoError if it cannot be written. Folders on the way are made.
   MapWriter(const std::string& path, const MapLayout& layout, const Tiling& tiling,
             std::span<const hdf5::Attribute> attributes, bool overwrite);
   /// Without finish or keep_part before it: removes what was written.
@@ -42,6 +42,8 @@ class MapWriter {
 
   /// Stores a tile's outcomes, in the tile's order. Not for two threads at once.
   void write(const Tile& tile, std::span<const Outcome> outcomes);
+  /// Brings what was written so far to the file; throws IoError if the disk is full.
+  void flush();
   /// Adds closing attributes, brings everything to disk and gives the file its name.
   void finish(std::span<const hdf5::Attribute> attributes);
   /// Closes the unfinished file and leaves it as FILE.part, whose name is returned.

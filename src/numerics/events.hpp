@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Where a guard, a smooth scalar of the state, falls through zero inside one accepted step of an integrator.
 ///
-/// The rule. A point is on the falling side if the guard is negative there, or zero and falling; otherwise it is on
-/// the rising side. A fall at t* is reported by the step with t0 < t* <= t1: a step that starts on the guard and
-/// falls has already been on the falling side and reports nothing. A touch that comes down to exactly zero and
-/// leaves upwards is no fall. One that goes below zero, by however little, is a fall.
+/// The rule. A point is on the falling side if the guard is negative there, or zero and falling; otherwise it
+/// is on the rising side. A fall at t* is reported by the step with t0 < t* <= t1: a step that starts on the
+/// guard and falls has already been on the falling side and reports nothing. A touch that comes down to
+/// exactly zero and leaves upwards is no fall. One that goes below zero, by however little, is a fall.
 ///
 /// Pairs. Two falls and rises inside one step leave equal signs at its ends, and are found by looking at the
-/// extrema between them. The ends' values and slopes are the method's own, so a single extremum is never missed;
-/// `looks` interior points, taken from a cubic Hermite interpolant, catch steps that hold more than one. The
-/// interpolant only says where to look. Wherever it is not clear of zero, the method itself retakes the part of
-/// the step up to that point and its value decides, and every reported time is polished on retaken steps.
+/// extrema between them. The ends' values and slopes are the method's own, so a single extremum is never
+/// missed; `looks` interior points, taken from a cubic Hermite interpolant, catch steps that hold more than
+/// one. The interpolant only says where to look. Wherever it is not clear of zero, the method itself retakes
+/// the part of the step up to that point and its value decides, and every reported time is polished on
+/// retaken steps.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +41,8 @@ State<D> interpolate(const Step<D>& step, double tau) {
   const double a = z * z * (1.0 + 2.0 * x), b = x * x * (3.0 - 2.0 * x);
   const double c = x * z * z * step.h, d = -x * x * z * step.h;
   State<D> y;
-  for (std::size_t i = 0; i < D; ++i) y[i] = a * step.y0[i] + b * step.y1[i] + c * step.f0[i] + d * step.f1[i];
+  for (std::size_t i = 0; i < D; ++i)
+    y[i] = a * step.y0[i] + b * step.y1[i] + c * step.f0[i] + d * step.f1[i];
   return y;
 }
 
@@ -49,7 +51,8 @@ inline bool has_fallen(const Sample<double>& guard) {
   return guard.value < 0.0 || (guard.value == 0.0 && guard.rate < 0.0);
 }
 
-/// A fall, or an extremum of the guard near zero: how long after the step's start, and the state or value there.
+/// A fall, or an extremum of the guard near zero: how long after the step's start, and the state or value
+/// there.
 template <std::size_t D>
 struct Fall {
   double tau;
@@ -73,9 +76,9 @@ struct Falls {
   std::vector<Knot> knots;
 };
 
-/// Finds the falls of guard in the step. guard(state) returns value and time derivative; retake(tau, state) puts the
-/// method's own state at tau into state and returns false if it cannot; `first` is the guard at the step's start.
-/// Returns the guard at the step's end, for the next step.
+/// Finds the falls of guard in the step. guard(state) returns value and time derivative; retake(tau, state)
+/// puts the method's own state at tau into state and returns false if it cannot; `first` is the guard at the
+/// step's start. Returns the guard at the step's end, for the next step.
 template <std::size_t D, class Guard, class Retake>
 Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& first, const Guard& guard,
                           const Retake& retake, Falls<D>& out) {
@@ -109,16 +112,17 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
     const double right_tau = look <= looks ? step.h * look / (looks + 1) : step.h;
     const Sample<double> right = look <= looks ? guessed(right_tau) : last;
     reach = std::max(reach, std::abs(right.value));
-    if ((left.rate < 0.0 && right.rate > 0.0) || (left.rate > 0.0 && right.rate < 0.0)) {
+    if ((left.rate < 0.0) != (right.rate < 0.0)) {
       const bool minimum = left.rate < 0.0;
       double tau = polish_root(guessed_rate, left_tau, right_tau,
-                               left_tau + (right_tau - left_tau) * left.rate / (left.rate - right.rate), minimum,
-                               1e-3 * step.h);
+                               left_tau + (right_tau - left_tau) * left.rate / (left.rate - right.rate),
+                               minimum, 1e-3 * step.h);
       double value = guessed(tau).value;
       // The interpolant is trusted to a tenth of the guard's reach over the step.
       const bool unclear = std::abs(value) < 0.1 * reach;
       if (unclear) {
-        // Newton with the interpolant's curvature. The value is flat here: half the digits of tau give all of its.
+        // Newton with the interpolant's curvature. The value is flat here: half the digits of tau give all of
+        // its.
         const double curvature = guessed_rate(tau).rate;
         for (int refinement = 0; refinement < 20; ++refinement) {
           const Sample<double> at = retaken(tau);
@@ -140,7 +144,8 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
   for (std::size_t i = 1; i < out.knots.size(); ++i) {
     const auto from = out.knots[i - 1], to = out.knots[i];
     if (from.fallen || !to.fallen) continue;
-    const double guess = polish_root(guessed, from.tau, to.tau, 0.5 * (from.tau + to.tau), false, 1e-6 * step.h);
+    const double guess =
+        polish_root(guessed, from.tau, to.tau, 0.5 * (from.tau + to.tau), false, 1e-6 * step.h);
     Fall<D> fall{polish_root(retaken, from.tau, to.tau, guess, false, resolution), {}};
     if (!out.failed && retake(fall.tau, fall.state)) {
       out.falls.push_back(fall);

@@ -40,7 +40,8 @@ struct StepControl {
 /// Turns GSL's aborting error handler off, once and for the whole process. Return codes are read instead.
 void silence_gsl();
 
-/// Owns GSL's workspaces for one system of dimension D; allocated once per thread, restarted for each solution.
+/// Owns GSL's workspaces for one system of dimension D; allocated once per thread, restarted for each
+/// solution.
 template <std::size_t D>
 class GslIntegrator {
  public:
@@ -48,11 +49,13 @@ class GslIntegrator {
   GslIntegrator(const GslStepper& stepper, const StepControl& control, const gsl_odeiv2_system& system)
       : system_(system), fixed_step_(control.fixed_step) {
     silence_gsl();
-    driver_.reset(gsl_odeiv2_driver_alloc_y_new(&system_, stepper.type, 1e-3, control.absolute, control.relative));
-    // A multistep method cannot retake part of a step from its start alone. The eighth-order Runge-Kutta pair does
-    // it instead: over one multistep step its error is far below the multistep method's own.
+    driver_.reset(
+        gsl_odeiv2_driver_alloc_y_new(&system_, stepper.type, 1e-3, control.absolute, control.relative));
+    // A multistep method cannot retake part of a step from its start alone. The eighth-order Runge-Kutta pair
+    // does it instead: over one multistep step its error is far below the multistep method's own.
     const GslStepper& retaker = stepper.multistep ? *find_gsl_stepper("gsl-rk8pd") : stepper;
-    retaker_.reset(gsl_odeiv2_driver_alloc_y_new(&system_, retaker.type, 1e-3, control.absolute, control.relative));
+    retaker_.reset(
+        gsl_odeiv2_driver_alloc_y_new(&system_, retaker.type, 1e-3, control.absolute, control.relative));
     if (!driver_ || !retaker_) throw std::bad_alloc();
   }
   GslIntegrator(const GslIntegrator&) = delete;
@@ -73,10 +76,10 @@ class GslIntegrator {
     step_.y0 = step_.y1;
     step_.f0 = step_.f1;
     gsl_odeiv2_driver& d = *driver_;
-    const int status =
-        fixed_step_ > 0.0
-            ? gsl_odeiv2_evolve_apply_fixed_step(d.e, nullptr, d.s, d.sys, &time_, fixed_step_, step_.y1.data())
-            : gsl_odeiv2_evolve_apply(d.e, d.c, d.s, d.sys, &time_, HUGE_VAL, &trial_step_, step_.y1.data());
+    const int status = fixed_step_ > 0.0 ? gsl_odeiv2_evolve_apply_fixed_step(
+                                               d.e, nullptr, d.s, d.sys, &time_, fixed_step_, step_.y1.data())
+                                         : gsl_odeiv2_evolve_apply(d.e, d.c, d.s, d.sys, &time_, HUGE_VAL,
+                                                                   &trial_step_, step_.y1.data());
     step_.h = time_ - step_.t0;
     if (status != GSL_SUCCESS || !(step_.h > 0.0)) return false;
     for (const double y : step_.y1)
@@ -98,8 +101,8 @@ class GslIntegrator {
     if (!(tau > 0.0)) return tau == 0.0;
     if (gsl_odeiv2_step_reset(retaker_->s) != GSL_SUCCESS) return false;
     const double* f0 = retaker_->s->type->can_use_dydt_in ? step_.f0.data() : nullptr;
-    return gsl_odeiv2_step_apply(retaker_->s, step_.t0, tau, y.data(), error.data(), f0, f.data(), &system_) ==
-           GSL_SUCCESS;
+    return gsl_odeiv2_step_apply(retaker_->s, step_.t0, tau, y.data(), error.data(), f0, f.data(),
+                                 &system_) == GSL_SUCCESS;
   }
 
  private:

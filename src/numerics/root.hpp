@@ -15,9 +15,9 @@ struct Sample {
 
 /// Newton's iteration kept inside a bracket: bisects where Newton would leave it or stops halving its steps.
 ///
-/// f(x) returns a Sample; f must change sign between a and b (f(a) > 0 iff rising is false). Ends when a Newton step
-/// is below `resolution`, or when the bracket is; never takes more than 200 evaluations.
-/// A sample that is not finite ends the search with NaN, so that a failed evaluation is never a silent root.
+/// f(x) returns a Sample; f must change sign between a and b (f(a) > 0 iff rising is false). Ends when a
+/// Newton step is below `resolution`, or when the bracket is; never takes more than 200 evaluations. A sample
+/// that is not finite ends the search with NaN, so that a failed evaluation is never a silent root.
 template <class T, class F>
 T polish_root(const F& f, T a, T b, T guess, bool rising, T resolution) {
   using std::abs, std::isfinite;

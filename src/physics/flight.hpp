@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Free flight (13) in closed form: the spin is constant and the centre of mass flies a parabola.
 ///
-/// The hoop's lowest point is at height y(t) above the plane. Right after a lift-off from rolling y often dips below
-/// zero, because friction is cut off while it still brakes the spin; the jump is the first interval with y > 0.
+/// The hoop's lowest point is at height y(t) above the plane. Right after a lift-off from rolling y often
+/// dips below zero, because friction is cut off while it still brakes the spin; the jump is the first
+/// interval with y > 0.
 #pragma once
 
 #include <algorithm>
@@ -56,9 +57,10 @@ Sample<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, const T& s
   using std::cos, std::sin;
   const T turned = spin * t;
   const T sin_half = sin(turned * T(0.5)), cos_half = cos(turned * T(0.5));
-  return {hoop.rho * (phi.sin * x_minus_sin(turned) - T(2) * phi.cos * sin_half * sin_half) -
-              hoop.cos_slope * t * t * T(0.5),
-          T(-2) * hoop.rho * spin * sin_half * (phi.cos * cos_half - phi.sin * sin_half) - hoop.cos_slope * t};
+  return {
+      hoop.rho * (phi.sin * x_minus_sin(turned) - T(2) * phi.cos * sin_half * sin_half) -
+          hoop.cos_slope * t * t * T(0.5),
+      T(-2) * hoop.rho * spin * sin_half * (phi.cos * cos_half - phi.sin * sin_half) - hoop.cos_slope * t};
 }
 
 /// y''(t) = -rho w^2 cos(phi + w t) - cos(theta).
@@ -68,8 +70,8 @@ T lift_acceleration(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, cons
   return -hoop.rho * spin * spin * (phi.cos * cos(spin * t) - phi.sin * sin(spin * t)) - hoop.cos_slope;
 }
 
-/// How far the hoop's centre has travelled along the plane since lift-off: the centre of mass at x - rho sin(phi)
-/// flies on with its speed at lift-off and falls with sin(theta).
+/// How far the hoop's centre has travelled along the plane since lift-off: the centre of mass at x - rho
+/// sin(phi) flies on with its speed at lift-off and falls with sin(theta).
 template <class T>
 T travel_in_flight(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& t) {
   const Trig<T> turned = trig(spin * t);
@@ -80,8 +82,8 @@ T travel_in_flight(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const
 /// The whole flight that starts at lift_off.
 ///
 /// No root can be missed: the zeros of y'' are known in closed form, between two of them y' is monotone, and
-/// between two zeros of y' so is y. The lift-off itself (a double root of y, a triple one after sliding) is the
-/// start of the walk and is never looked for.
+/// between two zeros of y' so is y. The lift-off itself (a double root of y, a triple one after sliding) is
+/// the start of the walk and is never looked for.
 template <class T>
 Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
   using std::abs, std::acos, std::floor, std::sqrt;
@@ -104,19 +106,21 @@ Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
   const T turn = angle - T(2) * pi * floor(angle / (T(2) * pi));
   // Beyond this y = rho (cos(phi + w t) - cos phi) + rho sin(phi) w t - cos(theta) t^2 / 2 stays negative.
   const T drift = hoop.rho * phi.sin * spin;
-  const T last = (drift + sqrt(drift * drift + T(2) * hoop.cos_slope * hoop.rho * (T(1) - phi.cos))) / hoop.cos_slope;
+  const T last =
+      (drift + sqrt(drift * drift + T(2) * hoop.cos_slope * hoop.rho * (T(1) - phi.cos))) / hoop.cos_slope;
   const T resolution = T(2) * std::numeric_limits<T>::epsilon();
 
   bool above = false;
-  const auto segment = [&](const T& from, const T& to) {  // y is monotone here; true once the flight has ended
+  const auto segment = [&](const T& from,
+                           const T& to) {  // y is monotone here; true once the flight has ended
     const T y_from = from == T(0) ? T(0) : height_at(from).value;
     const T y_to = height_at(to).value;
     if (!above && y_to > T(0)) above = true;
     if (above && y_to > T(2) * flight.height) flight.height = y_to / T(2), flight.apex_time = to;
     if (!above) flight.dip = std::min(flight.dip, y_to / T(2));
     if (!above || y_to > T(0)) return false;
-    flight.flight_time = polish_root(height_at, from, to, from + (to - from) * y_from / (y_from - y_to), false,
-                                     resolution * to);
+    flight.flight_time = polish_root(height_at, from, to, from + (to - from) * y_from / (y_from - y_to),
+                                     false, resolution * to);
     return true;
   };
 

@@ -10,14 +10,15 @@
 
 namespace leapmap {
 
-/// One hoop and how it is released. The defaults are the paper's hoop, released from rest with its mass on top.
+/// One hoop and how it is released. The defaults are the paper's hoop, released from rest with its mass on
+/// top.
 struct Design {
-  double slope = 0.40;               ///< theta [rad], 0 <= slope < pi/2
-  double mass_ratio = 20.0 / 8.2;    ///< beta = m_p / m, >= 0
-  double offset_ratio = 1.0;         ///< lambda = L / R, in [0, 1]
-  double inertia_factor = 1.0;       ///< kappa = I / (m R^2), >= 0: thin hoop 1, disc 1/2
+  double slope = 0.40;                      ///< theta [rad], 0 <= slope < pi/2
+  double mass_ratio = 20.0 / 8.2;           ///< beta = m_p / m, >= 0
+  double offset_ratio = 1.0;                ///< lambda = L / R, in [0, 1]
+  double inertia_factor = 1.0;              ///< kappa = I / (m R^2), >= 0: thin hoop 1, disc 1/2
   double release_angle = std::numbers::pi;  ///< phi at t = 0 [rad]; 0: mass on the plane, pi: mass on top
-  double release_spin = 0.0;         ///< w at t = 0 [sqrt(g/R)], positive downhill
+  double release_spin = 0.0;                ///< w at t = 0 [sqrt(g/R)], positive downhill
 };
 
 /// The dimensionless groups of a Design, on any scalar: double, a SIMD batch, __float128.
@@ -38,7 +39,8 @@ struct Hoop {
 template <class T>
 Hoop<T> derive(const Design& design) {
   using std::cos, std::sin;
-  const T slope(design.slope), beta(design.mass_ratio), lambda(design.offset_ratio), kappa(design.inertia_factor);
+  const T slope(design.slope), beta(design.mass_ratio), lambda(design.offset_ratio),
+      kappa(design.inertia_factor);
   const T hub = T(1) / (T(1) + beta);  // m / (m + m_p)
   const T alpha = beta * hub;
   const T gap = T(1) - lambda;

@@ -71,8 +71,9 @@ template <class T>
 AccelerationGradient<T> acceleration_gradient(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin,
                                               const T& acceleration) {
   const T J = contact_inertia(hoop, phi);
-  return {-hoop.rho * (cos_from_vertical(hoop, phi) + phi.cos * spin * spin + T(2) * phi.sin * acceleration) / J,
-          T(-2) * hoop.rho * phi.sin * spin / J};
+  return {
+      -hoop.rho * (cos_from_vertical(hoop, phi) + phi.cos * spin * spin + T(2) * phi.sin * acceleration) / J,
+      T(-2) * hoop.rho * phi.sin * spin / J};
 }
 
 /// d/dt of normal_force along the motion, by the chain rule with phi''' = gradient . (w, phi'').

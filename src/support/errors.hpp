@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The errors a user can cause or cure, each with its exit status. One line each: file, key, value, what is allowed.
+/// The errors a user can cause or cure, each with its exit status. One line each: file, key, value, what is
+/// allowed.
 #pragma once
 
 #include <stdexcept>

@@ -21,7 +21,8 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// The number of the i-th of `count` designs to audit, one at random from each of `count` equal shares of the sweep.
+/// The number of the i-th of `count` designs to audit, one at random from each of `count` equal shares of the
+/// sweep.
 std::size_t drawn(std::size_t i, std::size_t count, std::size_t designs) {
   const double share = static_cast<double>(designs) / static_cast<double>(count);
   const auto begin = static_cast<std::size_t>(share * static_cast<double>(i));
@@ -36,8 +37,10 @@ void compare(AuditReport& report, std::size_t number, const Outcome& ours, const
     ++report.flag_mismatches;
     report.first_mismatch = std::min(report.first_mismatch.value_or(number), number);
   } else if (ours.status == Status::jumped) {
-    report.max_abs_height_error = std::max(report.max_abs_height_error, std::abs(ours.jump_height - theirs.jump_height));
-    report.max_rel_time_error = std::max(report.max_rel_time_error, std::abs(ours.jump_time / theirs.jump_time - 1.0));
+    report.max_abs_height_error =
+        std::max(report.max_abs_height_error, std::abs(ours.jump_height - theirs.jump_height));
+    report.max_rel_time_error =
+        std::max(report.max_rel_time_error, std::abs(ours.jump_time / theirs.jump_time - 1.0));
   }
 }
 
@@ -64,7 +67,8 @@ AuditReport audit(const Spec& spec, int threads) {
             theirs = std::make_unique<RollingIntegration>(method.options)](std::size_t i) {
       const std::size_t number = drawn(i, count, designs);
       const Design design = space.at(number);
-      const Outcome our_outcome = ours->solve(design, spec.scene), their_outcome = theirs->solve(design, spec.scene);
+      const Outcome our_outcome = ours->solve(design, spec.scene),
+                    their_outcome = theirs->solve(design, spec.scene);
       const std::lock_guard lock(reporting);
       compare(report, number, our_outcome, their_outcome);
       return true;

@@ -13,7 +13,7 @@ namespace leapmap {
 /// What the two methods disagree on.
 struct AuditReport {
   std::size_t designs = 0;
-  std::string method;  ///< of the audit
+  std::string method;                 ///< of the audit
   double max_abs_height_error = 0.0;  ///< [hoop diameters], where both methods see the same jump
   double max_rel_time_error = 0.0;
   std::size_t flag_mismatches = 0;  ///< designs whose status, spurious flag or number of candidates differ

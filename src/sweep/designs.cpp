@@ -26,7 +26,8 @@ Design DesignSpace::at_position(const std::vector<std::size_t>& position) const 
   Design design = spec_.design;
   const bool list = spec_.axes.empty();
   for (std::size_t i = 0; i < members_.size(); ++i)
-    design.*members_[i] = list ? spec_.list.columns[i].values[position[0]] : spec_.axes[i].values[position[i]];
+    design.*members_[i] =
+        list ? spec_.list.columns[i].values[position[0]] : spec_.axes[i].values[position[i]];
   return design;
 }
 
@@ -53,12 +54,14 @@ std::string hop_command(const Spec& spec, const Design& design) {
     std::ranges::replace(flag, '_', '-');
     command += fmt::format(" --{} {}", flag, design.*std::get<ParameterSlot>(parameter->slot).member);
   }
-  command += fmt::format(" --set runway={} --set hop_height={} --set radius={} --set gravity={}", spec.scene.runway,
-                         spec.scene.hop_height, spec.scene.radius, spec.scene.gravity);
-  command += fmt::format(" --set method={} --set tolerance={}", resolved_method(spec.numerics), spec.numerics.tolerance);
+  command += fmt::format(" --set runway={} --set hop_height={} --set radius={} --set gravity={}",
+                         spec.scene.runway, spec.scene.hop_height, spec.scene.radius, spec.scene.gravity);
+  command += fmt::format(" --set method={} --set tolerance={}", resolved_method(spec.numerics),
+                         spec.numerics.tolerance);
   if (spec.numerics.absolute_tolerance > 0.0)
     command += fmt::format(" --set absolute_tolerance={}", spec.numerics.absolute_tolerance);
-  if (spec.numerics.fixed_step > 0.0) command += fmt::format(" --set fixed_step={}", spec.numerics.fixed_step);
+  if (spec.numerics.fixed_step > 0.0)
+    command += fmt::format(" --set fixed_step={}", spec.numerics.fixed_step);
   return command;
 }
 

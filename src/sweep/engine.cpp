@@ -13,7 +13,8 @@
 
 namespace leapmap {
 
-std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options, const TileSink& sink) {
+std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options,
+                      const TileSink& sink) {
   const int threads = thread_count(options.threads);
   const DesignSpace space(spec);
   const IntegrationOptions integration = integration_options(spec.numerics);

@@ -39,56 +39,98 @@ std::vector<std::string_view> field_names() {
 }
 
 const std::array options{
-    Option{"scene", "friction", TextSlot{[](Spec& s) -> std::string& { return s.friction; }}, "",
-           "\"sticking\": never slips (the paper's model)", {}, frictions},
+    Option{"scene",
+           "friction",
+           TextSlot{[](Spec& s) -> std::string& { return s.friction; }},
+           "",
+           "\"sticking\": never slips (the paper's model)",
+           {},
+           frictions},
     Option{"scene", "mu_static", NumberSlot{[](Spec& s) -> double& { return s.coulomb.mu_static; }}, "1",
            "static friction coefficient; no effect when sticking", non_negative},
     Option{"scene", "mu_kinetic", NumberSlot{[](Spec& s) -> double& { return s.coulomb.mu_kinetic; }}, "1",
            "kinetic friction coefficient, mu_static unless given; no effect when sticking", non_negative},
     Option{"scene", "restitution", NumberSlot{[](Spec& s) -> double& { return s.coulomb.restitution; }}, "1",
            "Poisson restitution; no effect when sticking", fraction},
-    Option{"scene", "rest_speed", NumberSlot{[](Spec& s) -> double& { return s.coulomb.rest_speed; }}, "sqrt(g R)",
-           "slower rebounds count as none; no effect when sticking", non_negative},
-    Option{"scene", "runway", NumberSlot{[](Spec& s) -> double& { return s.scene.runway; }}, "revolutions",
-           "distance rolled after which the search for a jump ends", {0.0, 1e6, false, true}},
-    Option{"scene", "hop_height", NumberSlot{[](Spec& s) -> double& { return s.scene.hop_height; }}, "hoop diameters",
-           "a lift-off that flies this high is the jump; 0: the first one is", non_negative},
+    Option{"scene", "rest_speed", NumberSlot{[](Spec& s) -> double& { return s.coulomb.rest_speed; }},
+           "sqrt(g R)", "slower rebounds count as none; no effect when sticking", non_negative},
+    Option{"scene",
+           "runway",
+           NumberSlot{[](Spec& s) -> double& { return s.scene.runway; }},
+           "revolutions",
+           "distance rolled after which the search for a jump ends",
+           {0.0, 1e6, false, true}},
+    Option{"scene", "hop_height", NumberSlot{[](Spec& s) -> double& { return s.scene.hop_height; }},
+           "hoop diameters", "a lift-off that flies this high is the jump; 0: the first one is",
+           non_negative},
     Option{"scene", "radius", NumberSlot{[](Spec& s) -> double& { return s.scene.radius; }}, "m",
            "the hoop's radius R; scales times only", positive},
     Option{"scene", "gravity", NumberSlot{[](Spec& s) -> double& { return s.scene.gravity; }}, "m s-2",
            "g; scales times only", positive},
-    Option{"design", "slope", ParameterSlot{&Design::slope}, "rad", "slope of the plane",
+    Option{"design",
+           "slope",
+           ParameterSlot{&Design::slope},
+           "rad",
+           "slope of the plane",
            {0.0, right_angle, true, false}},
-    Option{"design", "mass_ratio", ParameterSlot{&Design::mass_ratio}, "1", "point mass over hoop mass, m_p / m",
-           non_negative},
+    Option{"design", "mass_ratio", ParameterSlot{&Design::mass_ratio}, "1",
+           "point mass over hoop mass, m_p / m", non_negative},
     Option{"design", "offset_ratio", ParameterSlot{&Design::offset_ratio}, "1",
            "distance of the point mass from the centre over the radius, L / R", fraction},
     Option{"design", "inertia_factor", ParameterSlot{&Design::inertia_factor}, "1",
            "inertia of the bare hoop over m R^2: thin hoop 1, disc 1/2", non_negative},
-    Option{"design", "release_angle", ParameterSlot{&Design::release_angle}, "rad",
-           "angle phi at release: 0 mass on the plane, 180 deg mass on top", {-1e6, 1e6}},
+    Option{"design",
+           "release_angle",
+           ParameterSlot{&Design::release_angle},
+           "rad",
+           "angle phi at release: 0 mass on the plane, 180 deg mass on top",
+           {-1e6, 1e6}},
     Option{"design", "release_spin", ParameterSlot{&Design::release_spin}, "sqrt(g/R)",
            "spin at release, positive downhill", any},
     Option{"design", "points", TextSlot{[](Spec& s) -> std::string& { return s.points; }}, "",
            "CSV file with one design a line instead of axes; its header names parameters (angles in rad)"},
-    Option{"numerics", "method", TextSlot{[](Spec& s) -> std::string& { return s.numerics.method; }}, "",
-           "how rolling is solved; auto: gsl-rk8pd", {}, methods},
-    Option{"numerics", "tolerance", NumberSlot{[](Spec& s) -> double& { return s.numerics.tolerance; }}, "1",
-           "relative error allowed per step", {0.0, 0.1, false, true}},
-    Option{"numerics", "absolute_tolerance",
-           NumberSlot{[](Spec& s) -> double& { return s.numerics.absolute_tolerance; }}, "1",
-           "absolute error allowed per step, in rad and sqrt(g/R); 0: as tolerance", {0.0, 0.1}},
-    Option{"numerics", "fixed_step", NumberSlot{[](Spec& s) -> double& { return s.numerics.fixed_step; }}, "sqrt(R/g)",
-           "constant steps this long, errors unchecked; 0: adaptive steps", {0.0, 100.0}},
-    Option{"numerics", "max_steps", IntegerSlot{[](Spec& s) -> long& { return s.numerics.max_steps; }}, "1",
-           "a design that needs more steps has status failed", {1, 1e12}},
+    Option{"numerics",
+           "method",
+           TextSlot{[](Spec& s) -> std::string& { return s.numerics.method; }},
+           "",
+           "how rolling is solved; auto: gsl-rk8pd",
+           {},
+           methods},
+    Option{"numerics",
+           "tolerance",
+           NumberSlot{[](Spec& s) -> double& { return s.numerics.tolerance; }},
+           "1",
+           "relative error allowed per step",
+           {0.0, 0.1, false, true}},
+    Option{"numerics",
+           "absolute_tolerance",
+           NumberSlot{[](Spec& s) -> double& { return s.numerics.absolute_tolerance; }},
+           "1",
+           "absolute error allowed per step, in rad and sqrt(g/R); 0: as tolerance",
+           {0.0, 0.1}},
+    Option{"numerics",
+           "fixed_step",
+           NumberSlot{[](Spec& s) -> double& { return s.numerics.fixed_step; }},
+           "sqrt(R/g)",
+           "constant steps this long, errors unchecked; 0: adaptive steps",
+           {0.0, 100.0}},
+    Option{"numerics",
+           "max_steps",
+           IntegerSlot{[](Spec& s) -> long& { return s.numerics.max_steps; }},
+           "1",
+           "a design that needs more steps has status failed",
+           {1, 1e12}},
     Option{"numerics", "audit", NumberSlot{[](Spec& s) -> double& { return s.numerics.audit; }}, "1",
            "share of designs solved again by an independent method", fraction},
     Option{"output", "file", TextSlot{[](Spec& s) -> std::string& { return s.output.file; }}, "",
            "the map to write; -o overrides it"},
-    Option{"output", "fields",
-           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.fields; }}, "",
-           "datasets to store; default: all", {}, field_names},
+    Option{"output",
+           "fields",
+           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.fields; }},
+           "",
+           "datasets to store; default: all",
+           {},
+           field_names},
 };
 
 std::string shown(const Option& option, double value) {
@@ -137,8 +179,9 @@ std::string allowed_values(const Option& option) {
   if (std::holds_alternative<TextSlot>(option.slot)) return "a string";
   const Range& range = option.range;
   const bool integer = std::holds_alternative<IntegerSlot>(option.slot);
-  return fmt::format("{} in {}{}, {}{}{}", integer ? "a whole number" : "a number", range.least_allowed ? '[' : '(',
-                     shown(option, range.least), shown(option, range.most), range.most_allowed ? ']' : ')',
+  return fmt::format("{} in {}{}, {}{}{}", integer ? "a whole number" : "a number",
+                     range.least_allowed ? '[' : '(', shown(option, range.least), shown(option, range.most),
+                     range.most_allowed ? ']' : ')',
                      option.unit == "rad" ? ", in rad or as \"... deg\"" : "");
 }
 
@@ -166,23 +209,26 @@ double parse_number(const Option& option, std::string_view text) {
   if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty())
     throw InputError(fmt::format("'{}' is not a number; allowed: {}", text, allowed_values(option)));
   value *= unit;
-  if (!in_range(option, value)) throw InputError(fmt::format("'{}' is not allowed; allowed: {}", text, allowed_values(option)));
+  if (!in_range(option, value))
+    throw InputError(fmt::format("'{}' is not allowed; allowed: {}", text, allowed_values(option)));
   return value;
 }
 
 std::string options_help() {
   std::string help =
       "Spec keys (TOML, or --set KEY=VALUE). A key marked * also takes an axis:\n"
-      "  slope = { from = \"2 deg\", to = \"50 deg\", count = 241 }     mass_ratio = { from = 0.1, to = 20, count = 256, "
+      "  slope = { from = \"2 deg\", to = \"50 deg\", count = 241 }     mass_ratio = { from = 0.1, to = 20, "
+      "count = 256, "
       "scale = \"log\" }\n"
       "  offset_ratio = { values = [0.6, 0.8, 1.0] }\n";
   std::string_view section;
   for (const Option& option : options) {
     if (option.section != section) help += fmt::format("[{}]\n", section = option.section);
     const bool axis = std::holds_alternative<ParameterSlot>(option.slot);
-    const std::string unit = option.unit.empty() || option.unit == "1" ? "" : fmt::format(" [{}]", option.unit);
-    help += fmt::format("  {:<19}{} {}{}; {}. Default {}.\n", option.key, axis ? '*' : ' ', option.meaning, unit,
-                        allowed_values(option), default_of(option));
+    const std::string unit =
+        option.unit.empty() || option.unit == "1" ? "" : fmt::format(" [{}]", option.unit);
+    help += fmt::format("  {:<19}{} {}{}; {}. Default {}.\n", option.key, axis ? '*' : ' ', option.meaning,
+                        unit, allowed_values(option), default_of(option));
   }
   return help;
 }

@@ -52,7 +52,8 @@ std::string allowed_values(const Option& option);
 /// True if a number is finite and inside the option's range.
 bool in_range(const Option& option, double value);
 
-/// "0.5", "30 deg", "-1.2e3 rad" as a number in the option's own unit; throws InputError saying what is wrong.
+/// "0.5", "30 deg", "-1.2e3 rad" as a number in the option's own unit; throws InputError saying what is
+/// wrong.
 double parse_number(const Option& option, std::string_view text);
 
 /// The table of keys for --help: name, default, meaning, what is allowed.

@@ -11,23 +11,26 @@
 
 namespace leapmap {
 
-/// Holds at most `most_waiting` items that came before their turn; a thread that brings more waits, so memory stays
-/// bounded when one item, or whoever takes them, is slow. Items must be begun in order for that wait to end.
+/// Holds at most `most_waiting` items that came before their turn; a thread that brings more waits, so memory
+/// stays bounded when one item, or whoever takes them, is slow. Items must be begun in order for that wait to
+/// end.
 template <class Item>
 class OrderedDelivery {
  public:
   using Take = std::function<void(std::size_t number, const Item&)>;
 
-  OrderedDelivery(Take take, std::size_t most_waiting) : take_(std::move(take)), most_waiting_(most_waiting) {}
+  OrderedDelivery(Take take, std::size_t most_waiting)
+      : take_(std::move(take)), most_waiting_(most_waiting) {}
 
-  /// Brings item `number`, and takes every item whose turn has come. False: the delivery has been abandoned, bring no
-  /// more. What `take` throws goes to the thread that brought the item; abandon the delivery then.
+  /// Brings item `number`, and takes every item whose turn has come. False: the delivery has been abandoned,
+  /// bring no more. What `take` throws goes to the thread that brought the item; abandon the delivery then.
   bool bring(std::size_t number, Item item) {
     std::unique_lock lock(mutex_);
     turn_.wait(lock, [&] { return abandoned_ || number == next_ || waiting_.size() < most_waiting_; });
     if (abandoned_) return false;
     waiting_.emplace(number, std::move(item));
-    for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_; first = waiting_.begin()) {
+    for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_;
+         first = waiting_.begin()) {
       take_(next_, first->second);
       waiting_.erase(first);
       ++next_;

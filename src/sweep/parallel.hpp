@@ -13,9 +13,9 @@ namespace leapmap {
 /// The number of threads that will be used: threads, or OpenMP's own number if 0.
 inline int thread_count(int threads) { return threads > 0 ? threads : omp_get_max_threads(); }
 
-/// Calls make_worker() once on each thread, then the worker it returns with 0, 1, ..., count - 1: numbers are begun
-/// in order, each by whichever thread is free. A worker that returns false ends its thread's part. An exception ends
-/// the loop and is thrown on from here (none may leave an OpenMP region).
+/// Calls make_worker() once on each thread, then the worker it returns with 0, 1, ..., count - 1: numbers are
+/// begun in order, each by whichever thread is free. A worker that returns false ends its thread's part. An
+/// exception ends the loop and is thrown on from here (none may leave an OpenMP region).
 template <class MakeWorker>
 void parallel_for_each(std::size_t count, int threads, const MakeWorker& make_worker) {
   std::atomic<std::size_t> next{0};

@@ -27,7 +27,8 @@ std::vector<std::string_view> split(std::string_view line) {
 }
 
 /// The option a column of the header stands for.
-const Option* column_option(const std::string& place, std::string_view name, const std::vector<const Option*>& before) {
+const Option* column_option(const std::string& place, std::string_view name,
+                            const std::vector<const Option*>& before) {
   const auto parameters = design_parameters();
   const auto found = std::ranges::find(parameters, name, &Option::key);
   if (found == parameters.end()) {
@@ -45,7 +46,8 @@ const Option* column_option(const std::string& place, std::string_view name, con
 
 PointList read_points(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("design.points = \"{}\": cannot be read; allowed: a CSV file", path));
+  if (!file)
+    throw InputError(fmt::format("design.points = \"{}\": cannot be read; allowed: a CSV file", path));
   PointList list;
   list.path = path;
   list.count = 0;
@@ -78,7 +80,8 @@ PointList read_points(const std::string& path) {
     ++list.count;
   }
   if (file.bad()) throw IoError(fmt::format("{}: reading failed", path));
-  if (list.count == 0) throw InputError(fmt::format("{}: no designs; allowed: a header and at least one line", path));
+  if (list.count == 0)
+    throw InputError(fmt::format("{}: no designs; allowed: a header and at least one line", path));
   return list;
 }
 

@@ -8,8 +8,8 @@
 
 namespace leapmap {
 
-/// Reads a list of designs. The header names parameters of a design; each line below holds one number for each
-/// (angles in rad). Throws InputError naming line and column, IoError if the file cannot be read.
+/// Reads a list of designs. The header names parameters of a design; each line below holds one number for
+/// each (angles in rad). Throws InputError naming line and column, IoError if the file cannot be read.
 PointList read_points(const std::string& path);
 
 }  // namespace leapmap

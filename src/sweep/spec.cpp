@@ -18,7 +18,8 @@
 namespace leapmap {
 namespace {
 
-constexpr std::int64_t most_designs = 1'000'000'000'000;  // a map of 10^12 designs is terabytes: surely a typing error
+constexpr std::int64_t most_designs =
+    1'000'000'000'000;  // a map of 10^12 designs is terabytes: surely a typing error
 
 /// One key as written: where, and its value.
 struct Entry {
@@ -38,7 +39,8 @@ std::string quoted(const Option& option, const toml::node& node) {
 }
 
 [[noreturn]] void refuse(const Entry& entry, std::string_view what, std::string_view allowed) {
-  throw InputError(fmt::format("{}: {}: {}; allowed: {}", entry.place, quoted(*entry.option, *entry.node), what, allowed));
+  throw InputError(
+      fmt::format("{}: {}: {}; allowed: {}", entry.place, quoted(*entry.option, *entry.node), what, allowed));
 }
 
 double to_number(const Entry& entry, const toml::node& node, std::string_view part = "") {
@@ -48,7 +50,8 @@ double to_number(const Entry& entry, const toml::node& node, std::string_view pa
     try {
       return parse_number(option, text->get());
     } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}.{}: {}{}", entry.place, option.section, option.key, where, error.what()));
+      throw InputError(
+          fmt::format("{}: {}.{}: {}{}", entry.place, option.section, option.key, where, error.what()));
     }
   }
   const auto value = node.is_number() ? node.value<double>() : std::nullopt;
@@ -59,11 +62,13 @@ double to_number(const Entry& entry, const toml::node& node, std::string_view pa
 
 /// { from, to, count, scale } or { values }.
 std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
-  constexpr std::string_view forms = "{ from, to, count, scale = \"linear\" | \"log\" } or { values = [...] }";
+  constexpr std::string_view forms =
+      "{ from, to, count, scale = \"linear\" | \"log\" } or { values = [...] }";
   const bool list = table.contains("values");
   for (const auto& [key, node] : table) {
     const std::string_view name = key.str();
-    const bool known = list ? name == "values" : name == "from" || name == "to" || name == "count" || name == "scale";
+    const bool known =
+        list ? name == "values" : name == "from" || name == "to" || name == "count" || name == "scale";
     if (!known) refuse(entry, fmt::format("'{}' does not belong to this axis", name), forms);
   }
   std::vector<double> values;
@@ -75,16 +80,19 @@ std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
   }
   for (const std::string_view bound : {"from", "to", "count"})
     if (!table.contains(bound)) refuse(entry, fmt::format("'{}' is missing", bound), forms);
-  const double from = to_number(entry, *table.get("from"), "from"), to = to_number(entry, *table.get("to"), "to");
+  const double from = to_number(entry, *table.get("from"), "from"),
+               to = to_number(entry, *table.get("to"), "to");
   const auto count = table["count"].is_integer() ? table["count"].value<std::int64_t>() : std::nullopt;
   if (!count || *count < 1 || *count > most_designs)
     refuse(entry, "'count' is not a number of values", "a whole number from 1 on");
-  if (*count > 1 && from == to) refuse(entry, "'from' and 'to' are the same", "two different bounds, or count = 1");
+  if (*count > 1 && from == to)
+    refuse(entry, "'from' and 'to' are the same", "two different bounds, or count = 1");
   if (*count == 1 && from != to) refuse(entry, "'count' is 1", "2 or more, or 'from' equal to 'to'");
   const std::string scale = table["scale"].value_or(std::string(table.contains("scale") ? "?" : "linear"));
   if (scale != "linear" && scale != "log") refuse(entry, "'scale' is unknown", "\"linear\" or \"log\"");
   const bool log = scale == "log";
-  if (log && !(from > 0.0 && to > 0.0)) refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
+  if (log && !(from > 0.0 && to > 0.0))
+    refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
 
   const auto last = static_cast<double>(*count - 1);
   values.reserve(static_cast<std::size_t>(*count));
@@ -147,8 +155,8 @@ struct Assign {
   std::vector<std::string_view> keys;
   for (const Option& option : spec_options())
     if (section.empty() || option.section == section) keys.push_back(option.key);
-  throw InputError(fmt::format("{}: {}{}{}: unknown key; allowed: {}", place, section, section.empty() ? "" : ".", key,
-                               fmt::join(keys, ", ")));
+  throw InputError(fmt::format("{}: {}{}{}: unknown key; allowed: {}", place, section,
+                               section.empty() ? "" : ".", key, fmt::join(keys, ", ")));
 }
 
 /// Every key of a file's tables, in the order they were written.
@@ -157,10 +165,12 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
   for (const auto& [section, node] : file) {
     const std::string place = fmt::format("{}:{}", origin, node.source().begin.line);
     const toml::table* table = node.as_table();
-    const bool known = std::ranges::any_of(spec_options(), [&](const Option& o) { return o.section == section.str(); });
+    const bool known =
+        std::ranges::any_of(spec_options(), [&](const Option& o) { return o.section == section.str(); });
     if (!known || !table)
-      throw InputError(fmt::format("{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [output]", place,
-                                   section.str()));
+      throw InputError(
+          fmt::format("{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [output]", place,
+                      section.str()));
     for (const auto& [key, value] : *table) {
       const Option* option = find_option(section.str(), key.str());
       const auto position = value.source().begin;
@@ -168,7 +178,8 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
       entries.push_back({option, fmt::format("{}:{}", origin, position.line), position, &value});
     }
   }
-  std::ranges::stable_sort(entries, {}, [](const Entry& e) { return std::pair(e.position.line, e.position.column); });
+  std::ranges::stable_sort(entries, {},
+                           [](const Entry& e) { return std::pair(e.position.line, e.position.column); });
   return entries;
 }
 
@@ -178,12 +189,14 @@ toml::table parse_override(const std::string& text, std::string_view value) {
     return toml::parse(fmt::format("v = {}", value));
   } catch (const toml::parse_error&) {
     if (value.find_first_of("{}[]\"'\n") != std::string_view::npos)
-      throw InputError(fmt::format("--set {}: the value is not TOML; allowed: a number, a word, [..] or {{..}}", text));
+      throw InputError(
+          fmt::format("--set {}: the value is not TOML; allowed: a number, a word, [..] or {{..}}", text));
     return toml::table{{"v", std::string(value)}};
   }
 }
 
-/// The same key set twice: the later one holds, at the place of the first, so that overriding an axis keeps its turn.
+/// The same key set twice: the later one holds, at the place of the first, so that overriding an axis keeps
+/// its turn.
 void override_with(std::vector<Entry>& entries, const Entry& entry) {
   const auto found = std::ranges::find(entries, entry.option, &Entry::option);
   found == entries.end() ? entries.push_back(entry) : void(*found = entry);
@@ -192,7 +205,8 @@ void override_with(std::vector<Entry>& entries, const Entry& entry) {
 std::string read_text(const std::string& path) {
   std::ifstream file(path);
   std::ostringstream text;
-  if (!file || std::filesystem::is_directory(path) || !(text << file.rdbuf() || file.eof()))
+  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
+  if (!file.is_open() || file.bad() || text.bad() || std::filesystem::is_directory(path))
     throw InputError(fmt::format("{}: cannot be read; allowed: a spec in TOML", path));
   return text.str();
 }
@@ -214,7 +228,8 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
   try {
     if (!path.empty()) file = toml::parse(read_text(path));
   } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: not TOML: {}", path, error.source().begin.line, error.description()));
+    throw InputError(
+        fmt::format("{}:{}: not TOML: {}", path, error.source().begin.line, error.description()));
   }
   std::vector<Entry> entries = entries_of(file, path);
 
@@ -241,8 +256,9 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
 
   if (!spec.points.empty()) {
     if (!spec.axes.empty())
-      throw InputError(fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
-                                   path.empty() ? "--set" : path, spec.axes.front().key));
+      throw InputError(
+          fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
+                      path.empty() ? "--set" : path, spec.axes.front().key));
     spec.list = read_points(find_points(spec));
   }
   double designs = 1.0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A sweep's specification: which designs, in which scene, by which method, to which file.
 ///
-/// Written in TOML (see README, "The spec"). Every key is declared once, in options.cpp; parsing, validation, --help,
-/// the resolved text and the map's axes all read that table.
+/// Written in TOML (see README, "The spec"). Every key is declared once, in options.cpp; parsing, validation,
+/// --help, the resolved text and the map's axes all read that table.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 
 namespace leapmap {
 
-/// Coulomb friction's parameters. Read and checked so that a spec can carry them; with friction = "sticking", the
-/// only model so far, they have no effect.
+/// Coulomb friction's parameters. Read and checked so that a spec can carry them; with friction = "sticking",
+/// the only model so far, they have no effect.
 struct Coulomb {
   double mu_static = 0.5;    ///< >= 0
   double mu_kinetic = 0.5;   ///< >= 0
@@ -64,8 +64,8 @@ struct Spec {
 };
 
 /// Reads a spec from a TOML file; overrides are KEY=VALUE, applied in order, KEY with or without its section.
-/// An empty path means an empty spec: every key at its default. Throws InputError (see support/errors.hpp) for
-/// anything that is not allowed, IoError if the file cannot be read.
+/// An empty path means an empty spec: every key at its default. Throws InputError (see support/errors.hpp)
+/// for anything that is not allowed, IoError if the file cannot be read.
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides);
 
 /// The spec as resolved: TOML that read_spec turns into the same Spec again, every key and value written out.

@@ -17,7 +17,8 @@ std::string resolved_text(const Spec& original) {
   std::string text;
   std::string_view section;
   const auto line = [&](const Option& option, const std::string& value) {
-    if (option.section != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section = option.section);
+    if (option.section != section)
+      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section = option.section);
     text += fmt::format("{} = {}\n", option.key, value);
   };
   // A number that TOML reads back as the same float: fmt's shortest form, which may look like an integer.
@@ -69,7 +70,8 @@ IntegrationOptions integration_options(const Numerics& numerics) {
   IntegrationOptions options;
   options.stepper = find_gsl_stepper(resolved_method(numerics));
   options.control.relative = numerics.tolerance;
-  options.control.absolute = numerics.absolute_tolerance > 0.0 ? numerics.absolute_tolerance : numerics.tolerance;
+  options.control.absolute =
+      numerics.absolute_tolerance > 0.0 ? numerics.absolute_tolerance : numerics.tolerance;
   options.control.fixed_step = numerics.fixed_step;
   options.max_steps = numerics.max_steps;
   return options;

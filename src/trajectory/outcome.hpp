@@ -36,7 +36,7 @@ constexpr std::string_view name_of(Status status) {
 /// Dimensionless: lengths in R, times in sqrt(R/g), heights and dip in hoop diameters. NaN: does not apply.
 struct Outcome {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  static constexpr std::uint8_t no_lift_off = 255;     ///< spurious_first_jump where there is no lift-off at all
+  static constexpr std::uint8_t no_lift_off = 255;  ///< spurious_first_jump where there is no lift-off at all
   static constexpr std::uint8_t most_candidates = 254;  ///< candidates stops counting here
 
   Status status = Status::not_computed;
@@ -54,8 +54,8 @@ struct Outcome {
   double first_jump_time = none;
 };
 
-/// Counts a lift-off and its flight, in order of time. True if it is the jump, which ends the search: the jump is
-/// the first lift-off that reaches scene.hop_height.
+/// Counts a lift-off and its flight, in order of time. True if it is the jump, which ends the search: the
+/// jump is the first lift-off that reaches scene.hop_height.
 bool consider(Outcome& outcome, const Scene& scene, const Design& design, const LiftOff<double>& lift_off,
               const Flight<double>& flight);
 

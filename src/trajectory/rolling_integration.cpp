@@ -67,13 +67,23 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
     return outcome;
   }
 
+  // How long after the start of the step the hoop, rolling forwards, comes to an angle.
+  const auto time_at = [&](double angle, double latest) {
+    const auto angle_at = [&](double tau) {
+      RollingState y;
+      return retake(tau, y) ? Sample<double>{y[0] - angle, y[1]} : Sample<double>{NAN, 0.0};
+    };
+    return polish_root(angle_at, 0.0, latest, 0.5 * latest, true, 1e-15 * latest);
+  };
+
   const double runway_end = design.release_angle + two_pi * scene.runway;
   if (!integrator_.start(release, 0.01 / (1.0 + spin.value))) return failed_outcome();
   for (long taken = 0; taken < options_.max_steps; ++taken) {
     if (!integrator_.advance()) return failed_outcome();
     const Step<2>& step = integrator_.step();
     // A look every 22.5 degrees: the normal force swings once or twice a revolution.
-    const int looks = 1 + static_cast<int>(std::min(std::abs(step.y1[0] - step.y0[0]) * (16.0 / two_pi), 1000.0));
+    const int looks =
+        1 + static_cast<int>(std::min(std::abs(step.y1[0] - step.y0[0]) * (16.0 / two_pi), 1000.0));
     force = find_falls(step, looks, force, normal_force_at, retake, lift_offs_);
     spin = find_falls(step, looks, spin, spin_at, retake, stalls_);
     if (lift_offs_.failed || stalls_.failed) return failed_outcome();
@@ -94,7 +104,8 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
       if (observer.lift_off) observer.lift_off(lift_off, flight);
       if (is_jump) return outcome;
     }
-    if (observer.step) observer.step(integrator_, stall);
+    if (observer.step)
+      observer.step(integrator_, stall_angle > runway_end ? time_at(runway_end, stall) : stall);
     if (stall_angle >= runway_end) {
       outcome.status = Status::no_jump;
       return outcome;

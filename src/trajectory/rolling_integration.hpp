@@ -28,7 +28,8 @@ struct Graze {
 
 /// Looks on while a design is solved; unset functions cost nothing.
 struct RollingObserver {
-  /// Every step, in order; retake gives the method's own state inside it; only [0, end] of the step was rolled.
+  /// Every step, in order; retake gives the method's own state inside it; only [0, end] of the step was
+  /// rolled.
   std::function<void(const GslIntegrator<2>& integrator, double end)> step;
   std::function<void(const LiftOff<double>&, const Flight<double>&)> lift_off;
   std::function<void(const Graze&)> graze;
@@ -41,8 +42,8 @@ class RollingIntegration {
   RollingIntegration(const RollingIntegration&) = delete;
   RollingIntegration& operator=(const RollingIntegration&) = delete;
 
-  /// Rolls the design until its jump, its stall or the end of the runway. Never throws for a bad design: what the
-  /// method cannot do has status failed.
+  /// Rolls the design until its jump, its stall or the end of the runway. Never throws for a bad design: what
+  /// the method cannot do has status failed.
   Outcome solve(const Design& design, const Scene& scene, const RollingObserver& observer = {});
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What all designs of a study share: the plane, the rule that says what a jump is, and the units of the answer.
+/// What all designs of a study share: the plane, the rule that says what a jump is, and the units of the
+/// answer.
 #pragma once
 
 #include <cmath>

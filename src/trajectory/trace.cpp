@@ -21,7 +21,8 @@ TracePoint rolling_point(const Hoop<double>& hoop, const Design& design, double 
           Phase::rolling};
 }
 
-TracePoint flight_point(const Hoop<double>& hoop, const Design& design, const LiftOff<double>& from, double flown) {
+TracePoint flight_point(const Hoop<double>& hoop, const Design& design, const LiftOff<double>& from,
+                        double flown) {
   return {from.time + flown,
           from.angle + from.spin * flown,
           from.spin,
@@ -67,7 +68,8 @@ Story tell(const Design& design, const Scene& scene, const IntegrationOptions& o
     const Candidate& jump = story.candidates.back();
     const double start = jump.lift_off.time, flown = jump.flight.flight_time;
     story.points.push_back(rolling_point(hoop, design, start, {jump.lift_off.angle, jump.lift_off.spin}));
-    sample_until(start + flown, [&](double t) { return flight_point(hoop, design, jump.lift_off, t - start); });
+    sample_until(start + flown,
+                 [&](double t) { return flight_point(hoop, design, jump.lift_off, t - start); });
     story.points.push_back(flight_point(hoop, design, jump.lift_off, flown));
   }
   return story;

@@ -34,12 +34,13 @@ struct Candidate {
 struct Story {
   Outcome outcome;
   std::vector<Candidate> candidates;
-  std::vector<Graze> grazes;      ///< zeros of the normal force decided by a hair, see Graze
-  std::vector<TracePoint> points;  ///< from release to the end: the jump's landing, the stall, the runway's end
+  std::vector<Graze> grazes;  ///< zeros of the normal force decided by a hair, see Graze
+  std::vector<TracePoint>
+      points;  ///< from release to the end: the jump's landing, the stall, the runway's end
 };
 
-/// Solves one design and tells everything about it. interval > 0: samples the motion that often [sqrt(R/g)], and at
-/// the jump's lift-off and landing. Grazes are told if |N| there is below graze_limit.
+/// Solves one design and tells everything about it. interval > 0: samples the motion that often [sqrt(R/g)],
+/// and at the jump's lift-off and landing. Grazes are told if |N| there is below graze_limit.
 Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval = 0.0,
            double graze_limit = 1e-6);
 

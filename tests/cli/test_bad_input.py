@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bad input: one clear line, the right exit status, no half-made file, an existing file untouched."""
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import pytest
+from support.program import PROGRAM, SMALL, leapmap, sweep
+
+BAD = {
+    "unknown key": ('[design]\nslop = 0.4', ["slop", "slope"]),
+    "missing axis bound": ('[design]\nslope = { from = 0.1, count = 3 }', ["'to'", "missing"]),
+    "negative mass ratio": ('[design]\nmass_ratio = -1', ["mass_ratio", "-1"]),
+    "slope of 91 degrees": ('[design]\nslope = "91 deg"', ["slope", "91 deg"]),
+    "NaN": ('[design]\nslope = nan', ["slope", "nan"]),
+    "count 0": ('[design]\nslope = { from = 0.1, to = 0.2, count = 0 }', ["count"]),
+    "log axis from 0": ('[design]\nmass_ratio = { from = 0, to = 1, count = 3, scale = "log" }', ["log"]),
+    "unreadable CSV": ('[design]\npoints = "nowhere.csv"', ["nowhere.csv"]),
+    "a column too many": ('[design]\npoints = "wide.csv"', ["wide.csv:2", "2 values"]),
+}
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_a_bad_spec_ends_with_status_2_one_line_and_no_file(kind, tmp_path):
+    text, words = BAD[kind]
+    (tmp_path / "wide.csv").write_text("slope\n0.1,0.2\n")
+    (tmp_path / "bad.toml").write_text(text + "\n")
+    before = set(os.listdir(tmp_path))
+    done = leapmap("sweep", tmp_path / "bad.toml", "-o", tmp_path / "map.h5")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1 and done.stderr.endswith("\n"), done.stderr
+    for word in words + ["allowed"]:
+        assert word in done.stderr
+    assert set(os.listdir(tmp_path)) == before
+
+
+@pytest.mark.parametrize("arguments", [
+    [], ["swep"], ["sweep"], ["sweep", "/nowhere.toml"], ["hop", "--slope", "91deg"], ["hop", "--slope"], ["hop", "--sloop", "1"],
+    ["hop", "--slope", "steep"], ["hop", "--trace-interval", "-1"], ["sweep", "x.toml", "--threads", "0"], ["info"],
+    ["hop", "--set", "design.slope={values=[0.1,0.2]}"],
+])
+def test_bad_usage_ends_with_status_2_and_one_line(arguments):
+    done = leapmap(*arguments)
+    assert done.returncode == 2, done.stderr
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+
+
+def test_a_sweep_without_a_file_to_write_is_refused(tmp_path):
+    (tmp_path / "spec.toml").write_text(SMALL)
+    done = leapmap("sweep", tmp_path / "spec.toml", cwd=tmp_path)
+    assert done.returncode == 2 and "output.file" in done.stderr
+
+
+def test_an_existing_map_is_untouched_without_overwrite_and_replaced_with_it(tmp_path):
+    path = sweep(tmp_path)
+    before = path.read_bytes()
+    done = leapmap("sweep", tmp_path / "spec.toml", "-o", path)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "--overwrite" in done.stderr
+    assert path.read_bytes() == before
+    done = leapmap("sweep", tmp_path / "spec.toml", "-o", path, "--overwrite", "--set", "runway=2")
+    assert done.returncode == 0
+    assert path.read_bytes() != before
+    assert sorted(os.listdir(tmp_path)) == ["map.h5", "spec.toml"]
+
+
+@pytest.mark.parametrize("target", ["/proc/map.h5", "/dev/null/map.h5"])
+def test_an_unwritable_place_ends_with_status_3_and_one_line(target, tmp_path):
+    (tmp_path / "spec.toml").write_text(SMALL)
+    done = leapmap("sweep", tmp_path / "spec.toml", "-o", target)
+    assert done.returncode == 3, done.stderr
+    assert done.stderr.count("\n") == 1
+    trace = leapmap("hop", "--trace", target)
+    assert trace.returncode == 3 and trace.stderr.count("\n") == 1
+
+
+def test_a_folder_that_may_not_be_written_ends_with_status_3():
+    if os.geteuid() == 0 and not shutil.which("setpriv"):
+        pytest.skip("root may write anywhere, and setpriv is not there to become somebody else")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "spec.toml").write_text(SMALL)
+        shutil.copy(PROGRAM, folder / "leapmap")
+        locked = folder / "locked"
+        locked.mkdir(mode=0o555)
+        folder.chmod(0o755)
+        become = ["setpriv", "--reuid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+        done = subprocess.run([*become, folder / "leapmap", "sweep", folder / "spec.toml", "-o", locked / "map.h5"],
+                              capture_output=True, text=True)
+        assert done.returncode == 3, done.stderr
+        assert done.stderr.count("\n") == 1
+        assert os.listdir(locked) == []
+
+
+def test_a_full_disk_ends_with_status_3_and_gives_the_space_back(tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", disk], capture_output=True, text=True)
+    if mounted.returncode != 0:
+        pytest.skip(f"mounting a tmpfs is not allowed here: {mounted.stderr.strip()}")
+    try:
+        (tmp_path / "spec.toml").write_text(SMALL)
+        arguments = ["sweep", tmp_path / "spec.toml", "--set", "tolerance=1e-3", "--set", "audit=0", "-o"]
+        grown = ["--set", "slope={from=0.1,to=0.8,count=100}"]  # 264 designs of 83 bytes fit, 40,000 do not
+        fits = leapmap(*arguments, disk / "fits.h5")
+        assert fits.returncode == 0, fits.stderr
+        (disk / "fits.h5").rename(disk / "kept.h5")
+        kept = (disk / "kept.h5").read_bytes()
+        free = shutil.disk_usage(disk).free
+        done = leapmap(*arguments, disk / "map.h5", *grown, "--set", "mass_ratio={from=0.1,to=20,count=200}")
+        assert done.returncode == 3, done.stderr
+        assert done.stderr.count("\n") == 1 and "map.h5" in done.stderr, done.stderr
+        assert os.listdir(disk) == ["kept.h5"]
+        assert shutil.disk_usage(disk).free == free
+        assert (disk / "kept.h5").read_bytes() == kept
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def test_a_bad_design_is_a_status_and_the_sweep_goes_on(tmp_path):
+    path = sweep(tmp_path, '[design]\nslope = { values = [0.4] }\nmass_ratio = { values = [2, 3] }\n[numerics]\nmax_steps = 20\naudit = 0\n')
+    text = leapmap("info", path).stdout
+    assert "failed" in text

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`leapmap hop` and `leapmap info` tell what is true."""
+import json
+import math
+
+import h5py
+import numpy as np
+import pytest
+from support.program import TOP, leapmap, sweep
+
+
+def test_hop_tells_the_papers_jump():
+    done = leapmap("hop", TOP / "sweeps/paper.toml")
+    assert done.returncode == 0
+    for number in ("0.982801", "0.131666", "0.200146", "0.003444", "799.2044"):
+        assert number in done.stdout
+
+
+def test_json_is_nothing_but_data_under_the_maps_names():
+    done = leapmap("hop", "--json", "--set", "radius=1", "--set", "gravity=1", "--set", "tolerance=1e-12")
+    hop = json.loads(done.stdout)
+    assert done.stderr == ""
+    assert hop["status"] == "jumped" and hop["spurious_first_jump"] == 1 and hop["candidates"] == 2
+    assert hop["jump_time"] == pytest.approx(8.3639138031881432, abs=1e-11)
+    assert hop["jump_height"] == pytest.approx(0.98280096607011718, abs=1e-11)
+    assert len(hop["lift_offs"]) == 2
+    stalled = json.loads(leapmap("hop", "--json", "--release-spin", "-1").stdout)
+    assert stalled["status"] == "stalled" and stalled["jump_height"] is None and stalled["spurious_first_jump"] is None
+
+
+def test_every_parameter_has_a_flag_that_beats_the_spec():
+    hop = json.loads(leapmap("hop", TOP / "sweeps/paper.toml", "--json", "--slope", "30deg", "--mass-ratio", "3", "--offset-ratio",
+                             "0.9", "--inertia-factor", "0.8", "--release-angle", "170 deg", "--release-spin", "0.1").stdout)
+    assert hop["design"] == pytest.approx({"slope": math.radians(30), "mass_ratio": 3, "offset_ratio": 0.9, "inertia_factor": 0.8,
+                                           "release_angle": math.radians(170), "release_spin": 0.1})
+
+
+def test_a_hop_is_what_the_map_says_of_the_same_design(tmp_path):
+    path = sweep(tmp_path)
+    with h5py.File(path) as m:
+        for i, j, k in [(3, 5, 1), (11, 10, 0), (7, 2, 1)]:
+            hop = json.loads(leapmap("hop", "--json", "--slope", repr(float(m["slope"][i])), "--mass-ratio", repr(float(m["mass_ratio"][j])),
+                                     "--offset-ratio", repr(float(m["offset_ratio"][k]))).stdout)
+            for name in ("jump_height", "jump_time", "jump_angle", "apex_time", "dip", "first_jump_time"):
+                stored = m[name][i, j, k]
+                assert (hop[name] is None and np.isnan(stored)) or hop[name] == stored
+
+
+def test_a_trace_holds_the_motion_from_release_to_landing(tmp_path):
+    done = leapmap("hop", TOP / "sweeps/paper_figures.toml", "--trace", tmp_path / "trace.h5", "--json")
+    hop = json.loads(done.stdout)
+    with h5py.File(tmp_path / "trace.h5") as trace:
+        assert trace.attrs["filetype"] == "leapmap trace"
+        t, phi, x, y, n, phase = (trace[k][()] for k in ("t", "phi", "x", "y", "normal_force", "phase"))
+        assert {"t", "phi", "spin", "x", "y", "normal_force", "friction", "phase"} <= set(trace)
+        assert t[0] == 0 and t[-1] == pytest.approx(hop["jump_time"] + hop["flight_time"], rel=1e-12)
+        rolling = phase == 1
+        assert np.allclose(x[rolling], 0.041 * (phi[rolling] - phi[0]), atol=1e-15)
+        assert (y[rolling] == 0).all() and (n[~rolling] == 0).all()
+        assert y.max() / 0.082 == pytest.approx(hop["jump_height"], abs=1e-4)  # sampled every millisecond
+        assert list(trace["candidate_time"]) == pytest.approx([0.17, 0.32], abs=1e-6)
+        assert dict(enumerate(trace["phase"].attrs["flag_meanings"].split(), 1))[3] == "flight"
+
+
+def test_info_counts_statuses_and_places_extremes(tmp_path):
+    path = sweep(tmp_path)
+    text = leapmap("info", path).stdout
+    with h5py.File(path) as m:
+        height = m["jump_height"][()]
+        i, j, k = np.unravel_index(np.nanargmax(height), height.shape)
+        assert f"{(m['status'][()] == 1).sum()}" in text
+        place = f"at slope {m['slope'][i]:.6g}, mass_ratio {m['mass_ratio'][j]:.6g}, offset_ratio {m['offset_ratio'][k]:.6g}"
+        assert f"most  {height[i, j, k]:.8g}" in text and place in text
+        assert f"none  in {np.isnan(height).sum()} designs" in text
+    assert "audit: 14 designs" in text  # 5 % of 264, rounded up
+    assert "[design]" in leapmap("info", path, "--spec").stdout
+
+
+@pytest.mark.parametrize("make,word", [(lambda p: None, "no such file"), (lambda p: p.write_text("words"), "cannot be read as HDF5"),
+                                       (lambda p: h5py.File(p, "w").close(), "not a leapmap map")])
+def test_info_refuses_other_files_with_one_line(make, word, tmp_path):
+    make(tmp_path / "x.h5")
+    done = leapmap("info", tmp_path / "x.h5")
+    assert done.returncode == 3 and done.stderr.count("\n") == 1 and word in done.stderr and done.stdout == ""
+
+
+def test_dry_run_plans_and_writes_nothing(tmp_path):
+    (tmp_path / "spec.toml").write_text('[design]\nslope={from=0,to=1,count=1000}\nmass_ratio={from=0.1,to=20,count=1000}\n'
+                                        'offset_ratio={from=0.3,to=1,count=1000}\n[output]\nfields=["jump_height","spurious_first_jump"]\n')
+    done = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--dry-run")
+    assert done.returncode == 0
+    for words in ("1,000,000,000", "memory   about", "file     about 9 GB", "time     about", "tiles"):
+        assert words in done.stdout
+    assert not list(tmp_path.glob("map.h5*"))
+
+
+def test_help_teaches_and_version_is_told():
+    assert "slope" in leapmap("sweep", "--help").stdout and leapmap("--help").returncode == 0
+    assert leapmap("--version").stdout.startswith("leapmap ")
+
+
+def test_an_audit_that_disagrees_ends_with_status_1_and_the_command_that_shows_it(tmp_path):
+    (tmp_path / "spec.toml").write_text('[design]\nslope={from=0.1,to=0.8,count=40}\nmass_ratio={from=0.5,to=10,count=40}\n'
+                                        '[numerics]\ntolerance=3e-3\naudit=1\n')
+    done = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--quiet")
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    command = done.stderr.split("see it by: leapmap ")[1].split()
+    ours = json.loads(leapmap(*command, "--json").stdout)
+    truth = json.loads(leapmap(*command, "--json", "--set", "tolerance=1e-12").stdout)
+    assert any(ours[k] != truth[k] for k in ("status", "spurious_first_jump", "candidates"))
+    with h5py.File(tmp_path / "map.h5") as m:
+        assert m.attrs["audit_flag_mismatches"] > 0

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "map/reader.hpp"
+#include "map/writer.hpp"
+#include "support/errors.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace leapmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+MapLayout small_layout() {
+  MapLayout layout;
+  layout.axes = {{"slope", "rad", "slope of the plane", {0.1, 0.2, 0.3}},
+                 {"mass_ratio", "1", "mass ratio", {1, 2, 3, 4, 5}}};
+  for (const Field& field : map_fields()) layout.fields.push_back(&field);
+  layout.time_unit = 0.5;
+  return layout;
+}
+
+const std::vector<hdf5::Attribute> attributes{
+    {"filetype", std::string(map_filetype)},
+    {"version", std::vector<std::int32_t>{format_major, format_minor}},
+    {"title", std::string("täst")}};
+
+Outcome numbered(std::size_t number) {
+  Outcome outcome;
+  outcome.status = number % 2 ? Status::jumped : Status::no_jump;
+  outcome.candidates = static_cast<std::uint8_t>(number);
+  outcome.jump_height = static_cast<double>(number) + 0.25;
+  outcome.jump_time = static_cast<double>(number);
+  return outcome;
+}
+
+/// Writes every tile of the small map, each design's outcome carrying its number.
+void write_all(MapWriter& writer, const Tiling& tiling) {
+  for (std::size_t t = 0; t < tiling.size(); ++t) {
+    const Tile tile = tiling.tile(t);
+    std::vector<Outcome> outcomes;
+    std::vector<std::size_t> position;
+    for (std::size_t i = 0; i < tile.count; ++i) {
+      unravel(i, tile.extent, position);
+      outcomes.push_back(numbered((tile.start[0] + position[0]) * 5 + tile.start[1] + position[1]));
+    }
+    writer.write(tile, outcomes);
+  }
+}
+
+TEST(MapFile, WhatIsWrittenTileByTileIsReadBackInPlace) {
+  const testing::TemporaryFolder folder;
+  const Tiling tiling({3, 5}, {2, 2});  // tiles cut short on both sides
+  {
+    MapWriter writer(folder / "map.h5", small_layout(), tiling, attributes, false);
+    write_all(writer, tiling);
+    EXPECT_FALSE(fs::exists(folder / "map.h5")) << "until it is whole it has no name";
+    writer.finish(std::vector<hdf5::Attribute>{{"wall_time", 1.5}, {"audit_designs", std::int64_t{7}}});
+  }
+  EXPECT_FALSE(fs::exists(folder / "map.h5.part"));
+  const MapReader map(folder / "map.h5");
+  EXPECT_EQ(map.shape(), (std::vector<std::size_t>{3, 5}));
+  EXPECT_EQ(map.dimensions()[0].name, "slope");
+  EXPECT_EQ(map.dimensions()[1].values, (std::vector<double>{1, 2, 3, 4, 5}));
+  EXPECT_EQ(map.attribute("title"), "täst");
+  EXPECT_EQ(map.attribute("wall_time"), "1.5");
+  EXPECT_EQ(map.attribute("audit_designs"), "7");
+  EXPECT_EQ(map.unit("jump_time"), "s");
+  EXPECT_EQ(map.fields().size(), map_fields().size());
+  const Tile whole{{0, 0}, {3, 5}, 15};
+  const auto heights = map.read("jump_height", whole), times = map.read("jump_time", whole),
+             statuses = map.read("status", whole), dips = map.read("dip", whole);
+  for (std::size_t i = 0; i < 15; ++i) {
+    EXPECT_EQ(heights[i], static_cast<double>(i) + 0.25);
+    EXPECT_EQ(times[i], static_cast<double>(i) * 0.5) << "times are stored in seconds";
+    EXPECT_EQ(statuses[i], i % 2 ? 1.0 : 2.0);
+    EXPECT_TRUE(std::isnan(dips[i]));
+  }
+  EXPECT_EQ(map.read("candidates", Tile{{1, 2}, {1, 2}, 2}), (std::vector<double>{7, 8}));
+}
+
+TEST(MapFile, AListHasOneDimensionAndItsParametersAlongIt) {
+  const testing::TemporaryFolder folder;
+  MapLayout layout = small_layout();
+  layout.axes.clear();
+  layout.columns = {{"slope", "rad", "slope of the plane", {0.3, 0.1}}};
+  const Tiling tiling({2}, {2});
+  MapWriter writer(folder / "list.h5", layout, tiling, attributes, false);
+  writer.write(tiling.tile(0), std::vector{numbered(0), numbered(1)});
+  writer.finish({});
+  const MapReader map(folder / "list.h5");
+  ASSERT_EQ(map.dimensions().size(), 1u);
+  EXPECT_EQ(map.dimensions()[0].name, "design");
+  EXPECT_EQ(map.fields()[0], "slope");
+  EXPECT_EQ(map.read("slope", Tile{{0}, {2}, 2}), (std::vector<double>{0.3, 0.1}));
+}
+
+TEST(MapFile, AnUnfinishedMapLeavesNothingBehind) {
+  const testing::TemporaryFolder folder;
+  { MapWriter writer(folder / "map.h5", small_layout(), Tiling({3, 5}, {3, 5}), attributes, false); }
+  EXPECT_FALSE(fs::exists(folder / "map.h5"));
+  EXPECT_FALSE(fs::exists(folder / "map.h5.part"));
+}
+
+TEST(MapFile, AKeptPartShowsItsHolesAsNotComputed) {
+  const testing::TemporaryFolder folder;
+  const Tiling tiling({3, 5}, {1, 5});
+  std::string part;
+  {
+    MapWriter writer(folder / "map.h5", small_layout(), tiling, attributes, false);
+    writer.write(tiling.tile(0), std::vector<Outcome>(5, numbered(1)));
+    part = writer.keep_part();
+  }
+  EXPECT_EQ(part, folder / "map.h5.part");
+  const MapReader map(part);
+  const Tile whole{{0, 0}, {3, 5}, 15};
+  EXPECT_EQ(map.read("status", whole)[4], 1.0);
+  EXPECT_EQ(map.read("status", whole)[5], 0.0);
+  EXPECT_EQ(map.read("spurious_first_jump", whole)[5], 255.0);
+  EXPECT_TRUE(std::isnan(map.read("jump_height", whole)[14]));
+}
+
+TEST(MapFile, ExistingFilesAreRefusedAndLeftAlone) {
+  const testing::TemporaryFolder folder;
+  const std::string existing = folder.write("map.h5", "precious");
+  const auto create = [&](const std::string& path, bool overwrite) {
+    MapWriter writer(path, small_layout(), Tiling({3, 5}, {3, 5}), attributes, overwrite);
+  };
+  EXPECT_THROW(create(existing, false), InputError);
+  EXPECT_EQ(fs::file_size(existing), 8u);
+  create(existing, true);  // not finished: the old file stays
+  EXPECT_EQ(fs::file_size(existing), 8u);
+  folder.write("other.h5.part", "left by an interrupted sweep");
+  EXPECT_THROW(create(folder / "other.h5", false), InputError);
+  EXPECT_EQ(fs::file_size(folder / "other.h5.part"), 28u);
+}
+
+TEST(MapFile, WhatCannotBeWrittenIsAnIoError) {
+  const testing::TemporaryFolder folder;
+  const std::string file = folder.write("file", "");
+  const auto create = [&](const std::string& path) {
+    MapWriter writer(path, small_layout(), Tiling({3, 5}, {3, 5}), attributes, false);
+  };
+  EXPECT_THROW(create(file + "/map.h5"), IoError);
+  EXPECT_THROW(create("/proc/map.h5"), IoError);
+  create(folder / "new/folders/map.h5");  // made on the way
+  EXPECT_TRUE(fs::is_directory(folder / "new/folders"));
+}
+
+TEST(MapFile, FilesOfAnotherTypeOrANewerVersionAreRefusedWithAReason) {
+  const testing::TemporaryFolder folder;
+  const auto complaint = [](const std::string& path) -> std::string {
+    try {
+      MapReader map(path);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "(accepted)";
+  };
+  EXPECT_NE(complaint(folder / "nowhere.h5").find("no such file"), std::string::npos);
+  EXPECT_NE(complaint(folder.write("text.h5", "not HDF5")).find("cannot be read as HDF5"), std::string::npos);
+  hdf5::create_file(folder / "other.h5");
+  EXPECT_NE(complaint(folder / "other.h5").find("not a leapmap map"), std::string::npos);
+  {
+    auto newer = attributes;
+    newer[1].second = std::vector<std::int32_t>{format_major + 1, 0};
+    MapWriter writer(folder / "newer.h5", small_layout(), Tiling({3, 5}, {3, 5}), newer, false);
+    writer.finish({});
+  }
+  EXPECT_NE(complaint(folder / "newer.h5").find("newer leapmap"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace leapmap

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Designs that many tests use: the paper's, and seeded random ones.
+#pragma once
+
+#include <random>
+
+#include "trajectory/outcome.hpp"
+#include "trajectory/rolling_integration.hpp"
+
+namespace leapmap::testing {
+
+/// The paper's hoop in units where times come out in sqrt(R/g).
+inline Design paper_hoop() { return {}; }
+
+inline double uniform(std::mt19937_64& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+/// A design as a user might choose it, any release.
+inline Design random_design(std::mt19937_64& random) {
+  Design design;
+  design.slope = uniform(random, 0.05, 0.9);
+  design.mass_ratio = std::exp(uniform(random, std::log(0.1), std::log(20.0)));
+  design.offset_ratio = uniform(random, 0.1, 1.0);
+  design.inertia_factor = uniform(random, 0.5, 1.0);
+  design.release_angle = uniform(random, 2.5, 4.5);
+  design.release_spin = uniform(random, 0.0, 1.0);
+  return design;
+}
+
+/// Adaptive integration by the stepper of that name.
+inline IntegrationOptions adaptive(std::string_view stepper, double tolerance) {
+  IntegrationOptions options;
+  options.stepper = find_gsl_stepper(stepper);
+  options.control.relative = options.control.absolute = tolerance;
+  return options;
+}
+
+inline Outcome solve(const Design& design, const Scene& scene = {}, std::string_view stepper = "gsl-rk8pd",
+                     double tolerance = 1e-12) {
+  return RollingIntegration(adaptive(stepper, tolerance)).solve(design, scene);
+}
+
+}  // namespace leapmap::testing

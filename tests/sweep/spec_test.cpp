@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/spec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/errors.hpp"
+#include "support/temporary_folder.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/options.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+Spec parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const testing::TemporaryFolder folder;
+  return read_spec(folder.write("spec.toml", text), overrides);
+}
+
+TEST(Spec, AnEmptySpecIsThePapersHoop) {
+  const Spec spec = read_spec("", {});
+  EXPECT_EQ(spec.design.slope, 0.40);
+  EXPECT_EQ(spec.design.mass_ratio, 20.0 / 8.2);
+  EXPECT_EQ(spec.scene.radius, 0.041);
+  EXPECT_TRUE(spec.axes.empty());
+  EXPECT_EQ(Tiling(shape_of(spec)).designs(), 1u);
+}
+
+TEST(Spec, TheInterfacesExampleIsUnderstoodWordForWord) {
+  const Spec spec = parse(R"(
+    [scene]
+    friction       = "sticking"
+    mu_static      = 0.5
+    mu_kinetic     = 0.5
+    restitution    = 0.0
+    rest_speed     = 1e-3
+    runway         = 5.0
+    hop_height     = 0.05
+    radius         = 0.041
+    gravity        = 9.81
+    [design]
+    slope          = { from = "2 deg", to = "50 deg", count = 241 }
+    mass_ratio     = { from = 0.1, to = 20, count = 256, scale = "log" }
+    offset_ratio   = { values = [0.6, 0.8, 1.0] }
+    inertia_factor = 1.0
+    release_angle  = "180 deg"
+    release_spin   = 0.0
+    [numerics]
+    method    = "auto"
+    tolerance = 1e-10
+    audit     = 0.001
+    [output]
+    file  = "maps/slope_mass_ratio.h5"
+    fields = ["jump_height", "jump_time", "spurious_first_jump"]
+  )");
+  ASSERT_EQ(spec.axes.size(), 3u);
+  EXPECT_EQ(spec.axes[0].key, "slope");
+  EXPECT_EQ(spec.axes[1].key, "mass_ratio");
+  EXPECT_EQ(spec.axes[2].key, "offset_ratio");
+  EXPECT_EQ(shape_of(spec), (std::vector<std::size_t>{241, 256, 3}));
+  EXPECT_EQ(spec.output.fields.size(), 3u);
+  EXPECT_DOUBLE_EQ(spec.design.release_angle, std::numbers::pi);
+}
+
+TEST(Spec, AxesKeepTheOrderTheyAreWrittenInAndOverridesKeepTheirTurn) {
+  const std::string text =
+      "[design]\nslope = { values = [0.1, 0.2] }\noffset_ratio = { values = [1] }\nmass_ratio = { values = "
+      "[1, 2, 3] }\n";
+  const auto keys = [](const Spec& spec) {
+    std::string joined;
+    for (const Axis& axis : spec.axes) joined += axis.key + " ";
+    return joined;
+  };
+  EXPECT_EQ(keys(parse(text)), "slope offset_ratio mass_ratio ");
+  EXPECT_EQ(keys(parse(text, {"slope={values=[0.3]}"})), "slope offset_ratio mass_ratio ");
+  EXPECT_EQ(keys(parse(text, {"offset_ratio=0.5"})), "slope mass_ratio ");
+  EXPECT_EQ(keys(parse(text, {"design.release_spin={from=0,to=1,count=2}"})),
+            "slope offset_ratio mass_ratio release_spin ");
+}
+
+TEST(Spec, LinearAndLogAxesHitTheirBoundsExactly) {
+  const Spec spec = parse(
+      "[design]\nslope = { from = \"2 deg\", to = \"50 deg\", count = 7 }\n"
+      "mass_ratio = { from = 0.1, to = 20, count = 5, scale = \"log\" }\n"
+      "inertia_factor = { from = 0.5, to = 0.5, count = 1 }\n");
+  const auto &slope = spec.axes[0].values, &ratio = spec.axes[1].values;
+  EXPECT_EQ(slope.front(), 2 * degree);
+  EXPECT_EQ(slope.back(), 50 * degree);
+  EXPECT_NEAR(slope[3], 26 * degree, 1e-16);
+  EXPECT_EQ(ratio.front(), 0.1);
+  EXPECT_EQ(ratio.back(), 20.0);
+  for (std::size_t i = 1; i < ratio.size(); ++i)
+    EXPECT_NEAR(ratio[i] / ratio[i - 1], std::pow(200.0, 0.25), 1e-14);
+  EXPECT_EQ(spec.axes[2].values, std::vector<double>{0.5});
+}
+
+TEST(Spec, OverridesTakeNumbersWordsAnglesAndTablesWithOrWithoutTheirSection) {
+  const Spec spec =
+      parse("", {"numerics.method=gsl-rkf45", "tolerance=1e-12", "slope=30deg", "release_angle=\"90 deg\"",
+                 "mass_ratio={from=1,to=2,count=2}", "output.fields=[\"status\"]", "max_steps=7"});
+  EXPECT_EQ(spec.numerics.method, "gsl-rkf45");
+  EXPECT_EQ(spec.numerics.tolerance, 1e-12);
+  EXPECT_DOUBLE_EQ(spec.design.slope, 30 * degree);
+  EXPECT_DOUBLE_EQ(spec.design.release_angle, 90 * degree);
+  EXPECT_EQ(spec.axes.size(), 1u);
+  EXPECT_EQ(spec.output.fields, std::vector<std::string>{"status"});
+  EXPECT_EQ(spec.numerics.max_steps, 7);
+}
+
+TEST(Spec, ResolvedTextReadsBackAsTheSameSpec) {
+  const testing::TemporaryFolder folder;
+  const Spec spec = parse(
+      "[design]\nmass_ratio = { from = 0.1, to = 20, count = 11, scale = \"log\" }\n"
+      "slope = { from = \"2 deg\", to = \"50 deg\", count = 13 }\nrelease_angle = \"170 deg\"\n"
+      "[output]\nfile = 'a \"quoted\" name.h5'\nfields = [\"status\", \"dip\"]\n[scene]\nradius = 1\n");
+  const Spec again = read_spec(folder.write("resolved.toml", resolved_text(spec)), {});
+  ASSERT_EQ(again.axes.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(again.axes[i].key, spec.axes[i].key);
+    EXPECT_EQ(again.axes[i].values, spec.axes[i].values);  // to the last bit
+  }
+  EXPECT_EQ(again.design.release_angle, spec.design.release_angle);
+  EXPECT_EQ(again.scene.radius, 1.0);
+  EXPECT_EQ(again.output.file, spec.output.file);
+  EXPECT_EQ(again.output.fields, spec.output.fields);
+  EXPECT_EQ(resolved_text(again), resolved_text(spec));
+}
+
+TEST(Spec, MuKineticIsMuStaticUnlessGiven) {
+  EXPECT_EQ(parse("[scene]\nmu_static = 0.3\n").coulomb.mu_kinetic, 0.3);
+  EXPECT_EQ(parse("[scene]\nmu_static = 0.3\nmu_kinetic = 0.2\n").coulomb.mu_kinetic, 0.2);
+}
+
+TEST(Spec, AListOfDesignsIsReadFromBesideTheSpec) {
+  const testing::TemporaryFolder folder;
+  folder.write("designs.csv", "\xEF\xBB\xBFslope, mass_ratio\r\n0.1,2\r\n\r\n0.2 , 3e0\r\n");
+  const Spec spec =
+      read_spec(folder.write("spec.toml", "[design]\npoints = \"designs.csv\"\noffset_ratio = 0.7\n"), {});
+  EXPECT_EQ(spec.list.count, 2u);
+  const DesignSpace space(spec);
+  EXPECT_EQ(space.at(1).slope, 0.2);
+  EXPECT_EQ(space.at(1).mass_ratio, 3.0);
+  EXPECT_EQ(space.at(0).offset_ratio, 0.7);
+}
+
+TEST(Spec, DesignsAreNumberedWithTheLastAxisFastest) {
+  const Spec spec = parse("[design]\nslope = { values = [0.1, 0.2] }\nmass_ratio = { values = [1, 2, 3] }\n");
+  const DesignSpace space(spec);
+  EXPECT_EQ(space.at(0).mass_ratio, 1.0);
+  EXPECT_EQ(space.at(2).mass_ratio, 3.0);
+  EXPECT_EQ(space.at(2).slope, 0.1);
+  EXPECT_EQ(space.at(3).slope, 0.2);
+  std::vector<Design> designs(2);
+  space.fill(Tile{{1, 1}, {1, 2}, 2}, designs);
+  EXPECT_EQ(designs[0].slope, 0.2);
+  EXPECT_EQ(designs[0].mass_ratio, 2.0);
+  EXPECT_EQ(designs[1].mass_ratio, 3.0);
+}
+
+TEST(Options, EveryKeyIsDeclaredOnceAndTold) {
+  const std::string help = options_help();
+  for (const Option& option : spec_options()) {
+    EXPECT_EQ(find_option("", option.key), &option) << option.key << ": keys are unique over all sections";
+    EXPECT_NE(help.find(std::string(option.key)), std::string::npos) << option.key;
+    EXPECT_FALSE(option.meaning.empty()) << option.key;
+  }
+}
+
+}  // namespace
+}  // namespace leapmap
