@@ -14,7 +14,7 @@ EDGE = "#303030"  # outlines and hatching
 MARK = "#d62728"  # the paper's hoop
 plt.rcParams.update({
     "font.size": 9, "axes.titlesize": 9, "axes.labelsize": 9, "legend.fontsize": 8, "figure.dpi": 100,
-    "savefig.dpi": 160, "hatch.linewidth": 0.4, "hatch.color": EDGE,
+    "savefig.dpi": 120, "hatch.linewidth": 0.4, "hatch.color": EDGE,
     "svg.hashsalt": "leapmap",
     "svg.fonttype": "none",
 })

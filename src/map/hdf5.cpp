@@ -74,6 +74,11 @@ void initialise() {
 
 Handle create_file(const std::string& path) {
   initialise();
+  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  }
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, path);
   check(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), path);
   check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), path);

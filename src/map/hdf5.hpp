@@ -54,8 +54,8 @@ inline void check(herr_t status, const std::string& what) {
   if (status < 0) fail(what);
 }
 
-/// A new file, replacing an old one: V18 format, link and attribute creation order tracked (netCDF readers
-/// need it).
+/// A new file, replacing an old one, in a folder made if need be: V18 format, link and attribute creation
+/// order tracked (netCDF readers need it).
 Handle create_file(const std::string& path);
 
 /// An existing file, read-only.

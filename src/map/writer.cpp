@@ -106,11 +106,6 @@ MapWriter::MapWriter(const std::string& path, const MapLayout& layout, const Til
                      std::span<const hdf5::Attribute> attributes, bool overwrite)
     : path_(path), part_(path + ".part"), fields_(layout.fields), time_unit_(layout.time_unit) {
   refuse_existing(path, overwrite);
-  if (const fs::path folder = fs::path(path).parent_path(); !folder.empty()) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-  }
   file_ = hdf5::create_file(part_);
   try {
     hdf5::annotate(file_, attributes);

@@ -32,7 +32,7 @@ struct MapLayout {
 class MapWriter {
  public:
   /// Creates FILE.part and everything in it but the values. Refuses (InputError) to replace FILE or FILE.part
-  /// unless overwrite is set; throws IoError if it cannot be written. Folders on the way are made.
+  /// unless overwrite is set; throws IoError if it cannot be written.
   MapWriter(const std::string& path, const MapLayout& layout, const Tiling& tiling,
             std::span<const hdf5::Attribute> attributes, bool overwrite);
   /// Without finish or keep_part before it: removes what was written.
