@@ -23,17 +23,23 @@ class OrderedDelivery {
       : take_(std::move(take)), most_waiting_(most_waiting) {}
 
   /// Brings item `number`, and takes every item whose turn has come. False: the delivery has been abandoned,
-  /// bring no more. What `take` throws goes to the thread that brought the item; abandon the delivery then.
+  /// bring no more. What `take` throws abandons the delivery and goes to the thread that brought the item.
   bool bring(std::size_t number, Item item) {
     std::unique_lock lock(mutex_);
     turn_.wait(lock, [&] { return abandoned_ || number == next_ || waiting_.size() < most_waiting_; });
     if (abandoned_) return false;
-    waiting_.emplace(number, std::move(item));
-    for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_;
-         first = waiting_.begin()) {
-      take_(next_, first->second);
-      waiting_.erase(first);
-      ++next_;
+    try {
+      waiting_.emplace(number, std::move(item));
+      for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_;
+           first = waiting_.begin()) {
+        take_(next_, first->second);
+        waiting_.erase(first);
+        ++next_;
+      }
+    } catch (...) {
+      abandoned_ = true;  // before the lock is given up: nobody may take the same item again
+      turn_.notify_all();
+      throw;
     }
     turn_.notify_all();
     return true;

@@ -117,6 +117,19 @@ TEST(OrderedDelivery, HandsOnInOrderAndHoldsBackTheFast) {
   EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3}));
 }
 
+TEST(OrderedDelivery, AnErrorWhileTakingAbandonsTheDeliveryAtOnce) {
+  int taken = 0;
+  OrderedDelivery<int> delivery(
+      [&](std::size_t, int) {
+        ++taken;
+        throw std::runtime_error("disk full");
+      },
+      2);
+  EXPECT_THROW(delivery.bring(0, 0), std::runtime_error);
+  EXPECT_FALSE(delivery.bring(1, 0)) << "nobody else may take the same item again";
+  EXPECT_EQ(taken, 1);
+}
+
 TEST(OrderedDelivery, AbandoningLetsWaitingThreadsGo) {
   OrderedDelivery<int> delivery([](std::size_t, int) {}, 0);
   std::thread waiting([&] { EXPECT_FALSE(delivery.bring(5, 0)); });
