@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws the design chart of a map: jump height, or jump time, over slope and mass ratio, one panel for each L/R.
 
-Filled contours with labelled isolines; hatched where the first lift-off is spurious; grey where there is no jump;
-a star at the paper's hoop.
+Filled contours with labelled isolines; hatched where the first lift-off is spurious; grey where there is no jump,
+with stalled, airborne, failed and not computed designs told apart; a star at the paper's hoop.
 """
 import math
 
 import numpy as np
-from matplotlib.colors import ListedColormap, PowerNorm
+from matplotlib.colors import BoundaryNorm, ListedColormap, PowerNorm
 
 import style
 from read_map import NotAMap, read_map, sliced
@@ -21,25 +21,24 @@ FIELDS = {
     "jump_height": ("jump height [hoop diameters]", "viridis", 0.6, "white", [0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0]),
     "jump_time": ("time from release to the jump [s]", "cividis_r", 1.0, "black", None),
 }
+# status -> colour and words where there is no jump to draw
+STATUSES = {
+    "no_jump": (style.NO_JUMP, "no jump on the runway"),
+    "stalled": ("#a6a6a6", "stalled"),
+    "airborne_at_release": ("#c6b7d6", "airborne at release"),
+    "failed": ("#f4a582", "failed"),
+    "not_computed": ("white", "not computed"),
+}
 SYMBOLS = {"offset_ratio": "L/R", "inertia_factor": "I/(m R²)", "release_angle": "release angle", "release_spin": "release spin"}
 
 
 def time_levels(values):
     """Isolines a designer can read: 1-2-5 steps that give 8 to 16 of them over the middle of the data."""
     low, high = np.nanpercentile(values, [0.5, 99.0])
+    high = max(high, low * (1 + 1e-6) + 1e-9)
     for step in (s * 10.0**e for e in range(-6, 6) for s in (1, 2, 5)):
         if (high - low) / step <= 16:
             return np.arange(math.floor(low / step), math.ceil(high / step) + 1) * step
-
-
-def fixed_parameters(m):
-    """The parameters that no axis varies, from the resolved spec the map carries."""
-    values = {}
-    for line in m.attributes["spec"].splitlines():
-        key, _, value = line.partition(" = ")
-        if key in PAPER and not value.startswith("{"):
-            values[key] = float(value)
-    return values
 
 
 def shows_paper(coordinates, fixed):
@@ -65,62 +64,93 @@ def titled(name, value):
     return f"{SYMBOLS.get(name, name)} = {shown}"
 
 
+def caption(fixed):
+    """What the axes do not tell: the parameters and the scene all panels share."""
+    words = [titled(k, fixed[k]) for k in SYMBOLS if k in fixed]
+    words += [f"runway {fixed['runway']:g} turns", f"jump from {fixed['hop_height']:g} diameters", f"R = {1e3 * fixed['radius']:g} mm"]
+    return ",  ".join(words)
+
+
+def draw_panel(axis, degrees, ratios, plane, flags, angle, status, look):
+    """One panel: what happened where there is no jump, the field, its isolines, and hatching where spurious."""
+    colours, norm, fill, levels, ink = look
+    codes = list(STATUSES)
+    background = np.full(plane.shape, np.nan)
+    for i, code in enumerate(codes):
+        background[status[code]] = i
+    axis.pcolormesh(degrees, ratios, background, shading="nearest", norm=BoundaryNorm(np.arange(len(codes) + 1) - 0.5, len(codes)),
+                    cmap=ListedColormap([STATUSES[c][0] for c in codes]), rasterized=True)
+    # Cells first: contours need four neighbours, and a lone design must show too.
+    axis.pcolormesh(degrees, ratios, plane, shading="nearest", cmap=colours, norm=norm, rasterized=True)
+    filled = axis.contourf(degrees, ratios, plane, levels=fill, cmap=colours, norm=norm, extend="both")
+    lines = axis.contour(degrees, ratios, without_cliffs(plane, angle), levels=levels, colors=ink, linewidths=0.8)
+    axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7)
+    hatched = np.where(np.isfinite(plane), (flags == 1) * 1.0, np.nan)
+    axis.contourf(degrees, ratios, hatched, levels=[0.5, 1.5], colors="none", hatches=["///"])
+    axis.contour(degrees, ratios, hatched, levels=[0.5], colors=style.EDGE, linewidths=0.7)
+    return filled
+
+
 def chart(m, name):
     """One figure: the field over slope and mass ratio."""
     keep = ("mass_ratio", "slope")
-    missing = [k for k in keep if k not in m.dims] + [k for k in (name, "spurious_first_jump", "jump_angle") if k not in m.fields]
+    wanted = (name, "spurious_first_jump", "jump_angle", "status")
+    missing = [k for k in keep if k not in m.dims] + [k for k in wanted if k not in m.fields]
     if missing:
         raise NotAMap(f"{m.path}: has no {missing[0]}; a design chart wants a sweep over slope and mass_ratio with the "
-                      "fields jump_height, jump_time, jump_angle and spurious_first_jump")
+                      "fields jump_height, jump_time, jump_angle, spurious_first_jump and status")
+    if min(len(m.dims[k]) for k in keep) < 2:
+        raise NotAMap(f"{m.path}: a design chart wants at least two slopes and two mass ratios")
+    if not np.isfinite(m.fields[name]).any():
+        raise NotAMap(f"{m.path}: no design in it jumps, so there is no {name} to draw")
     label, colours, exponent, ink, levels = FIELDS[name]
-    values = m.fields[name]
-    levels = np.asarray(levels if levels is not None else time_levels(values))
+    levels = np.asarray(levels if levels is not None else time_levels(m.fields[name]))
     fill = np.unique(np.concatenate([levels] + [np.linspace(a, b, 5) for a, b in zip(levels, levels[1:])]))
     # The map's darkest quarter is left out: hatching must show on every colour.
     colours = ListedColormap(plt.get_cmap(colours)(np.linspace(0.25, 1.0, 256) if exponent < 1 else np.linspace(0.0, 0.75, 256)))
-    norm = PowerNorm(exponent, fill[0], fill[-1])
-    panels = list(sliced(m, name, keep))
-    spurious = [plane for _, plane in sliced(m, "spurious_first_jump", keep)]
-    angles = [plane for _, plane in sliced(m, "jump_angle", keep)]
-    fixed = fixed_parameters(m)
+    look = colours, PowerNorm(exponent, fill[0], fill[-1]), fill, levels, ink
+    order = [np.argsort(m.dims[k]) for k in keep]
+    ratios, slopes = (m.dims[k][o] for k, o in zip(keep, order))
+
+    def planes(field):
+        return [(where, plane[np.ix_(*order)]) for where, plane in sliced(m, field, keep)]
+
+    panels, flags, angles, statuses = (planes(k) for k in wanted)
+    meaning = {c: i for c, i in zip(m.about["status"]["flag_meanings"].split(), m.about["status"]["flag_values"])}
+    fixed = m.numbers()
 
     columns = min(4, len(panels))
     rows = math.ceil(len(panels) / columns)
     width, height = (3.0, 2.75) if len(panels) > 1 else (6.0, 4.6)
     figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, layout="constrained",
-                                figsize=(width * columns + 0.9, height * rows + 0.75))
-    degrees, ratios = np.degrees(m.dims["slope"]), m.dims["mass_ratio"]
-    filled = None
-    for axis, (coordinates, plane), flags, angle in zip(axes.flat, panels, spurious, angles):
-        axis.set_facecolor(style.NO_JUMP)
-        if np.isfinite(plane).any():
-            filled = axis.contourf(degrees, ratios, plane, levels=fill, cmap=colours, norm=norm, extend="both")
-            lines = axis.contour(degrees, ratios, without_cliffs(plane, angle), levels=levels, colors=ink, linewidths=0.8)
-            axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7)
-            hatched = np.where(np.isfinite(plane) & (flags == 1), 1.0, 0.0)
-            axis.contourf(degrees, ratios, hatched, levels=[0.5, 1.5], colors="none", hatches=["///"])
-            axis.contour(degrees, ratios, hatched, levels=[0.5], colors=style.EDGE, linewidths=0.7)
-        if shows_paper(coordinates, fixed):
+                                figsize=(width * columns + 0.9, height * rows + 0.95))
+    starred = False
+    for axis, (where, plane), (_, flag), (_, angle), (_, status) in zip(axes.flat, panels, flags, angles, statuses):
+        told = {c: status == meaning[c] for c in STATUSES}
+        filled = draw_panel(axis, np.degrees(slopes), ratios, plane, flag, angle, told, look)
+        inside = slopes[0] <= PAPER["slope"] <= slopes[-1] and ratios[0] <= PAPER["mass_ratio"] <= ratios[-1]
+        if inside and shows_paper(where, fixed):
+            starred = True
             axis.plot(math.degrees(PAPER["slope"]), PAPER["mass_ratio"], "*", color=style.MARK, markersize=13,
-                      markeredgecolor="white", clip_on=True, zorder=5)
-        axis.set_yscale("log")
-        axis.yaxis.set_major_formatter(lambda v, _: f"{v:g}")
-        axis.set_title(", ".join(titled(k, v) for k, v in coordinates.items()) or
-                       (titled("offset_ratio", fixed["offset_ratio"]) if "offset_ratio" in fixed else ""))
+                      markeredgecolor="white", zorder=5)
+        if ratios[0] > 0 and ratios[-1] / ratios[0] > 10:
+            axis.set_yscale("log")
+            axis.yaxis.set_major_formatter(lambda v, _: f"{v:g}")
+        axis.set_title("\n".join(titled(k, v) for k, v in where.items()))
     for axis in axes.flat[len(panels):]:
         axis.set_visible(False)
-    figure.supxlabel("slope [degrees]", fontsize=9)
+    figure.supxlabel(f"slope [degrees]\n{caption(fixed)}", fontsize=9)
     figure.supylabel("mass ratio mₚ/m", fontsize=9)
-    if filled is not None:
-        bar = figure.colorbar(filled, ax=axes, label=label, ticks=levels, shrink=0.9, pad=0.015)
-        bar.ax.set_yticklabels([f"{v:g}" for v in levels])
-    handles = [
-        plt.Rectangle((0, 0), 1, 1, facecolor="white", edgecolor=style.EDGE, hatch="///", label="first lift-off is spurious"),
-        plt.Rectangle((0, 0), 1, 1, facecolor=style.NO_JUMP, edgecolor="#808080", label="no jump on the runway"),
-        plt.Line2D([], [], marker="*", color="none", markerfacecolor=style.MARK, markeredgecolor="white", markersize=12,
-                   label="the paper's hoop"),
-    ]
-    figure.legend(handles=handles, loc="upper center", ncols=3, frameon=False)
+    bar = figure.colorbar(filled, ax=axes, label=label, ticks=levels, shrink=0.9, pad=0.015)
+    bar.ax.set_yticklabels([f"{v:g}" for v in levels])
+    handles = [plt.Rectangle((0, 0), 1, 1, facecolor="white", edgecolor=style.EDGE, hatch="///", label="first lift-off is spurious")]
+    for code, (colour, words) in STATUSES.items():
+        if (m.fields["status"] == meaning[code]).any():
+            handles.append(plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="#808080", label=words))
+    if starred:
+        handles.append(plt.Line2D([], [], marker="*", color="none", markerfacecolor=style.MARK, markeredgecolor="white",
+                                  markersize=12, label="the paper's hoop"))
+    figure.legend(handles=handles, loc="upper center", ncols=len(handles), frameon=False)
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.35 / figure.get_figheight()))
     return figure
 
@@ -130,8 +160,8 @@ def main():
     arguments = p.parse_args()
     m = read_map(arguments.source)
     for name in FIELDS:
-        style.save(chart(m, name), f"{arguments.output}_{name}")
+        style.save(chart(m, name), f"{style.stem(arguments.output)}_{name}")
 
 
 if __name__ == "__main__":
-    style.run(main, NotAMap)
+    style.run(main, NotAMap, OSError)

@@ -33,11 +33,16 @@ class Map:
         value = about["flag_values"][about["flag_meanings"].split().index(meaning)]
         return self.fields[name] == value
 
-    def label(self, name):
-        """'long_name [unit]' for an axis."""
-        about = self.about[name]
-        unit = about.get("units", "1")
-        return about["long_name"] + ("" if unit == "1" else f" [{unit}]")
+    def numbers(self):
+        """The numbers of the resolved spec that made it, by key; what an axis varies is not among them."""
+        found = {}
+        for line in self.attributes["spec"].splitlines():
+            key, _, value = line.partition(" = ")
+            try:
+                found[key] = float(value)
+            except ValueError:
+                pass
+        return found
 
 
 def _read(path, filetype):

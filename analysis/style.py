@@ -23,14 +23,20 @@ plt.rcParams.update({
 def parser(description, source, default_output):
     """The command line every chart shares."""
     p = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("source", help=source)
+    p.add_argument("source", metavar="FILE", help=source)
     p.add_argument("-o", "--output", default=default_output,
                    help="file name without ending; PNG and SVG are written (default: %(default)s)")
     return p
 
 
+def stem(output):
+    """A file name without its ending, should the user have given one."""
+    return output.removesuffix(".png").removesuffix(".svg")
+
+
 def save(figure, output):
     """Writes PNG and SVG and says where they are."""
+    output = stem(output)
     folder = os.path.dirname(output)
     if folder:
         os.makedirs(folder, exist_ok=True)

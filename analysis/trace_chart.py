@@ -26,6 +26,8 @@ def panels(trace):
 
 def chart(trace):
     t = trace.dims["t"]
+    if len(t) < 2:
+        raise NotAMap(f"{trace.path}: holds no motion to draw (the hoop {trace.attributes['status'].replace('_', ' ')})")
     jumped = trace.attributes["status"] == "jumped"
     flight = trace.code("phase", "flight")
     times, heights = trace.fields["candidate_time"], trace.fields["candidate_height"]
@@ -51,7 +53,11 @@ def chart(trace):
             xy=(time, 0.94), xytext=(-5, 0), ha="right", va="top", color="#555555")
         axes[0].annotate(text, xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=7.5, **place)
     axes[-1].set_xlabel("time since release [s]")
-    axes[0].set_title("rolling without slip (10)-(12), then flight (13), shaded")
+    design = trace.numbers()
+    shown = [f"slope {np.degrees(design['slope']):.4g}°", f"mₚ/m = {design['mass_ratio']:.4g}", f"L/R = {design['offset_ratio']:.4g}",
+             f"released at {np.degrees(design['release_angle']):.4g}°", f"spin {design['release_spin']:.4g} √(g/R)",
+             trace.attributes["status"].replace("_", " ")]
+    axes[0].set_title(",  ".join(shown) + ("\nrolling (10)-(12), then flight (13), shaded" if flight.any() else "\nrolling (10)-(12)"))
     return figure
 
 
@@ -62,4 +68,4 @@ def main():
 
 
 if __name__ == "__main__":
-    style.run(main, NotAMap)
+    style.run(main, NotAMap, OSError)

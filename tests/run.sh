@@ -8,10 +8,10 @@ sh sweeps/install_packages.sh tests
 
 git ls-files 'src/*.[ch]pp' 'tests/*.[ch]pp' | xargs -r clang-format --dry-run -Werror
 
-cmake --preset dev
+cmake --preset dev -DLEAPMAP_TESTS=ON
 cmake --build --preset dev --target leapmap-tests
-ctest --preset dev -E '^(cli|analysis)\.'
+ctest --preset dev --no-tests=error -j 2 -E '^(cli|analysis)\.'
 
-cmake --preset release -DLEAPMAP_STRICT=ON
+cmake --preset release -DLEAPMAP_STRICT=ON -DLEAPMAP_TESTS=ON -DLEAPMAP_BENCHMARKS=ON
 cmake --build --preset release
-ctest --preset release
+ctest --preset release --no-tests=error -j 2

@@ -35,11 +35,13 @@ std::string verdict(const Story& story, const Scene& scene) {
     case Status::no_jump:
       return fmt::format("No jump within {} revolutions.", scene.runway);
     case Status::stalled:
-      return "It stalls: the spin falls to zero, or it starts uphill.";
+      return "It stalls: the spin falls to zero, or the hoop does not start downhill.";
     case Status::airborne_at_release:
       return "The plane would have to pull at release: it is airborne from the start.";
     default:
-      return "The method gave up; try a tighter tolerance, more max_steps or another method.";
+      return "The method gave up: its steps became too small, too many, or no longer finite. Try another "
+             "tolerance, "
+             "more max_steps, a shorter fixed_step or another method.";
   }
 }
 
@@ -129,10 +131,10 @@ int run(const HopArguments& arguments) {
   if (!spec.axes.empty())
     throw InputError(
         fmt::format("{}: design.{} is an axis; allowed: one number for a hop, for example --set {}={}",
-                    arguments.spec, spec.axes[0].key, spec.axes[0].key, spec.axes[0].values[0]));
+                    origin_of(spec), spec.axes[0].key, spec.axes[0].key, spec.axes[0].values[0]));
   if (!spec.points.empty())
     throw InputError(
-        fmt::format("{}: design.points is a list; allowed: one design for a hop", arguments.spec));
+        fmt::format("{}: design.points is a list; allowed: one design for a hop", origin_of(spec)));
 
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval / time_unit(spec.scene);
   const Story story = tell(spec.design, spec.scene, integration_options(spec.numerics), interval);
@@ -174,7 +176,7 @@ void add_hop(CLI::App& app, int& status) {
   command
       ->add_option("--trace-interval", arguments->trace_interval,
                    "seconds between its samples; default 0.001")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-9, 1e9));
   command->add_flag("--json", arguments->json, "print JSON, under the map's names and units");
   command->footer(options_help());
   command->callback([arguments, &status] { status = run(*arguments); });

@@ -74,21 +74,27 @@ void print_counts(const Code& code, const Summary& summary, std::size_t designs)
   for (std::size_t i = 0; i < summary.counts.size(); ++i) {
     if (summary.counts[i] == 0) continue;
     std::string meaning = i < code.names.size() ? std::string(code.names[i])
-                          : i == code.fill      ? "(no lift-off)"
+                          : i == code.fill      ? "(no lift-off, or not computed)"
                                                 : fmt::format("{}", i);
     fmt::print("  {:>12} {:5.1f} %  {}\n", summary.counts[i],
                100.0 * static_cast<double>(summary.counts[i]) / static_cast<double>(designs), meaning);
   }
 }
 
-int run(const std::string& path, bool with_spec) {
+int run(const std::string& path, bool only_spec) {
   const MapReader map(path);
+  if (only_spec) {
+    fmt::print("{}", map.attribute("spec"));
+    return 0;
+  }
   std::size_t designs = 1;
   fmt::print("{}\n", map.attribute("title"));
   fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {:.3g} s\n", map.attribute("date"),
              map.attribute("host"), map.attribute("program_version"), map.attribute("git_revision"),
              map.attribute("threads"),
              map.attribute("wall_time").empty() ? 0.0 : std::stod(map.attribute("wall_time")));
+  if (map.attribute("wall_time").empty())
+    fmt::print("INCOMPLETE: what an interrupted sweep left; designs not computed are holes\n");
   fmt::print("method {}, tolerance {}\n", map.attribute("method"), map.attribute("tolerance"));
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
     fmt::print(
@@ -119,7 +125,6 @@ int run(const std::string& path, bool with_spec) {
       if (summary.missing > 0) fmt::print("  none  in {} designs\n", summary.missing);
     }
   }
-  if (with_spec) fmt::print("\n{}", map.attribute("spec"));
   return 0;
 }
 
@@ -129,10 +134,10 @@ void add_info(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("info", "tell what is in a map: axes, statuses, extremes and where they are");
   auto path = std::make_shared<std::string>();
-  auto with_spec = std::make_shared<bool>(false);
+  auto only_spec = std::make_shared<bool>(false);
   command->add_option("MAP", *path, "the map, HDF5")->required();
-  command->add_flag("--spec", *with_spec, "print the resolved spec that made it as well");
-  command->callback([path, with_spec, &status] { status = run(*path, *with_spec); });
+  command->add_flag("--spec", *only_spec, "print the resolved spec that made it, and nothing else");
+  command->callback([path, only_spec, &status] { status = run(*path, *only_spec); });
 }
 
 }  // namespace leapmap::cli

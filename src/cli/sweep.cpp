@@ -92,8 +92,11 @@ void plan(const Spec& spec, const std::string& map, const MapLayout& layout, con
              fmt::join(tiling.tile_shape(), " x "));
   fmt::print("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
   const double tile_bytes = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
+  double axis_values = 0.0;
+  for (const Axis& axis : spec.axes) axis_values += static_cast<double>(axis.values.size());
   // Each thread holds one tile, and four more each may wait to be written; HDF5 caches a megabyte a dataset.
   const double memory = 5.0 * threads * tile_bytes + 1e6 * static_cast<double>(layout.fields.size()) + 2e7 +
+                        40.0 * axis_values +
                         (spec.axes.empty() ? 64.0 * static_cast<double>(spec.list.count) : 0.0);
   fmt::print("memory   about {}\n", spoken_bytes(memory));
   fmt::print("file     about {}\n", spoken_bytes(static_cast<double>(map_bytes(layout, tiling)) + 5e4));

@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 
+#include "map/schema.hpp"
 #include "support/errors.hpp"
 
 namespace leapmap {
@@ -43,10 +44,25 @@ void write_phases(hid_t file, const Story& story, const Handle& time) {
   check(H5DSattach_scale(dataset, time, 0), "scaling phase");
 }
 
+/// A trace may be made again, but whatever else has that name is not ours to replace.
+void refuse_other_file(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) || !std::filesystem::is_regular_file(path, ignored)) return;
+  bool trace = false;
+  try {
+    const Handle file = hdf5::open_file(path);
+    trace = hdf5::has_attribute(file, "filetype") && hdf5::read_text(file, "filetype") == trace_filetype;
+  } catch (const IoError&) {
+  }
+  if (!trace)
+    throw InputError(path + ": exists and is no trace; allowed: a new name, or an older trace to replace");
+}
+
 }  // namespace
 
 void write_trace(const std::string& path, const Story& story, const Scene& scene,
                  std::span<const hdf5::Attribute> attributes) {
+  refuse_other_file(path);
   const double second = time_unit(scene), metre = scene.radius;
   const std::string part = path + ".part";
   Handle file = hdf5::create_file(part);

@@ -12,7 +12,7 @@
 namespace leapmap {
 
 /// Writes the story in SI units (forces in weights) as a netCDF-readable HDF5 file, replacing path only once
-/// it is whole. Throws IoError if it cannot be written.
+/// it is whole. Throws InputError if path is a file other than a trace, IoError if it cannot be written.
 void write_trace(const std::string& path, const Story& story, const Scene& scene,
                  std::span<const hdf5::Attribute> attributes);
 

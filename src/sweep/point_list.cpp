@@ -44,10 +44,11 @@ const Option* column_option(const std::string& place, std::string_view name,
 
 }  // namespace
 
-PointList read_points(const std::string& path) {
+PointList read_points(const std::string& path, const std::string& origin) {
   std::ifstream file(path);
   if (!file)
-    throw InputError(fmt::format("design.points = \"{}\": cannot be read; allowed: a CSV file", path));
+    throw InputError(
+        fmt::format("{}: design.points = \"{}\": cannot be read; allowed: a CSV file", origin, path));
   PointList list;
   list.path = path;
   list.count = 0;

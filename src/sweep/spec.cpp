@@ -8,7 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
+#include <optional>
 #include <sstream>
 
 #include "support/errors.hpp"
@@ -18,6 +18,8 @@
 namespace leapmap {
 namespace {
 
+constexpr std::int64_t most_axis_values =
+    1'000'000;  // an axis is held in memory and told in the resolved spec
 constexpr std::int64_t most_designs =
     1'000'000'000'000;  // a map of 10^12 designs is terabytes: surely a typing error
 
@@ -60,6 +62,14 @@ double to_number(const Entry& entry, const toml::node& node, std::string_view pa
   return *value;
 }
 
+/// A whole number, also one written as 1e6.
+std::optional<std::int64_t> to_whole(const toml::node& node) {
+  if (node.is_integer()) return node.value<std::int64_t>();
+  const auto value = node.is_floating_point() ? node.value<double>() : std::nullopt;
+  if (!value || *value != std::floor(*value) || std::abs(*value) > 1e15) return std::nullopt;
+  return static_cast<std::int64_t>(*value);
+}
+
 /// { from, to, count, scale } or { values }.
 std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
   constexpr std::string_view forms =
@@ -76,15 +86,20 @@ std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
     const toml::array* array = table["values"].as_array();
     if (!array || array->empty()) refuse(entry, "'values' is not a list of numbers", forms);
     for (const toml::node& node : *array) values.push_back(to_number(entry, node, "values"));
+    std::vector<double> sorted = values;
+    std::ranges::sort(sorted);
+    if (std::ranges::adjacent_find(sorted) != sorted.end())
+      refuse(entry, "a value is there twice", "each once");
     return values;
   }
   for (const std::string_view bound : {"from", "to", "count"})
     if (!table.contains(bound)) refuse(entry, fmt::format("'{}' is missing", bound), forms);
   const double from = to_number(entry, *table.get("from"), "from"),
                to = to_number(entry, *table.get("to"), "to");
-  const auto count = table["count"].is_integer() ? table["count"].value<std::int64_t>() : std::nullopt;
-  if (!count || *count < 1 || *count > most_designs)
-    refuse(entry, "'count' is not a number of values", "a whole number from 1 on");
+  const auto count = to_whole(*table.get("count"));
+  if (!count || *count < 1 || *count > most_axis_values)
+    refuse(entry, "'count' is not a number of values",
+           fmt::format("a whole number from 1 to {}", most_axis_values));
   if (*count > 1 && from == to)
     refuse(entry, "'from' and 'to' are the same", "two different bounds, or count = 1");
   if (*count == 1 && from != to) refuse(entry, "'count' is 1", "2 or more, or 'from' equal to 'to'");
@@ -121,7 +136,7 @@ struct Assign {
     slot(spec) = to_number(entry, *entry.node);
   }
   void operator()(IntegerSlot slot) const {
-    const auto value = entry.node->is_integer() ? entry.node->value<std::int64_t>() : std::nullopt;
+    const auto value = to_whole(*entry.node);
     if (!value) refuse(entry, "is not a whole number", allowed_values(*entry.option));
     if (!in_range(*entry.option, static_cast<double>(*value)))
       refuse(entry, "is out of range", allowed_values(*entry.option));
@@ -130,7 +145,8 @@ struct Assign {
   void operator()(TextSlot slot) const { slot(spec) = text(*entry.node); }
   void operator()(TextsSlot slot) const {
     const toml::array* array = entry.node->as_array();
-    if (!array) refuse(entry, "is not a list", "a list with " + allowed_values(*entry.option));
+    if (!array || array->empty())
+      refuse(entry, "is not a list of names", "a list with " + allowed_values(*entry.option));
     slot(spec).clear();
     for (const toml::node& node : *array) {
       const std::string name = text(node);
@@ -167,6 +183,9 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
     const toml::table* table = node.as_table();
     const bool known =
         std::ranges::any_of(spec_options(), [&](const Option& o) { return o.section == section.str(); });
+    if (const Option* option = find_option("", section.str()); option && !table)
+      throw InputError(fmt::format("{}: {}: a key stands below its section; allowed: [{}] above it", place,
+                                   section.str(), option->section));
     if (!known || !table)
       throw InputError(
           fmt::format("{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [output]", place,
@@ -221,6 +240,8 @@ std::string find_points(const Spec& spec) {
 
 }  // namespace
 
+std::string origin_of(const Spec& spec) { return spec.origin.empty() ? "command line" : spec.origin; }
+
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {
   Spec spec;
   spec.origin = path;
@@ -258,13 +279,13 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
     if (!spec.axes.empty())
       throw InputError(
           fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
-                      path.empty() ? "--set" : path, spec.axes.front().key));
-    spec.list = read_points(find_points(spec));
+                      origin_of(spec), spec.axes.front().key));
+    spec.list = read_points(find_points(spec), origin_of(spec));
   }
   double designs = 1.0;
   for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
   if (designs > static_cast<double>(most_designs))
-    throw InputError(fmt::format("{}: {:.3g} designs; allowed: at most {:.0e}", path, designs,
+    throw InputError(fmt::format("{}: {:.3g} designs; allowed: at most {:.0e}", origin_of(spec), designs,
                                  static_cast<double>(most_designs)));
   return spec;
 }

@@ -68,6 +68,9 @@ struct Spec {
 /// for anything that is not allowed, IoError if the file cannot be read.
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides);
 
+/// The spec's file, for messages; "command line" if there is none.
+std::string origin_of(const Spec& spec);
+
 /// The spec as resolved: TOML that read_spec turns into the same Spec again, every key and value written out.
 std::string resolved_text(const Spec& spec);
 

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/trace.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "physics/rolling.hpp"
+#include "support/errors.hpp"
 
 namespace leapmap {
 namespace {
+
+constexpr double most_points = 1e7;
 
 TracePoint rolling_point(const Hoop<double>& hoop, const Design& design, double t, const RollingState& y) {
   const Trig<double> phi = trig(y[0]);
@@ -41,6 +46,9 @@ Story tell(const Design& design, const Scene& scene, const IntegrationOptions& o
   Story story;
   double next_sample = 0.0;
   const auto sample_until = [&](double end, const auto& point_at) {
+    if (!(end / interval < most_points))
+      throw InputError(
+          fmt::format("a trace of more than {} points; allowed: a longer interval", most_points));
     for (; next_sample <= end; next_sample = interval * std::round(next_sample / interval + 1.0))
       story.points.push_back(point_at(next_sample));
   };

@@ -41,6 +41,7 @@ struct Story {
 
 /// Solves one design and tells everything about it. interval > 0: samples the motion that often [sqrt(R/g)],
 /// and at the jump's lift-off and landing. Grazes are told if |N| there is below graze_limit.
+/// Throws InputError if that would be more than 10^7 samples.
 Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval = 0.0,
            double graze_limit = 1e-6);
 

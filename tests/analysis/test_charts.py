@@ -48,6 +48,23 @@ def test_the_design_chart_has_units_panels_levels_and_marks(field, label, level,
     assert (charts / f"chart_{field}.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_designs_without_a_jump_are_told_apart_and_the_star_needs_its_panel(tmp_path):
+    spec = CHART.replace("offset_ratio = { values = [0.7, 1.0] }", 'release_angle = { values = ["30 deg", "190 deg"] }')
+    done = draw("design_chart.py", sweep(tmp_path, spec), "-o", tmp_path / "chart.png")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "chart_jump_height.svg")
+    assert "stalled" in words and "no jump on the runway" in words and "release angle = 30°" in words
+    assert "the paper's hoop" not in words, "no panel has its release"
+    assert any("L/R = 1" in w and "runway 5 turns" in w for w in words), "what is fixed is told"
+
+
+@pytest.mark.parametrize("design,word", [("slope = { values = [0.01, 0.02] }\nmass_ratio = { values = [0.1, 0.2] }", "jumps"),
+                                         ("slope = { values = [0.4] }\nmass_ratio = { values = [1, 2] }", "at least two")])
+def test_what_cannot_be_drawn_is_refused_with_one_line(design, word, tmp_path):
+    done = draw("design_chart.py", sweep(tmp_path, f"[design]\n{design}\n"), "-o", tmp_path / "x")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
+
+
 def test_the_trace_chart_marks_both_candidates(tmp_path):
     leapmap("hop", TOP / "sweeps/paper_figures.toml", "--trace", tmp_path / "trace.h5")
     done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "figure")

@@ -51,7 +51,7 @@ def test_bad_usage_ends_with_status_2_and_one_line(arguments):
 
 def test_a_sweep_without_a_file_to_write_is_refused(tmp_path):
     (tmp_path / "spec.toml").write_text(SMALL)
-    done = leapmap("sweep", tmp_path / "spec.toml", cwd=tmp_path)
+    done = leapmap("sweep", tmp_path / "spec.toml")
     assert done.returncode == 2 and "output.file" in done.stderr
 
 
@@ -65,6 +65,13 @@ def test_an_existing_map_is_untouched_without_overwrite_and_replaced_with_it(tmp
     assert done.returncode == 0
     assert path.read_bytes() != before
     assert sorted(os.listdir(tmp_path)) == ["map.h5", "spec.toml"]
+
+
+def test_a_trace_replaces_a_trace_but_nothing_else(tmp_path):
+    (tmp_path / "notes.h5").write_text("precious")
+    done = leapmap("hop", "--trace", tmp_path / "notes.h5")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and (tmp_path / "notes.h5").read_text() == "precious"
+    assert [leapmap("hop", "--trace", tmp_path / "trace.h5").returncode for _ in range(2)] == [0, 0]
 
 
 @pytest.mark.parametrize("target", ["/proc/map.h5", "/dev/null/map.h5"])

@@ -73,7 +73,7 @@ def test_info_counts_statuses_and_places_extremes(tmp_path):
         assert f"most  {height[i, j, k]:.8g}" in text and place in text
         assert f"none  in {np.isnan(height).sum()} designs" in text
     assert "audit: 14 designs" in text  # 5 % of 264, rounded up
-    assert "[design]" in leapmap("info", path, "--spec").stdout
+    assert leapmap("info", path, "--spec").stdout.startswith("[scene]")  # a TOML and nothing else
 
 
 @pytest.mark.parametrize("make,word", [(lambda p: None, "no such file"), (lambda p: p.write_text("words"), "cannot be read as HDF5"),

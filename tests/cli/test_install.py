@@ -36,6 +36,6 @@ def test_an_installed_leapmap_runs_and_is_found_by_another_project(tmp_path):
     other.mkdir()
     (other / "CMakeLists.txt").write_text(CMAKELISTS)
     (other / "main.cpp").write_text(MAIN)
-    run("cmake", "-S", other, "-B", other / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "-G", "Ninja", "-S", other, "-B", other / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
     run("cmake", "--build", other / "build")
     assert run(other / "build/other").strip() == "0.982801"

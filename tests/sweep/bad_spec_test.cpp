@@ -64,6 +64,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadSpec{"missing_from", "[design]\nslope = { to = 0.1, count = 3 }", {"'from' is missing"}},
         BadSpec{"missing_count", "[design]\nslope = { from = 0.1, to = 0.2 }", {"'count' is missing"}},
         BadSpec{"count_0", "[design]\nslope = { from = 0.1, to = 0.2, count = 0 }", {"count", "allowed"}},
+        BadSpec{"count_too_large",
+                "[design]\nslope = { from = 0.1, to = 0.2, count = 10000000 }",
+                {"count", "1000000"}},
+        BadSpec{"value_twice", "[design]\nslope = { values = [0.1, 0.2, 0.1] }", {"slope", "twice"}},
+        BadSpec{"no_fields", "[output]\nfields = []", {"fields", "jump_height"}},
         BadSpec{"count_negative", "[design]\nslope = { from = 0.1, to = 0.2, count = -3 }", {"count"}},
         BadSpec{"count_fraction",
                 "[design]\nslope = { from = 0.1, to = 0.2, count = 2.5 }",
@@ -82,8 +87,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadSpec{"values_and_bounds", "[design]\nslope = { values = [0.1], to = 0.2 }", {"'to'"}},
         BadSpec{"no_values", "[design]\nslope = { values = [] }", {"values"}},
         BadSpec{"too_many_designs",
-                "[design]\nslope = { from = 0, to = 1, count = 2000000 }\nmass_ratio = { from = 0, to = 1, "
-                "count = 2000000 }",
+                "[design]\nslope = { from = 0, to = 1, count = 1000000 }\nmass_ratio = { from = 0, to = 1, "
+                "count = 1000000 }\noffset_ratio = { from = 0, to = 1, count = 2 }",
                 {"designs", "at most"}},
         BadSpec{"negative_mass_ratio",
                 "[design]\nmass_ratio = -1",

@@ -101,14 +101,14 @@ TEST(Spec, LinearAndLogAxesHitTheirBoundsExactly) {
 TEST(Spec, OverridesTakeNumbersWordsAnglesAndTablesWithOrWithoutTheirSection) {
   const Spec spec =
       parse("", {"numerics.method=gsl-rkf45", "tolerance=1e-12", "slope=30deg", "release_angle=\"90 deg\"",
-                 "mass_ratio={from=1,to=2,count=2}", "output.fields=[\"status\"]", "max_steps=7"});
+                 "mass_ratio={from=1,to=2,count=2}", "output.fields=[\"status\"]", "max_steps=7e3"});
   EXPECT_EQ(spec.numerics.method, "gsl-rkf45");
   EXPECT_EQ(spec.numerics.tolerance, 1e-12);
   EXPECT_DOUBLE_EQ(spec.design.slope, 30 * degree);
   EXPECT_DOUBLE_EQ(spec.design.release_angle, 90 * degree);
   EXPECT_EQ(spec.axes.size(), 1u);
   EXPECT_EQ(spec.output.fields, std::vector<std::string>{"status"});
-  EXPECT_EQ(spec.numerics.max_steps, 7);
+  EXPECT_EQ(spec.numerics.max_steps, 7000);
 }
 
 TEST(Spec, ResolvedTextReadsBackAsTheSameSpec) {
