@@ -118,9 +118,11 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
                                left_tau + (right_tau - left_tau) * left.rate / (left.rate - right.rate),
                                minimum, 1e-3 * step.h);
       double value = guessed(tau).value;
-      // The interpolant is trusted to a tenth of the guard's reach over the step.
+      // The interpolant is trusted to a tenth of the guard's reach over the step, and only to say that
+      // nothing happens: what would make or undo a fall is always asked of the method.
       const bool unclear = std::abs(value) < 0.1 * reach;
-      if (unclear) {
+      const bool decides = (value < 0.0) != out.knots.back().fallen || (value < 0.0) != has_fallen(last);
+      if (unclear || decides) {
         // Newton with the interpolant's curvature. The value is flat here: half the digits of tau give all of
         // its.
         const double curvature = guessed_rate(tau).rate;
@@ -131,9 +133,9 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
           if (!(std::abs(next - tau) > 1e-8 * step.h)) break;
           tau = next;
         }
-        out.near_misses.push_back({tau, value});
+        if (unclear) out.near_misses.push_back({tau, value});
+        out.knots.push_back({tau, value < 0.0});
       }
-      if (unclear || (value < 0.0) == minimum) out.knots.push_back({tau, value < 0.0});
     }
     left = right;
     left_tau = right_tau;

@@ -124,13 +124,35 @@ Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
     return true;
   };
 
+  // A fast spin turns thousands of times in one flight. With y between L(t) = drift t - cos(theta) t^2 / 2 -
+  // rho (1 + cos phi) and L(t) + 2 rho, no landing is possible while L > 0, and no apex farther than
+  // 2 sqrt(rho / cos theta) from the vertex of L: the walk leaps over what lies between.
+  const T vertex = drift / hoop.cos_slope, around = T(2) * sqrt(hoop.rho / hoop.cos_slope);
+  const T clearance = drift * drift - T(2) * hoop.cos_slope * hoop.rho * (T(1) + phi.cos);
+  const T half_width =
+      clearance > T(0) ? sqrt(clearance) / hoop.cos_slope : T(0);  // of L > 0, about the vertex
+  const auto next_of_interest = [&](const T& t) {
+    if (!above || !(t > vertex - half_width) || !(t < vertex + half_width)) return t;
+    if (t < vertex - around) return vertex - around;
+    return t > vertex + around ? vertex + half_width : t;
+  };
+
   // The angles at which y'' changes sign follow each other as opening, 2 pi - opening, 2 pi + opening, ...
   T start = T(0);
   T climb_start = T(0);
-  for (int knot = 0; start <= last; ++knot) {
-    const T knot_angle = T(2) * pi * T((knot + 1) / 2) + (knot % 2 == 0 ? opening : -opening);
-    const T end = (knot_angle - turn) / spin;
+  const auto knot_time = [&](long knot) {
+    return (T(2) * pi * T((knot + 1) / 2) + (knot % 2 == 0 ? opening : -opening) - turn) / spin;
+  };
+  for (long knot = 0; start <= last; ++knot) {
+    const T end = knot_time(knot);
     if (end <= start) continue;
+    const long leap = 2 * static_cast<long>(floor((turn + spin * next_of_interest(start)) / (T(2) * pi))) - 1;
+    if (leap > knot) {
+      start = knot_time(leap);
+      climb_start = climb_at(start).value;
+      knot = leap;
+      continue;
+    }
     const T climb_end = climb_at(end).value;
     const bool turns = (climb_start > T(0) && climb_end < T(0)) || (climb_start < T(0) && climb_end > T(0));
     if (turns) {

@@ -19,7 +19,6 @@ namespace {
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double right_angle = std::numbers::pi / 2.0;
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr Range any{-inf, inf, false, false};
 constexpr Range non_negative{0.0, inf, true, false};
 constexpr Range positive{0.0, inf, false, false};
 constexpr Range fraction{0.0, 1.0};
@@ -85,8 +84,12 @@ const std::array options{
            "rad",
            "angle phi at release: 0 mass on the plane, 180 deg mass on top",
            {-1e6, 1e6}},
-    Option{"design", "release_spin", ParameterSlot{&Design::release_spin}, "sqrt(g/R)",
-           "spin at release, positive downhill", any},
+    Option{"design",
+           "release_spin",
+           ParameterSlot{&Design::release_spin},
+           "sqrt(g/R)",
+           "spin at release, positive downhill",
+           {-1e4, 1e4}},
     Option{"design", "points", TextSlot{[](Spec& s) -> std::string& { return s.points; }}, "",
            "CSV file with one design a line instead of axes; its header names parameters (angles in rad)"},
     Option{"numerics",

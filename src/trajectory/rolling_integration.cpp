@@ -13,6 +13,10 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
+/// Where the normal force vanishes J is of order one, so that energy allows a lift-off no spin beyond a few times
+/// that of the release (at most 1e4, see options.cpp): only a diverged integration has more.
+constexpr double most_spin = 1e5;
+
 int rolling_rhs(double, const double y[], double f[], void* params) {
   const auto& hoop = *static_cast<const Hoop<double>*>(params);
   f[0] = y[1];
@@ -98,6 +102,7 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
     for (const Fall<2>& fall : lift_offs_.falls) {
       if (fall.tau > stall || fall.state[0] > runway_end) break;
       const LiftOff<double> lift_off{step.t0 + fall.tau, fall.state[0], fall.state[1]};
+      if (std::abs(lift_off.spin) > most_spin) return failed_outcome();
       const Flight<double> flight = fly(hoop_, lift_off);
       const bool is_jump = consider(outcome, scene, design, lift_off, flight);
       if (observer.step && is_jump) observer.step(integrator_, fall.tau);

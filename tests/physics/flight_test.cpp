@@ -155,6 +155,27 @@ TEST(Flight, ATripleRootAtTheStartIsNotALanding) {
   }
 }
 
+TEST(Flight, AFastSpinsThousandTurnsAreLeaptOverWithoutMissingApexOrLanding) {
+  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  for (const double spin : {30.0, 300.0, 2e4}) {
+    for (const double angle : {1.7, 2.5, 3.1, 3.3, 5.0}) {
+      const Flight<double> flight = fly<double>(hoop, {0.0, angle, spin});
+      // The parabola's apex and end, within the band of 2 rho that the turning mass adds.
+      const double drift = hoop.rho * std::sin(angle) * spin, k = hoop.cos_slope;
+      if (drift < 10.0) continue;
+      EXPECT_NEAR(2 * flight.height, drift * drift / (2 * k), 2 * hoop.rho);
+      EXPECT_NEAR(flight.flight_time, 2 * drift / k, 4 * hoop.rho / drift + 1e-9);
+      const auto at = [&](double t) { return height_above_plane(hoop, trig(angle), spin, t).value; };
+      EXPECT_NEAR(at(flight.flight_time), 0.0, 1e-6 * spin);  // a rounding of t turns into spin times as much
+      for (int i = -3000; i <= 3000; ++i)                     // every tenth of a turn or less around the apex
+        EXPECT_LE(at(flight.apex_time + 0.2 * i / spin), 2 * flight.height * (1 + 1e-12))
+            << spin << " " << angle;
+      for (int i = 1; i < 3000; ++i)
+        EXPECT_GT(at(flight.flight_time - 0.2 * i / spin), 0.0) << "landed earlier: " << spin << " " << angle;
+    }
+  }
+}
+
 TEST(Flight, BackwardSpinFliesTheMirrorImage) {
   const Hoop<double> hoop = derive<double>(testing::paper_hoop());
   const Flight<double> forward = fly<double>(hoop, {0.0, 1.4, 2.3}),
