@@ -16,7 +16,7 @@ $leapmap hop sweeps/paper.toml
 $leapmap hop sweeps/paper_figures.toml --trace maps/paper_figures.h5 --trace-interval 5e-4 > /dev/null
 echo
 echo "== 123,904 designs over slope x mass ratio x L/R"
-$leapmap sweep sweeps/slope_mass_ratio_offset.toml --overwrite
+$leapmap sweep sweeps/slope_mass_ratio_offset.toml --overwrite || [ $? = 1 ]  # 1: the audit disagrees, and says so
 echo
 echo "== charts"
 /usr/bin/python3 analysis/design_chart.py maps/slope_mass_ratio_offset.h5 -o maps/design_chart

@@ -80,8 +80,9 @@ void print_table(const Spec& spec, const Story& story) {
         story.outcome.jump_height, 2.0 * spec.scene.radius * story.outcome.jump_height,
         story.outcome.apex_time * second, story.outcome.flight_time * second, story.outcome.dip);
   for (const Graze& graze : story.grazes)
-    fmt::print("Graze: at {:.6f} s the normal force comes to {:.3g} weights and is counted as {}.\n",
-               graze.time * second, graze.normal_force, graze.normal_force < 0.0 ? "a lift-off" : "contact");
+    fmt::print("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",
+               graze.time * second, graze.minimum ? "minimum" : "maximum", graze.normal_force,
+               graze.makes_lift_off() ? "making a " : "making no ");
 }
 
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
@@ -108,11 +109,14 @@ std::string json_text(const Spec& spec, const Story& story) {
   for (const auto& [lift_off, flight] : story.candidates)
     candidates.push_back(fmt::format(
         R"({{"time": {}, "angle": {}, "spin": {}, "height": {}, "apex_time": {}, "flight_time": {}, "dip": {}}})",
-        lift_off.time * second, lift_off.angle, lift_off.spin, flight.height, flight.apex_time * second,
-        flight.flight_time * second, flight.dip));
+        json_number(lift_off.time * second), json_number(lift_off.angle), json_number(lift_off.spin),
+        json_number(flight.height), json_number(flight.apex_time * second),
+        json_number(flight.flight_time * second), json_number(flight.dip)));
   for (const Graze& graze : story.grazes)
-    grazes.push_back(fmt::format(R"({{"time": {}, "angle": {}, "normal_force": {}}})", graze.time * second,
-                                 graze.angle, graze.normal_force));
+    grazes.push_back(fmt::format(
+        R"({{"time": {}, "angle": {}, "normal_force": {}, "extremum": "{}", "makes_lift_off": {}}})",
+        json_number(graze.time * second), json_number(graze.angle), json_number(graze.normal_force),
+        graze.minimum ? "minimum" : "maximum", graze.makes_lift_off()));
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
       "\"radius\": {}, "
@@ -137,6 +141,8 @@ int run(const HopArguments& arguments) {
         fmt::format("{}: design.points is a list; allowed: one design for a hop", origin_of(spec)));
 
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval / time_unit(spec.scene);
+  if (!arguments.trace.empty() && !(interval > 0.0))
+    throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
   const Story story = tell(spec.design, spec.scene, integration_options(spec.numerics), interval);
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");

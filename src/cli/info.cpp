@@ -50,7 +50,7 @@ Summary summarise(const MapReader& map, const std::string& name) {
   for_each_block(map, name, [&](std::size_t first, const std::vector<double>& values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double value = values[i];
-      if (code) ++summary.counts[static_cast<std::uint8_t>(value)];
+      if (code) ++summary.counts[value >= 0.0 && value < 256.0 ? static_cast<std::uint8_t>(value) : 255];
       if (std::isnan(value)) ++summary.missing;
       if (value < summary.least.value) summary.least = {value, first + i};
       if (value > summary.most.value) summary.most = {value, first + i};
@@ -89,10 +89,9 @@ int run(const std::string& path, bool only_spec) {
   }
   std::size_t designs = 1;
   fmt::print("{}\n", map.attribute("title"));
-  fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {:.3g} s\n", map.attribute("date"),
+  fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {} s\n", map.attribute("date"),
              map.attribute("host"), map.attribute("program_version"), map.attribute("git_revision"),
-             map.attribute("threads"),
-             map.attribute("wall_time").empty() ? 0.0 : std::stod(map.attribute("wall_time")));
+             map.attribute("threads"), map.attribute("wall_time").empty() ? "?" : map.attribute("wall_time"));
   if (map.attribute("wall_time").empty())
     fmt::print("INCOMPLETE: what an interrupted sweep left; designs not computed are holes\n");
   fmt::print("method {}, tolerance {}\n", map.attribute("method"), map.attribute("tolerance"));

@@ -14,8 +14,14 @@ namespace {
 
 enum ExitStatus { done = 0, other_failure = 1, bad_input = 2, io_failure = 3 };
 
+/// One line on stderr, whatever a file's name or a key's value holds.
 int complain(int status, std::string_view what) {
-  fmt::print(stderr, "leapmap: {}\n", what);
+  std::string line;
+  for (const char c : what) {
+    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    line += control ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c)) : std::string(1, c);
+  }
+  fmt::print(stderr, "leapmap: {}\n", line);
   return status;
 }
 

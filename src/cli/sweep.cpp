@@ -108,7 +108,7 @@ void plan(const Spec& spec, const std::string& map, const MapLayout& layout, con
 /// it.
 std::vector<hdf5::Attribute> run_audit(const Spec& spec, const SweepArguments& arguments, int& status) {
   if (spec.numerics.audit <= 0.0) return {};
-  const AuditReport report = audit(spec, arguments.threads);
+  const AuditReport report = audit(spec, arguments.threads, [] { return noted_signal() != 0; });
   if (!arguments.quiet)
     fmt::print(
         "audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
@@ -163,14 +163,17 @@ int run(const SweepArguments& arguments) {
   }
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   const double solving = seconds();
-  if (done < tiling.designs()) {
+  std::vector<hdf5::Attribute> closing;
+  if (noted_signal() == 0) {
+    writer.flush();  // a full disk is told before the audit takes its time
+    closing = run_audit(spec, arguments, status);
+  }
+  if (noted_signal() != 0) {
     const std::string part = writer.keep_part();
     fmt::print(stderr, "leapmap: interrupted after {} of {} designs; {} holds them\n", grouped(done),
                grouped(tiling.designs()), part);
     return 128 + noted_signal();
   }
-  writer.flush();  // a full disk is told before the audit takes its time
-  std::vector<hdf5::Attribute> closing = run_audit(spec, arguments, status);
   closing.emplace_back("wall_time", seconds());
   writer.finish(closing);
   if (arguments.quiet) return status;

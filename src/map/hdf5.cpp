@@ -159,6 +159,8 @@ std::string read_text(hid_t object, const std::string& name) {
   const Handle file_type(H5Aget_type(attribute), H5Tclose, what);
   if (H5Tget_class(file_type) != H5T_STRING || H5Tis_variable_str(file_type) <= 0)
     throw IoError(what + ": it is not text");
+  const Handle space(H5Aget_space(attribute), H5Sclose, what);
+  if (H5Sget_simple_extent_npoints(space) != 1) throw IoError(what + ": it is not one text");
   const Handle type = text_type();
   char* text = nullptr;
   check(H5Aread(attribute, type, &text), what);

@@ -33,7 +33,10 @@ int format_version(hid_t file, const std::string& path) {
 }
 
 std::vector<double> read_all(hid_t dataset, const std::string& name) {
-  std::vector<double> values(hdf5::shape_of(dataset)[0]);
+  const std::vector<hsize_t> shape = hdf5::shape_of(dataset);
+  if (shape.size() != 1 || shape[0] == 0)
+    throw IoError(name + ": a dimension of a map has one row of values, at least one");
+  std::vector<double> values(shape[0]);
   check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "reading " + name);
   return values;
 }
@@ -62,6 +65,7 @@ MapReader::MapReader(const std::string& path) : path_(path) {
       fields_.push_back(name);
     }
   }
+  if (dimensions_.empty()) throw IoError(path + ": has no dimensions");
   std::vector<hsize_t> expected;
   for (const Dimension& dimension : dimensions_) expected.push_back(dimension.values.size());
   for (const std::string& name : fields_)

@@ -169,9 +169,9 @@ void MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
 }
 
 std::string MapWriter::keep_part() {
+  settled_ = true;  // even if closing fails: what reached the disk may still be of use
   close_datasets();
   hdf5::finish_file(std::move(file_), part_, part_);
-  settled_ = true;
   return part_;
 }
 

@@ -60,7 +60,8 @@ struct Fall {
 };
 struct NearMiss {
   double tau;
-  double value;  ///< of the guard at its extremum; < 0: it fell, >= 0: it did not
+  double value;  ///< of the guard at its extremum
+  bool minimum;  ///< a minimum below zero makes a fall; a maximum above zero makes the fall after it
 };
 
 /// What one step held. Reused from step to step, so that nothing is allocated in the loop.
@@ -118,22 +119,25 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
                                left_tau + (right_tau - left_tau) * left.rate / (left.rate - right.rate),
                                minimum, 1e-3 * step.h);
       double value = guessed(tau).value;
-      // The interpolant is trusted to a tenth of the guard's reach over the step, and only to say that
-      // nothing happens: what would make or undo a fall is always asked of the method.
-      const bool unclear = std::abs(value) < 0.1 * reach;
+      // The interpolant is trusted only to say that nothing happens, and only where it stays clear of zero by
+      // half the guard's reach over the step: what might make or undo a fall is always asked of the method.
+      const bool turns_to_zero = minimum ? value > -0.1 * reach : value < 0.1 * reach;
+      const bool unclear = turns_to_zero && std::abs(value) < 0.5 * reach;
       const bool decides = (value < 0.0) != out.knots.back().fallen || (value < 0.0) != has_fallen(last);
       if (unclear || decides) {
         // Newton with the interpolant's curvature. The value is flat here: half the digits of tau give all of
         // its.
         const double curvature = guessed_rate(tau).rate;
-        for (int refinement = 0; refinement < 20; ++refinement) {
+        constexpr int most_refinements = 20;
+        for (int refinement = 0; refinement < most_refinements; ++refinement) {
           const Sample<double> at = retaken(tau);
           value = at.value;
           const double next = std::clamp(tau - at.rate / curvature, left_tau, right_tau);
-          if (!(std::abs(next - tau) > 1e-8 * step.h)) break;
+          const bool settled = !(std::abs(next - tau) > 1e-8 * step.h);
+          if (settled || refinement + 1 == most_refinements) break;
           tau = next;
         }
-        if (unclear) out.near_misses.push_back({tau, value});
+        if (unclear) out.near_misses.push_back({tau, value, minimum});
         out.knots.push_back({tau, value < 0.0});
       }
     }
@@ -149,11 +153,11 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
     const double guess =
         polish_root(guessed, from.tau, to.tau, 0.5 * (from.tau + to.tau), false, 1e-6 * step.h);
     Fall<D> fall{polish_root(retaken, from.tau, to.tau, guess, false, resolution), {}};
-    if (!out.failed && retake(fall.tau, fall.state)) {
-      out.falls.push_back(fall);
-    } else {
-      out.failed = true;
-    }
+    // A bracket without a root would end at one of its ends, far from zero: that is no fall but a failed
+    // step.
+    const bool found =
+        !out.failed && retake(fall.tau, fall.state) && std::abs(guard(fall.state).value) <= 0.01 * reach;
+    found ? out.falls.push_back(fall) : void(out.failed = true);
   }
   return last;
 }

@@ -54,7 +54,7 @@ AuditMethod audit_method(const Numerics& numerics) {
   return audit;
 }
 
-AuditReport audit(const Spec& spec, int threads) {
+AuditReport audit(const Spec& spec, int threads, const std::function<bool()>& stop_requested) {
   const DesignSpace space(spec);
   const std::size_t designs = Tiling(shape_of(spec)).designs();
   const auto count = static_cast<std::size_t>(std::ceil(spec.numerics.audit * static_cast<double>(designs)));
@@ -71,7 +71,7 @@ AuditReport audit(const Spec& spec, int threads) {
                     their_outcome = theirs->solve(design, spec.scene);
       const std::lock_guard lock(reporting);
       compare(report, number, our_outcome, their_outcome);
-      return true;
+      return !(stop_requested && stop_requested());
     };
   });
   return report;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,7 @@ AuditMethod audit_method(const Numerics& numerics);
 
 /// Solves ceil(numerics.audit * designs) designs by both methods; which ones depends on the spec alone.
 /// Both methods are deterministic, so that the first gives again what the sweep stored.
-AuditReport audit(const Spec& spec, int threads);
+/// stop_requested is asked after each design; once true, the report covers what was done until then.
+AuditReport audit(const Spec& spec, int threads, const std::function<bool()>& stop_requested = {});
 
 }  // namespace leapmap

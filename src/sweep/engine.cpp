@@ -32,10 +32,10 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
     // A thread's own: GSL's workspaces and the designs of the tile in hand.
     return [&, rolling = std::make_unique<RollingIntegration>(integration),
             designs = std::vector<Design>()](std::size_t number) mutable {
-      const Tile tile = tiling.tile(number);
-      designs.resize(tile.count);
-      std::vector<Outcome> outcomes(tile.count);
       try {
+        const Tile tile = tiling.tile(number);
+        designs.resize(tile.count);
+        std::vector<Outcome> outcomes(tile.count);
         space.fill(tile, designs);
         for (std::size_t i = 0; i < tile.count; ++i) outcomes[i] = rolling->solve(designs[i], spec.scene);
         const bool wanted = delivery.bring(number, std::move(outcomes));

@@ -20,7 +20,8 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double right_angle = std::numbers::pi / 2.0;
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr Range non_negative{0.0, inf, true, false};
-constexpr Range positive{0.0, inf, false, false};
+constexpr Range positive{1e-9, 1e9};  // a length or an acceleration
+constexpr Range ratio{0.0, 1e12};
 constexpr Range fraction{0.0, 1.0};
 
 std::vector<std::string_view> frictions() { return {"sticking"}; }
@@ -73,11 +74,11 @@ const std::array options{
            "slope of the plane",
            {0.0, right_angle, true, false}},
     Option{"design", "mass_ratio", ParameterSlot{&Design::mass_ratio}, "1",
-           "point mass over hoop mass, m_p / m", non_negative},
+           "point mass over hoop mass, m_p / m", ratio},
     Option{"design", "offset_ratio", ParameterSlot{&Design::offset_ratio}, "1",
            "distance of the point mass from the centre over the radius, L / R", fraction},
     Option{"design", "inertia_factor", ParameterSlot{&Design::inertia_factor}, "1",
-           "inertia of the bare hoop over m R^2: thin hoop 1, disc 1/2", non_negative},
+           "inertia of the bare hoop over m R^2: thin hoop 1, disc 1/2", ratio},
     Option{"design",
            "release_angle",
            ParameterSlot{&Design::release_angle},
@@ -205,6 +206,7 @@ double parse_number(const Option& option, std::string_view text) {
     if (option.unit != "rad" || !digits.ends_with(suffix)) continue;
     digits = trim(digits.substr(0, digits.size() - 3));
     unit = factor;
+    break;
   }
   if (digits.starts_with('+')) digits.remove_prefix(1);
   double value = 0.0;

@@ -113,8 +113,10 @@ std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
   values.reserve(static_cast<std::size_t>(*count));
   for (std::int64_t i = 0; i < *count; ++i) {
     const double x = *count > 1 ? static_cast<double>(i) / last : 0.0;
-    values.push_back(log ? from * std::pow(to / from, x) : from + (to - from) * x);
+    values.push_back(log ? std::exp(std::log(from) * (1.0 - x) + std::log(to) * x)
+                         : from * (1.0 - x) + to * x);
   }
+  values.front() = from;
   values.back() = to;
   return values;
 }
@@ -205,7 +207,9 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
 /// KEY=VALUE as a table { v = VALUE }; a bare word is a string.
 toml::table parse_override(const std::string& text, std::string_view value) {
   try {
-    return toml::parse(fmt::format("v = {}", value));
+    toml::table table = toml::parse(fmt::format("v = {}", value));
+    if (table.size() != 1) throw InputError(fmt::format("--set {}: allowed: one KEY=VALUE", text));
+    return table;
   } catch (const toml::parse_error&) {
     if (value.find_first_of("{}[]\"'\n") != std::string_view::npos)
       throw InputError(

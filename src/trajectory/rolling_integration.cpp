@@ -3,7 +3,7 @@
 
 #include <gsl/gsl_errno.h>
 
-#include <cassert>
+#include <algorithm>
 #include <cmath>
 
 #include "physics/rolling.hpp"
@@ -13,9 +13,9 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-/// Where the normal force vanishes J is of order one, so that energy allows a lift-off no spin beyond a few times
-/// that of the release (at most 1e4, see options.cpp): only a diverged integration has more.
-constexpr double most_spin = 1e5;
+/// Rolling conserves energy: a method that is off by more than this share of it has lost the motion. Far
+/// looser than any tolerance worth having, it catches fixed steps and tolerances that are too long.
+constexpr double most_energy_drift = 0.05;
 
 int rolling_rhs(double, const double y[], double f[], void* params) {
   const auto& hoop = *static_cast<const Hoop<double>*>(params);
@@ -80,6 +80,12 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
     return polish_root(angle_at, 0.0, latest, 0.5 * latest, true, 1e-15 * latest);
   };
 
+  const double energy = rolling_energy(hoop_, release[0], release[1]);
+  const auto believable = [&](const RollingState& y) {
+    const double kinetic = 0.5 * contact_inertia(hoop_, trig(y[0])) * y[1] * y[1];
+    return std::abs(rolling_energy(hoop_, y[0], y[1]) - energy) <= most_energy_drift * (1.0 + kinetic);
+  };
+
   const double runway_end = design.release_angle + two_pi * scene.runway;
   if (!integrator_.start(release, 0.01 / (1.0 + spin.value))) return failed_outcome();
   for (long taken = 0; taken < options_.max_steps; ++taken) {
@@ -94,21 +100,32 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
 
     const double stall = stalls_.falls.empty() ? step.h : stalls_.falls.front().tau;
     const double stall_angle = stalls_.falls.empty() ? step.y1[0] : stalls_.falls.front().state[0];
-    if (observer.graze)
+    const auto tell_grazes = [&](double end) {
+      if (!observer.graze) return;
       for (const NearMiss& miss : lift_offs_.near_misses)
-        if (RollingState y; miss.tau <= stall && retake(miss.tau, y) && y[0] <= runway_end)
-          observer.graze({step.t0 + miss.tau, y[0], miss.value});
+        if (RollingState y; miss.tau <= end && retake(miss.tau, y) && y[0] <= runway_end)
+          observer.graze({step.t0 + miss.tau, y[0], miss.value, miss.minimum});
+    };
 
     for (const Fall<2>& fall : lift_offs_.falls) {
       if (fall.tau > stall || fall.state[0] > runway_end) break;
       const LiftOff<double> lift_off{step.t0 + fall.tau, fall.state[0], fall.state[1]};
-      if (std::abs(lift_off.spin) > most_spin) return failed_outcome();
+      if (!believable(fall.state) || lift_off.spin < 0.0) return failed_outcome();
       const Flight<double> flight = fly(hoop_, lift_off);
       const bool is_jump = consider(outcome, scene, design, lift_off, flight);
       if (observer.step && is_jump) observer.step(integrator_, fall.tau);
       if (observer.lift_off) observer.lift_off(lift_off, flight);
-      if (is_jump) return outcome;
+      if (is_jump) {
+        // The minimum that made this fall lies just after it.
+        const auto made_by = std::ranges::find_if(lift_offs_.near_misses, [&](const NearMiss& miss) {
+          return miss.minimum && miss.tau >= fall.tau;
+        });
+        tell_grazes(made_by == lift_offs_.near_misses.end() ? fall.tau : made_by->tau);
+        return outcome;
+      }
     }
+    if (!believable(step.y1)) return failed_outcome();
+    tell_grazes(stall);
     if (observer.step)
       observer.step(integrator_, stall_angle > runway_end ? time_at(runway_end, stall) : stall);
     if (stall_angle >= runway_end) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 
 #include "numerics/gsl_integrator.hpp"
 #include "trajectory/outcome.hpp"
@@ -23,7 +22,12 @@ struct IntegrationOptions {
 struct Graze {
   double time;          ///< since release [sqrt(R/g)]
   double angle;         ///< phi [rad]
-  double normal_force;  ///< at its extremum [weights]; < 0: counted as a lift-off, >= 0: not
+  double normal_force;  ///< at its extremum [weights]
+  bool minimum;         ///< a minimum or a maximum of the normal force
+
+  /// Whether it was counted as making a lift-off: a minimum below zero, or a maximum above zero, after which
+  /// the normal force falls again.
+  bool makes_lift_off() const { return minimum == (normal_force < 0.0); }
 };
 
 /// Looks on while a design is solved; unset functions cost nothing.

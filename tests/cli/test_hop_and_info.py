@@ -84,6 +84,32 @@ def test_info_refuses_other_files_with_one_line(make, word, tmp_path):
     assert done.returncode == 3 and done.stderr.count("\n") == 1 and word in done.stderr and done.stdout == ""
 
 
+def test_info_refuses_maps_with_odd_dimensions_or_attributes(tmp_path):
+    def attributes(file, filetype="leapmap map"):
+        file.attrs["filetype"], file.attrs["version"] = filetype, np.array([1, 0], dtype="i4")
+
+    def scale(file, name, data):
+        file[name] = data
+        file[name].make_scale(name)
+        file[name].attrs["units"] = "1"
+
+    odd = {"none": lambda f: attributes(f), "two_types": lambda f: attributes(f, ["leapmap map", "leapmap map"]),
+           "scalar": lambda f: (attributes(f), scale(f, "a", 1.0)), "square": lambda f: (attributes(f), scale(f, "a", np.ones((3, 3)))),
+           "empty": lambda f: (attributes(f), scale(f, "a", np.ones(0))),
+           "scalar_field": lambda f: (attributes(f), scale(f, "a", np.ones(2)), f.create_dataset("x", data=1.0))}
+    for name, make in odd.items():
+        with h5py.File(tmp_path / f"{name}.h5", "w") as file:
+            make(file)
+        done = leapmap("info", tmp_path / f"{name}.h5")
+        assert done.returncode == 3 and done.stderr.count("\n") == 1, (name, done)
+
+
+def test_json_is_valid_whatever_the_units(tmp_path):
+    done = leapmap("hop", "--json", "--set", "radius=1e9", "--set", "gravity=1e-9")
+    assert json.loads(done.stdout)["status"] == "jumped"
+    assert leapmap("hop", "--set", "radius=1e308").returncode == 2
+
+
 def test_dry_run_plans_and_writes_nothing(tmp_path):
     (tmp_path / "spec.toml").write_text('[design]\nslope={from=0,to=1,count=1000}\nmass_ratio={from=0.1,to=20,count=1000}\n'
                                         'offset_ratio={from=0.3,to=1,count=1000}\n[output]\nfields=["jump_height","spurious_first_jump"]\n')

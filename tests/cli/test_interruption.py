@@ -38,3 +38,14 @@ def test_a_signal_keeps_finished_tiles_readable_in_the_part(number, status, tmp_
         assert np.isnan(part["jump_height"][()][~computed]).all()
     again = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5"], capture_output=True, text=True)
     assert again.returncode == 2 and "map.h5.part" in again.stderr, "what was kept is not overwritten unasked"
+
+
+def test_a_signal_during_the_audit_is_an_interruption_too(tmp_path):
+    (tmp_path / "spec.toml").write_text(LONG.replace("audit = 0", "audit = 1").replace("1e-13", "1e-4").replace("300", "900"))
+    process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(8.0)  # solving takes some four seconds, auditing at 1e-13 twenty and more
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=120)
+    assert process.returncode == 130
+    assert not (tmp_path / "map.h5").exists() and (tmp_path / "map.h5.part").exists()

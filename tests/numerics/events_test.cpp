@@ -80,6 +80,7 @@ TEST(Events, GrazesAreToldWithTheSideTheyWereDecidedOn) {
   ASSERT_EQ(found.near_misses.size(), 1u);
   EXPECT_NEAR(found.near_misses[0].tau, 0.4, 1e-8);
   EXPECT_NEAR(found.near_misses[0].value, 1e-9, 1e-15);
+  EXPECT_TRUE(found.near_misses[0].minimum);
   EXPECT_TRUE(found.falls.empty());
 }
 
