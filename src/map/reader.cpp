@@ -79,10 +79,6 @@ std::vector<std::size_t> MapReader::shape() const {
   return shape;
 }
 
-bool MapReader::has(const std::string& field) const {
-  return std::ranges::find(fields_, field) != fields_.end();
-}
-
 std::string MapReader::unit(const std::string& field) const { return hdf5::read_text(open(field), "units"); }
 
 std::string MapReader::attribute(const std::string& name) const {

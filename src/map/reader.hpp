@@ -26,7 +26,6 @@ class MapReader {
 
   /// The datasets that lie along all dimensions, in file order: the fields and, in a list, its parameters.
   const std::vector<std::string>& fields() const { return fields_; }
-  bool has(const std::string& field) const;
   std::string unit(const std::string& field) const;
 
   /// A root attribute as text, numbers in their shortest form; empty if it is not there.

@@ -83,8 +83,7 @@ std::vector<hsize_t> to_hsize(const std::vector<std::size_t>& extents) {
   return {extents.begin(), extents.end()};
 }
 
-}  // namespace
-
+/// Nothing that is there already is replaced unasked, nor what an interrupted sweep left.
 void refuse_existing(const std::string& path, bool overwrite) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw InputError(path + ": is a folder; allowed: a file's name");
@@ -95,6 +94,8 @@ void refuse_existing(const std::string& path, bool overwrite) {
     throw InputError(
         path + ".part: is what an interrupted sweep left; allowed: another -o, or --overwrite to start anew");
 }
+
+}  // namespace
 
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
   std::uint64_t per_design = layout.axes.empty() ? 8 + 8 * layout.columns.size() : 0;

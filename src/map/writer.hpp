@@ -62,9 +62,6 @@ class MapWriter {
   std::vector<std::uint8_t> codes_;
 };
 
-/// Throws what MapWriter would if path cannot become a map because of a file that is there already.
-void refuse_existing(const std::string& path, bool overwrite);
-
 /// How many bytes the map's values take.
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling);
 
