@@ -284,7 +284,9 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
       throw InputError(
           fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
                       origin_of(spec), spec.axes.front().key));
-    spec.list = read_points(find_points(spec), origin_of(spec));
+    spec.points =
+        std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
+    spec.list = read_points(spec.points, origin_of(spec));
   }
   double designs = 1.0;
   for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());

@@ -58,7 +58,7 @@ struct Spec {
   Design design;  ///< what axes and points leave out
   Numerics numerics;
   Output output;
-  std::string points;      ///< design.points as written
+  std::string points;      ///< design.points, as an absolute path
   std::vector<Axis> axes;  ///< in spec order, the first varying slowest; empty: `list` holds the designs
   PointList list;
 };
