@@ -2,7 +2,6 @@
 /// leapmap hop: one design, told in full.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numbers>
 
 #include "cli/commands.hpp"
@@ -48,7 +47,7 @@ std::string verdict(const Story& story, const Scene& scene) {
 void print_table(const Spec& spec, const Story& story) {
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters()) {
-    const double value = spec.design.*std::get<ParameterSlot>(parameter->slot).member;
+    const double value = value_of(*parameter, spec.design);
     fmt::print("{:<15} {:<12.8g} {}\n", parameter->key, value,
                parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", degrees(value))
                : parameter->unit == "1" ? ""
@@ -92,8 +91,8 @@ std::string json_text(const Spec& spec, const Story& story) {
   const double second = time_unit(spec.scene);
   std::vector<std::string> design, outcome, candidates, grazes;
   for (const Option* parameter : design_parameters())
-    design.push_back(fmt::format("\"{}\": {}", parameter->key,
-                                 json_number(spec.design.*std::get<ParameterSlot>(parameter->slot).member)));
+    design.push_back(
+        fmt::format("\"{}\": {}", parameter->key, json_number(value_of(*parameter, spec.design))));
   for (const Field& field : map_fields()) {
     std::string value;
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
@@ -166,10 +165,8 @@ void add_hop(CLI::App& app, int& status) {
   auto arguments = std::make_shared<HopArguments>();
   command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop");
   for (const Option* parameter : design_parameters()) {
-    std::string flag = fmt::format("--{}", parameter->key);
-    std::ranges::replace(flag, '_', '-');
     command->add_option_function<std::string>(
-        flag,
+        flag_of(*parameter),
         [arguments, parameter](const std::string& value) {
           arguments->parameters.emplace_back(parameter, value);
         },

@@ -42,7 +42,7 @@ MapLayout layout_of(const Spec& spec) {
     layout.axes.push_back(describe(*find_option("design", axis.key), axis.values));
   if (spec.axes.empty()) {
     for (const Option* parameter : design_parameters()) {
-      const double constant = spec.design.*std::get<ParameterSlot>(parameter->slot).member;
+      const double constant = value_of(*parameter, spec.design);
       layout.columns.push_back(describe(*parameter, std::vector(spec.list.count, constant)));
       for (const Axis& column : spec.list.columns)
         if (column.key == parameter->key) layout.columns.back().values = column.values;

@@ -84,12 +84,23 @@ T normal_force_rate(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, cons
   return hoop.rho * (phi.sin * (jerk - spin * spin * spin) + T(3) * phi.cos * spin * acceleration);
 }
 
-/// Kinetic plus potential energy over (m + m_p) g R: constant while rolling, (3) + (4) under (1) and (2).
+/// Kinetic energy over (m + m_p) g R, (3) under (1) and (2).
+template <class T>
+T kinetic_energy(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin) {
+  return T(0.5) * contact_inertia(hoop, phi) * spin * spin;
+}
+
+/// Potential energy over (m + m_p) g R, (4) under (1) and (2) but for a constant; phi is trig(angle).
+template <class T>
+T potential_energy(const Hoop<T>& hoop, const T& angle, const Trig<T>& phi) {
+  return -angle * hoop.sin_slope - hoop.rho * cos_from_vertical(hoop, phi);
+}
+
+/// Their sum, constant while rolling.
 template <class T>
 T rolling_energy(const Hoop<T>& hoop, const T& angle, const T& spin) {
   const Trig<T> phi = trig(angle);
-  return T(0.5) * contact_inertia(hoop, phi) * spin * spin - angle * hoop.sin_slope -
-         hoop.rho * cos_from_vertical(hoop, phi);
+  return kinetic_energy(hoop, phi, spin) + potential_energy(hoop, angle, phi);
 }
 
 }  // namespace leapmap

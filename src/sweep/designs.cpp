@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cassert>
 
 #include "sweep/options.hpp"
@@ -50,9 +49,7 @@ void DesignSpace::fill(const Tile& tile, std::span<Design> designs) const {
 std::string hop_command(const Spec& spec, const Design& design) {
   std::string command = "leapmap hop";
   for (const Option* parameter : design_parameters()) {
-    std::string flag(parameter->key);
-    std::ranges::replace(flag, '_', '-');
-    command += fmt::format(" --{} {}", flag, design.*std::get<ParameterSlot>(parameter->slot).member);
+    command += fmt::format(" {} {}", flag_of(*parameter), value_of(*parameter, design));
   }
   command += fmt::format(" --set runway={} --set hop_height={} --set radius={} --set gravity={}",
                          spec.scene.runway, spec.scene.hop_height, spec.scene.radius, spec.scene.gravity);

@@ -172,6 +172,12 @@ std::vector<const Option*> design_parameters() {
   return parameters;
 }
 
+std::string flag_of(const Option& parameter) {
+  std::string flag = fmt::format("--{}", parameter.key);
+  std::ranges::replace(flag, '_', '-');
+  return flag;
+}
+
 const Option* find_option(std::string_view section, std::string_view key) {
   const auto found = std::ranges::find_if(
       options, [&](const Option& o) { return o.key == key && (section.empty() || o.section == section); });

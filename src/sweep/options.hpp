@@ -43,6 +43,14 @@ std::span<const Option> spec_options();
 /// The parameters of a design, those of spec_options that take an axis.
 std::vector<const Option*> design_parameters();
 
+/// A design's value of one of these parameters.
+inline double value_of(const Option& parameter, const Design& design) {
+  return design.*std::get<ParameterSlot>(parameter.slot).member;
+}
+
+/// The command line's name for a parameter, for example "--mass-ratio".
+std::string flag_of(const Option& parameter);
+
 /// The option of that section and key, or nullptr; an empty section means any.
 const Option* find_option(std::string_view section, std::string_view key);
 

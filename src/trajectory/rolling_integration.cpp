@@ -82,8 +82,10 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
 
   const double energy = rolling_energy(hoop_, release[0], release[1]);
   const auto believable = [&](const RollingState& y) {
-    const double kinetic = 0.5 * contact_inertia(hoop_, trig(y[0])) * y[1] * y[1];
-    return std::abs(rolling_energy(hoop_, y[0], y[1]) - energy) <= most_energy_drift * (1.0 + kinetic);
+    const Trig<double> phi = trig(y[0]);
+    const double kinetic = kinetic_energy(hoop_, phi, y[1]);
+    const double drift = kinetic + potential_energy(hoop_, y[0], phi) - energy;
+    return std::abs(drift) <= most_energy_drift * (1.0 + kinetic);
   };
 
   const double runway_end = design.release_angle + two_pi * scene.runway;

@@ -65,7 +65,7 @@ Story tell(const Design& design, const Scene& scene, const IntegrationOptions& o
       const double t0 = integrator.step().t0;
       sample_until(t0 + end, [&](double t) {
         RollingState y = integrator.step().y0;
-        integrator.retake(t - t0, y);
+        if (!integrator.retake(t - t0, y)) y.fill(NAN);
         return rolling_point(hoop, design, t, y);
       });
     };

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The charts, drawn from small maps and read back from their SVG: what they must contain, not merely that they exist."""
-import subprocess
 import xml.etree.ElementTree as ElementTree
 
 import pytest
-from support.program import TOP, leapmap, sweep
+from support.program import TOP, finished, leapmap, sweep
 
 CHART = """
 [design]
@@ -17,7 +16,7 @@ tolerance = 1e-6
 
 
 def draw(script, *arguments):
-    return subprocess.run(["/usr/bin/python3", TOP / "analysis" / script, *map(str, arguments)], capture_output=True, text=True)
+    return finished("/usr/bin/python3", TOP / "analysis" / script, *arguments)
 
 
 def texts(svg):

@@ -17,9 +17,13 @@ audit = 0.05
 """
 
 
-def leapmap(*arguments, **options):
-    """The finished process; stdout and stderr as text."""
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300, **options)
+def finished(*command):
+    """The finished process of any command; stdout and stderr as text."""
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+
+
+def leapmap(*arguments):
+    return finished(PROGRAM, *arguments)
 
 
 def sweep(folder, spec=SMALL, *arguments, name="map.h5"):
