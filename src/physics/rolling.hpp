@@ -19,11 +19,21 @@ struct Trig {
 
 template <class T>
 Trig<T> trig(const T& angle) {
-  using std::cos, std::sin;
-  const T half = angle * T(0.5);
-  const T s = sin(half), c = cos(half);
-  const T versine = T(2) * s * s;
-  return {T(2) * s * c, T(1) - versine, versine};
+  const SinCos<T> half = sincos_of(angle * T(0.5));
+  const T versine = T(2) * half.sin * half.sin;
+  return {T(2) * half.sin * half.cos, T(1) - versine, versine};
+}
+
+/// x - sin x without cancellation, given sin x. Its series is used below 0.7, to 4e-22 of the sum.
+template <class T>
+T x_minus_sin(const T& x, const T& sin_x) {
+  using std::abs;
+  const auto small = abs(x) < T(0.7);
+  if (!any(small)) return x - sin_x;
+  const T square = x * x;
+  T sum(1);
+  for (int k = 18; k >= 4; k -= 2) sum = T(1) - sum * square / T(k * (k + 1));
+  return select(small, x * square * sum / T(6), x - sin_x);
 }
 
 /// Inertia about the contact, J(phi) = J0 + 1 - 2 rho cos phi.

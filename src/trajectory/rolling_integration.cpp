@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/flight_search.hpp"
 #include "physics/rolling.hpp"
 
 namespace leapmap {

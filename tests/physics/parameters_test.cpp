@@ -20,9 +20,8 @@ TEST(Parameters, DerivedGroupsEqualTheirDefinitions) {
     const long double J0 = kappa / (1 + beta) + alpha * lambda * lambda;
     // A few roundings of long double on numbers of order one.
     const long double tolerance = 1e-18L;
-    EXPECT_LE(std::abs(hoop.alpha - (alpha)), tolerance);
     EXPECT_LE(std::abs(hoop.rho - (rho)), tolerance);
-    EXPECT_LE(std::abs(hoop.J0 - (J0)), tolerance);
+    EXPECT_LE(std::abs(hoop.clearance - (1 - rho)), tolerance);
     EXPECT_LE(std::abs(hoop.Ic - (J0 - rho * rho)), tolerance);
     EXPECT_LE(std::abs(hoop.J_min - (J0 + 1 - 2 * rho)), tolerance);
   }
@@ -42,7 +41,7 @@ TEST(Parameters, WithoutAPointMassTheHoopIsSymmetric) {
   design.mass_ratio = 0.0;
   const Hoop<double> hoop = derive<double>(design);
   EXPECT_EQ(hoop.rho, 0.0);
-  EXPECT_EQ(hoop.J0, 1.0);
+  EXPECT_EQ(hoop.Ic, 1.0);
   EXPECT_EQ(hoop.J_min, 2.0);
 }
 

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Rolling without slip as functions of the angle alone: energy is conserved, so the spin is explicit.
+///
+/// With the vis viva E(phi) = w^2 J(phi), twice the kinetic energy, the normal force (11) is
+///   N = (P J + rho K E) / J^2,   P = cos(theta) (Ic + q^2) + rho sin(theta) s q,   K = J_min c - rho v^2,
+/// in s = sin phi, c = cos phi, v = 1 - c, q = 1 - rho c. The numerator G = P J + rho K E has the sign of N and no
+/// needle where J is small: a trigonometric polynomial of degree 3 plus phi times one of degree 2. It is linear in
+/// E, which gains 4 pi sin(theta) a revolution: G of all revolutions follows from one evaluation.
+#pragma once
+
+#include "numerics/root.hpp"
+#include "physics/parameters.hpp"
+#include "physics/rolling.hpp"
+
+namespace leapmap {
+
+/// A hoop on its way from one release.
+template <class T>
+struct Roll {
+  Hoop<T> hoop;
+  T release;             ///< phi0 [rad]
+  Trig<T> release_trig;  ///< of it
+  T released;            ///< E at release, w0^2 J(phi0)
+  T level;               ///< E(phi) - 2 phi sin(theta) - 2 rho cos(theta + phi), the same at every angle
+  T push;                ///< dE/dphi / 2 at release
+};
+
+/// dE/dphi / 2, the torque about the contact: sin(theta) - rho sin(theta + phi).
+template <class T>
+T torque(const Hoop<T>& hoop, const Trig<T>& phi) {
+  return hoop.sin_slope - hoop.rho * sin_from_vertical(hoop, phi);
+}
+
+template <class T>
+Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
+  const Trig<T> phi = trig(release);
+  const T released = spin * spin * contact_inertia(hoop, phi);
+  return {.hoop = hoop,
+          .release = release,
+          .release_trig = phi,
+          .released = released,
+          .level = released - T(2) * (release * hoop.sin_slope + hoop.rho * cos_from_vertical(hoop, phi)),
+          .push = torque(hoop, phi)};
+}
+
+/// E at an angle, accurate to a few roundings of its largest term.
+template <class T>
+T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {
+  return roll.level + T(2) * (angle * roll.hoop.sin_slope + roll.hoop.rho * cos_from_vertical(roll.hoop, phi));
+}
+
+/// E an angle x past the release, without cancellation however small x is and however near the release is to an
+/// equilibrium: E0 + 2 push x + 2 rho sin(theta + phi0) (x - sin x) - 2 rho cos(theta + phi0) (1 - cos x).
+template <class T>
+T vis_viva_past_release(const Roll<T>& roll, const T& x, const Trig<T>& turned, const T& x_less_sin) {
+  const Hoop<T>& hoop = roll.hoop;
+  return roll.released +
+         T(2) * (roll.push * x + hoop.rho * (sin_from_vertical(hoop, roll.release_trig) * x_less_sin -
+                                             cos_from_vertical(hoop, roll.release_trig) * turned.versine));
+}
+template <class T>
+T vis_viva_past_release(const Roll<T>& roll, const T& x) {
+  const Trig<T> turned = trig(x);
+  return vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned.sin));
+}
+
+/// G and its first two derivatives at an angle.
+template <class T>
+CurvedSample<T> lift(const Roll<T>& roll, const T& angle) {
+  const Hoop<T>& h = roll.hoop;
+  const Trig<T> phi = trig(angle);
+  const T s = phi.sin, c = phi.cos;
+  const T J = contact_inertia(h, phi), J1 = T(2) * h.rho * s, J2 = T(2) * h.rho * c;
+  const T q = h.clearance + h.rho * phi.versine;
+  const T P = h.cos_slope * (h.Ic + q * q) + h.rho * h.sin_slope * s * q;
+  const T bend = h.rho * s * s + c * q;  // d(s q)/dphi
+  const T P1 = h.rho * (T(2) * h.cos_slope * s * q + h.sin_slope * bend);
+  const T P2 = h.rho * (T(2) * h.cos_slope * bend + h.sin_slope * s * (T(3) * h.rho * c - q));
+  const T K = h.J_min * c - h.rho * phi.versine * phi.versine, K1 = -s * J, K2 = -c * J - s * J1;
+  const T E = vis_viva(roll, angle, phi), E1 = T(2) * torque(h, phi);
+  const T E2 = T(-2) * h.rho * cos_from_vertical(h, phi);
+  return {P * J + h.rho * K * E, P1 * J + P * J1 + h.rho * (K1 * E + K * E1),
+          P2 * J + T(2) * P1 * J1 + P * J2 + h.rho * (K2 * E + T(2) * K1 * E1 + K * E2)};
+}
+
+/// Bounds of |G''| and |G'''| over all angles of one revolution.
+template <class T>
+struct LiftBounds {
+  T second, third;
+};
+
+/// For revolution `turn`, [2 pi turn, 2 pi (turn + 1)]. G is expanded there as harmonics 1 to 3 with E's linear part
+/// held at its middle, and the rest, 2 rho sin(theta) (phi - middle) K, is bounded by itself; each harmonic's amplitude
+/// is at most larger + (sqrt 2 - 1) smaller of its two coefficients.
+template <class T>
+LiftBounds<T> lift_bounds(const Roll<T>& roll, const T& turn) {
+  using std::abs;
+  const Hoop<T>& h = roll.hoop;
+  const T pi(std::numbers::pi_v<ScalarOf<T>>);
+  const T rho = h.rho, half(0.5);
+  const T j0 = h.J_min + T(2) * rho, j1 = T(-2) * rho;
+  const T p0 = h.Ic + T(1) + half * rho * rho, p1 = T(-2) * rho, p2 = half * rho * rho;
+  const T middle = roll.level + T(4) * pi * h.sin_slope * (turn + half);
+  const T k0 = T(-1.5) * rho, k1 = h.J_min + T(2) * rho, k2 = -half * rho;
+  const T e = T(2) * rho * h.cos_slope, f = T(-2) * rho * h.sin_slope;  // of cos phi and sin phi in E
+  const T cos1 = h.cos_slope * (p0 * j1 + p1 * j0 + half * p2 * j1) + rho * (e * (k0 + half * k2) + k1 * middle);
+  const T cos2 = h.cos_slope * (half * p1 * j1 + p2 * j0) + rho * (half * e * k1 + k2 * middle);
+  const T cos3 = half * (h.cos_slope * p2 * j1 + rho * e * k2);
+  const T pull = rho * h.sin_slope;
+  const T sin1 = pull * (j0 - T(0.25) * rho * j1) + rho * f * (k0 - half * k2);
+  const T sin2 = half * (pull * (j1 - rho * j0) + rho * f * k1);
+  const T sin3 = pull * T(-0.25) * rho * j1 + half * rho * f * k2;
+  const auto amplitude = [](const T& a, const T& b) {
+    return larger(abs(a), abs(b)) + T(0.4143) * smaller(abs(a), abs(b));
+  };
+  const T a1 = amplitude(cos1, sin1), a2 = amplitude(cos2, sin2), a3 = amplitude(cos3, sin3);
+  const T rest = T(2) * rho * h.sin_slope;
+  return {a1 + T(4) * a2 + T(9) * a3 + rest * (T(2) * (k1 + rho) + pi * (k1 + T(2) * rho)),
+          a1 + T(8) * a2 + T(27) * a3 + rest * (T(3) * (k1 + T(2) * rho) + pi * (k1 + T(4) * rho))};
+}
+
+}  // namespace leapmap
