@@ -6,6 +6,9 @@
 /// Measured in turned angle psi = w t and in heights of rho, a flight has two numbers only, a Toss.
 #pragma once
 
+#include <cmath>
+#include <numbers>
+
 #include "numerics/root.hpp"
 #include "physics/parameters.hpp"
 #include "physics/rolling.hpp"
@@ -30,12 +33,15 @@ struct Flight {
   T dip = T(0);          ///< least y before that interval, <= 0
 };
 
-/// A flight without its units.
+/// A flight without its units, and the turns of its y'. y' has a maximum at psi = top, and again a turn later,
+/// and before it a minimum at top - 2 (pi - opening), if that is not before the lift-off.
 template <class T>
 struct Toss {
-  T angle;      ///< phi at lift-off, in [0, 2 pi)
-  Trig<T> phi;  ///< of it
+  Trig<T> phi;  ///< of the angle at lift-off
   T gravity;    ///< gamma = cos(theta) / (rho w^2)
+  T opening;    ///< acos(-gamma): y'' > 0 for phi + psi in (opening, 2 pi - opening), modulo 2 pi
+  T top;        ///< psi at the first maximum of y'
+  T fastest;    ///< y' / rho there; from turn to turn it loses 2 pi gamma
 };
 
 /// y, y' and y'' over rho, primes by psi:
@@ -69,11 +75,33 @@ T toss_end(const Toss<T>& toss) {
   return (s + sqrt(s * s + T(2) * toss.gravity * toss.phi.versine)) / toss.gravity;
 }
 
+/// The toss that starts at lift_off. Where gravity wins from the start (gamma >= 1), fastest is not above zero.
+template <class T>
+Toss<T> toss_of(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
+  using std::abs, std::acos, std::floor, std::sqrt;
+  const T pi(std::numbers::pi_v<ScalarOf<T>>), two_pi = T(2) * pi;
+  // y depends on phi and w only through cos(phi + w t) and sin(phi) w: turning backwards is the mirror image.
+  const T angle = select(lift_off.spin < T(0), -lift_off.angle, lift_off.angle);
+  Toss<T> toss;
+  toss.phi = trig(angle);
+  toss.gravity = hoop.cos_slope / (hoop.rho * lift_off.spin * lift_off.spin);
+  const MaskOf<T> light = toss.gravity < T(1);
+  toss.opening = acos(select(light, -toss.gravity, T(0)));
+  const T in_turn = angle - two_pi * floor(angle / two_pi);
+  const T top = two_pi - toss.opening - in_turn;
+  toss.top = select(top < T(0), top + two_pi, top);
+  const T swing = sqrt(larger(T(1) - toss.gravity * toss.gravity, T(0)));
+  toss.fastest = select(light, toss.phi.sin + swing - toss.gravity * toss.top, T(-1));
+  return toss;
+}
+
 /// y(t) and dy/dt, t after a lift-off at phi with that spin.
 template <class T>
 Sample<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& t) {
-  const CurvedSample<T> y = toss_height(
-      Toss<T>{T(0), phi, hoop.cos_slope / (hoop.rho * spin * spin)}, spin * t);
+  Toss<T> toss;
+  toss.phi = phi;
+  toss.gravity = hoop.cos_slope / (hoop.rho * spin * spin);
+  const CurvedSample<T> y = toss_height(toss, spin * t);
   return {hoop.rho * y.value, hoop.rho * spin * y.rate};
 }
 

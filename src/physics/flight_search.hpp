@@ -15,13 +15,12 @@ namespace leapmap {
 
 /// Height, apex, landing and dip of a toss: psi in place of times, heights of rho in place of diameters.
 ///
-/// For one toss that may rise and sink many times. Its walk goes from zero of y'' to zero of y''; of a fast spin's
+/// For one toss that rises and sinks many times. The walk goes from zero of y'' to zero of y''; of a fast spin's
 /// thousands of turns it leaps over those that can hold neither apex nor landing.
 template <class S>
 Flight<S> walk_toss(const Toss<S>& toss) {
-  using std::acos, std::floor, std::sqrt;
-  const S two_pi = S(2) * std::numbers::pi_v<S>;
-  const S opening = acos(-toss.gravity);  // y'' > 0 for phi + psi in (opening, 2 pi - opening), modulo 2 pi
+  using std::floor, std::sqrt;
+  const S pi = std::numbers::pi_v<S>, two_pi = S(2) * pi;
   const S last = toss_end(toss), resolution = S(2) * std::numeric_limits<S>::epsilon();
   const auto height_at = [&](const S& psi) { return toss_height(toss, psi); };
   const auto climb_at = [&](const S& psi) { return toss_climb(toss, psi); };
@@ -50,15 +49,15 @@ Flight<S> walk_toss(const Toss<S>& toss) {
     return psi > vertex + around ? vertex + half_width : psi;
   };
 
-  // The angles at which y'' changes sign follow each other as opening, 2 pi - opening, 2 pi + opening, ...
+  // The zeros of y'': odd knots are the maxima of y', even ones its minima.
   const auto knot_at = [&](long knot) {
-    return two_pi * S((knot + 1) / 2) + (knot % 2 == 0 ? opening : -opening) - toss.angle;
+    return toss.top + two_pi * S(knot / 2) - (knot % 2 == 0 ? S(2) * (pi - toss.opening) : S(0));
   };
   S start(0), climb_start(0);
   for (long knot = 0; start <= last; ++knot) {
     const S end = knot_at(knot);
     if (end <= start) continue;
-    const long leap = 2 * static_cast<long>(floor((toss.angle + next_of_interest(start)) / two_pi)) - 1;
+    const long leap = 2 * static_cast<long>(floor((next_of_interest(start) - toss.top) / two_pi)) + 1;
     if (leap > knot) {
       start = knot_at(leap);
       climb_start = climb_at(start).value;
@@ -79,90 +78,148 @@ Flight<S> walk_toss(const Toss<S>& toss) {
   return {};
 }
 
-/// A toss that climbs at most once, lane by lane; `wanted` is narrowed to the lanes that do climb.
-///
-/// From one turn to the next y' loses 2 pi gamma, so that a toss whose y' stays below that at its first maximum has one
-/// climb: one apex, at most one dip before it, and it sinks for ever after. Between the zeros of y'' its y' is near a
-/// sine, which gives the guesses.
+/// More climbs than this are left to walk_toss.
+inline constexpr int most_climbs = 6;
+
+/// A toss up to its apex, in psi and heights of rho, and where to look for its landing: it is between last_apex
+/// and sunk, where y only falls. Height zero: it never clears the plane.
 template <class T>
-Flight<T> climb_once(const Toss<T>& toss, const T& opening, const T& turn, MaskOf<T>& wanted) {
-  using std::sqrt;
+struct Ascent {
+  T height = T(0), apex = T(0), last_apex = T(0), sunk = T(0), dip = T(0);
+};
+
+namespace toss_detail {
+
+/// The zero of y' after its minimum at top - 2 (pi - opening), where y has a minimum. There
+/// gamma eta - sin(eta) is known, eta the turn past phi + psi = pi: its cubic gives the guess.
+template <class T>
+T bottom(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
   const T pi(std::numbers::pi_v<ScalarOf<T>>), epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
-  const T gamma = toss.gravity, s = toss.phi.sin;
-  const auto height_at = [&](const T& psi) { return toss_height(toss, psi); };
-  const auto climb_at = [&](const T& psi) { return toss_climb(toss, psi); };
-  const MaskOf<T> never = wanted & !wanted;
-
-  // Apex: sin(eta) + gamma eta = ..., eta = phi + psi - 2 pi (turn + 1) in (-opening, opening).
-  const T top = T(2) * pi * (turn + T(1)) - toss.angle;
-  const T eta = (s - gamma * top) / (T(1) + gamma);
-  const T apex = polish_root(climb_at, top - opening, top + opening, top + eta + eta * eta * eta / (T(6) * (T(1) + gamma)),
-                             never, T(2) * epsilon * top, wanted);
-  const CurvedSample<T> at_apex = height_at(apex);
-  wanted = wanted & (at_apex.value > T(0));
-
-  // Dip: it starts where y'' < 0 and ends on the way up, gamma eta - sin(eta) = ..., eta = phi + psi - pi (2 turn + 1).
-  const T bottom = top - pi;
-  const T first_knot = bottom - (pi - opening);
-  const MaskOf<T> dips = wanted & (first_knot > T(0));
-  T dip(0);
-  if (any(dips)) {
-    const T guess = (gamma * bottom - s) / (T(1) - gamma);
-    const T lowest = polish_root(climb_at, first_knot, top - opening, bottom + guess + guess * guess * guess / (T(6) * (T(1) - gamma)),
-                                 !never, T(2) * epsilon * top, dips);
-    dip = select(dips, smaller(height_at(lowest).value, T(0)), T(0));
-  }
-
-  const T fall = sqrt(T(-2) * at_apex.value / at_apex.curvature);
-  const T landing = polish_root(height_at, apex, T(1.001) * larger(toss_end(toss), apex), apex + fall, never,
-                                T(2) * epsilon * top, wanted);
-  return {select(wanted, at_apex.value, T(0)), select(wanted, apex, T(0)), select(wanted, landing, T(0)),
-          select(wanted, dip, T(0))};
+  const T valley = top - (pi - toss.opening), slack = T(1) - toss.gravity;
+  const T eta = (toss.gravity * valley - toss.phi.sin) / slack;
+  return polish_root([&](const T& psi) { return toss_climb(toss, psi); }, larger(valley - (pi - toss.opening), T(0)),
+                     top, valley + eta + eta * eta * eta / (T(6) * slack), wanted | !wanted,
+                     T(2) * epsilon * top, wanted);
 }
 
-/// The whole flight that starts at lift_off; on SIMD lanes only those in `wanted` are searched, the others are zero.
+/// The zero of y' after its maximum at top, where y has a maximum: likewise, eta the turn past phi + psi = 2 pi.
 template <class T>
-Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off, MaskOf<T> wanted = MaskOf<T>(true)) {
-  using std::abs, std::acos, std::floor, std::sqrt;
-  using S = ScalarOf<T>;
-  const T pi(std::numbers::pi_v<S>), two_pi = T(2) * pi;
-  // y depends on phi and w only through cos(phi + w t) and sin(phi) w: turning backwards is the mirror image.
-  const T angle = select(lift_off.spin < T(0), -lift_off.angle, lift_off.angle), spin = abs(lift_off.spin);
-  const T gamma = hoop.cos_slope / (hoop.rho * spin * spin);
-  const Toss<T> toss{angle - two_pi * floor(angle / two_pi), trig(angle), gamma};
+T crown(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
+  const T epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
+  const T middle = top + toss.opening, slack = T(1) + toss.gravity;
+  const T eta = (toss.phi.sin - toss.gravity * middle) / slack;
+  return polish_root([&](const T& psi) { return toss_climb(toss, psi); }, top, middle + toss.opening,
+                     middle + eta + eta * eta * eta / (T(6) * slack), wanted & !wanted, T(2) * epsilon * middle,
+                     wanted);
+}
 
-  wanted = wanted & (gamma < T(1));  // otherwise gravity wins from the start
-  const T opening = acos(select(wanted, -gamma, T(0)));
-  // The first knot at which y' has a maximum, in this turn of phi or the next.
-  const T turn = select(toss.angle > two_pi - opening, T(1), T(0));
-  const T first_top = two_pi * (turn + T(1)) - opening - toss.angle;
-  const T fastest = toss.phi.sin + sqrt(select(wanted, T(1) - gamma * gamma, T(0))) - gamma * first_top;
-  wanted = wanted & (fastest > T(0));
-  const MaskOf<T> several = wanted & (fastest > two_pi * gamma);
-
-  MaskOf<T> once = wanted & !several;
-  Flight<T> flight = climb_once(toss, opening, turn, once);
-  if (any(several)) {
-    constexpr std::size_t count = Lanes<T>::count;
-    const auto lane_of = [](const T& value) {
-      std::array<S, count> lanes;
-      Lanes<T>::store(value, lanes.data());
-      return lanes;
-    };
-    const auto a = lane_of(toss.angle), s = lane_of(toss.phi.sin), c = lane_of(toss.phi.cos), v = lane_of(toss.phi.versine),
-               g = lane_of(gamma);
-    auto height = lane_of(flight.height), apex = lane_of(flight.apex_time), landing = lane_of(flight.flight_time),
-         dip = lane_of(flight.dip);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(Lanes<T>::bits(several) >> i & 1u)) continue;
-      const Flight<S> one = walk_toss(Toss<S>{a[i], {s[i], c[i], v[i]}, g[i]});
-      height[i] = one.height, apex[i] = one.apex_time, landing[i] = one.flight_time, dip[i] = one.dip;
-    }
-    flight = {Lanes<T>::load(height.data()), Lanes<T>::load(apex.data()), Lanes<T>::load(landing.data()),
-              Lanes<T>::load(dip.data())};
+/// walk_toss lane by lane, for those in `wanted`.
+template <class T>
+Flight<T> walk(const Toss<T>& toss, const MaskOf<T>& wanted) {
+  const auto s = lanes_of(toss.phi.sin), c = lanes_of(toss.phi.cos), v = lanes_of(toss.phi.versine),
+             gravity = lanes_of(toss.gravity), opening = lanes_of(toss.opening), top = lanes_of(toss.top),
+             fastest = lanes_of(toss.fastest);
+  LaneArray<T> height{}, apex{}, landing{}, dip{};
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    if (!(Lanes<T>::bits(wanted) >> i & 1u)) continue;
+    const auto one = walk_toss(Toss<ScalarOf<T>>{{s[i], c[i], v[i]}, gravity[i], opening[i], top[i], fastest[i]});
+    height[i] = one.height, apex[i] = one.apex_time, landing[i] = one.flight_time, dip[i] = one.dip;
   }
-  const T diameters = T(0.5) * hoop.rho, unit = T(1) / select(spin > T(0), spin, T(1));
-  return {flight.height * diameters, flight.apex_time * unit, flight.flight_time * unit, flight.dip * diameters};
+  return {Lanes<T>::load(height.data()), Lanes<T>::load(apex.data()), Lanes<T>::load(landing.data()),
+          Lanes<T>::load(dip.data())};
+}
+
+template <class T>
+MaskOf<T> climbs_often(const Toss<T>& toss) {
+  return toss.fastest > T(2 * most_climbs * std::numbers::pi_v<ScalarOf<T>>) * toss.gravity;
+}
+
+}  // namespace toss_detail
+
+/// The apex of a toss, climb by climb; only lanes in `wanted` are searched, the others have height zero.
+template <class T>
+Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
+  using std::sqrt;
+  using S = ScalarOf<T>;
+  const T two_pi(S(2) * std::numbers::pi_v<S>);
+  Ascent<T> ascent;
+  const MaskOf<T> often = wanted & toss_detail::climbs_often(toss);
+  MaskOf<T> climbing = wanted & (toss.fastest > T(0)) & !often, above = wanted & !wanted;
+  T top = toss.top, fastest = toss.fastest;
+  // from a maximum of y' to the minimum after it
+  const T drop = T(2) * (sqrt(T(1) - toss.gravity * toss.gravity) + toss.gravity * toss.opening);
+  for (bool first = true; any(climbing); first = false) {
+    const MaskOf<T> sinking = climbing & (fastest + toss.gravity * two_pi < drop);
+    if (!first && any(sinking)) {
+      const T at = toss_detail::bottom(toss, top, sinking), y = toss_height(toss, at).value;
+      const MaskOf<T> landed = sinking & above & !(y > T(0));
+      ascent.sunk = select(landed, at, ascent.sunk);
+      climbing = climbing & !landed;
+      ascent.dip = select(sinking & !above, smaller(ascent.dip, y), ascent.dip);
+    }
+    const MaskOf<T> cresting = climbing & (fastest < drop);
+    if (any(cresting)) {
+      const T at = toss_detail::crown(toss, top, cresting), y = toss_height(toss, at).value;
+      const MaskOf<T> clear = cresting & (y > T(0)), higher = clear & (y > ascent.height);
+      above = above | clear;
+      ascent.height = select(higher, y, ascent.height);
+      ascent.apex = select(higher, at, ascent.apex);
+      ascent.last_apex = select(clear, at, ascent.last_apex);
+    }
+    top = top + two_pi;
+    fastest = fastest - toss.gravity * two_pi;
+    const MaskOf<T> over = climbing & !(fastest > T(0));
+    ascent.sunk = select(over & above, T(1.001) * toss_end(toss), ascent.sunk);
+    climbing = climbing & !over;
+  }
+  if (any(often)) {
+    const Flight<T> flight = toss_detail::walk(toss, often);
+    ascent.height = select(often, flight.height, ascent.height);
+    ascent.apex = select(often, flight.apex_time, ascent.apex);
+  }
+  return ascent;
+}
+
+/// The rest of a flight, psi in place of times and heights of rho; lanes outside `wanted` return anything.
+template <class T>
+Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>& wanted) {
+  using std::sqrt;
+  const T pi(std::numbers::pi_v<ScalarOf<T>>), epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
+  const MaskOf<T> often = wanted & toss_detail::climbs_often(toss), seldom = wanted & !often;
+  T dip = ascent.dip;
+  const MaskOf<T> dips = seldom & (toss.top > T(2) * (pi - toss.opening));
+  if (any(dips)) {
+    const T lowest = toss_height(toss, toss_detail::bottom(toss, toss.top, dips)).value;
+    dip = select(dips, smaller(dip, lowest), dip);
+  }
+  const CurvedSample<T> apex = toss_height(toss, ascent.last_apex);
+  const T guess = ascent.last_apex + sqrt(T(-2) * apex.value / apex.curvature);
+  const T landing = polish_root([&](const T& psi) { return toss_height(toss, psi); }, ascent.last_apex, ascent.sunk,
+                                guess, wanted & !wanted, T(2) * epsilon * ascent.sunk, seldom);
+  Flight<T> flight{ascent.height, ascent.apex, landing, dip};
+  if (any(often)) {
+    const Flight<T> walked = toss_detail::walk(toss, often);
+    flight.flight_time = select(often, walked.flight_time, landing);
+    flight.dip = select(often, walked.dip, dip);
+  }
+  return flight;
+}
+
+/// A toss's flight in its units.
+template <class T>
+Flight<T> scaled(const Flight<T>& toss, const Hoop<T>& hoop, const T& spin) {
+  using std::abs;
+  const T diameters = T(0.5) * hoop.rho, unit = T(1) / abs(spin);
+  return {toss.height * diameters, toss.apex_time * unit, toss.flight_time * unit, toss.dip * diameters};
+}
+
+/// The whole flight that starts at lift_off.
+template <class T>
+Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
+  const Toss<T> toss = toss_of(hoop, lift_off);
+  const Ascent<T> ascent = ascend(toss, true);
+  if (!(ascent.height > T(0))) return {};
+  return scaled(descend(toss, ascent, true), hoop, lift_off.spin);
 }
 
 }  // namespace leapmap

@@ -35,50 +35,74 @@ class ExactSolver {
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
 
  private:
-  static constexpr std::size_t block = 512;
+  static constexpr std::size_t block = 1024;
+  static constexpr int most_halvings = 40;  // an interval is then 1e-13 rad long
   static constexpr std::size_t width = Lanes<T>::count;
-  using Index = std::array<std::uint32_t, width>;  // of designs in the block, lanes to spare repeat the first
+  using Index = std::array<std::uint32_t, width>;  // of designs in the block; lanes to spare repeat the first
+  using List = std::vector<std::uint32_t>;         // of designs in the block
 
-  /// A number for each design of the block.
-  using Column = std::vector<S>;
-
-  /// How far a design's flagged intervals have been looked at: now at part `part` of 2^halvings equal ones.
-  struct Place {
-    int turn = 0, node = 0, halvings = 0;
-    std::uint64_t part = 0;
+  /// One design's search. Flagged intervals are looked at in order of angle, each in 2^halvings equal parts, now
+  /// part `part`.
+  struct Search {
+    S release, end;  // where the hoop is released, and where its runway ends or it stalls
+    S first_turn;    // of the scan
+    ScanFlags flags;
+    int turn, node, halvings;
+    std::uint64_t part;
+    S first_angle, jump_angle;  // of the lift-offs found
+    bool stalls;
+    // The time so far: to `panel` pi; the nodes it needs. 0: RollingTime::halving is needed
+    long panel;
+    S panel_time;
+    int panel_nodes, rest_nodes;
   };
   struct Interval {
     std::uint32_t design;
-    S from, to;
+    S from, to, guess;
+  };
+  struct Part {
+    long number;  // of the part of a panel in which the lift-off lies, from angle 0 on
+    std::uint32_t design;
+  };
+  struct LoadedIntervals {
+    Index index;
+    T from, to;
   };
 
   void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   void prepare(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
-  void find_stall(std::uint32_t design, S minimum, S crest);
-  void scan(std::span<const std::uint32_t> designs);
+  void find_stall(Search& search, const Roll<S>& roll, const S& minimum, const S& crest) const;
+  void scan(const List& designs);
   bool next_interval(std::uint32_t design, Interval& interval);
-  void advance(std::uint32_t design);
-  void look(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
+  void advance(Search& search) const;
+  void classify_intervals();
+  void take_off(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
+  void land(std::span<Outcome> outcomes) const;
   void take_times(std::span<Outcome> outcomes);
+  void start_clocks();
+  void sort_parts(std::vector<Part>& parts);
+  S halve_time(std::uint32_t design, S Search::*angle) const;
+  void take_times(const List& designs, S Search::*angle, double Outcome::*time, std::span<Outcome> outcomes);
 
-  Index index_of(std::span<const std::uint32_t> designs, std::size_t first) const;
-  T load(const Column& column, const Index& index) const;
-  void store(const T& value, Column& column, const Index& index, std::size_t count) const;
-  Roll<T> load_roll(const Index& index) const;
-  Roll<S> roll_of(std::uint32_t design) const;
+  Index index_of(const List& designs, std::size_t first) const;
+  Index index_of_part(const std::vector<Part>& parts, std::size_t first, std::size_t& count) const;
+  Quiet<T> load_quiet(const Index& index) const;
+  LoadedIntervals load_intervals(const std::vector<Interval>& intervals, std::size_t first) const;
+  T gather(const Index& index, S Search::*member) const;
+  template <class U>
+  Roll<U> load_roll(const std::uint32_t* index, bool with_release) const;
 
   Wanted wanted_;
   RollingTime<T> time_;
   ScanNodes<S> nodes_;
-  // Of each design in the block
-  std::array<Column, 13> rolls_;
-  Column end_, quiet_, first_turn_, first_angle_, jump_angle_;
-  std::vector<std::uint8_t> stalls_;
-  std::vector<ScanFlags> flags_;
-  std::vector<Place> places_;
-  // Designs still searching, those that need a scan, intervals to look at, designs with a lift-off
-  std::vector<std::uint32_t> searching_, unscanned_, lifted_;
-  std::vector<Interval> intervals_;
+  // Of each design in the block: its search; its hoop and level; its release; its last lift-off and its clock
+  std::vector<Search> searches_;
+  std::vector<Row<S>> motions_, releases_, lift_offs_;
+  List searching_, still_searching_, unscanned_, lifted_, jumped_, later_;
+  std::vector<Interval> intervals_, falls_;
+  std::vector<Part> early_, due_, sorted_parts_;
+  std::vector<std::uint32_t> places_;
+  std::array<S, most_halvings + 1> part_length_;
 };
 
 extern template class ExactSolver<double>;

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/rolling_time.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace leapmap {
 namespace {
 
 template <class T>
 const T pi_of = T(std::numbers::pi_v<ScalarOf<T>>);
+
+constexpr std::size_t most_starts = 64;  // beyond it the spans met are forgotten: memory stays bounded
 
 /// sqrt(J / E) = dt / dphi.
 template <class T>
@@ -13,74 +18,69 @@ T slowness(const T& inertia, const T& vis_viva) {
   return inertia * reciprocal_sqrt(inertia * vis_viva);
 }
 
-/// acosh(1 + x), as well as is needed to choose a number of nodes.
+/// The square of acosh(1 + x), from below; within 1 % for x < 1. Without a logarithm: it is only for node numbers.
 template <class T>
-T strip_of(const T& x) {
-  using std::log, std::sqrt;
-  return log(T(1) + x + sqrt(x * (x + T(2))));
+T square_acosh(const T& x) {
+  return T(12) * x / (T(6) + x);
 }
 
-/// The growth r of the ellipse about a panel of half-length `half` that touches a point `height` beside the panel's
-/// end, or beside any point of it.
+/// The square of log(r), of the ellipse about a panel through a point beside its end, or beside its middle; from below.
+/// `height` is the point's distance from the panel over its half-length.
 template <class T>
-T growth_beside_end(const T& height, const T& half) {
+T square_growth_beside_end(const T& height) {
   using std::sqrt;
-  const T e = height / half, sum = e + sqrt(T(4) + e * e);
-  return T(0.5) * (sum + sqrt(sum * sum - T(4)));
+  return square_acosh(T(0.5) * (height + sqrt(T(4) + height * height)) - T(1));
 }
 template <class T>
-T growth_beside(const T& height, const T& half) {
-  using std::sqrt;
-  const T e = height / half;
-  return e + sqrt(T(1) + e * e);
-}
-
-template <class T>
-ScalarOf<T> least_of(const T& value, const MaskOf<T>& among, ScalarOf<T> start) {
-  std::array<ScalarOf<T>, Lanes<T>::count> lanes;
-  Lanes<T>::store(select(among, value, T(start)), lanes.data());
-  return *std::min_element(lanes.begin(), lanes.end());
-}
-template <class T>
-ScalarOf<T> most_of(const T& value, const MaskOf<T>& among, ScalarOf<T> start) {
-  return -least_of(-value, among, -start);
+T square_growth_beside(const T& height) {
+  const T square = height * height;
+  return T(3) * square / (T(3) + square);  // of asinh(height)
 }
 
 }  // namespace
 
 template <class T>
 RollingTime<T>::RollingTime(double tolerance) {
-  using std::log, std::max;
-  tolerance_ = max(S(tolerance) * S(0.03L), std::numeric_limits<S>::epsilon());
+  using std::log;
+  tolerance_ = std::max(S(tolerance), std::numeric_limits<S>::epsilon());
   digits_ = -log(tolerance_);
-  panels_.resize(most_nodes + 1);
-  for (std::size_t n = 2; n <= most_nodes; ++n) {
-    Panels& panels = panels_[n];
-    panels.rule = gauss_rule<S>(n);
-    for (int half = 0; half < 2; ++half)
-      for (std::size_t i = 0; i < n; ++i) {
-        panels.angle.push_back(pi_of<S> * (S(half) + panels.rule.node[i]));
-        panels.weight.push_back(pi_of<S> * panels.rule.weight[i]);
-        panels.trig.push_back(trig(panels.angle.back()));
-      }
-  }
+  for (std::size_t n = 0; n <= most_nodes; ++n) rules_.push_back(gauss_rule<S>(n));
+  starts_.resize(rules_.size());
+  panels_.resize(rules_.size() * 2 * (parts_a_panel + 1));
 }
 
-/// The number of nodes that all lanes together need, given each one's growth r.
+/// The number of nodes for a panel whose r has this square of its logarithm.
 template <class T>
-int RollingTime<T>::nodes_for(const T& growth, MaskOf<T>& hard) const {
-  using std::log;
-  const T need = T(digits_ * S(0.5L)) / log(growth) + T(2);
+T RollingTime<T>::nodes_for(const T& square_growth, MaskOf<T>& hard) const {
+  const T need = T(digits_ * S(0.5L)) * reciprocal_sqrt(square_growth) + T(2);
   const MaskOf<T> too_many = !(need < T(S(most_nodes + 1)));
   hard = hard | too_many;
-  return std::max(2, static_cast<int>(most_of(need, !hard, S(2))));
+  return select(too_many, T(2), need);
 }
 
-/// From the release to `end`, at most a turn and a bit further, in x = x1 + q^2.
 template <class T>
-T RollingTime<T>::stretch(const Roll<T>& roll, const T& strip, const T& end, MaskOf<T>& hard) const {
+NodesNeeded<T> RollingTime<T>::needed(const Roll<T>& roll, const Quiet<T>& quiet, MaskOf<T>& hard) const {
+  using std::sqrt;
+  const T per_rho = T(1) / (T(2) * roll.hoop.rho);
+  NodesNeeded<T> nodes;
+  nodes.needle = sqrt(square_acosh(roll.hoop.J_min * per_rho));
+  nodes.strip = sqrt(square_acosh(quiet.vis_viva * per_rho));
+  const auto for_length = [&](const S& length) {
+    const T per_half = T(S(2) / length);
+    return nodes_for(smaller(square_growth_beside_end(nodes.needle * per_half), square_growth_beside(nodes.strip * per_half)),
+                     hard);
+  };
+  nodes.panel = for_length(pi_of<S>);
+  nodes.rest = for_length(pi_of<S> / S(parts_a_panel));
+  return nodes;
+}
+
+template <class T>
+T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& end,
+                          MaskOf<T>& hard) {
   using std::floor, std::sqrt;
   const Hoop<T>& hoop = roll.hoop;
+  const T rho2 = T(2) * hoop.rho;
   const T bend = -hoop.rho * cos_from_vertical(hoop, roll.release_trig);
   const T discriminant = roll.push * roll.push - roll.released * bend;
   const T root = sqrt(larger(discriminant, T(0)));
@@ -93,88 +93,115 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const T& strip, const T& end, Mas
   const T q0 = sqrt(-x1), q1 = sqrt(span - x1), half = T(0.5) * (q1 - q0);
   // The other zero, x2 < x1 where bend > 0: the ellipse through it has the sum of distances to the panel's ends.
   const T x2 = select(real & (bend > T(0)), -(roll.push + root) / bend, T(-1e6));
-  const T sum = larger((sqrt(-x2) + sqrt(span - x2)) / half, T(2));
-  const T behind = T(0.5) * (sum + sqrt(sum * sum - T(4)));
-  const T needle = T(2) * pi_of<T> * (floor(roll.release / (T(2) * pi_of<T>)) + T(1)) - roll.release;
-  const T height = T(0.5) * strip / q1;
-  const T ahead = select(needle > span * T(0.999), growth_beside_end(height, half), growth_beside(height, half));
-  const int n = nodes_for(smaller(behind, ahead), hard);
+  const T behind = square_acosh(larger((sqrt(-x2) + sqrt(span - x2)) / (T(2) * half) - T(1), T(0)));
+  // Needles and the quiet place come nearer by the map: an x + i d beside x is d / (2 q) beside q.
+  const T turned = roll.release - T(2) * pi_of<T> * floor(roll.release / (T(2) * pi_of<T>));
+  const T nearer = T(0.5) / (q1 * half);
+  const auto ahead = [&](const T& distance, const T& height) {
+    return select(distance > span * T(0.999), square_growth_beside_end(height * nearer),
+                  square_growth_beside(height * nearer));
+  };
+  T growth = smaller(behind, smaller(ahead(T(2) * pi_of<T> - turned, needed.needle), ahead(quiet.distance, needed.strip)));
+  if (any(turned < T(1))) {  // a needle just behind the release
+    const T u = -turned - x1, d = needed.needle;
+    growth = smaller(growth, square_growth_beside(sqrt(T(0.5) * (sqrt(u * u + d * d) - u)) / half));
+  }
+  const auto nodes = lanes_of(nodes_for(growth, hard));
+  const int n = static_cast<int>(*std::ranges::max_element(nodes));
 
-  const GaussRule<S>& rule = panels_[static_cast<std::size_t>(n)].rule;
+  // E as in vis_viva_past_release, and J likewise turned on from the release
+  const Trig<T>& phi0 = roll.release_trig;
+  const T by_sine = rho2 * sin_from_vertical(hoop, phi0), by_versine = -rho2 * cos_from_vertical(hoop, phi0);
+  const T push2 = T(2) * roll.push, J_cos = rho2 * phi0.versine, J_sin = rho2 * phi0.sin;
+  const auto slowness_at = [&](const auto& x, const auto& turned, const auto& x_less_sin) {
+    const T E = roll.released + push2 * T(x) + by_sine * T(x_less_sin) + by_versine * T(turned.versine);
+    const T J = hoop.J_min + rho2 * T(turned.versine) + J_cos * T(turned.cos) + J_sin * T(turned.sin);
+    return slowness(J, E);
+  };
+  const S first_span = lanes_of(span)[0];
   T total(0);
+  if (all((q0 == T(0)) & (span == T(first_span)))) {
+    for (const SharedNode& node : start_from_rest(first_span, n))
+      total = total + T(node.weight) * slowness_at(node.x, node.trig, node.x_less_sin);
+    return total;
+  }
+  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(n)];
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const T q = q0 + (q1 - q0) * T(rule.node[i]);
     const T x = x1 + q * q;
     const Trig<T> turned = trig(x);
-    const T versine = roll.release_trig.versine * turned.cos + turned.versine + roll.release_trig.sin * turned.sin;
-    const T E = vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned.sin));
-    total = total + T(rule.weight[i]) * q * slowness(hoop.J_min + T(2) * hoop.rho * versine, E);
+    total = total + T(rule.weight[i]) * q * slowness_at(x, turned, x_minus_sin(x, turned.sin));
   }
   return T(2) * (q1 - q0) * total;
 }
 
 template <class T>
-T RollingTime<T>::from_release(const Roll<T>& roll, const T& quiet, const T& angle, Clock<T>& clock,
-                               MaskOf<T>& hard) const {
-  const T rho2 = T(2) * roll.hoop.rho;
-  const T first = first_panel(roll), edge = first * pi_of<T>;
-  const T strip = smaller(strip_of(roll.hoop.J_min / rho2), strip_of(quiet / rho2));
-  clock = {first, stretch(roll, strip, smaller(edge, angle), hard)};
-  const MaskOf<T> beyond = angle > edge;
-  if (!any(beyond)) return clock.time;
-  return select(beyond, onward(roll, quiet, angle, clock, hard), clock.time);
+const std::vector<typename RollingTime<T>::SharedNode>& RollingTime<T>::start_from_rest(const S& span, int nodes) {
+  using std::sqrt;
+  std::vector<Start>& starts = starts_[static_cast<std::size_t>(nodes)];
+  const auto met = std::ranges::find(starts, span, &Start::span);
+  if (met != starts.end()) return met->nodes;
+  if (starts.size() >= most_starts) starts.clear();
+  Start& start = starts.emplace_back(span);
+  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+  const S q1 = sqrt(span);
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const S q = q1 * rule.node[i], x = q * q;
+    const Trig<S> turned = trig(x);
+    start.nodes.push_back({S(2) * q1 * q * rule.weight[i], x, x_minus_sin(x, turned.sin), turned});
+  }
+  return start.nodes;
 }
 
 template <class T>
-T RollingTime<T>::onward(const Roll<T>& roll, const T& quiet, const T& angle, Clock<T>& clock,
-                         MaskOf<T>& hard) const {
-  using std::floor;
-  const Hoop<T>& hoop = roll.hoop;
-  const T pi = pi_of<T>, rho2 = T(2) * hoop.rho;
-  const T needle = strip_of(hoop.J_min / rho2), strip = strip_of(quiet / rho2);
-  const T last = larger(floor(angle / pi), clock.panel);
-
-  // Half-turns, their nodes shared.
-  const T half = T(0.5) * pi;
-  const int n = nodes_for(smaller(growth_beside_end(needle, half), growth_beside(strip, half)), hard);
-  const Panels& panels = panels_[static_cast<std::size_t>(n)];
-  const auto begin = static_cast<long>(least_of(clock.panel, !hard, S(1e15))),
-             end = static_cast<long>(most_of(last, !hard, S(-1e15)));
-  const T gain = T(2) * hoop.sin_slope;
-  const T swing = rho2 * hoop.cos_slope, sway = rho2 * hoop.sin_slope;
-  for (long panel = begin; panel < end; ++panel) {
-    const MaskOf<T> inside = (T(S(panel)) >= clock.panel) & (T(S(panel)) < last);
-    const long odd = panel & 1;
-    const T level = roll.level + gain * T(pi_of<S> * S(panel - odd));
-    const auto first = static_cast<std::size_t>(odd * n);
-    T sum(0);
-    for (std::size_t i = first; i < first + static_cast<std::size_t>(n); ++i) {
-      const Trig<S>& phi = panels.trig[i];
-      const T E = level + gain * T(panels.angle[i]) + swing * T(phi.cos) - sway * T(phi.sin);
-      sum = sum + T(panels.weight[i]) * slowness(hoop.J_min + rho2 * T(phi.versine), E);
+T RollingTime<T>::panel(const Roll<T>& roll, long panel, int parts, int nodes) {
+  const long odd = panel & 1;
+  std::vector<SharedNode>& shared =
+      panels_[static_cast<std::size_t>((2 * nodes + odd) * (parts_a_panel + 1) + parts)];
+  if (shared.empty()) {
+    const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+    const S length = pi_of<S> * S(parts) / S(parts_a_panel);
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const S x = pi_of<S> * S(odd) + length * rule.node[i];
+      shared.push_back({length * rule.weight[i], x, S(0), trig(x)});
     }
-    clock.time = clock.time + select(inside, sum, T(0));
   }
-  clock.panel = last;
+  const Hoop<T>& hoop = roll.hoop;
+  const T gain = T(2) * hoop.sin_slope, rho2 = T(2) * hoop.rho;
+  const T swing = rho2 * hoop.cos_slope, sway = rho2 * hoop.sin_slope;
+  const T level = roll.level + gain * T(pi_of<S> * S(panel - odd));
+  T total(0);
+  for (const SharedNode& node : shared) {
+    const T E = level + gain * T(node.x) + swing * T(node.trig.cos) - sway * T(node.trig.sin);
+    total = total + T(node.weight) * slowness(hoop.J_min + rho2 * T(node.trig.versine), E);
+  }
+  return total;
+}
 
-  // The rest of the last one.
-  const T edge = last * pi, rest = angle - edge;
-  const T half_rest = larger(T(0.5) * rest, T(1e-3));
-  const int m = nodes_for(smaller(growth_beside_end(needle, half_rest), growth_beside(strip, half_rest)), hard);
-  const GaussRule<S>& rule = panels_[static_cast<std::size_t>(m)].rule;
-  T sum(0);
+template <class T>
+T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int nodes) const {
+  const Hoop<T>& hoop = roll.hoop;
+  const Trig<S> phi = trig(angle);
+  const Trig<T> from{T(phi.sin), T(phi.cos), T(phi.versine)};
+  const T gain = T(2) * hoop.sin_slope, rho2 = T(2) * hoop.rho;
+  const T level = roll.level + gain * T(angle);
+  const T swing = rho2 * cos_from_vertical(hoop, from), sway = rho2 * sin_from_vertical(hoop, from);
+  const T J_mean = hoop.J_min + rho2, J_cos = rho2 * from.cos, J_sin = rho2 * from.sin;
+  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+  T total(0);
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const T at = edge + rest * T(rule.node[i]);
-    const Trig<T> phi = trig(at);
-    sum = sum + T(rule.weight[i]) * slowness(contact_inertia(hoop, phi), vis_viva(roll, at, phi));
+    const T x = length * T(rule.node[i]);
+    const SinCos<T> turned = sincos_of(x);
+    const T E = level + gain * x + swing * turned.cos - sway * turned.sin;
+    total = total + T(rule.weight[i]) * slowness(J_mean - J_cos * turned.cos + J_sin * turned.sin, E);
   }
-  return clock.time + sum * rest;
+  return length * total;
 }
 
 template <class T>
 ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& from, const S& to) const {
   using std::abs, std::floor, std::sqrt;
-  const GaussRule<S>& gauss = panels_[std::min<std::size_t>(most_nodes, 6 + static_cast<std::size_t>(digits_ / 2))].rule;
+  const GaussRule<S>& gauss = rules_[6 + static_cast<std::size_t>(digits_ / S(2))];
   const auto rule = [&](const auto& f, S a, S b) {
     S sum(0);
     for (std::size_t i = 0; i < gauss.node.size(); ++i) sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
@@ -196,7 +223,8 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& from, const S&
   const Hoop<S>& hoop = roll.hoop;
   const S bend = -hoop.rho * cos_from_vertical(hoop, roll.release_trig);
   const S discriminant = roll.push * roll.push - roll.released * bend;
-  const S x1 = discriminant >= S(0) && roll.push > S(0) ? -roll.released / (roll.push + sqrt(discriminant)) : S(-1);
+  const S x1 =
+      discriminant >= S(0) && roll.push > S(0) ? -roll.released / (roll.push + sqrt(discriminant)) : S(-1);
   const auto past_release = [&](S q) {
     const S x = x1 + q * q;
     return S(2) * q * slowness(contact_inertia(hoop, trig(roll.release + x)), vis_viva_past_release(roll, x));

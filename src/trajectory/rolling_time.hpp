@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The time that rolling takes, t = integral of sqrt(J / E) dphi, by Gauss-Legendre quadrature.
 ///
-/// Half-turns between multiples of pi are panels whose nodes all designs share; before the first and after the last
-/// there is a stretch of a design's own. A rule of n nodes on a panel converges like r^(-2 n), where r is the sum of
-/// the half-axes of the largest ellipse about the panel in which the integrand is smooth: so n is chosen from
-/// where sqrt(J / E) is not,
+/// From the release to the first multiple of pi is a stretch in q, phi = phi0 + x1 + q^2, which takes out the nearer zero
+/// x1 of E = released + 2 push x + bend x^2 + ... From there half-turns, and parts of a half-turn, are panels whose
+/// nodes all designs share; what is left is the rest, short and a design's own.
+///
+/// A rule of n nodes converges like r^(-2 n), r the sum of the half-axes of the largest ellipse about its panel in which
+/// the integrand is smooth. So n is chosen from where sqrt(J / E) is not:
 ///   J = 0 at 2 pi k +- i d, cosh d = 1 + J_min / (2 rho), and
 ///   Re E > 0 within y of the real axis where cosh y = 1 + E_min / (2 rho): E(phi + i y) has the real part
 ///   E(phi) + 2 rho cos(theta + phi) (cosh y - 1).
-/// Near the release E = released + 2 push x + bend x^2 + ...; x = x1 + q^2 takes out the nearer of its zeros, x1.
 /// What would need too many nodes (a needle of the spin at phi = 0, a release a hair past the unstable equilibrium, a
 /// near stall) is left to adaptive halving, a design at a time.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -23,10 +22,20 @@
 
 namespace leapmap {
 
-/// How far a design's time has been integrated: to an angle that is a multiple of pi, `panel` pi.
+inline constexpr int parts_a_panel = 16;  ///< a panel is a half-turn; the rest is shorter than a part
+
+/// E's first minimum after the release, or where it rises least if it has none; `vis_viva` is at most E there and from
+/// the first panel on.
 template <class T>
-struct Clock {
-  T panel, time;
+struct Quiet {
+  T vis_viva;
+  T distance;  ///< from the release [rad]
+};
+
+/// How many nodes a design's panels and rests need, and the distances d and y that tell.
+template <class T>
+struct NodesNeeded {
+  T panel, rest, needle, strip;
 };
 
 template <class T>
@@ -34,16 +43,8 @@ class RollingTime {
  public:
   using S = ScalarOf<T>;
 
-  /// Times will be good to about the tolerance, relative, or a few roundings.
+  /// Times will be good to the tolerance, relative, or a few roundings; measured, it is a hundredth of that.
   explicit RollingTime(double tolerance);
-
-  /// The time from release to `angle`. `quiet`: E is at least this from first_panel(roll) pi on. Lanes that would need
-  /// too many nodes are put into `hard`, and their time means nothing. `clock` returns a mark to go on from, where the
-  /// angle lies beyond the first panel's edge.
-  T from_release(const Roll<T>& roll, const T& quiet, const T& angle, Clock<T>& clock, MaskOf<T>& hard) const;
-
-  /// The time from release to an angle beyond the clock's mark, which moves on with it.
-  T onward(const Roll<T>& roll, const T& quiet, const T& angle, Clock<T>& clock, MaskOf<T>& hard) const;
 
   /// The first multiple of pi that is far enough from the release to be a panel's edge.
   static T first_panel(const Roll<T>& roll) {
@@ -51,22 +52,43 @@ class RollingTime {
     return floor((roll.release + T(0.8)) / T(std::numbers::pi_v<S>)) + T(1);
   }
 
+  /// The nodes needed from the first panel on. Lanes that would need too many are put into
+  /// `hard`; their time, here and in stretch, means nothing.
+  NodesNeeded<T> needed(const Roll<T>& roll, const Quiet<T>& quiet, MaskOf<T>& hard) const;
+
+  /// The time from release to `end`, which is at most first_panel's edge.
+  T stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& end,
+            MaskOf<T>& hard);
+
+  /// The time that half-turn `panel` takes, from panel pi on, or its first `parts` parts; all of n nodes.
+  T panel(const Roll<T>& roll, long panel, int parts, int nodes);
+
+  /// The time from `angle` for less than a part.
+  T rest(const Roll<T>& roll, const S& angle, const T& length, int nodes) const;
+
   /// The time between two angles, from >= release, by halving intervals until they agree: for any design.
   S halving(const Roll<S>& roll, const S& from, const S& to) const;
 
  private:
-  struct Panels {  // two half-turns, 0 to pi and pi to 2 pi
-    GaussRule<S> rule;
-    std::vector<S> angle, weight;
-    std::vector<Trig<S>> trig;
-  };
   static constexpr int most_nodes = sizeof(S) > 8 ? 96 : 56;
 
-  int nodes_for(const T& growth, MaskOf<T>& hard) const;
-  T stretch(const Roll<T>& roll, const T& strip, const T& end, MaskOf<T>& hard) const;
+  /// Nodes that designs share.
+  struct SharedNode {
+    S weight, x, x_less_sin;
+    Trig<S> trig;  // of x
+  };
+  struct Start {  // from rest, for designs that have as far to go
+    S span;
+    std::vector<SharedNode> nodes;
+  };
+
+  T nodes_for(const T& square_growth, MaskOf<T>& hard) const;
+  const std::vector<SharedNode>& start_from_rest(const S& span, int nodes);
 
   S tolerance_, digits_;  // digits: log(1 / tolerance)
-  std::vector<Panels> panels_;  // by number of nodes
+  std::vector<GaussRule<S>> rules_;                   // by number of nodes
+  std::vector<std::vector<Start>> starts_;            // by number of nodes, the spans met so far
+  std::vector<std::vector<SharedNode>> panels_;  // by number of nodes, evenness and parts; filled when first used
 };
 
 }  // namespace leapmap
