@@ -80,6 +80,14 @@ template <class T>
 T smaller(const T& a, const T& b) {
   return select(a < b, a, b);
 }
+template <class S, class A>
+xsimd::batch<S, A> larger(const xsimd::batch<S, A>& a, const xsimd::batch<S, A>& b) {
+  return xsimd::max(a, b);
+}
+template <class S, class A>
+xsimd::batch<S, A> smaller(const xsimd::batch<S, A>& a, const xsimd::batch<S, A>& b) {
+  return xsimd::min(a, b);
+}
 
 template <class T>
 struct SinCos {

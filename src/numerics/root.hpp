@@ -15,15 +15,15 @@ struct Sample {
   T value, rate;
 };
 
-/// The same with the second derivative.
+/// The same with the second and third derivatives.
 template <class T>
 struct CurvedSample {
-  T value, rate, curvature;
+  T value, rate, curvature, jerk;
 };
 
-/// Newton's iteration, or Halley's where f gives the curvature, kept inside a bracket: bisects where a step would
-/// leave it or is not half as long as the last one. On SIMD lanes each lane is a search of its own, independent of
-/// its neighbours; only lanes in `wanted` are searched, the others return anything.
+/// Newton's iteration, or Householder's of order 4 where f gives its curvature, kept inside a bracket: bisects where a
+/// step would leave it or is not half as long as the last one. On SIMD lanes each lane is a search of its own,
+/// independent of its neighbours; only lanes in `wanted` are searched, the others return anything.
 ///
 /// f(x) returns a Sample or a CurvedSample; f must change sign between a and b: from below to above where `rising`,
 /// else from above to below. Ends when the next step is sure to be below `resolution`, or the bracket is; never takes
@@ -48,7 +48,9 @@ T polish_root(const F& f, T a, T b, T guess, MaskOf<T> rising, T resolution, Mas
     constexpr bool curved = requires { s.curvature; };
     T step;
     if constexpr (curved) {
-      step = T(-2) * s.value * s.rate / (T(2) * s.rate * s.rate - s.value * s.curvature);
+      const T square = s.rate * s.rate, bend = s.value * s.curvature;
+      step = T(-3) * s.value * (T(2) * square - bend) /
+             (T(6) * s.rate * (square - bend) + s.value * s.value * s.jerk);
     } else {
       step = -s.value / s.rate;
     }
@@ -57,7 +59,7 @@ T polish_root(const F& f, T a, T b, T guess, MaskOf<T> rising, T resolution, Mas
     const MaskOf<T> stepping = inside & (length <= T(0.5) * last_step);
     const T ratio = length / previous;
     T next_length = length * ratio * ratio;
-    if constexpr (curved) next_length = next_length * ratio;
+    if constexpr (curved) next_length = next_length * ratio * ratio;
     // A converged step may leave the bracket by a rounding error: x itself is then the root.
     const MaskOf<T> converged = (length <= resolution) | (stepping & (next_length <= resolution));
     const T next = select(stepping, proposed, a + (b - a) * T(0.5));

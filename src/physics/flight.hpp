@@ -39,12 +39,13 @@ template <class T>
 struct Toss {
   Trig<T> phi;  ///< of the angle at lift-off
   T gravity;    ///< gamma = cos(theta) / (rho w^2)
+  T swing;      ///< sqrt(1 - gamma^2)
   T opening;    ///< acos(-gamma): y'' > 0 for phi + psi in (opening, 2 pi - opening), modulo 2 pi
   T top;        ///< psi at the first maximum of y'
   T fastest;    ///< y' / rho there; from turn to turn it loses 2 pi gamma
 };
 
-/// y, y' and y'' over rho, primes by psi:
+/// y and three derivatives of it by psi, over rho:
 ///   y   = sin(phi) (psi - sin psi) - cos(phi) (1 - cos psi) - gamma psi^2 / 2
 ///   y'  = sin(phi) (1 - cos psi) - cos(phi) sin psi - gamma psi
 ///   y'' = -cos(phi + psi) - gamma
@@ -55,16 +56,17 @@ CurvedSample<T> toss_height(const Toss<T>& toss, const T& psi) {
   const T s = toss.phi.sin, c = toss.phi.cos;
   return {s * x_minus_sin(psi, turned.sin) - c * turned.versine - T(0.5) * toss.gravity * psi * psi,
           s * turned.versine - c * turned.sin - toss.gravity * psi,
-          s * turned.sin - c * turned.cos - toss.gravity};
+          s * turned.sin - c * turned.cos - toss.gravity, s * turned.cos + c * turned.sin};
 }
 
-/// y', y'' and y''' over rho.
+/// y' and three derivatives of it, over rho.
 template <class T>
 CurvedSample<T> toss_climb(const Toss<T>& toss, const T& psi) {
   const Trig<T> turned = trig(psi);
   const T s = toss.phi.sin, c = toss.phi.cos;
   return {s * turned.versine - c * turned.sin - toss.gravity * psi,
-          s * turned.sin - c * turned.cos - toss.gravity, s * turned.cos + c * turned.sin};
+          s * turned.sin - c * turned.cos - toss.gravity, s * turned.cos + c * turned.sin,
+          c * turned.cos - s * turned.sin};
 }
 
 /// Beyond this psi the hoop stays below the plane: where (psi sin(phi) + 1 - cos(phi)) = gamma psi^2 / 2.
@@ -75,23 +77,21 @@ T toss_end(const Toss<T>& toss) {
   return (s + sqrt(s * s + T(2) * toss.gravity * toss.phi.versine)) / toss.gravity;
 }
 
-/// The toss that starts at lift_off. Where gravity wins from the start (gamma >= 1), fastest is not above zero.
+/// The toss that starts at an angle, whose trig is phi, with a spin >= 0. Where gravity wins from the start
+/// (gamma >= 1), fastest is not above zero.
 template <class T>
-Toss<T> toss_of(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
-  using std::abs, std::acos, std::floor, std::sqrt;
+Toss<T> toss_of(const Hoop<T>& hoop, const T& angle, const Trig<T>& phi, const T& spin) {
+  using std::acos, std::floor, std::sqrt;
   const T pi(std::numbers::pi_v<ScalarOf<T>>), two_pi = T(2) * pi;
-  // y depends on phi and w only through cos(phi + w t) and sin(phi) w: turning backwards is the mirror image.
-  const T angle = select(lift_off.spin < T(0), -lift_off.angle, lift_off.angle);
   Toss<T> toss;
-  toss.phi = trig(angle);
-  toss.gravity = hoop.cos_slope / (hoop.rho * lift_off.spin * lift_off.spin);
+  toss.phi = phi;
+  toss.gravity = hoop.cos_slope / (hoop.rho * spin * spin);
   const MaskOf<T> light = toss.gravity < T(1);
   toss.opening = acos(select(light, -toss.gravity, T(0)));
-  const T in_turn = angle - two_pi * floor(angle / two_pi);
-  const T top = two_pi - toss.opening - in_turn;
+  const T top = two_pi - toss.opening - (angle - two_pi * floor(angle / two_pi));
   toss.top = select(top < T(0), top + two_pi, top);
-  const T swing = sqrt(larger(T(1) - toss.gravity * toss.gravity, T(0)));
-  toss.fastest = select(light, toss.phi.sin + swing - toss.gravity * toss.top, T(-1));
+  toss.swing = sqrt(larger(T(1) - toss.gravity * toss.gravity, T(0)));
+  toss.fastest = select(light, phi.sin + toss.swing - toss.gravity * toss.top, T(-1));
   return toss;
 }
 

@@ -117,12 +117,12 @@ T crown(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
 template <class T>
 Flight<T> walk(const Toss<T>& toss, const MaskOf<T>& wanted) {
   const auto s = lanes_of(toss.phi.sin), c = lanes_of(toss.phi.cos), v = lanes_of(toss.phi.versine),
-             gravity = lanes_of(toss.gravity), opening = lanes_of(toss.opening), top = lanes_of(toss.top),
+             gravity = lanes_of(toss.gravity), swing = lanes_of(toss.swing), opening = lanes_of(toss.opening), top = lanes_of(toss.top),
              fastest = lanes_of(toss.fastest);
   LaneArray<T> height{}, apex{}, landing{}, dip{};
   for (std::size_t i = 0; i < height.size(); ++i) {
     if (!(Lanes<T>::bits(wanted) >> i & 1u)) continue;
-    const auto one = walk_toss(Toss<ScalarOf<T>>{{s[i], c[i], v[i]}, gravity[i], opening[i], top[i], fastest[i]});
+    const auto one = walk_toss(Toss<ScalarOf<T>>{{s[i], c[i], v[i]}, gravity[i], swing[i], opening[i], top[i], fastest[i]});
     height[i] = one.height, apex[i] = one.apex_time, landing[i] = one.flight_time, dip[i] = one.dip;
   }
   return {Lanes<T>::load(height.data()), Lanes<T>::load(apex.data()), Lanes<T>::load(landing.data()),
@@ -139,7 +139,6 @@ MaskOf<T> climbs_often(const Toss<T>& toss) {
 /// The apex of a toss, climb by climb; only lanes in `wanted` are searched, the others have height zero.
 template <class T>
 Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
-  using std::sqrt;
   using S = ScalarOf<T>;
   const T two_pi(S(2) * std::numbers::pi_v<S>);
   Ascent<T> ascent;
@@ -147,7 +146,7 @@ Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
   MaskOf<T> climbing = wanted & (toss.fastest > T(0)) & !often, above = wanted & !wanted;
   T top = toss.top, fastest = toss.fastest;
   // from a maximum of y' to the minimum after it
-  const T drop = T(2) * (sqrt(T(1) - toss.gravity * toss.gravity) + toss.gravity * toss.opening);
+  const T drop = T(2) * (toss.swing + toss.gravity * toss.opening);
   for (bool first = true; any(climbing); first = false) {
     const MaskOf<T> sinking = climbing & (fastest + toss.gravity * two_pi < drop);
     if (!first && any(sinking)) {
@@ -216,7 +215,10 @@ Flight<T> scaled(const Flight<T>& toss, const Hoop<T>& hoop, const T& spin) {
 /// The whole flight that starts at lift_off.
 template <class T>
 Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
-  const Toss<T> toss = toss_of(hoop, lift_off);
+  using std::abs;
+  // y depends on phi and w only through cos(phi + w t) and sin(phi) w: turning backwards is the mirror image.
+  const T angle = lift_off.spin < T(0) ? -lift_off.angle : lift_off.angle;
+  const Toss<T> toss = toss_of(hoop, angle, trig(angle), T(abs(lift_off.spin)));
   const Ascent<T> ascent = ascend(toss, true);
   if (!(ascent.height > T(0))) return {};
   return scaled(descend(toss, ascent, true), hoop, lift_off.spin);

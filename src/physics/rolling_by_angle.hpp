@@ -64,7 +64,7 @@ T vis_viva_past_release(const Roll<T>& roll, const T& x) {
   return vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned.sin));
 }
 
-/// G and its first two derivatives at an angle.
+/// G and its first three derivatives at an angle.
 template <class T>
 CurvedSample<T> lift(const Roll<T>& roll, const T& angle) {
   const Hoop<T>& h = roll.hoop;
@@ -75,12 +75,17 @@ CurvedSample<T> lift(const Roll<T>& roll, const T& angle) {
   const T P = h.cos_slope * (h.Ic + q * q) + h.rho * h.sin_slope * s * q;
   const T bend = h.rho * s * s + c * q;  // d(s q)/dphi
   const T P1 = h.rho * (T(2) * h.cos_slope * s * q + h.sin_slope * bend);
-  const T P2 = h.rho * (T(2) * h.cos_slope * bend + h.sin_slope * s * (T(3) * h.rho * c - q));
+  const T bend1 = s * (T(3) * h.rho * c - q);  // d(bend)/dphi
+  const T P2 = h.rho * (T(2) * h.cos_slope * bend + h.sin_slope * bend1);
+  const T bend2 = c * (T(3) * h.rho * c - q) - T(4) * h.rho * s * s;
+  const T P3 = h.rho * (T(2) * h.cos_slope * bend1 + h.sin_slope * bend2);
   const T K = h.J_min * c - h.rho * phi.versine * phi.versine, K1 = -s * J, K2 = -c * J - s * J1;
-  const T E = vis_viva(roll, angle, phi), E1 = T(2) * torque(h, phi);
-  const T E2 = T(-2) * h.rho * cos_from_vertical(h, phi);
+  const T K3 = s * J - T(3) * c * J1;
+  const T steep = T(2) * h.rho * sin_from_vertical(h, phi), high = T(2) * h.rho * cos_from_vertical(h, phi);
+  const T E = roll.level + T(2) * angle * h.sin_slope + high, E1 = T(2) * h.sin_slope - steep;
   return {P * J + h.rho * K * E, P1 * J + P * J1 + h.rho * (K1 * E + K * E1),
-          P2 * J + T(2) * P1 * J1 + P * J2 + h.rho * (K2 * E + T(2) * K1 * E1 + K * E2)};
+          P2 * J + T(2) * P1 * J1 + P * J2 + h.rho * (K2 * E + T(2) * K1 * E1 - K * high),
+          P3 * J + T(3) * (P2 * J1 + P1 * J2) - P * J1 + h.rho * (K3 * E + T(3) * (K2 * E1 - K1 * high) + K * steep)};
 }
 
 /// Bounds of |G''| and |G'''| over all angles of one revolution.

@@ -105,7 +105,7 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
       Search& search = searches_[design];
       Interval interval;
       if (next_interval(design, interval)) {
-        intervals_.push_back(interval);
+        (interval.falls ? falls_ : intervals_).push_back(interval);
       } else if (search.end > S(2) * pi_of<S> * (search.first_turn + S(turns_a_scan))) {
         search.first_turn += S(turns_a_scan);
         search.turn = 0;
@@ -221,7 +221,7 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
   const S step = S(2) * pi_of<S> / S(nodes_a_turn);
   Search& search = searches_[design];
   while (search.turn < turns_a_scan) {
-    const std::uint64_t left = search.flags[static_cast<std::size_t>(search.turn)];
+    const std::uint64_t left = search.flags.looks[static_cast<std::size_t>(search.turn)];
     if (left == 0) {
       ++search.turn;
       continue;
@@ -231,7 +231,8 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
     const S part = part_length_[static_cast<std::size_t>(search.halvings)], at = node + S(search.part) * part;
     const S from = std::max(at * step, search.release), to = std::min((at + part) * step, search.end);
     if (from < to) {
-      interval = {design, from, to, S(0)};
+      const bool falls = search.flags.falls[static_cast<std::size_t>(search.turn)] >> search.node & 1u;
+      interval = {design, from, to, (from + to) * S(0.5), falls && from == at * step && to == (at + part) * step};
       return true;
     }
     if (from >= search.end) {
@@ -250,7 +251,7 @@ void ExactSolver<T>::advance(Search& search) const {
   while (search.halvings > 0 && search.part % 2 == 0) search.part /= 2, --search.halvings;
   if (search.halvings > 0) return;
   search.part = 0;
-  search.flags[static_cast<std::size_t>(search.turn)] &= ~(std::uint64_t{1} << search.node);
+  search.flags.looks[static_cast<std::size_t>(search.turn)] &= ~(std::uint64_t{1} << search.node);
 }
 
 /// Tells what the intervals hold; those with a lift-off become falls.
@@ -303,7 +304,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
                                 !all_lanes, T(2) * epsilon * larger(T(1), b), all_lanes);
     const Trig<T> phi = trig(angle);
     const T spin = sqrt(vis_viva(roll, angle, phi) / contact_inertia(roll.hoop, phi));
-    const Ascent<T> ascent = ascend(toss_of(roll.hoop, LiftOff<T>{T(0), angle, spin}), all_lanes);
+    const Ascent<T> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), all_lanes);
     const T height = T(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
     const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
                apexes = lanes_of(apex_time);
@@ -337,7 +338,7 @@ void ExactSolver<T>::land(std::span<Outcome> outcomes) const {
     const Roll<T> roll = load_roll<T>(index.data(), false);
     const std::array<T, 8> row = load_rows<T>(lift_offs_.data(), index.data());
     const T spin = row[spin_of];
-    const Toss<T> toss = toss_of(roll.hoop, LiftOff<T>{T(0), row[angle_of], spin});
+    const Toss<T> toss = toss_of(roll.hoop, row[angle_of], trig(row[angle_of]), spin);
     const Ascent<T> ascent{T(0), row[apex_of], row[last_apex_of], row[sunk_of], row[dip_of]};
     const Flight<T> flight = scaled(descend(toss, ascent, spin == spin), roll.hoop, spin);
     const auto landings = lanes_of(flight.flight_time), dips = lanes_of(flight.dip);
@@ -423,7 +424,7 @@ void ExactSolver<T>::take_times(const List& designs, S Search::*angle, double Ou
   sort_parts(due_);
   for (std::size_t first = 0, count = 0; first < early_.size(); first += count) {
     const Index index = index_of_part(early_, first, count);
-    int rest_nodes = 0;
+    int rest_nodes = time_.rest_nodes_near_release();
     for (const std::uint32_t design : index) rest_nodes = std::max(rest_nodes, searches_[design].rest_nodes);
     const Roll<T> roll = load_roll<T>(index.data(), true);
     const T to = gather(index, angle), edge(S(early_[first].number) * (pi_of<S> / S(parts_a_panel)));

@@ -59,6 +59,7 @@ class ExactSolver {
   struct Interval {
     std::uint32_t design;
     S from, to, guess;
+    bool falls;  // surely once, and nothing else
   };
   struct Part {
     long number;  // of the part of a panel in which the lift-off lies, from angle 0 on

@@ -2,15 +2,17 @@
 /// Where the normal force of a rolling hoop may fall through zero: no interval is passed over that could hold a fall.
 ///
 /// A revolution is divided at 48 nodes whose sines and cosines all designs share. Between two nodes, h apart, G
-/// (physics/rolling_by_angle.hpp) differs from its chord by at most |G''| h^2 / 8, so that an interval with both
-/// values beyond that, on the same side, holds no zero. The others are flagged. A flagged interval, or a part of it,
-/// is then told by values and slopes at its ends and the bounds of |G''| and |G'''|: one fall, nothing, or unclear; an
-/// unclear one is halved until it is clear. So pairs a hair apart are found by a bound, not by luck.
+/// (physics/rolling_by_angle.hpp) differs from its chord by at most m = |G''| h^2 / 8, and G' from the chord's slope by at
+/// most 4 m / h. So an interval is plain if its values differ by more than 4 m, for then G is monotone, or if one of them
+/// is beyond 5 m, for then G is monotone or keeps off zero. A plain interval holds one fall or none, as its signs tell.
+/// The others, or parts of them, are told by values and slopes at their ends and the bounds of |G''| and |G'''|: one
+/// fall, nothing, or unclear; an unclear one is halved until it is clear. So pairs a hair apart are found by a bound, not
+/// by luck.
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <numbers>
 
 #include "physics/rolling_by_angle.hpp"
@@ -20,8 +22,13 @@ namespace leapmap {
 inline constexpr int nodes_a_turn = 48;
 inline constexpr int turns_a_scan = 3;  ///< each further one costs a third of the first
 
-/// Flags of one design: bit k of turn t is the interval from node k to k + 1 of revolution first_turn + t.
-using ScanFlags = std::array<std::uint64_t, turns_a_scan>;
+/// Intervals of one design: bit k of turn t is the one from node k to k + 1 of revolution first_turn + t.
+using IntervalBits = std::array<std::uint64_t, turns_a_scan>;
+
+struct ScanFlags {
+  IntervalBits looks;  ///< intervals that may hold a fall
+  IntervalBits falls;  ///< those of them that surely hold one, and nothing else
+};
 
 /// The nodes 0 to 24; the others mirror them.
 template <class S>
@@ -35,67 +42,54 @@ ScanNodes<S> scan_nodes() {
   return nodes;
 }
 
-/// Spreads eight bytes, one a node with one bit a lane, into eight bytes, one a lane with one bit a node.
-inline std::uint64_t transpose_bits(std::uint64_t x) {
-  std::uint64_t t = (x ^ (x >> 7)) & 0x00aa00aa00aa00aau;
-  x ^= t ^ (t << 7);
-  t = (x ^ (x >> 14)) & 0x0000cccc0000ccccu;
-  x ^= t ^ (t << 14);
-  t = (x ^ (x >> 28)) & 0x00000000f0f0f0f0u;
-  return x ^ t ^ (t << 28);
-}
-
-/// Flags the intervals of `turns` <= turns_a_scan revolutions that may hold a zero of G, one ScanFlags a lane.
+/// Flags the intervals of `turns` <= turns_a_scan revolutions that may hold a fall of G, one ScanFlags a lane.
 template <class T>
 void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const T& first_turn, int turns,
                 ScanFlags* flags) {
+  using std::abs;
   using S = ScalarOf<T>;
-  constexpr int half = nodes_a_turn / 2;
   const Hoop<T>& h = roll.hoop;
   const S two_pi = S(2) * std::numbers::pi_v<S>, step = two_pi / S(nodes_a_turn);
   const T gain = T(S(2) * two_pi) * h.sin_slope;  // of E, a revolution
 
-  std::array<T, turns_a_scan> margin;
-  for (int t = 0; t < turns; ++t)
-    margin[static_cast<std::size_t>(t)] = lift_bounds(roll, first_turn + T(S(t))).second * T(step * step / S(8));
-
-  // Whether G is above its margin, or below minus it: one bit a lane, one byte a node.
-  using Bytes = std::array<std::array<std::uint8_t, 64>, turns_a_scan>;
-  alignas(64) Bytes above{}, below{};
-  const auto note = [&](int node, T G, const T& more) {
-    for (int t = 0; t < turns; ++t) {
-      const auto u = static_cast<std::size_t>(t), k = static_cast<std::size_t>(node);
-      above[u][k] = static_cast<std::uint8_t>(Lanes<T>::bits(G > margin[u]));
-      below[u][k] = static_cast<std::uint8_t>(Lanes<T>::bits(G < -margin[u]));
-      G = G + more;
-    }
-  };
+  // G at the nodes of the first revolution, and what each further one adds.
+  std::array<T, nodes_a_turn + 1> first, more;
   const T level = roll.level + gain * first_turn;
   const T pull = h.rho * h.sin_slope, rho2 = h.rho * h.rho, rho_J = h.rho * h.J_min;
   const T swing = T(S(2)) * h.rho * h.cos_slope, sway = T(S(2)) * pull, climb = T(S(2) * step) * h.sin_slope;
-  for (int k = 0; k <= half; ++k) {
-    const Trig<S>& phi = nodes[static_cast<std::size_t>(k)];
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Trig<S>& phi = nodes[k];
+    const std::size_t mirrored = nodes_a_turn - k;
     const T q = h.clearance + h.rho * T(phi.versine), J = h.J_min + T(S(2)) * h.rho * T(phi.versine);
     const T even = h.cos_slope * (h.Ic + q * q) * J, odd = pull * q * J * T(phi.sin);
     const T rho_K = rho_J * T(phi.cos) - rho2 * T(phi.versine * phi.versine);
     const T E = level + swing * T(phi.cos), E_odd = sway * T(phi.sin);
-    note(k, even + odd + rho_K * (E - E_odd + climb * T(S(k))), rho_K * gain);
-    if (k < half)
-      note(nodes_a_turn - k, even - odd + rho_K * (E + E_odd + climb * T(S(nodes_a_turn - k))), rho_K * gain);
+    first[k] = even + odd + rho_K * (E - E_odd + climb * T(S(k)));
+    first[mirrored] = even - odd + rho_K * (E + E_odd + climb * T(S(mirrored)));
+    more[k] = more[mirrored] = rho_K * gain;
   }
 
-  for (int t = 0; t < turns; ++t) {
-    const auto u = static_cast<std::size_t>(t);
-    std::array<std::uint64_t, 8> lane_flags{};
+  for (std::size_t i = 0; i < Lanes<T>::count; ++i) flags[i] = {};
+  for (std::size_t u = 0; u < static_cast<std::size_t>(turns); ++u) {
+    const T turn = T(S(u)), margin = lift_bounds(roll, first_turn + turn).second * T(step * step / S(8));
+    T G = first[0] + turn * more[0];
     for (std::size_t k = 0; k < nodes_a_turn; k += 8) {
-      std::uint64_t up, next_up, down, next_down;
-      std::memcpy(&up, &above[u][k], 8), std::memcpy(&next_up, &above[u][k + 1], 8);
-      std::memcpy(&down, &below[u][k], 8), std::memcpy(&next_down, &below[u][k + 1], 8);
-      const std::uint64_t by_lane = transpose_bits(~((up & next_up) | (down & next_down)));
-      for (std::size_t i = 0; i < Lanes<T>::count; ++i)
-        lane_flags[i] |= (by_lane >> (8 * i) & 0xffu) << k;
+      std::uint64_t positive = 0, plain = 0;  // one byte a node, one bit a lane
+      for (std::size_t j = 0; j < 8; ++j) {
+        const T next = first[k + j + 1] + turn * more[k + j + 1];
+        positive |= std::uint64_t{Lanes<T>::bits(G > T(0))} << (8 * j);
+        plain |= std::uint64_t{Lanes<T>::bits(larger(abs(G) - margin, abs(next - G)) > T(4) * margin)} << (8 * j);
+        G = next;
+      }
+      const std::uint64_t next_positive = positive >> 8 | std::uint64_t{Lanes<T>::bits(G > T(0))} << 56;
+      const std::uint64_t sinks = positive & ~next_positive;
+      constexpr std::uint64_t lanes = ((std::uint64_t{1} << Lanes<T>::count) - 1) * 0x0101010101010101u;
+      for (std::uint64_t look = (~plain | sinks) & lanes; look != 0; look &= look - 1) {
+        const auto bit = static_cast<std::size_t>(std::countr_zero(look)), lane = bit % 8;
+        flags[lane].looks[u] |= std::uint64_t{1} << (k + bit / 8);
+        flags[lane].falls[u] |= (sinks & plain) >> bit << 63 >> (63 - k - bit / 8);
+      }
     }
-    for (std::size_t i = 0; i < Lanes<T>::count; ++i) flags[i][u] = lane_flags[i];
   }
 }
 

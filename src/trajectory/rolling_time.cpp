@@ -179,6 +179,13 @@ T RollingTime<T>::panel(const Roll<T>& roll, long panel, int parts, int nodes) {
 }
 
 template <class T>
+int RollingTime<T>::rest_nodes_near_release() const {
+  using std::acosh;
+  const S farther = S(1) + S(0.4L) * S(2 * parts_a_panel) / pi_of<S>;  // 1 + 0.4 / half the length of a part
+  return static_cast<int>(S(0.5L) * digits_ / acosh(farther)) + 2;
+}
+
+template <class T>
 T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int nodes) const {
   const Hoop<T>& hoop = roll.hoop;
   const Trig<S> phi = trig(angle);

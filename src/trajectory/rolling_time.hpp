@@ -63,6 +63,9 @@ class RollingTime {
   /// The time that half-turn `panel` takes, from panel pi on, or its first `parts` parts; all of n nodes.
   T panel(const Roll<T>& roll, long panel, int parts, int nodes);
 
+  /// Nodes for a rest that begins as near as 0.4 rad behind the release: E's zero there is behind it.
+  int rest_nodes_near_release() const;
+
   /// The time from `angle` for less than a part.
   T rest(const Roll<T>& roll, const S& angle, const T& length, int nodes) const;
 
