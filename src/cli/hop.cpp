@@ -2,6 +2,7 @@
 /// leapmap hop: one design, told in full.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "cli/commands.hpp"
@@ -44,6 +45,17 @@ std::string verdict(const Story& story, const Scene& scene) {
   }
 }
 
+/// How well the second method agrees.
+std::string check_line(const Story& story) {
+  const Outcome &a = story.outcome, &b = *story.checked;
+  if (b.status == Status::failed) return "Check: gsl-rk8pd gave up on this design.";
+  if (a.status != b.status || a.candidates != b.candidates || a.spurious_first_jump != b.spurious_first_jump)
+    return fmt::format("Check: gsl-rk8pd at 1e-12 DISAGREES: {}, {} lift-offs.", name_of(b.status), b.candidates);
+  if (a.status != Status::jumped) return "Check: gsl-rk8pd at 1e-12 agrees.";
+  return fmt::format("Check: gsl-rk8pd at 1e-12 agrees, height within {:.1e} diameters, time within {:.1e}.",
+                     std::abs(a.jump_height - b.jump_height), std::abs(a.jump_time / b.jump_time - 1.0));
+}
+
 void print_table(const Spec& spec, const Story& story) {
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters()) {
@@ -78,6 +90,7 @@ void print_table(const Spec& spec, const Story& story) {
         "first dips {:.4g} diameters.\n",
         story.outcome.jump_height, 2.0 * spec.scene.radius * story.outcome.jump_height,
         story.outcome.apex_time * second, story.outcome.flight_time * second, story.outcome.dip);
+  if (story.checked) fmt::print("{}\n", check_line(story));
   for (const Graze& graze : story.grazes)
     fmt::print("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",
                graze.time * second, graze.minimum ? "minimum" : "maximum", graze.normal_force,
@@ -142,7 +155,9 @@ int run(const HopArguments& arguments) {
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval / time_unit(spec.scene);
   if (!arguments.trace.empty() && !(interval > 0.0))
     throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
-  const Story story = tell(spec.design, spec.scene, integration_options(spec.numerics), interval);
+  const Story story = resolved_method(spec.numerics) == "exact"
+                          ? tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
+                          : tell(spec.design, spec.scene, integration_options(spec.numerics), interval);
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
     attributes.emplace_back("status", std::string(name_of(story.outcome.status)));

@@ -28,6 +28,10 @@ int complain(int status, std::string_view what) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (!leapmap::instruction_set_supported())
+    return complain(other_failure, "was built for " + leapmap::instruction_set() +
+                                       ", which this machine does not have; build it here, or with "
+                                       "cmake -DLEAPMAP_ARCH=x86-64");
   int status = done;
   CLI::App app{
       "leapmap maps the jumps of passive hoops: thin hoops with an off-centre mass that roll down a plane "
@@ -41,7 +45,8 @@ int main(int argc, char** argv) {
       "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 "
       "interrupted.");
   app.set_version_flag(
-      "--version", fmt::format("leapmap {} (git {})", leapmap::program_version(), leapmap::git_revision()));
+      "--version", fmt::format("leapmap {} (git {}), built for {}", leapmap::program_version(),
+                               leapmap::git_revision(), leapmap::instruction_set()));
   app.require_subcommand(1);
   leapmap::cli::add_sweep(app, status);
   leapmap::cli::add_hop(app, status);

@@ -53,6 +53,7 @@ MapLayout layout_of(const Spec& spec) {
         std::ranges::find(spec.output.fields, field.name) != spec.output.fields.end())
       layout.fields.push_back(&field);
   layout.time_unit = time_unit(spec.scene);
+  layout.single = spec.output.precision == "f4";
   return layout;
 }
 
@@ -106,26 +107,34 @@ void plan(const Spec& spec, const std::string& map, const MapLayout& layout, con
 
 /// Runs the audit; its result as attributes. A disagreement sets status and is told with the command to see
 /// it.
-std::vector<hdf5::Attribute> run_audit(const Spec& spec, const SweepArguments& arguments, int& status) {
+std::vector<hdf5::Attribute> run_audit(const Spec& spec, const AuditDraw& draw, const SweepArguments& arguments,
+                                       int& status) {
   if (spec.numerics.audit <= 0.0) return {};
-  const AuditReport report = audit(spec, arguments.threads, [] { return noted_signal() != 0; });
+  const AuditReport report =
+      audit(spec, draw.samples(), arguments.threads, [] { return noted_signal() != 0; });
   if (!arguments.quiet)
     fmt::print(
         "audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
-        "differ\n",
+        "differ{}\n",
         grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
-        report.flag_mismatches);
-  if (report.first_mismatch) {
+        report.flag_mismatches,
+        report.undecided > 0 ? fmt::format("; on {} it gave up", report.undecided) : "");
+  const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
+    if (!design) return;
     status = 1;
-    fmt::print(stderr, "leapmap: audit: {} and {} disagree on design {}; see it by: {}\n",
-               resolved_method(spec.numerics), report.method, *report.first_mismatch,
-               hop_command(spec, DesignSpace(spec).at(*report.first_mismatch)));
-  }
+    fmt::print(stderr, "leapmap: audit: {} on design {}; see it by: {}\n", what, *design,
+               hop_command(spec, DesignSpace(spec).at(*design)));
+  };
+  const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
+  tell(report.first_mismatch, both + " disagree on status, flag or candidates");
+  tell(report.first_inaccurate, both + " differ by more than the tolerance");
   return {{"audit_designs", static_cast<std::int64_t>(report.designs)},
           {"audit_method", report.method},
           {"audit_max_abs_height_error", report.max_abs_height_error},
           {"audit_max_rel_time_error", report.max_rel_time_error},
-          {"audit_flag_mismatches", static_cast<std::int64_t>(report.flag_mismatches)}};
+          {"audit_flag_mismatches", static_cast<std::int64_t>(report.flag_mismatches)},
+          {"audit_undecided", static_cast<std::int64_t>(report.undecided)},
+          {"audit_beyond_tolerance", static_cast<std::int64_t>(report.beyond_tolerance)}};
 }
 
 int run(const SweepArguments& arguments) {
@@ -146,6 +155,7 @@ int run(const SweepArguments& arguments) {
   const auto begin = Clock::now();
   std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
   opening.emplace_back("threads", std::int64_t{threads});
+  AuditDraw draw(spec.numerics.audit, tiling);
   MapWriter writer(map, layout, tiling, opening, arguments.overwrite);
   note_signals();
   std::array<std::size_t, status_count> totals{};
@@ -158,6 +168,7 @@ int run(const SweepArguments& arguments) {
     options.progress = [&](std::size_t designs) { progress.update(designs); };
     done = run_sweep(spec, tiling, options, [&](const Tile& tile, std::span<const Outcome> outcomes) {
       for (const Outcome& outcome : outcomes) ++totals[static_cast<std::size_t>(outcome.status)];
+      if (spec.numerics.audit > 0.0) draw.take(tile, outcomes);
       writer.write(tile, outcomes);
     });
   }
@@ -166,7 +177,7 @@ int run(const SweepArguments& arguments) {
   std::vector<hdf5::Attribute> closing;
   if (noted_signal() == 0) {
     writer.flush();  // a full disk is told before the audit takes its time
-    closing = run_audit(spec, arguments, status);
+    closing = run_audit(spec, draw, arguments, status);
   }
   if (noted_signal() != 0) {
     const std::string part = writer.keep_part();

@@ -121,6 +121,10 @@ void write_attribute(hid_t object, const std::string& name, std::span<const doub
   write(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, simple(values.size()), values.data());
 }
 
+void write_attribute(hid_t object, const std::string& name, std::span<const float> values) {
+  write(object, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, simple(values.size()), values.data());
+}
+
 void write_attribute(hid_t object, const std::string& name, std::int64_t value) {
   write(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, scalar(), &value);
 }

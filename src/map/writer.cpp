@@ -58,16 +58,20 @@ void attach(hid_t dataset, const std::vector<Handle>& scales) {
     check(H5DSattach_scale(dataset, scales[i], static_cast<unsigned>(i)), "attaching a dimension scale");
 }
 
-Handle create_field(hid_t file, const Field& field, std::span<const hsize_t> shape,
+Handle create_field(hid_t file, const Field& field, bool single, std::span<const hsize_t> shape,
                     std::span<const hsize_t> chunk) {
   const std::string name(field.name);
   const auto* code = std::get_if<Code>(&field.source);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  Handle dataset = code ? hdf5::create_dataset(file, {name, H5T_STD_U8LE, shape, chunk, &code->fill})
-                        : hdf5::create_dataset(file, {name, H5T_IEEE_F64LE, shape, chunk, &nan});
+  constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
+  Handle dataset = code     ? hdf5::create_dataset(file, {name, H5T_STD_U8LE, shape, chunk, &code->fill})
+                   : single ? hdf5::create_dataset(file, {name, H5T_IEEE_F32LE, shape, chunk, &nanf})
+                            : hdf5::create_dataset(file, {name, H5T_IEEE_F64LE, shape, chunk, &nan});
   describe(dataset, field.unit, field.long_name);
   if (!code) {
-    hdf5::write_attribute(dataset, "_FillValue", std::array{nan});
+    // netCDF wants the fill value in the dataset's own type
+    single ? hdf5::write_attribute(dataset, "_FillValue", std::array{nanf})
+           : hdf5::write_attribute(dataset, "_FillValue", std::array{nan});
     return dataset;
   }
   hdf5::write_attribute(dataset, "_FillValue", std::array{code->fill});
@@ -99,7 +103,7 @@ void refuse_existing(const std::string& path, bool overwrite) {
 
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
   std::uint64_t per_design = layout.axes.empty() ? 8 + 8 * layout.columns.size() : 0;
-  for (const Field* field : layout.fields) per_design += std::holds_alternative<Code>(field->source) ? 1 : 8;
+  for (const Field* field : layout.fields) per_design += std::holds_alternative<Code>(field->source) ? 1 : layout.single ? 4 : 8;
   return per_design * tiling.designs();
 }
 
@@ -114,7 +118,7 @@ MapWriter::MapWriter(const std::string& path, const MapLayout& layout, const Til
     for (const MapAxis& column : layout.columns) attach(write_values(file_, column), scales);
     const std::vector<hsize_t> shape = to_hsize(tiling.shape()), chunk = to_hsize(tiling.tile_shape());
     for (const Field* field : fields_) {
-      datasets_.push_back(create_field(file_, *field, shape, chunk));
+      datasets_.push_back(create_field(file_, *field, layout.single, shape, chunk));
       attach(datasets_.back(), scales);
     }
     flush();

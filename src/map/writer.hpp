@@ -27,6 +27,7 @@ struct MapLayout {
   std::vector<MapAxis> columns;  ///< of a list: its parameters, along `design`
   std::vector<const Field*> fields;
   double time_unit = 1.0;  ///< sqrt(R/g) [s]
+  bool single = false;     ///< quantities as f4, not f8
 };
 
 class MapWriter {

@@ -2,11 +2,17 @@
 /// Which leapmap this is.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace leapmap {
 
 std::string_view program_version();  ///< for example "0.1.0"
 std::string_view git_revision();     ///< of the sources when they were configured, or "unknown"
+
+/// The instruction set this was compiled for and its lanes, for example "AVX-512, 8 lanes".
+std::string instruction_set();
+/// True if this machine has it.
+bool instruction_set_supported();
 
 }  // namespace leapmap

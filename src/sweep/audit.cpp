@@ -8,10 +8,16 @@
 #include <mutex>
 
 #include "sweep/designs.hpp"
+#include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
+#include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {
+
+constexpr double audit_tolerance = 1e-13;
+constexpr double own_error = 1e-11;  // an integration's at that tolerance, over a few revolutions
+constexpr double adaptive_slack = 100.0;
 
 /// splitmix64: a well-mixed number from a counter.
 std::uint64_t mix(std::uint64_t x) {
@@ -21,56 +27,114 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// The number of the i-th of `count` designs to audit, one at random from each of `count` equal shares of the
-/// sweep.
-std::size_t drawn(std::size_t i, std::size_t count, std::size_t designs) {
-  const double share = static_cast<double>(designs) / static_cast<double>(count);
-  const auto begin = static_cast<std::size_t>(share * static_cast<double>(i));
-  const auto end = std::max(begin + 1, static_cast<std::size_t>(share * static_cast<double>(i + 1)));
-  return std::min(begin + mix(i) % (end - begin), designs - 1);
+struct Difference {
+  bool flags = false;
+  double height = 0.0, time = 0.0;
+};
+
+Difference difference(const Outcome& a, const Outcome& b) {
+  Difference d;
+  d.flags = a.status != b.status || a.spurious_first_jump != b.spurious_first_jump || a.candidates != b.candidates;
+  if (d.flags) return d;
+  // What a sweep was not asked for is NaN, and std::max keeps the number before it.
+  for (const auto member : {&Outcome::jump_height, &Outcome::first_jump_height})
+    d.height = std::max(d.height, std::abs(a.*member - b.*member));
+  for (const auto member : {&Outcome::jump_time, &Outcome::first_jump_time, &Outcome::apex_time, &Outcome::flight_time})
+    if (a.*member != b.*member) d.time = std::max(d.time, std::abs(a.*member / b.*member - 1.0));
+  return d;
 }
 
-void compare(AuditReport& report, std::size_t number, const Outcome& ours, const Outcome& theirs) {
-  ++report.designs;
-  if (ours.status != theirs.status || ours.spurious_first_jump != theirs.spurious_first_jump ||
-      ours.candidates != theirs.candidates) {
-    ++report.flag_mismatches;
-    report.first_mismatch = std::min(report.first_mismatch.value_or(number), number);
-  } else if (ours.status == Status::jumped) {
-    report.max_abs_height_error =
-        std::max(report.max_abs_height_error, std::abs(ours.jump_height - theirs.jump_height));
-    report.max_rel_time_error =
-        std::max(report.max_rel_time_error, std::abs(ours.jump_time / theirs.jump_time - 1.0));
+/// What one unit in the last place of each parameter changes.
+Difference sensitivity(ExactSolver<double>& exact, const Design& design, const Scene& scene) {
+  std::vector<Design> designs{design};
+  for (const Option* parameter : design_parameters()) {
+    const auto member = std::get<ParameterSlot>(parameter->slot).member;
+    for (const double towards : {-1e300, 1e300}) {
+      Design nudged = design;
+      nudged.*member = std::nextafter(design.*member, towards);
+      if (in_range(*parameter, nudged.*member)) designs.push_back(nudged);
+    }
   }
+  std::vector<Outcome> outcomes(designs.size());
+  exact.solve(designs, scene, outcomes);
+  Difference most;
+  for (const Outcome& outcome : outcomes) {
+    const Difference d = difference(outcomes[0], outcome);
+    most = {most.flags || d.flags, std::max(most.height, d.height), std::max(most.time, d.time)};
+  }
+  return most;
 }
 
 }  // namespace
 
-AuditMethod audit_method(const Numerics& numerics) {
-  AuditMethod audit;
-  audit.name = resolved_method(numerics) == "gsl-rk8pd" ? "gsl-rkck" : "gsl-rk8pd";
-  audit.options.stepper = find_gsl_stepper(audit.name);
-  audit.options.control.relative = audit.options.control.absolute = 1e-13;
-  return audit;
+void AuditDraw::take(const Tile& tile, std::span<const Outcome> outcomes) {
+  const auto due = [&](std::size_t designs) {
+    return static_cast<std::size_t>(std::ceil(share_ * static_cast<double>(designs)));
+  };
+  const std::size_t count = due(seen_ + tile.count) - due(seen_);
+  std::vector<std::size_t> position;
+  for (std::size_t i = 0; i < count; ++i) {  // one at random from each of `count` equal shares of the tile
+    const std::size_t begin = i * tile.count / count, end = std::max(begin + 1, (i + 1) * tile.count / count);
+    const std::size_t drawn = begin + mix(seen_ + i) % (end - begin);
+    unravel(drawn, tile.extent, position);
+    std::size_t number = 0;
+    for (std::size_t k = 0; k < position.size(); ++k)
+      number = number * tiling_->shape()[k] + tile.start[k] + position[k];
+    samples_.push_back({number, outcomes[drawn]});
+  }
+  seen_ += tile.count;
 }
 
-AuditReport audit(const Spec& spec, int threads, const std::function<bool()>& stop_requested) {
+std::string audit_method(const Numerics& numerics) {
+  return resolved_method(numerics) == "exact" ? "gsl-rk8pd" : "exact";
+}
+
+AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
+                  const std::function<bool()>& stop_requested) {
   const DesignSpace space(spec);
-  const std::size_t designs = Tiling(shape_of(spec)).designs();
-  const auto count = static_cast<std::size_t>(std::ceil(spec.numerics.audit * static_cast<double>(designs)));
-  const AuditMethod method = audit_method(spec.numerics);
+  const bool integrates = audit_method(spec.numerics) != "exact";
+  const double allowed = std::max(spec.numerics.tolerance * (integrates ? 1.0 : adaptive_slack), own_error);
+  IntegrationOptions options;
+  options.stepper = find_gsl_stepper("gsl-rk8pd");
+  options.control.relative = options.control.absolute = audit_tolerance;
+
   AuditReport report;
-  report.method = method.name;
+  report.method = audit_method(spec.numerics);
   std::mutex reporting;
-  parallel_for_each(count, threads, [&] {
-    return [&, ours = std::make_unique<RollingIntegration>(integration_options(spec.numerics)),
-            theirs = std::make_unique<RollingIntegration>(method.options)](std::size_t i) {
-      const std::size_t number = drawn(i, count, designs);
+  parallel_for_each(samples.size(), threads, [&] {
+    return [&, rolling = std::make_unique<RollingIntegration>(options),
+            exact = std::make_unique<ExactSolver<double>>(audit_tolerance)](std::size_t i) {
+      const auto& [number, ours] = samples[i];
       const Design design = space.at(number);
-      const Outcome our_outcome = ours->solve(design, spec.scene),
-                    their_outcome = theirs->solve(design, spec.scene);
+      Outcome theirs;
+      if (integrates) {
+        theirs = rolling->solve(design, spec.scene);
+      } else {
+        exact->solve({&design, 1}, spec.scene, {&theirs, 1});
+      }
+      const Difference d = difference(ours, theirs);
+      const bool undecided = theirs.status == Status::failed && ours.status != Status::failed;
+      bool inaccurate = !d.flags && !undecided && (d.height > allowed || d.time > allowed);
+      if (inaccurate) {
+        const Difference ulp = sensitivity(*exact, design, spec.scene);
+        inaccurate = !ulp.flags && (d.height > std::max(allowed, 10.0 * ulp.height) ||
+                                    d.time > std::max(allowed, 10.0 * ulp.time));
+      }
       const std::lock_guard lock(reporting);
-      compare(report, number, our_outcome, their_outcome);
+      ++report.designs;
+      if (undecided) {
+        ++report.undecided;
+      } else if (d.flags) {
+        ++report.flag_mismatches;
+        report.first_mismatch = std::min(report.first_mismatch.value_or(number), number);
+      } else {
+        report.max_abs_height_error = std::max(report.max_abs_height_error, d.height);
+        report.max_rel_time_error = std::max(report.max_rel_time_error, d.time);
+      }
+      if (inaccurate) {
+        ++report.beyond_tolerance;
+        report.first_inaccurate = std::min(report.first_inaccurate.value_or(number), number);
+      }
       return !(stop_requested && stop_requested());
     };
   });

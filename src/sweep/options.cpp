@@ -27,10 +27,12 @@ constexpr Range fraction{0.0, 1.0};
 std::vector<std::string_view> frictions() { return {"sticking"}; }
 
 std::vector<std::string_view> methods() {
-  std::vector<std::string_view> names{"auto"};
+  std::vector<std::string_view> names{"auto", "exact"};
   for (const GslStepper& stepper : gsl_steppers()) names.push_back(stepper.name);
   return names;
 }
+
+std::vector<std::string_view> precisions() { return {"f8", "f4"}; }
 
 std::vector<std::string_view> field_names() {
   std::vector<std::string_view> names;
@@ -97,32 +99,32 @@ const std::array options{
            "method",
            TextSlot{[](Spec& s) -> std::string& { return s.numerics.method; }},
            "",
-           "how rolling is solved; auto: gsl-rk8pd",
+           "how rolling is solved; auto: exact, by conservation of energy",
            {},
            methods},
     Option{"numerics",
            "tolerance",
            NumberSlot{[](Spec& s) -> double& { return s.numerics.tolerance; }},
            "1",
-           "relative error allowed per step",
+           "relative error allowed in times (exact), or per step (gsl-)",
            {0.0, 0.1, false, true}},
     Option{"numerics",
            "absolute_tolerance",
            NumberSlot{[](Spec& s) -> double& { return s.numerics.absolute_tolerance; }},
            "1",
-           "absolute error allowed per step, in rad and sqrt(g/R); 0: as tolerance",
+           "gsl-: absolute error allowed per step, in rad and sqrt(g/R); 0: as tolerance",
            {0.0, 0.1}},
     Option{"numerics",
            "fixed_step",
            NumberSlot{[](Spec& s) -> double& { return s.numerics.fixed_step; }},
            "sqrt(R/g)",
-           "constant steps this long, errors unchecked; 0: adaptive steps",
+           "gsl-: constant steps this long, errors unchecked; 0: adaptive steps",
            {0.0, 100.0}},
     Option{"numerics",
            "max_steps",
            IntegerSlot{[](Spec& s) -> long& { return s.numerics.max_steps; }},
            "1",
-           "a design that needs more steps has status failed",
+           "gsl-: a design that needs more steps has status failed",
            {1, 1e12}},
     Option{"numerics", "audit", NumberSlot{[](Spec& s) -> double& { return s.numerics.audit; }}, "1",
            "share of designs solved again by an independent method", fraction},
@@ -135,6 +137,13 @@ const std::array options{
            "datasets to store; default: all",
            {},
            field_names},
+    Option{"output",
+           "precision",
+           TextSlot{[](Spec& s) -> std::string& { return s.output.precision; }},
+           "",
+           "type of stored numbers: f8, or f4 with 7 digits and half the size",
+           {},
+           precisions},
 };
 
 std::string shown(const Option& option, double value) {

@@ -242,6 +242,9 @@ std::string find_points(const Spec& spec) {
   return fs::exists(beside, ignored) ? beside.string() : spec.points;
 }
 
+/// Whether a stepper's own settings are set.
+bool in_effect(const Numerics& numerics) { return numerics.fixed_step > 0.0 || numerics.absolute_tolerance > 0.0; }
+
 }  // namespace
 
 std::string origin_of(const Spec& spec) { return spec.origin.empty() ? "command line" : spec.origin; }
@@ -278,6 +281,13 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
   };
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
   if (!given("mu_kinetic")) spec.coulomb.mu_kinetic = spec.coulomb.mu_static;
+
+  if (resolved_method(spec.numerics) == "exact") {
+    for (const Entry& entry : entries)
+      if (entry.option->key == "absolute_tolerance" || entry.option->key == "fixed_step")
+        if (in_effect(spec.numerics))
+          refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method), "with method = \"gsl-...\"");
+  }
 
   if (!spec.points.empty()) {
     if (!spec.axes.empty())

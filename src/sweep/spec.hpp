@@ -24,8 +24,8 @@ struct Coulomb {
 };
 
 struct Numerics {
-  std::string method = "auto";    ///< "auto" or a stepper's name
-  double tolerance = 1e-10;       ///< relative error allowed per step
+  std::string method = "auto";    ///< "auto", "exact" or a stepper's name
+  double tolerance = 1e-10;       ///< exact: relative error allowed in times; a stepper: per step
   double absolute_tolerance = 0;  ///< absolute error allowed per step; 0: the same as tolerance
   double fixed_step = 0;          ///< > 0: constant steps [sqrt(R/g)], errors unchecked
   long max_steps = 1'000'000;     ///< a design that needs more has status failed
@@ -35,6 +35,7 @@ struct Numerics {
 struct Output {
   std::string file;                 ///< the map; -o overrides it
   std::vector<std::string> fields;  ///< datasets to store; empty: all
+  std::string precision = "f8";     ///< of stored numbers: "f8" or "f4"
 };
 
 /// One parameter that varies over a grid of designs: values in the parameter's own unit (angles in rad).
@@ -74,10 +75,11 @@ std::string origin_of(const Spec& spec);
 /// The spec as resolved: TOML that read_spec turns into the same Spec again, every key and value written out.
 std::string resolved_text(const Spec& spec);
 
-/// The stepper and its controls that numerics asks for; "auto" is settled here.
+/// The stepper and its controls that numerics asks for, where the method is one of GSL's.
 IntegrationOptions integration_options(const Numerics& numerics);
 
-/// The name of the method that numerics.method stands for: "auto" is settled here.
+/// The name of the method that numerics.method stands for: "auto" is settled here. Rolling without slip conserves energy,
+/// so that it is exact; integration is for models that slide.
 std::string resolved_method(const Numerics& numerics);
 
 }  // namespace leapmap

@@ -63,7 +63,7 @@ std::string resolved_text(const Spec& original) {
 }
 
 std::string resolved_method(const Numerics& numerics) {
-  return numerics.method == "auto" ? "gsl-rk8pd" : numerics.method;
+  return numerics.method == "auto" ? "exact" : numerics.method;
 }
 
 IntegrationOptions integration_options(const Numerics& numerics) {

@@ -86,7 +86,9 @@ Quiet<T> ExactSolver<T>::load_quiet(const Index& index) const {
 }
 
 template <class T>
-void ExactSolver<T>::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
+void ExactSolver<T>::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
+                           std::vector<LiftOff<double>>* lift_offs) {
+  told_ = lift_offs;
   for (std::size_t first = 0; first < designs.size(); first += block) {
     const std::size_t count = std::min(block, designs.size() - first);
     solve_block(designs.subspan(first, count), scene, outcomes.subspan(first, count));
@@ -124,8 +126,8 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
     if (outcomes[i].candidates > 0) lifted_.push_back(static_cast<std::uint32_t>(i));
     if (outcomes[i].status == Status::jumped) jumped_.push_back(static_cast<std::uint32_t>(i));
   }
-  land(outcomes);
-  take_times(outcomes);
+  if (wanted_.descent) land(outcomes);
+  if (wanted_.first_jump_time || wanted_.jump_time) take_times(outcomes);
 }
 
 /// Derives every design's roll, and settles those that do not set out.
@@ -320,6 +322,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
       if (outcome.candidates == 0) search.first_angle = angles[i];
       search.jump_angle = angles[i];
       const LiftOff<double> lift_off{Outcome::none, static_cast<double>(angles[i]), static_cast<double>(spins[i])};
+      if (told_) told_->push_back(lift_off);
       const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]), Outcome::none,
                                   Outcome::none};
       if (consider(outcome, scene, designs[index[i]], lift_off, flight)) continue;
@@ -353,16 +356,23 @@ void ExactSolver<T>::land(std::span<Outcome> outcomes) const {
 template <class T>
 void ExactSolver<T>::take_times(std::span<Outcome> outcomes) {
   start_clocks();
+  const auto is_later = [&](std::uint32_t design) {
+    return searches_[design].jump_angle > searches_[design].first_angle;
+  };
+  if (!wanted_.first_jump_time)
+    std::erase_if(lifted_, [&](std::uint32_t design) {
+      return outcomes[design].status != Status::jumped || is_later(design);
+    });
   take_times(lifted_, &Search::first_angle, &Outcome::first_jump_time, outcomes);
   later_.clear();
   for (const std::uint32_t design : jumped_) {
-    if (searches_[design].jump_angle > searches_[design].first_angle) {
+    if (is_later(design)) {
       later_.push_back(design);
     } else {
       outcomes[design].jump_time = outcomes[design].first_jump_time;
     }
   }
-  take_times(later_, &Search::jump_angle, &Outcome::jump_time, outcomes);
+  if (wanted_.jump_time) take_times(later_, &Search::jump_angle, &Outcome::jump_time, outcomes);
 }
 
 template <class T>

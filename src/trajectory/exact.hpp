@@ -15,6 +15,7 @@ namespace leapmap {
 struct Wanted {
   bool first_jump_time = true;
   bool jump_time = true;
+  bool descent = true;  ///< flight_time and dip
 };
 
 /// Solves designs a block at a time, in stages on full lanes: scan all designs for intervals that may hold a lift-off;
@@ -32,7 +33,10 @@ class ExactSolver {
   /// tolerance: relative, of times; angles, spins and heights are good to rounding.
   explicit ExactSolver(double tolerance, const Wanted& wanted = {});
 
-  void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
+  /// Solves designs[i] into outcomes[i]. lift_offs, if given, is told angle and spin of every candidate, those of one
+  /// design in order; their times are NaN.
+  void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
+             std::vector<LiftOff<double>>* lift_offs = nullptr);
 
  private:
   static constexpr std::size_t block = 1024;
@@ -94,6 +98,7 @@ class ExactSolver {
   Roll<U> load_roll(const std::uint32_t* index, bool with_release) const;
 
   Wanted wanted_;
+  std::vector<LiftOff<double>>* told_ = nullptr;
   RollingTime<T> time_;
   ScanNodes<S> nodes_;
   // Of each design in the block: its search; its hoop and level; its release; its last lift-off and its clock

@@ -95,15 +95,15 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
   const T x2 = select(real & (bend > T(0)), -(roll.push + root) / bend, T(-1e6));
   const T behind = square_acosh(larger((sqrt(-x2) + sqrt(span - x2)) / (T(2) * half) - T(1), T(0)));
   // Needles and the quiet place come nearer by the map: an x + i d beside x is d / (2 q) beside q.
-  const T turned = roll.release - T(2) * pi_of<T> * floor(roll.release / (T(2) * pi_of<T>));
+  const T behind_by = roll.release - T(2) * pi_of<T> * floor(roll.release / (T(2) * pi_of<T>));
   const T nearer = T(0.5) / (q1 * half);
   const auto ahead = [&](const T& distance, const T& height) {
     return select(distance > span * T(0.999), square_growth_beside_end(height * nearer),
                   square_growth_beside(height * nearer));
   };
-  T growth = smaller(behind, smaller(ahead(T(2) * pi_of<T> - turned, needed.needle), ahead(quiet.distance, needed.strip)));
-  if (any(turned < T(1))) {  // a needle just behind the release
-    const T u = -turned - x1, d = needed.needle;
+  T growth = smaller(behind, smaller(ahead(T(2) * pi_of<T> - behind_by, needed.needle), ahead(quiet.distance, needed.strip)));
+  if (any(behind_by < T(1))) {  // a needle just behind the release
+    const T u = -behind_by - x1, d = needed.needle;
     growth = smaller(growth, square_growth_beside(sqrt(T(0.5) * (sqrt(u * u + d * d) - u)) / half));
   }
   const auto nodes = lanes_of(nodes_for(growth, hard));

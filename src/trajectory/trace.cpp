@@ -5,8 +5,10 @@
 
 #include <cmath>
 
+#include "physics/flight_search.hpp"
 #include "physics/rolling.hpp"
 #include "support/errors.hpp"
+#include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {
@@ -79,6 +81,37 @@ Story tell(const Design& design, const Scene& scene, const IntegrationOptions& o
     sample_until(start + flown,
                  [&](double t) { return flight_point(hoop, design, jump.lift_off, t - start); });
     story.points.push_back(flight_point(hoop, design, jump.lift_off, flown));
+  }
+  return story;
+}
+
+Story tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval,
+                   double graze_limit) {
+  IntegrationOptions options;
+  options.stepper = find_gsl_stepper("gsl-rk8pd");
+  options.control.relative = options.control.absolute = 1e-12;
+  Story story = tell(design, scene, options, interval, graze_limit);
+  story.checked = story.outcome;
+  story.candidates.clear();
+
+  // As a sweep solves it, so that every digit is the map's.
+  std::vector<LiftOff<double>> lift_offs;
+  ExactSolver<Batch>(tolerance).solve({&design, 1}, scene, {&story.outcome, 1}, &lift_offs);
+  const Hoop<double> hoop = derive<double>(design);
+  const Roll<double> roll = begin_roll(hoop, design.release_angle, design.release_spin);
+  const RollingTime<double> time(tolerance);
+  for (LiftOff<double>& lift_off : lift_offs) {
+    lift_off.time = time.halving(roll, roll.release, lift_off.angle);
+    story.candidates.push_back({lift_off, fly(hoop, lift_off)});
+  }
+  if (story.candidates.empty()) return story;
+  const Outcome& outcome = story.outcome;
+  story.candidates.front().lift_off.time = outcome.first_jump_time;
+  story.candidates.front().flight.height = outcome.first_jump_height;
+  if (outcome.status == Status::jumped) {
+    Candidate& jump = story.candidates.back();
+    jump.lift_off.time = outcome.jump_time;
+    jump.flight = {outcome.jump_height, outcome.apex_time, outcome.flight_time, outcome.dip};
   }
   return story;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "trajectory/outcome.hpp"
@@ -33,6 +34,7 @@ struct Candidate {
 
 struct Story {
   Outcome outcome;
+  std::optional<Outcome> checked;  ///< the integration's outcome, where another method's is told
   std::vector<Candidate> candidates;
   std::vector<Graze> grazes;  ///< zeros of the normal force decided by a hair, see Graze
   std::vector<TracePoint>
@@ -44,5 +46,10 @@ struct Story {
 /// Throws InputError if that would be more than 10^7 samples.
 Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval = 0.0,
            double graze_limit = 1e-6);
+
+/// The same by the exact solver: outcome and candidates are its own. Motion and grazes are gsl-rk8pd's, at 1e-12, whose
+/// outcome is told as `checked`.
+Story tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval = 0.0,
+                   double graze_limit = 1e-6);
 
 }  // namespace leapmap

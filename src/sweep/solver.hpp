@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Solves designs by the method that a spec asks for.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "sweep/spec.hpp"
+#include "trajectory/outcome.hpp"
+
+namespace leapmap {
+
+/// Solves designs[i] into outcomes[i]. Owns its workspace: one a thread.
+using Solver = std::function<void(std::span<const Design> designs, std::span<Outcome> outcomes)>;
+
+/// The solver of spec.numerics.method. What spec.output.fields leaves out need not be computed, and may be NaN.
+Solver make_solver(const Spec& spec);
+
+}  // namespace leapmap
