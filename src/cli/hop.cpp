@@ -50,7 +50,8 @@ std::string check_line(const Story& story) {
   const Outcome &a = story.outcome, &b = *story.checked;
   if (b.status == Status::failed) return "Check: gsl-rk8pd gave up on this design.";
   if (a.status != b.status || a.candidates != b.candidates || a.spurious_first_jump != b.spurious_first_jump)
-    return fmt::format("Check: gsl-rk8pd at 1e-12 DISAGREES: {}, {} lift-offs.", name_of(b.status), b.candidates);
+    return fmt::format("Check: gsl-rk8pd at 1e-12 DISAGREES: {}, {} lift-offs.", name_of(b.status),
+                       b.candidates);
   if (a.status != Status::jumped) return "Check: gsl-rk8pd at 1e-12 agrees.";
   return fmt::format("Check: gsl-rk8pd at 1e-12 agrees, height within {:.1e} diameters, time within {:.1e}.",
                      std::abs(a.jump_height - b.jump_height), std::abs(a.jump_time / b.jump_time - 1.0));

@@ -44,9 +44,9 @@ int main(int argc, char** argv) {
       "  leapmap info maps/slope_mass_ratio.h5             what is in it\n"
       "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 "
       "interrupted.");
-  app.set_version_flag(
-      "--version", fmt::format("leapmap {} (git {}), built for {}", leapmap::program_version(),
-                               leapmap::git_revision(), leapmap::instruction_set()));
+  app.set_version_flag("--version",
+                       fmt::format("leapmap {} (git {}), built for {}", leapmap::program_version(),
+                                   leapmap::git_revision(), leapmap::instruction_set()));
   app.require_subcommand(1);
   leapmap::cli::add_sweep(app, status);
   leapmap::cli::add_hop(app, status);

@@ -107,8 +107,8 @@ void plan(const Spec& spec, const std::string& map, const MapLayout& layout, con
 
 /// Runs the audit; its result as attributes. A disagreement sets status and is told with the command to see
 /// it.
-std::vector<hdf5::Attribute> run_audit(const Spec& spec, const AuditDraw& draw, const SweepArguments& arguments,
-                                       int& status) {
+std::vector<hdf5::Attribute> run_audit(const Spec& spec, const AuditDraw& draw,
+                                       const SweepArguments& arguments, int& status) {
   if (spec.numerics.audit <= 0.0) return {};
   const AuditReport report =
       audit(spec, draw.samples(), arguments.threads, [] { return noted_signal() != 0; });

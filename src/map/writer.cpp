@@ -103,7 +103,8 @@ void refuse_existing(const std::string& path, bool overwrite) {
 
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
   std::uint64_t per_design = layout.axes.empty() ? 8 + 8 * layout.columns.size() : 0;
-  for (const Field* field : layout.fields) per_design += std::holds_alternative<Code>(field->source) ? 1 : layout.single ? 4 : 8;
+  for (const Field* field : layout.fields)
+    per_design += std::holds_alternative<Code>(field->source) ? 1 : layout.single ? 4 : 8;
   return per_design * tiling.designs();
 }
 

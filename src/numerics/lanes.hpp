@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// One vocabulary for a number and for a SIMD batch of numbers, so that an algorithm is written once.
 ///
-/// Code on a scalar T says select(mask, a, b), any(mask) and all(mask) where it would say if; the mask of a plain
-/// number is a bool, its count of lanes one. For xsimd's batches the functions of the same names are xsimd's own.
+/// Code on a scalar T says select(mask, a, b), any(mask) and all(mask) where it would say if; the mask of a
+/// plain number is a bool, its count of lanes one. For xsimd's batches the functions of the same names are
+/// xsimd's own.
 #pragma once
 
 #include <array>
@@ -150,7 +151,8 @@ std::array<T, 8> load_rows(const Row<ScalarOf<T>>* rows, const std::uint32_t* in
 
 /// The reverse, for the first `count` lanes.
 template <class T>
-void store_rows(std::array<T, 8> columns, Row<ScalarOf<T>>* rows, const std::uint32_t* index, std::size_t count) {
+void store_rows(std::array<T, 8> columns, Row<ScalarOf<T>>* rows, const std::uint32_t* index,
+                std::size_t count) {
 #ifdef __AVX512F__
   if constexpr (std::is_same_v<T, Batch>) {
     transpose(columns);
@@ -174,7 +176,8 @@ T reciprocal_sqrt(const T& x) {
 #ifdef __AVX512F__
 /// From the instruction's 14 bits by one step of fourth order: half the time of a square root and a division.
 template <class A>
-xsimd::batch<double, A> reciprocal_sqrt(const xsimd::batch<double, A>& x) requires(xsimd::batch<double, A>::size == 8) {
+xsimd::batch<double, A> reciprocal_sqrt(const xsimd::batch<double, A>& x) requires(
+    xsimd::batch<double, A>::size == 8) {
   using T = xsimd::batch<double, A>;
   const T y = _mm512_rsqrt14_pd(x);
   const T error = T(1.0) - x * y * y;

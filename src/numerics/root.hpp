@@ -21,15 +21,16 @@ struct CurvedSample {
   T value, rate, curvature, jerk;
 };
 
-/// Newton's iteration, or Householder's of order 4 where f gives its curvature, kept inside a bracket: bisects where a
-/// step would leave it or is not half as long as the last one. On SIMD lanes each lane is a search of its own,
-/// independent of its neighbours; only lanes in `wanted` are searched, the others return anything.
+/// Newton's iteration, or Householder's of order 4 where f gives its curvature, kept inside a bracket:
+/// bisects where a step would leave it or is not half as long as the last one. On SIMD lanes each lane is a
+/// search of its own, independent of its neighbours; only lanes in `wanted` are searched, the others return
+/// anything.
 ///
-/// f(x) returns a Sample or a CurvedSample; f must change sign between a and b: from below to above where `rising`,
-/// else from above to below. Ends when the next step is sure to be below `resolution`, or the bracket is; never takes
-/// more than 200 evaluations. Sure: steps d1, d2 of an iteration of order p are followed by one of d2 (d2 / d1)^p;
-/// near a multiple root that estimate stays large, as it should. A sample that is not finite ends the search with
-/// NaN, so that a failed evaluation is never a silent root.
+/// f(x) returns a Sample or a CurvedSample; f must change sign between a and b: from below to above where
+/// `rising`, else from above to below. Ends when the next step is sure to be below `resolution`, or the
+/// bracket is; never takes more than 200 evaluations. Sure: steps d1, d2 of an iteration of order p are
+/// followed by one of d2 (d2 / d1)^p; near a multiple root that estimate stays large, as it should. A sample
+/// that is not finite ends the search with NaN, so that a failed evaluation is never a silent root.
 template <class T, class F>
 T polish_root(const F& f, T a, T b, T guess, MaskOf<T> rising, T resolution, MaskOf<T> wanted) {
   using std::abs;

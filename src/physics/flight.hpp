@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Free flight (13) in closed form: the spin is constant and the centre of mass flies a parabola.
 ///
-/// The hoop's lowest point is at height y(t) above the plane. Right after a lift-off from rolling y often dips below
-/// zero, because friction is cut off while it still brakes the spin; the jump is the first interval with y > 0.
-/// Measured in turned angle psi = w t and in heights of rho, a flight has two numbers only, a Toss.
+/// The hoop's lowest point is at height y(t) above the plane. Right after a lift-off from rolling y often
+/// dips below zero, because friction is cut off while it still brakes the spin; the jump is the first
+/// interval with y > 0. Measured in turned angle psi = w t and in heights of rho, a flight has two numbers
+/// only, a Toss.
 #pragma once
 
 #include <cmath>
@@ -33,8 +34,8 @@ struct Flight {
   T dip = T(0);          ///< least y before that interval, <= 0
 };
 
-/// A flight without its units, and the turns of its y'. y' has a maximum at psi = top, and again a turn later,
-/// and before it a minimum at top - 2 (pi - opening), if that is not before the lift-off.
+/// A flight without its units, and the turns of its y'. y' has a maximum at psi = top, and again a turn
+/// later, and before it a minimum at top - 2 (pi - opening), if that is not before the lift-off.
 template <class T>
 struct Toss {
   Trig<T> phi;  ///< of the angle at lift-off

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The apex, the dip and the landing of a flight. No root can be missed: the zeros of y'' are known in closed form,
-/// between two of them y' is monotone, and between two zeros of y' so is y. The lift-off itself (a double root of y,
-/// a triple one after sliding) is where the search starts and is never looked for.
+/// The apex, the dip and the landing of a flight. No root can be missed: the zeros of y'' are known in closed
+/// form, between two of them y' is monotone, and between two zeros of y' so is y. The lift-off itself (a
+/// double root of y, a triple one after sliding) is where the search starts and is never looked for.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace leapmap {
 
 /// Height, apex, landing and dip of a toss: psi in place of times, heights of rho in place of diameters.
 ///
-/// For one toss that rises and sinks many times. The walk goes from zero of y'' to zero of y''; of a fast spin's
-/// thousands of turns it leaps over those that can hold neither apex nor landing.
+/// For one toss that rises and sinks many times. The walk goes from zero of y'' to zero of y''; of a fast
+/// spin's thousands of turns it leaps over those that can hold neither apex nor landing.
 template <class S>
 Flight<S> walk_toss(const Toss<S>& toss) {
   using std::floor, std::sqrt;
@@ -38,11 +38,12 @@ Flight<S> walk_toss(const Toss<S>& toss) {
     return true;
   };
 
-  // With y between L(psi) = psi sin(phi) - gamma psi^2 / 2 - (1 + cos phi) and L + 2, no landing is possible while
-  // L > 0, and no apex farther than 2 / sqrt(gamma) from the vertex of L.
+  // With y between L(psi) = psi sin(phi) - gamma psi^2 / 2 - (1 + cos phi) and L + 2, no landing is possible
+  // while L > 0, and no apex farther than 2 / sqrt(gamma) from the vertex of L.
   const S s = toss.phi.sin, vertex = s / toss.gravity, around = S(2) / sqrt(toss.gravity);
   const S clearance = s * s - S(2) * toss.gravity * (S(1) + toss.phi.cos);
-  const S half_width = clearance > S(0) ? sqrt(clearance) / toss.gravity : S(0);  // of L > 0, about the vertex
+  const S half_width =
+      clearance > S(0) ? sqrt(clearance) / toss.gravity : S(0);  // of L > 0, about the vertex
   const auto next_of_interest = [&](const S& psi) {
     if (!above || !(psi > vertex - half_width) || !(psi < vertex + half_width)) return psi;
     if (psi < vertex - around) return vertex - around;
@@ -81,8 +82,8 @@ Flight<S> walk_toss(const Toss<S>& toss) {
 /// More climbs than this are left to walk_toss.
 inline constexpr int most_climbs = 6;
 
-/// A toss up to its apex, in psi and heights of rho, and where to look for its landing: it is between last_apex
-/// and sunk, where y only falls. Height zero: it never clears the plane.
+/// A toss up to its apex, in psi and heights of rho, and where to look for its landing: it is between
+/// last_apex and sunk, where y only falls. Height zero: it never clears the plane.
 template <class T>
 struct Ascent {
   T height = T(0), apex = T(0), last_apex = T(0), sunk = T(0), dip = T(0);
@@ -97,32 +98,34 @@ T bottom(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
   const T pi(std::numbers::pi_v<ScalarOf<T>>), epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
   const T valley = top - (pi - toss.opening), slack = T(1) - toss.gravity;
   const T eta = (toss.gravity * valley - toss.phi.sin) / slack;
-  return polish_root([&](const T& psi) { return toss_climb(toss, psi); }, larger(valley - (pi - toss.opening), T(0)),
-                     top, valley + eta + eta * eta * eta / (T(6) * slack), wanted | !wanted,
-                     T(2) * epsilon * top, wanted);
+  return polish_root(
+      [&](const T& psi) { return toss_climb(toss, psi); }, larger(valley - (pi - toss.opening), T(0)), top,
+      valley + eta + eta * eta * eta / (T(6) * slack), wanted | !wanted, T(2) * epsilon * top, wanted);
 }
 
-/// The zero of y' after its maximum at top, where y has a maximum: likewise, eta the turn past phi + psi = 2 pi.
+/// The zero of y' after its maximum at top, where y has a maximum: likewise, eta the turn past phi + psi = 2
+/// pi.
 template <class T>
 T crown(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
   const T epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
   const T middle = top + toss.opening, slack = T(1) + toss.gravity;
   const T eta = (toss.phi.sin - toss.gravity * middle) / slack;
   return polish_root([&](const T& psi) { return toss_climb(toss, psi); }, top, middle + toss.opening,
-                     middle + eta + eta * eta * eta / (T(6) * slack), wanted & !wanted, T(2) * epsilon * middle,
-                     wanted);
+                     middle + eta + eta * eta * eta / (T(6) * slack), wanted & !wanted,
+                     T(2) * epsilon * middle, wanted);
 }
 
 /// walk_toss lane by lane, for those in `wanted`.
 template <class T>
 Flight<T> walk(const Toss<T>& toss, const MaskOf<T>& wanted) {
   const auto s = lanes_of(toss.phi.sin), c = lanes_of(toss.phi.cos), v = lanes_of(toss.phi.versine),
-             gravity = lanes_of(toss.gravity), swing = lanes_of(toss.swing), opening = lanes_of(toss.opening), top = lanes_of(toss.top),
-             fastest = lanes_of(toss.fastest);
+             gravity = lanes_of(toss.gravity), swing = lanes_of(toss.swing), opening = lanes_of(toss.opening),
+             top = lanes_of(toss.top), fastest = lanes_of(toss.fastest);
   LaneArray<T> height{}, apex{}, landing{}, dip{};
   for (std::size_t i = 0; i < height.size(); ++i) {
     if (!(Lanes<T>::bits(wanted) >> i & 1u)) continue;
-    const auto one = walk_toss(Toss<ScalarOf<T>>{{s[i], c[i], v[i]}, gravity[i], swing[i], opening[i], top[i], fastest[i]});
+    const auto one = walk_toss(
+        Toss<ScalarOf<T>>{{s[i], c[i], v[i]}, gravity[i], swing[i], opening[i], top[i], fastest[i]});
     height[i] = one.height, apex[i] = one.apex_time, landing[i] = one.flight_time, dip[i] = one.dip;
   }
   return {Lanes<T>::load(height.data()), Lanes<T>::load(apex.data()), Lanes<T>::load(landing.data()),
@@ -193,8 +196,8 @@ Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>&
   }
   const CurvedSample<T> apex = toss_height(toss, ascent.last_apex);
   const T guess = ascent.last_apex + sqrt(T(-2) * apex.value / apex.curvature);
-  const T landing = polish_root([&](const T& psi) { return toss_height(toss, psi); }, ascent.last_apex, ascent.sunk,
-                                guess, wanted & !wanted, T(2) * epsilon * ascent.sunk, seldom);
+  const T landing = polish_root([&](const T& psi) { return toss_height(toss, psi); }, ascent.last_apex,
+                                ascent.sunk, guess, wanted & !wanted, T(2) * epsilon * ascent.sunk, seldom);
   Flight<T> flight{ascent.height, ascent.apex, landing, dip};
   if (any(often)) {
     const Flight<T> walked = toss_detail::walk(toss, often);

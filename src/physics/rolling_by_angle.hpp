@@ -3,9 +3,10 @@
 ///
 /// With the vis viva E(phi) = w^2 J(phi), twice the kinetic energy, the normal force (11) is
 ///   N = (P J + rho K E) / J^2,   P = cos(theta) (Ic + q^2) + rho sin(theta) s q,   K = J_min c - rho v^2,
-/// in s = sin phi, c = cos phi, v = 1 - c, q = 1 - rho c. The numerator G = P J + rho K E has the sign of N and no
-/// needle where J is small: a trigonometric polynomial of degree 3 plus phi times one of degree 2. It is linear in
-/// E, which gains 4 pi sin(theta) a revolution: G of all revolutions follows from one evaluation.
+/// in s = sin phi, c = cos phi, v = 1 - c, q = 1 - rho c. The numerator G = P J + rho K E has the sign of N
+/// and no needle where J is small: a trigonometric polynomial of degree 3 plus phi times one of degree 2. It
+/// is linear in E, which gains 4 pi sin(theta) a revolution: G of all revolutions follows from one
+/// evaluation.
 #pragma once
 
 #include "numerics/root.hpp"
@@ -46,11 +47,12 @@ Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
 /// E at an angle, accurate to a few roundings of its largest term.
 template <class T>
 T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {
-  return roll.level + T(2) * (angle * roll.hoop.sin_slope + roll.hoop.rho * cos_from_vertical(roll.hoop, phi));
+  return roll.level +
+         T(2) * (angle * roll.hoop.sin_slope + roll.hoop.rho * cos_from_vertical(roll.hoop, phi));
 }
 
-/// E an angle x past the release, without cancellation however small x is and however near the release is to an
-/// equilibrium: E0 + 2 push x + 2 rho sin(theta + phi0) (x - sin x) - 2 rho cos(theta + phi0) (1 - cos x).
+/// E an angle x past the release, without cancellation however small x is and however near the release is to
+/// an equilibrium: E0 + 2 push x + 2 rho sin(theta + phi0) (x - sin x) - 2 rho cos(theta + phi0) (1 - cos x).
 template <class T>
 T vis_viva_past_release(const Roll<T>& roll, const T& x, const Trig<T>& turned, const T& x_less_sin) {
   const Hoop<T>& hoop = roll.hoop;
@@ -85,7 +87,8 @@ CurvedSample<T> lift(const Roll<T>& roll, const T& angle) {
   const T E = roll.level + T(2) * angle * h.sin_slope + high, E1 = T(2) * h.sin_slope - steep;
   return {P * J + h.rho * K * E, P1 * J + P * J1 + h.rho * (K1 * E + K * E1),
           P2 * J + T(2) * P1 * J1 + P * J2 + h.rho * (K2 * E + T(2) * K1 * E1 - K * high),
-          P3 * J + T(3) * (P2 * J1 + P1 * J2) - P * J1 + h.rho * (K3 * E + T(3) * (K2 * E1 - K1 * high) + K * steep)};
+          P3 * J + T(3) * (P2 * J1 + P1 * J2) - P * J1 +
+              h.rho * (K3 * E + T(3) * (K2 * E1 - K1 * high) + K * steep)};
 }
 
 /// Bounds of |G''| and |G'''| over all angles of one revolution.
@@ -94,9 +97,9 @@ struct LiftBounds {
   T second, third;
 };
 
-/// For revolution `turn`, [2 pi turn, 2 pi (turn + 1)]. G is expanded there as harmonics 1 to 3 with E's linear part
-/// held at its middle, and the rest, 2 rho sin(theta) (phi - middle) K, is bounded by itself; each harmonic's amplitude
-/// is at most larger + (sqrt 2 - 1) smaller of its two coefficients.
+/// For revolution `turn`, [2 pi turn, 2 pi (turn + 1)]. G is expanded there as harmonics 1 to 3 with E's
+/// linear part held at its middle, and the rest, 2 rho sin(theta) (phi - middle) K, is bounded by itself;
+/// each harmonic's amplitude is at most larger + (sqrt 2 - 1) smaller of its two coefficients.
 template <class T>
 LiftBounds<T> lift_bounds(const Roll<T>& roll, const T& turn) {
   using std::abs;
@@ -108,7 +111,8 @@ LiftBounds<T> lift_bounds(const Roll<T>& roll, const T& turn) {
   const T middle = roll.level + T(4) * pi * h.sin_slope * (turn + half);
   const T k0 = T(-1.5) * rho, k1 = h.J_min + T(2) * rho, k2 = -half * rho;
   const T e = T(2) * rho * h.cos_slope, f = T(-2) * rho * h.sin_slope;  // of cos phi and sin phi in E
-  const T cos1 = h.cos_slope * (p0 * j1 + p1 * j0 + half * p2 * j1) + rho * (e * (k0 + half * k2) + k1 * middle);
+  const T cos1 =
+      h.cos_slope * (p0 * j1 + p1 * j0 + half * p2 * j1) + rho * (e * (k0 + half * k2) + k1 * middle);
   const T cos2 = h.cos_slope * (half * p1 * j1 + p2 * j0) + rho * (half * e * k1 + k2 * middle);
   const T cos3 = half * (h.cos_slope * p2 * j1 + rho * e * k2);
   const T pull = rho * h.sin_slope;

@@ -34,12 +34,14 @@ struct Difference {
 
 Difference difference(const Outcome& a, const Outcome& b) {
   Difference d;
-  d.flags = a.status != b.status || a.spurious_first_jump != b.spurious_first_jump || a.candidates != b.candidates;
+  d.flags =
+      a.status != b.status || a.spurious_first_jump != b.spurious_first_jump || a.candidates != b.candidates;
   if (d.flags) return d;
   // What a sweep was not asked for is NaN, and std::max keeps the number before it.
   for (const auto member : {&Outcome::jump_height, &Outcome::first_jump_height})
     d.height = std::max(d.height, std::abs(a.*member - b.*member));
-  for (const auto member : {&Outcome::jump_time, &Outcome::first_jump_time, &Outcome::apex_time, &Outcome::flight_time})
+  for (const auto member :
+       {&Outcome::jump_time, &Outcome::first_jump_time, &Outcome::apex_time, &Outcome::flight_time})
     if (a.*member != b.*member) d.time = std::max(d.time, std::abs(a.*member / b.*member - 1.0));
   return d;
 }

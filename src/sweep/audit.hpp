@@ -46,17 +46,18 @@ struct AuditReport {
   std::size_t flag_mismatches = 0;    ///< designs whose status, spurious flag or number of candidates differ
   std::size_t undecided = 0;          ///< designs on which the audit's method gave up
   std::size_t beyond_tolerance = 0;   ///< designs whose error is larger than it should be, see audit
-  std::optional<std::size_t> first_mismatch;   ///< the least design number whose flags differ
-  std::optional<std::size_t> first_inaccurate; ///< the least design number beyond the tolerance
+  std::optional<std::size_t> first_mismatch;    ///< the least design number whose flags differ
+  std::optional<std::size_t> first_inaccurate;  ///< the least design number beyond the tolerance
 };
 
 /// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact.
 std::string audit_method(const Numerics& numerics);
 
-/// Solves the samples again and compares. An error is beyond the tolerance if it is larger than numerics.tolerance (a
-/// hundred times that for an adaptive stepper, whose tolerance is per step; no less than 1e-11, the audit's own error),
-/// and larger than 10 times what one unit in the last place of the inputs makes of it.
-/// stop_requested is asked after each design; once true, the report covers what was done until then.
+/// Solves the samples again and compares. An error is beyond the tolerance if it is larger than
+/// numerics.tolerance (a hundred times that for an adaptive stepper, whose tolerance is per step; no less
+/// than 1e-11, the audit's own error), and larger than 10 times what one unit in the last place of the inputs
+/// makes of it. stop_requested is asked after each design; once true, the report covers what was done until
+/// then.
 AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
                   const std::function<bool()>& stop_requested = {});
 

@@ -13,7 +13,8 @@ namespace leapmap {
 /// Solves designs[i] into outcomes[i]. Owns its workspace: one a thread.
 using Solver = std::function<void(std::span<const Design> designs, std::span<Outcome> outcomes)>;
 
-/// The solver of spec.numerics.method. What spec.output.fields leaves out need not be computed, and may be NaN.
+/// The solver of spec.numerics.method. What spec.output.fields leaves out need not be computed, and may be
+/// NaN.
 Solver make_solver(const Spec& spec);
 
 }  // namespace leapmap

@@ -243,7 +243,9 @@ std::string find_points(const Spec& spec) {
 }
 
 /// Whether a stepper's own settings are set.
-bool in_effect(const Numerics& numerics) { return numerics.fixed_step > 0.0 || numerics.absolute_tolerance > 0.0; }
+bool in_effect(const Numerics& numerics) {
+  return numerics.fixed_step > 0.0 || numerics.absolute_tolerance > 0.0;
+}
 
 }  // namespace
 
@@ -286,7 +288,8 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
     for (const Entry& entry : entries)
       if (entry.option->key == "absolute_tolerance" || entry.option->key == "fixed_step")
         if (in_effect(spec.numerics))
-          refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method), "with method = \"gsl-...\"");
+          refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method),
+                 "with method = \"gsl-...\"");
   }
 
   if (!spec.points.empty()) {

@@ -78,8 +78,8 @@ std::string resolved_text(const Spec& spec);
 /// The stepper and its controls that numerics asks for, where the method is one of GSL's.
 IntegrationOptions integration_options(const Numerics& numerics);
 
-/// The name of the method that numerics.method stands for: "auto" is settled here. Rolling without slip conserves energy,
-/// so that it is exact; integration is for models that slide.
+/// The name of the method that numerics.method stands for: "auto" is settled here. Rolling without slip
+/// conserves energy, so that it is exact; integration is for models that slide.
 std::string resolved_method(const Numerics& numerics);
 
 }  // namespace leapmap

@@ -21,7 +21,8 @@ std::array<T, 8> motion_row(const Roll<T>& roll) {
 template <class T>
 std::array<T, 8> release_row(const Roll<T>& roll, const Quiet<T>& quiet) {
   const Trig<T>& phi = roll.release_trig;
-  return {roll.release, phi.sin, phi.cos, phi.versine, roll.released, roll.push, quiet.vis_viva, quiet.distance};
+  return {roll.release,  phi.sin,   phi.cos,        phi.versine,
+          roll.released, roll.push, quiet.vis_viva, quiet.distance};
 }
 enum LiftOffRow { angle_of, spin_of, apex_of, last_apex_of, sunk_of, dip_of };
 
@@ -54,8 +55,8 @@ T ExactSolver<T>::gather(const Index& index, S Search::*member) const {
 }
 
 template <class T>
-typename ExactSolver<T>::LoadedIntervals ExactSolver<T>::load_intervals(const std::vector<Interval>& intervals,
-                                                                       std::size_t first) const {
+typename ExactSolver<T>::LoadedIntervals ExactSolver<T>::load_intervals(
+    const std::vector<Interval>& intervals, std::size_t first) const {
   Index index;
   LaneArray<T> from, to;
   for (std::size_t i = 0; i < width; ++i) {
@@ -132,14 +133,16 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
 
 /// Derives every design's roll, and settles those that do not set out.
 template <class T>
-void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
+void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene,
+                             std::span<Outcome> outcomes) {
   using std::asin, std::floor;
   const T pi(pi_of<S>), two_pi = T(2) * pi;
   searching_.clear();
   for (std::size_t first = 0; first < designs.size(); first += width) {
     const std::size_t count = std::min(width, designs.size() - first);
     Index index;
-    for (std::size_t i = 0; i < width; ++i) index[i] = static_cast<std::uint32_t>(first + (i < count ? i : 0));
+    for (std::size_t i = 0; i < width; ++i)
+      index[i] = static_cast<std::uint32_t>(first + (i < count ? i : 0));
     const auto parameter = [&](double Design::*member) {
       LaneArray<T> lanes;
       for (std::size_t i = 0; i < width; ++i) lanes[i] = S(designs[index[i]].*member);
@@ -150,12 +153,13 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
     const T spin = parameter(&Design::release_spin);
     const Roll<T> roll = begin_roll(hoop, parameter(&Design::release_angle), spin);
 
-    const T force = normal_force(hoop, roll.release_trig, spin, angular_acceleration(hoop, roll.release_trig, spin));
+    const T force =
+        normal_force(hoop, roll.release_trig, spin, angular_acceleration(hoop, roll.release_trig, spin));
     const MaskOf<T> airborne = !(force > T(0));
     const MaskOf<T> uphill = (spin < T(0)) | ((spin == T(0)) & !(roll.push > T(0)));
-    // E has minima only if rho > sin(theta), where theta + phi = pi - asin(sin(theta) / rho); they rise from one
-    // revolution to the next, so that the first one after the release tells whether the hoop stalls. Otherwise E rises
-    // always, and least where theta + phi = pi / 2.
+    // E has minima only if rho > sin(theta), where theta + phi = pi - asin(sin(theta) / rho); they rise from
+    // one revolution to the next, so that the first one after the release tells whether the hoop stalls.
+    // Otherwise E rises always, and least where theta + phi = pi / 2.
     const MaskOf<T> uneven = hoop.rho > hoop.sin_slope;
     const T crest = asin(select(uneven, hoop.sin_slope / hoop.rho, T(1)));
     const T phase = pi - crest - hoop.slope;
@@ -163,8 +167,8 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
     const T least = vis_viva_past_release(roll, minimum - roll.release);
     const T at_edge = vis_viva_past_release(roll, RollingTime<T>::first_panel(roll) * pi - roll.release);
     store_rows(motion_row(roll), motions_.data(), index.data(), count);
-    store_rows(release_row(roll, Quiet<T>{smaller(least, at_edge), minimum - roll.release}), releases_.data(), index.data(),
-               count);
+    store_rows(release_row(roll, Quiet<T>{smaller(least, at_edge), minimum - roll.release}), releases_.data(),
+               index.data(), count);
 
     const unsigned in_the_air = Lanes<T>::bits(airborne), not_off = Lanes<T>::bits(uphill),
                    stalling = Lanes<T>::bits(uneven & !(least > T(0)));
@@ -194,7 +198,8 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
 template <class T>
 void ExactSolver<T>::find_stall(Search& search, const Roll<S>& roll, const S& minimum, const S& crest) const {
   const auto vis_viva_at = [&](const S& angle) {
-    return Sample<S>{vis_viva_past_release(roll, angle - roll.release), S(2) * torque(roll.hoop, trig(angle))};
+    return Sample<S>{vis_viva_past_release(roll, angle - roll.release),
+                     S(2) * torque(roll.hoop, trig(angle))};
   };
   const S from = std::max(roll.release, minimum - pi_of<S> + S(2) * crest);
   const S resolution = S(4) * std::numeric_limits<S>::epsilon() * std::max(S(1), minimum);
@@ -212,7 +217,8 @@ void ExactSolver<T>::scan(const List& designs) {
       while (turns < turns_a_scan && search.end > S(2) * pi_of<S> * (search.first_turn + S(turns))) ++turns;
     }
     std::array<ScanFlags, 8> flags;
-    scan_turns(nodes_, load_roll<T>(index.data(), false), gather(index, &Search::first_turn), turns, flags.data());
+    scan_turns(nodes_, load_roll<T>(index.data(), false), gather(index, &Search::first_turn), turns,
+               flags.data());
     for (std::size_t i = 0; i < width; ++i) searches_[index[i]].flags = flags[i];
   }
 }
@@ -234,7 +240,8 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
     const S from = std::max(at * step, search.release), to = std::min((at + part) * step, search.end);
     if (from < to) {
       const bool falls = search.flags.falls[static_cast<std::size_t>(search.turn)] >> search.node & 1u;
-      interval = {design, from, to, (from + to) * S(0.5), falls && from == at * step && to == (at + part) * step};
+      interval = {design, from, to, (from + to) * S(0.5),
+                  falls && from == at * step && to == (at + part) * step};
       return true;
     }
     if (from >= search.end) {
@@ -292,7 +299,8 @@ void ExactSolver<T>::classify_intervals() {
 
 /// Polishes the falls and flies from them up to the apex.
 template <class T>
-void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
+void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scene,
+                              std::span<Outcome> outcomes) {
   using std::sqrt;
   const T epsilon(std::numeric_limits<S>::epsilon());
   for (std::size_t first = 0; first < falls_.size(); first += width) {
@@ -310,8 +318,8 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
     const T height = T(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
     const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
                apexes = lanes_of(apex_time);
-    store_rows<T>({angle, spin, ascent.apex, ascent.last_apex, ascent.sunk, ascent.dip, T(0), T(0)}, lift_offs_.data(),
-               index.data(), count);
+    store_rows<T>({angle, spin, ascent.apex, ascent.last_apex, ascent.sunk, ascent.dip, T(0), T(0)},
+                  lift_offs_.data(), index.data(), count);
     for (std::size_t i = 0; i < count; ++i) {
       Search& search = searches_[index[i]];
       Outcome& outcome = outcomes[index[i]];
@@ -321,10 +329,11 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
       }
       if (outcome.candidates == 0) search.first_angle = angles[i];
       search.jump_angle = angles[i];
-      const LiftOff<double> lift_off{Outcome::none, static_cast<double>(angles[i]), static_cast<double>(spins[i])};
+      const LiftOff<double> lift_off{Outcome::none, static_cast<double>(angles[i]),
+                                     static_cast<double>(spins[i])};
       if (told_) told_->push_back(lift_off);
-      const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]), Outcome::none,
-                                  Outcome::none};
+      const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]),
+                                  Outcome::none, Outcome::none};
       if (consider(outcome, scene, designs[index[i]], lift_off, flight)) continue;
       advance(search);
       still_searching_.push_back(index[i]);
@@ -384,7 +393,8 @@ void ExactSolver<T>::start_clocks() {
     const Quiet<T> quiet = load_quiet(index);
     MaskOf<T> hard = roll.push != roll.push;
     const NodesNeeded<T> needed = time_.needed(roll, quiet, hard);
-    const T panel = time_.first_panel(roll), time = time_.stretch(roll, quiet, needed, panel * T(pi_of<S>), hard);
+    const T panel = time_.first_panel(roll),
+            time = time_.stretch(roll, quiet, needed, panel * T(pi_of<S>), hard);
     const unsigned by_halving = Lanes<T>::bits(hard);
     const auto panels = lanes_of(panel), times = lanes_of(time), panel_nodes = lanes_of(needed.panel),
                rest_nodes = lanes_of(needed.rest);
@@ -412,11 +422,13 @@ void ExactSolver<T>::sort_parts(std::vector<Part>& parts) {
   for (const Part& part : parts) ++places_[static_cast<std::size_t>(part.number - base) + 1];
   for (std::size_t i = 1; i < range; ++i) places_[i] += places_[i - 1];
   sorted_parts_.resize(parts.size());
-  for (const Part& part : parts) sorted_parts_[places_[static_cast<std::size_t>(part.number - base)]++] = part;
+  for (const Part& part : parts)
+    sorted_parts_[places_[static_cast<std::size_t>(part.number - base)]++] = part;
   std::swap(parts, sorted_parts_);
 }
 
-/// One of the outcome's times. Designs are taken in order of angle, so that those in the lanes have panels in common.
+/// One of the outcome's times. Designs are taken in order of angle, so that those in the lanes have panels in
+/// common.
 template <class T>
 void ExactSolver<T>::take_times(const List& designs, S Search::*angle, double Outcome::*time,
                                 std::span<Outcome> outcomes) {
@@ -469,9 +481,11 @@ void ExactSolver<T>::take_times(const List& designs, S Search::*angle, double Ou
     const long part = due_[first].number;
     const long end = (part - (part % parts_a_panel + parts_a_panel) % parts_a_panel) / parts_a_panel;
     for (long panel = begin; panel < end; ++panel)
-      taken = taken + select(T(S(panel)) >= first_panel, time_.panel(roll, panel, parts_a_panel, panel_nodes), T(0));
+      taken = taken +
+              select(T(S(panel)) >= first_panel, time_.panel(roll, panel, parts_a_panel, panel_nodes), T(0));
     auto times = lanes_of(taken);
-    for (std::size_t i = 0; i < count; ++i) searches_[index[i]].panel = end, searches_[index[i]].panel_time = times[i];
+    for (std::size_t i = 0; i < count; ++i)
+      searches_[index[i]].panel = end, searches_[index[i]].panel_time = times[i];
     if (const int parts = static_cast<int>(part - end * parts_a_panel); parts > 0)
       taken = taken + time_.panel(roll, end, parts, panel_nodes);
     const S edge = S(part) * (pi_of<S> / S(parts_a_panel));
@@ -487,8 +501,8 @@ ScalarOf<T> ExactSolver<T>::halve_time(std::uint32_t design, S Search::*angle) c
 
 /// As many designs of one part as there are lanes.
 template <class T>
-typename ExactSolver<T>::Index ExactSolver<T>::index_of_part(const std::vector<Part>& parts, std::size_t first,
-                                                             std::size_t& count) const {
+typename ExactSolver<T>::Index ExactSolver<T>::index_of_part(const std::vector<Part>& parts,
+                                                             std::size_t first, std::size_t& count) const {
   Index index;
   index.fill(parts[first].design);
   for (count = 1; count < width && first + count < parts.size(); ++count) {

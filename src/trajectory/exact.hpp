@@ -18,13 +18,13 @@ struct Wanted {
   bool descent = true;  ///< flight_time and dip
 };
 
-/// Solves designs a block at a time, in stages on full lanes: scan all designs for intervals that may hold a lift-off;
-/// tell, polish and fly the next one of each design still searching, until it jumps or its runway ends; integrate the
-/// times that are asked for.
+/// Solves designs a block at a time, in stages on full lanes: scan all designs for intervals that may hold a
+/// lift-off; tell, polish and fly the next one of each design still searching, until it jumps or its runway
+/// ends; integrate the times that are asked for.
 ///
-/// On any scalar: double; Batch, as many designs at once as the machine has lanes; long double, the tests' reference.
-/// A thread's own workspace. An outcome depends on the design, the scene and the block's other designs to within
-/// rounding (they share numbers of quadrature nodes), not on threads.
+/// On any scalar: double; Batch, as many designs at once as the machine has lanes; long double, the tests'
+/// reference. A thread's own workspace. An outcome depends on the design, the scene and the block's other
+/// designs to within rounding (they share numbers of quadrature nodes), not on threads.
 template <class T>
 class ExactSolver {
  public:
@@ -33,8 +33,8 @@ class ExactSolver {
   /// tolerance: relative, of times; angles, spins and heights are good to rounding.
   explicit ExactSolver(double tolerance, const Wanted& wanted = {});
 
-  /// Solves designs[i] into outcomes[i]. lift_offs, if given, is told angle and spin of every candidate, those of one
-  /// design in order; their times are NaN.
+  /// Solves designs[i] into outcomes[i]. lift_offs, if given, is told angle and spin of every candidate,
+  /// those of one design in order; their times are NaN.
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
              std::vector<LiftOff<double>>* lift_offs = nullptr);
 
@@ -45,8 +45,8 @@ class ExactSolver {
   using Index = std::array<std::uint32_t, width>;  // of designs in the block; lanes to spare repeat the first
   using List = std::vector<std::uint32_t>;         // of designs in the block
 
-  /// One design's search. Flagged intervals are looked at in order of angle, each in 2^halvings equal parts, now
-  /// part `part`.
+  /// One design's search. Flagged intervals are looked at in order of angle, each in 2^halvings equal parts,
+  /// now part `part`.
   struct Search {
     S release, end;  // where the hoop is released, and where its runway ends or it stalls
     S first_turn;    // of the scan

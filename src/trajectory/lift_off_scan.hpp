@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Where the normal force of a rolling hoop may fall through zero: no interval is passed over that could hold a fall.
+/// Where the normal force of a rolling hoop may fall through zero: no interval is passed over that could hold
+/// a fall.
 ///
-/// A revolution is divided at 48 nodes whose sines and cosines all designs share. Between two nodes, h apart, G
-/// (physics/rolling_by_angle.hpp) differs from its chord by at most m = |G''| h^2 / 8, and G' from the chord's slope by at
-/// most 4 m / h. So an interval is plain if its values differ by more than 4 m, for then G is monotone, or if one of them
-/// is beyond 5 m, for then G is monotone or keeps off zero. A plain interval holds one fall or none, as its signs tell.
-/// The others, or parts of them, are told by values and slopes at their ends and the bounds of |G''| and |G'''|: one
-/// fall, nothing, or unclear; an unclear one is halved until it is clear. So pairs a hair apart are found by a bound, not
-/// by luck.
+/// A revolution is divided at 48 nodes whose sines and cosines all designs share. Between two nodes, h apart,
+/// G (physics/rolling_by_angle.hpp) differs from its chord by at most m = |G''| h^2 / 8, and G' from the
+/// chord's slope by at most 4 m / h. So an interval is plain if its values differ by more than 4 m, for then
+/// G is monotone, or if one of them is beyond 5 m, for then G is monotone or keeps off zero. A plain interval
+/// holds one fall or none, as its signs tell. The others, or parts of them, are told by values and slopes at
+/// their ends and the bounds of |G''| and |G'''|: one fall, nothing, or unclear; an unclear one is halved
+/// until it is clear. So pairs a hair apart are found by a bound, not by luck.
 #pragma once
 
 #include <array>
@@ -42,7 +43,8 @@ ScanNodes<S> scan_nodes() {
   return nodes;
 }
 
-/// Flags the intervals of `turns` <= turns_a_scan revolutions that may hold a fall of G, one ScanFlags a lane.
+/// Flags the intervals of `turns` <= turns_a_scan revolutions that may hold a fall of G, one ScanFlags a
+/// lane.
 template <class T>
 void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const T& first_turn, int turns,
                 ScanFlags* flags) {
@@ -78,7 +80,8 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
       for (std::size_t j = 0; j < 8; ++j) {
         const T next = first[k + j + 1] + turn * more[k + j + 1];
         positive |= std::uint64_t{Lanes<T>::bits(G > T(0))} << (8 * j);
-        plain |= std::uint64_t{Lanes<T>::bits(larger(abs(G) - margin, abs(next - G)) > T(4) * margin)} << (8 * j);
+        plain |= std::uint64_t{Lanes<T>::bits(larger(abs(G) - margin, abs(next - G)) > T(4) * margin)}
+                 << (8 * j);
         G = next;
       }
       const std::uint64_t next_positive = positive >> 8 | std::uint64_t{Lanes<T>::bits(G > T(0))} << 56;
@@ -100,9 +103,9 @@ struct IntervalKind {
   MaskOf<T> unclear;  ///< cannot tell: halve it
 };
 
-/// G' is monotone, or has no root, where its values at both ends are beyond |G'''| length^2 / 8 and on one side; then G
-/// is monotone too. Without a change of sign between the ends, a zero needs a turning point that comes within
-/// |G''| length^2 / 8 of zero.
+/// G' is monotone, or has no root, where its values at both ends are beyond |G'''| length^2 / 8 and on one
+/// side; then G is monotone too. Without a change of sign between the ends, a zero needs a turning point that
+/// comes within |G''| length^2 / 8 of zero.
 template <class T>
 IntervalKind<T> classify(const CurvedSample<T>& a, const CurvedSample<T>& b, const LiftBounds<T>& bounds,
                          const T& length) {

@@ -18,14 +18,15 @@ T slowness(const T& inertia, const T& vis_viva) {
   return inertia * reciprocal_sqrt(inertia * vis_viva);
 }
 
-/// The square of acosh(1 + x), from below; within 1 % for x < 1. Without a logarithm: it is only for node numbers.
+/// The square of acosh(1 + x), from below; within 1 % for x < 1. Without a logarithm: it is only for node
+/// numbers.
 template <class T>
 T square_acosh(const T& x) {
   return T(12) * x / (T(6) + x);
 }
 
-/// The square of log(r), of the ellipse about a panel through a point beside its end, or beside its middle; from below.
-/// `height` is the point's distance from the panel over its half-length.
+/// The square of log(r), of the ellipse about a panel through a point beside its end, or beside its middle;
+/// from below. `height` is the point's distance from the panel over its half-length.
 template <class T>
 T square_growth_beside_end(const T& height) {
   using std::sqrt;
@@ -42,7 +43,9 @@ T square_growth_beside(const T& height) {
 template <class T>
 RollingTime<T>::RollingTime(double tolerance) {
   using std::log;
-  tolerance_ = std::max(S(tolerance), std::numeric_limits<S>::epsilon());
+  // A hundred times finer than asked for costs a few nodes, and the bounds on r are not strict in every
+  // corner.
+  tolerance_ = std::max(S(tolerance) * S(0.01L), S(450) * std::numeric_limits<S>::epsilon());
   digits_ = -log(tolerance_);
   for (std::size_t n = 0; n <= most_nodes; ++n) rules_.push_back(gauss_rule<S>(n));
   starts_.resize(rules_.size());
@@ -67,7 +70,8 @@ NodesNeeded<T> RollingTime<T>::needed(const Roll<T>& roll, const Quiet<T>& quiet
   nodes.strip = sqrt(square_acosh(quiet.vis_viva * per_rho));
   const auto for_length = [&](const S& length) {
     const T per_half = T(S(2) / length);
-    return nodes_for(smaller(square_growth_beside_end(nodes.needle * per_half), square_growth_beside(nodes.strip * per_half)),
+    return nodes_for(smaller(square_growth_beside_end(nodes.needle * per_half),
+                             square_growth_beside(nodes.strip * per_half)),
                      hard);
   };
   nodes.panel = for_length(pi_of<S>);
@@ -76,8 +80,8 @@ NodesNeeded<T> RollingTime<T>::needed(const Roll<T>& roll, const Quiet<T>& quiet
 }
 
 template <class T>
-T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& end,
-                          MaskOf<T>& hard) {
+T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
+                          const T& end, MaskOf<T>& hard) {
   using std::floor, std::sqrt;
   const Hoop<T>& hoop = roll.hoop;
   const T rho2 = T(2) * hoop.rho;
@@ -85,13 +89,15 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
   const T discriminant = roll.push * roll.push - roll.released * bend;
   const T root = sqrt(larger(discriminant, T(0)));
   const MaskOf<T> real = discriminant >= T(0);
-  // Without real zeros E is far from zero if its least value is, over the distance that takes: x1 = -1 will do then.
+  // Without real zeros E is far from zero if its least value is, over the distance that takes: x1 = -1 will
+  // do then.
   const T x1 = select(real, -roll.released / (roll.push + root), T(-1));
   hard = hard | !(roll.push > T(0)) | !(real | (-discriminant > T(4) * bend * bend));
 
   const T span = end - roll.release;
   const T q0 = sqrt(-x1), q1 = sqrt(span - x1), half = T(0.5) * (q1 - q0);
-  // The other zero, x2 < x1 where bend > 0: the ellipse through it has the sum of distances to the panel's ends.
+  // The other zero, x2 < x1 where bend > 0: the ellipse through it has the sum of distances to the panel's
+  // ends.
   const T x2 = select(real & (bend > T(0)), -(roll.push + root) / bend, T(-1e6));
   const T behind = square_acosh(larger((sqrt(-x2) + sqrt(span - x2)) / (T(2) * half) - T(1), T(0)));
   // Needles and the quiet place come nearer by the map: an x + i d beside x is d / (2 q) beside q.
@@ -101,7 +107,8 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
     return select(distance > span * T(0.999), square_growth_beside_end(height * nearer),
                   square_growth_beside(height * nearer));
   };
-  T growth = smaller(behind, smaller(ahead(T(2) * pi_of<T> - behind_by, needed.needle), ahead(quiet.distance, needed.strip)));
+  T growth = smaller(behind, smaller(ahead(T(2) * pi_of<T> - behind_by, needed.needle),
+                                     ahead(quiet.distance, needed.strip)));
   if (any(behind_by < T(1))) {  // a needle just behind the release
     const T u = -behind_by - x1, d = needed.needle;
     growth = smaller(growth, square_growth_beside(sqrt(T(0.5) * (sqrt(u * u + d * d) - u)) / half));
@@ -136,7 +143,8 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
 }
 
 template <class T>
-const std::vector<typename RollingTime<T>::SharedNode>& RollingTime<T>::start_from_rest(const S& span, int nodes) {
+const std::vector<typename RollingTime<T>::SharedNode>& RollingTime<T>::start_from_rest(const S& span,
+                                                                                        int nodes) {
   using std::sqrt;
   std::vector<Start>& starts = starts_[static_cast<std::size_t>(nodes)];
   const auto met = std::ranges::find(starts, span, &Start::span);
@@ -211,7 +219,8 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& from, const S&
   const GaussRule<S>& gauss = rules_[6 + static_cast<std::size_t>(digits_ / S(2))];
   const auto rule = [&](const auto& f, S a, S b) {
     S sum(0);
-    for (std::size_t i = 0; i < gauss.node.size(); ++i) sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
+    for (std::size_t i = 0; i < gauss.node.size(); ++i)
+      sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
     return sum * (b - a);
   };
   S total(0);
@@ -237,8 +246,7 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& from, const S&
     return S(2) * q * slowness(contact_inertia(hoop, trig(roll.release + x)), vis_viva_past_release(roll, x));
   };
   const auto at_angle = [&](S angle) {
-    const Trig<S> phi = trig(angle);
-    return slowness(contact_inertia(hoop, phi), vis_viva(roll, angle, phi));
+    return slowness(contact_inertia(hoop, trig(angle)), vis_viva_past_release(roll, angle - roll.release));
   };
   S a = from;
   if (a < roll.release + S(1)) {

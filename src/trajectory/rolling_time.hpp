@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The time that rolling takes, t = integral of sqrt(J / E) dphi, by Gauss-Legendre quadrature.
 ///
-/// From the release to the first multiple of pi is a stretch in q, phi = phi0 + x1 + q^2, which takes out the nearer zero
-/// x1 of E = released + 2 push x + bend x^2 + ... From there half-turns, and parts of a half-turn, are panels whose
-/// nodes all designs share; what is left is the rest, short and a design's own.
+/// From the release to the first multiple of pi is a stretch in q, phi = phi0 + x1 + q^2, which takes out the
+/// nearer zero x1 of E = released + 2 push x + bend x^2 + ... From there half-turns, and parts of a
+/// half-turn, are panels whose nodes all designs share; what is left is the rest, short and a design's own.
 ///
-/// A rule of n nodes converges like r^(-2 n), r the sum of the half-axes of the largest ellipse about its panel in which
-/// the integrand is smooth. So n is chosen from where sqrt(J / E) is not:
+/// A rule of n nodes converges like r^(-2 n), r the sum of the half-axes of the largest ellipse about its
+/// panel in which the integrand is smooth. So n is chosen from where sqrt(J / E) is not:
 ///   J = 0 at 2 pi k +- i d, cosh d = 1 + J_min / (2 rho), and
 ///   Re E > 0 within y of the real axis where cosh y = 1 + E_min / (2 rho): E(phi + i y) has the real part
 ///   E(phi) + 2 rho cos(theta + phi) (cosh y - 1).
-/// What would need too many nodes (a needle of the spin at phi = 0, a release a hair past the unstable equilibrium, a
-/// near stall) is left to adaptive halving, a design at a time.
+/// What would need too many nodes (a needle of the spin at phi = 0, a release a hair past the unstable
+/// equilibrium, a near stall) is left to adaptive halving, a design at a time.
 #pragma once
 
 #include <numbers>
@@ -24,8 +24,8 @@ namespace leapmap {
 
 inline constexpr int parts_a_panel = 16;  ///< a panel is a half-turn; the rest is shorter than a part
 
-/// E's first minimum after the release, or where it rises least if it has none; `vis_viva` is at most E there and from
-/// the first panel on.
+/// E's first minimum after the release, or where it rises least if it has none; `vis_viva` is at most E there
+/// and from the first panel on.
 template <class T>
 struct Quiet {
   T vis_viva;
@@ -43,7 +43,7 @@ class RollingTime {
  public:
   using S = ScalarOf<T>;
 
-  /// Times will be good to the tolerance, relative, or a few roundings; measured, it is a hundredth of that.
+  /// Times will be good to the tolerance, relative, or to some roundings.
   explicit RollingTime(double tolerance);
 
   /// The first multiple of pi that is far enough from the release to be a panel's edge.
@@ -88,10 +88,11 @@ class RollingTime {
   T nodes_for(const T& square_growth, MaskOf<T>& hard) const;
   const std::vector<SharedNode>& start_from_rest(const S& span, int nodes);
 
-  S tolerance_, digits_;  // digits: log(1 / tolerance)
-  std::vector<GaussRule<S>> rules_;                   // by number of nodes
-  std::vector<std::vector<Start>> starts_;            // by number of nodes, the spans met so far
-  std::vector<std::vector<SharedNode>> panels_;  // by number of nodes, evenness and parts; filled when first used
+  S tolerance_, digits_;                    // digits: log(1 / tolerance)
+  std::vector<GaussRule<S>> rules_;         // by number of nodes
+  std::vector<std::vector<Start>> starts_;  // by number of nodes, the spans met so far
+  std::vector<std::vector<SharedNode>>
+      panels_;  // by number of nodes, evenness and parts; filled when first used
 };
 
 }  // namespace leapmap

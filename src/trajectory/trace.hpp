@@ -47,8 +47,8 @@ struct Story {
 Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval = 0.0,
            double graze_limit = 1e-6);
 
-/// The same by the exact solver: outcome and candidates are its own. Motion and grazes are gsl-rk8pd's, at 1e-12, whose
-/// outcome is told as `checked`.
+/// The same by the exact solver: outcome and candidates are its own. Motion and grazes are gsl-rk8pd's, at
+/// 1e-12, whose outcome is told as `checked`.
 Story tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval = 0.0,
                    double graze_limit = 1e-6);
 

@@ -19,8 +19,7 @@ int flight_rhs(double, const double y[], double f[], void* params) {
   const auto& hoop = *static_cast<const Hoop<double>*>(params);
   const double s = std::sin(y[2]), c = std::cos(y[2]), w2 = y[5] * y[5];
   Eigen::Matrix3d mass;
-  mass << 1, 0, -hoop.rho * c, 0, 1, hoop.rho * s, -hoop.rho * c, hoop.rho * s,
-      hoop.Ic + hoop.rho * hoop.rho;
+  mass << 1, 0, -hoop.rho * c, 0, 1, hoop.rho * s, -hoop.rho * c, hoop.rho * s, hoop.Ic + hoop.rho * hoop.rho;
   const Eigen::Vector3d force(-hoop.rho * w2 * s + hoop.sin_slope, -hoop.rho * w2 * c - hoop.cos_slope,
                               -hoop.rho * std::sin(hoop.slope + y[2]));
   const Eigen::Vector3d acceleration = mass.inverse() * force;
