@@ -38,11 +38,20 @@ Design DesignSpace::at(std::size_t index) const {
 
 void DesignSpace::fill(const Tile& tile, std::span<Design> designs) const {
   assert(designs.size() == tile.count);
-  std::vector<std::size_t> position;
-  for (std::size_t i = 0; i < tile.count; ++i) {
-    unravel(i, tile.extent, position);
-    for (std::size_t k = 0; k < position.size(); ++k) position[k] += tile.start[k];
-    designs[i] = at_position(position);
+  std::vector<std::size_t> position = tile.start;
+  if (spec_.axes.empty()) {
+    for (Design& design : designs) design = at_position(position), ++position[0];
+    return;
+  }
+  Design current = at_position(position);
+  for (Design& design : designs) {
+    design = current;
+    for (std::size_t k = position.size(); k-- > 0;) {  // on to the next, the last axis fastest
+      const bool carries = ++position[k] == tile.start[k] + tile.extent[k];
+      if (carries) position[k] = tile.start[k];
+      current.*members_[k] = spec_.axes[k].values[position[k]];
+      if (!carries) break;
+    }
   }
 }
 

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The methods on the same designs in one run, speed and error side by side.
+///
+/// Designs: slope 0.1 to 0.8, mass ratio 0.5 to 10, offset 0.3 to 1, uniform, seeded; runway 4. items_per_second are
+/// designs a second; the errors are against long double at 1e-18; wrong counts designs whose status, flag or number of
+/// candidates differs from it. Engine is run_sweep on one thread: designs from axes, everything but the file.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+
+#include "sweep/designs.hpp"
+#include "sweep/engine.hpp"
+#include "trajectory/exact.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t count = 20'000;
+
+Scene scene() {
+  Scene scene;
+  scene.runway = 4.0;
+  return scene;
+}
+
+const std::vector<Design>& designs() {
+  static const std::vector<Design> designs = [] {
+    std::mt19937_64 random(1);
+    const auto uniform = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    std::vector<Design> list(count);
+    for (Design& design : list) {
+      design.slope = uniform(0.1, 0.8);
+      design.mass_ratio = uniform(0.5, 10.0);
+      design.offset_ratio = uniform(0.3, 1.0);
+    }
+    return list;
+  }();
+  return designs;
+}
+
+const std::vector<Outcome>& reference() {
+  static const std::vector<Outcome> outcomes = [] {
+    std::vector<Outcome> truths(count);
+    ExactSolver<long double>(1e-18).solve(designs(), scene(), truths);
+    return truths;
+  }();
+  return outcomes;
+}
+
+void tell_errors(benchmark::State& state, std::span<const Outcome> outcomes) {
+  double height = 0.0, time = 0.0;
+  int wrong = 0;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const Outcome &a = outcomes[i], &b = reference()[i];
+    if (a.status != b.status || a.candidates != b.candidates || a.spurious_first_jump != b.spurious_first_jump) {
+      ++wrong;
+    } else if (a.status == Status::jumped) {
+      height = std::max(height, std::abs(a.jump_height - b.jump_height));
+      time = std::max(time, std::abs(a.jump_time / b.jump_time - 1.0));
+    }
+  }
+  state.counters["height_error"] = height;
+  state.counters["time_error"] = time;
+  state.counters["wrong"] = wrong;
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(outcomes.size()));
+}
+
+double tolerance(const benchmark::State& state) { return std::pow(10.0, -static_cast<double>(state.range(0))); }
+
+template <class T>
+void Exact(benchmark::State& state) {
+  ExactSolver<T> solver(tolerance(state));
+  std::vector<Outcome> outcomes(count);
+  for (auto _ : state) solver.solve(designs(), scene(), outcomes);
+  tell_errors(state, outcomes);
+}
+
+void ExactHeightsAndFlagsOnly(benchmark::State& state) {
+  ExactSolver<Batch> solver(tolerance(state), {.first_jump_time = false, .jump_time = false, .descent = false});
+  std::vector<Outcome> outcomes(count);
+  for (auto _ : state) solver.solve(designs(), scene(), outcomes);
+  tell_errors(state, outcomes);
+}
+
+void GslRk8pd(benchmark::State& state) {
+  constexpr std::size_t fewer = count / 10;
+  IntegrationOptions options;
+  options.stepper = find_gsl_stepper("gsl-rk8pd");
+  options.control.relative = options.control.absolute = tolerance(state);
+  RollingIntegration rolling(options);
+  std::vector<Outcome> outcomes(fewer);
+  for (auto _ : state)
+    for (std::size_t i = 0; i < fewer; ++i) outcomes[i] = rolling.solve(designs()[i], scene());
+  tell_errors(state, outcomes);
+}
+
+void Engine(benchmark::State& state) {
+  const Spec spec = read_spec("", {"runway=4", "slope={from=0.1,to=0.8,count=64}", "mass_ratio={from=0.5,to=10,count=64}",
+                                   "offset_ratio={from=0.3,to=1,count=64}",
+                                   "tolerance=1e-" + std::to_string(state.range(0))});
+  const Tiling tiling(shape_of(spec));
+  EngineOptions options;
+  options.threads = static_cast<int>(state.range(1));
+  for (auto _ : state) {
+    std::size_t jumps = 0;
+    run_sweep(spec, tiling, options, [&](const Tile&, std::span<const Outcome> outcomes) {
+      for (const Outcome& outcome : outcomes) jumps += outcome.status == Status::jumped;
+    });
+    benchmark::DoNotOptimize(jumps);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(tiling.designs()));
+}
+
+BENCHMARK(Exact<Batch>)->Arg(12)->Arg(10)->Arg(6)->Unit(benchmark::kMillisecond);
+BENCHMARK(ExactHeightsAndFlagsOnly)->Arg(12)->Unit(benchmark::kMillisecond);
+BENCHMARK(Exact<double>)->Arg(12)->Arg(6)->Unit(benchmark::kMillisecond);
+BENCHMARK(Exact<long double>)->Arg(18)->Unit(benchmark::kMillisecond);
+BENCHMARK(GslRk8pd)->Arg(12)->Arg(10)->Arg(6)->Unit(benchmark::kMillisecond);
+BENCHMARK(Engine)->Args({12, 1})->Args({12, 2})->Args({6, 1})->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace leapmap
+
+BENCHMARK_MAIN();
