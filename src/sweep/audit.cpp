@@ -51,6 +51,7 @@ Difference sensitivity(ExactSolver<double>& exact, const Design& design, const S
   std::vector<Design> designs{design};
   for (const Option* parameter : design_parameters()) {
     const auto member = std::get<ParameterSlot>(parameter->slot).member;
+    if (design.*member == 0.0) continue;  // as written, and the number beside it is no rounding of it
     for (const double towards : {-1e300, 1e300}) {
       Design nudged = design;
       nudged.*member = std::nextafter(design.*member, towards);
