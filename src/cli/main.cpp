@@ -28,10 +28,6 @@ int complain(int status, std::string_view what) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (!leapmap::instruction_set_supported())
-    return complain(other_failure, "was built for " + leapmap::instruction_set() +
-                                       ", which this machine does not have; build it here, or with "
-                                       "cmake -DLEAPMAP_ARCH=x86-64");
   int status = done;
   CLI::App app{
       "leapmap maps the jumps of passive hoops: thin hoops with an off-centre mass that roll down a plane "

@@ -118,7 +118,7 @@ std::vector<hdf5::Attribute> run_audit(const Spec& spec, const AuditDraw& draw,
         "differ{}\n",
         grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
         report.flag_mismatches,
-        report.undecided > 0 ? fmt::format("; on {} it gave up", report.undecided) : "");
+        report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "");
   const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (!design) return;
     status = 1;

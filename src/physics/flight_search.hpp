@@ -39,8 +39,9 @@ Flight<S> walk_toss(const Toss<S>& toss) {
   };
 
   // With y between L(psi) = psi sin(phi) - gamma psi^2 / 2 - (1 + cos phi) and L + 2, no landing is possible
-  // while L > 0, and no apex farther than 2 / sqrt(gamma) from the vertex of L.
-  const S s = toss.phi.sin, vertex = s / toss.gravity, around = S(2) / sqrt(toss.gravity);
+  // while L > 0. And y less its parabola repeats every turn, so that the highest apex is at most half a turn from the
+  // vertex.
+  const S s = toss.phi.sin, vertex = s / toss.gravity, around = two_pi;
   const S clearance = s * s - S(2) * toss.gravity * (S(1) + toss.phi.cos);
   const S half_width =
       clearance > S(0) ? sqrt(clearance) / toss.gravity : S(0);  // of L > 0, about the vertex
@@ -182,13 +183,15 @@ Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
   return ascent;
 }
 
-/// The rest of a flight, psi in place of times and heights of rho; lanes outside `wanted` return anything.
+/// The rest of a flight, psi in place of times and heights of rho; zero where it never clears the plane. Lanes outside
+/// `wanted` return anything.
 template <class T>
 Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>& wanted) {
   using std::sqrt;
   const T pi(std::numbers::pi_v<ScalarOf<T>>), epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
-  const MaskOf<T> often = wanted & toss_detail::climbs_often(toss), seldom = wanted & !often;
-  T dip = ascent.dip;
+  const MaskOf<T> flies = wanted & (ascent.apex > T(0));
+  const MaskOf<T> often = flies & toss_detail::climbs_often(toss), seldom = flies & !often;
+  T dip = select(flies, ascent.dip, T(0));
   const MaskOf<T> dips = seldom & (toss.top > T(2) * (pi - toss.opening));
   if (any(dips)) {
     const T lowest = toss_height(toss, toss_detail::bottom(toss, toss.top, dips)).value;
@@ -198,10 +201,10 @@ Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>&
   const T guess = ascent.last_apex + sqrt(T(-2) * apex.value / apex.curvature);
   const T landing = polish_root([&](const T& psi) { return toss_height(toss, psi); }, ascent.last_apex,
                                 ascent.sunk, guess, wanted & !wanted, T(2) * epsilon * ascent.sunk, seldom);
-  Flight<T> flight{ascent.height, ascent.apex, landing, dip};
+  Flight<T> flight{ascent.height, ascent.apex, select(flies, landing, T(0)), dip};
   if (any(often)) {
     const Flight<T> walked = toss_detail::walk(toss, often);
-    flight.flight_time = select(often, walked.flight_time, landing);
+    flight.flight_time = select(often, walked.flight_time, flight.flight_time);
     flight.dip = select(often, walked.dip, dip);
   }
   return flight;

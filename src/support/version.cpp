@@ -20,17 +20,4 @@ std::string instruction_set() {
 #endif
 }
 
-bool instruction_set_supported() {
-#if defined(__AVX512F__)
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512bw");
-#elif defined(__AVX2__)
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#elif defined(__AVX__)
-  return __builtin_cpu_supports("avx");
-#else
-  return true;
-#endif
-}
-
 }  // namespace leapmap

@@ -12,7 +12,5 @@ std::string_view git_revision();     ///< of the sources when they were configur
 
 /// The instruction set this was compiled for and its lanes, for example "AVX-512, 8 lanes".
 std::string instruction_set();
-/// True if this machine has it.
-bool instruction_set_supported();
 
 }  // namespace leapmap

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <mutex>
 
@@ -32,17 +33,30 @@ struct Difference {
   double height = 0.0, time = 0.0;
 };
 
-Difference difference(const Outcome& a, const Outcome& b) {
+/// `ours` may lack what its sweep was not asked for: only numbers of `fields`, by default all, must be there.
+Difference difference(const Outcome& ours, const Outcome& theirs, const std::vector<std::string>& fields = {}) {
   Difference d;
-  d.flags =
-      a.status != b.status || a.spurious_first_jump != b.spurious_first_jump || a.candidates != b.candidates;
+  d.flags = ours.status != theirs.status || ours.spurious_first_jump != theirs.spurious_first_jump ||
+            ours.candidates != theirs.candidates;
   if (d.flags) return d;
-  // What a sweep was not asked for is NaN, and std::max keeps the number before it.
-  for (const auto member : {&Outcome::jump_height, &Outcome::first_jump_height})
-    d.height = std::max(d.height, std::abs(a.*member - b.*member));
-  for (const auto member :
-       {&Outcome::jump_time, &Outcome::first_jump_time, &Outcome::apex_time, &Outcome::flight_time})
-    if (a.*member != b.*member) d.time = std::max(d.time, std::abs(a.*member / b.*member - 1.0));
+  const auto compare = [&](std::string_view field, double Outcome::*member, double& most, bool is_relative) {
+    const double a = ours.*member, b = theirs.*member;
+    if (std::isnan(a) && std::isnan(b)) return;
+    const bool asked_for = fields.empty() || std::ranges::find(fields, field) != fields.end();
+    const double error = is_relative && b != 0.0 ? std::abs(a / b - 1.0) : std::abs(a - b);
+    if (!std::isnan(error)) {
+      most = std::max(most, error);
+    } else if (asked_for) {
+      most = std::numeric_limits<double>::infinity();
+    }
+  };
+  compare("jump_height", &Outcome::jump_height, d.height, false);
+  compare("first_jump_height", &Outcome::first_jump_height, d.height, false);
+  compare("dip", &Outcome::dip, d.height, false);
+  compare("jump_time", &Outcome::jump_time, d.time, true);
+  compare("first_jump_time", &Outcome::first_jump_time, d.time, true);
+  compare("apex_time", &Outcome::apex_time, d.time, true);
+  compare("flight_time", &Outcome::flight_time, d.time, true);
   return d;
 }
 
@@ -115,14 +129,16 @@ AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int th
       } else {
         exact->solve({&design, 1}, spec.scene, {&theirs, 1});
       }
-      const Difference d = difference(ours, theirs);
-      const bool undecided = theirs.status == Status::failed && ours.status != Status::failed;
-      bool inaccurate = !d.flags && !undecided && (d.height > allowed || d.time > allowed);
-      if (inaccurate) {
+      const Difference d = difference(ours, theirs, spec.output.fields);
+      bool inaccurate = !d.flags && (d.height > allowed || d.time > allowed);
+      bool undecided = theirs.status == Status::failed && ours.status != Status::failed;
+      if ((d.flags || inaccurate) && !undecided) {
         const Difference ulp = sensitivity(*exact, design, spec.scene);
-        inaccurate = !ulp.flags && (d.height > std::max(allowed, 10.0 * ulp.height) ||
+        undecided = ulp.flags;
+        inaccurate = inaccurate && (d.height > std::max(allowed, 10.0 * ulp.height) ||
                                     d.time > std::max(allowed, 10.0 * ulp.time));
       }
+      inaccurate = inaccurate && !undecided;
       const std::lock_guard lock(reporting);
       ++report.designs;
       if (undecided) {

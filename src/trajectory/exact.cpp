@@ -24,6 +24,16 @@ std::array<T, 8> release_row(const Roll<T>& roll, const Quiet<T>& quiet) {
   return {roll.release,  phi.sin,   phi.cos,        phi.versine,
           roll.released, roll.push, quiet.vis_viva, quiet.distance};
 }
+/// A time that the quadrature could not tell makes the design failed: no field of it is to be believed.
+template <class S>
+void note_time(Outcome& outcome, double Outcome::*time, const S& taken) {
+  if (std::isfinite(taken)) {
+    outcome.*time = static_cast<double>(taken);
+  } else {
+    outcome = failed_outcome();
+  }
+}
+
 enum LiftOffRow { angle_of, spin_of, apex_of, last_apex_of, sunk_of, dip_of };
 
 }  // namespace
@@ -58,12 +68,12 @@ template <class T>
 typename ExactSolver<T>::LoadedIntervals ExactSolver<T>::load_intervals(
     const std::vector<Interval>& intervals, std::size_t first) const {
   Index index;
-  LaneArray<T> from, to;
+  LaneArray<T> from, to, turn;
   for (std::size_t i = 0; i < width; ++i) {
     const Interval& interval = intervals[first + i < intervals.size() ? first + i : first];
-    index[i] = interval.design, from[i] = interval.from, to[i] = interval.to;
+    index[i] = interval.design, from[i] = interval.from, to[i] = interval.to, turn[i] = interval.turn;
   }
-  return {index, Lanes<T>::load(from.data()), Lanes<T>::load(to.data())};
+  return {index, Lanes<T>::load(from.data()), Lanes<T>::load(to.data()), Lanes<T>::load(turn.data())};
 }
 
 template <class T>
@@ -202,7 +212,7 @@ void ExactSolver<T>::find_stall(Search& search, const Roll<S>& roll, const S& mi
                      S(2) * torque(roll.hoop, trig(angle))};
   };
   const S from = std::max(roll.release, minimum - pi_of<S> + S(2) * crest);
-  const S resolution = S(4) * std::numeric_limits<S>::epsilon() * std::max(S(1), minimum);
+  const S resolution = S(4) * std::numeric_limits<S>::epsilon() * std::max(S(1), std::abs(minimum));
   const S stall = polish_root(vis_viva_at, from, minimum, S(0.5L) * (from + minimum), false, resolution);
   if (stall < search.end) search.end = stall, search.stalls = true;
 }
@@ -235,12 +245,13 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
       continue;
     }
     search.node = std::countr_zero(left);
-    const S node = (search.first_turn + S(search.turn)) * S(nodes_a_turn) + S(search.node);
+    const S turn = search.first_turn + S(search.turn);
+    const S node = turn * S(nodes_a_turn) + S(search.node);
     const S part = part_length_[static_cast<std::size_t>(search.halvings)], at = node + S(search.part) * part;
     const S from = std::max(at * step, search.release), to = std::min((at + part) * step, search.end);
     if (from < to) {
       const bool falls = search.flags.falls[static_cast<std::size_t>(search.turn)] >> search.node & 1u;
-      interval = {design, from, to, (from + to) * S(0.5),
+      interval = {design, turn, from, to, (from + to) * S(0.5),
                   falls && from == at * step && to == (at + part) * step};
       return true;
     }
@@ -266,21 +277,21 @@ void ExactSolver<T>::advance(Search& search) const {
 /// Tells what the intervals hold; those with a lift-off become falls.
 template <class T>
 void ExactSolver<T>::classify_intervals() {
-  using std::floor;
-  const T two_pi(S(2) * pi_of<S>);
   for (std::size_t first = 0; first < intervals_.size(); first += width) {
     const std::size_t count = std::min(width, intervals_.size() - first);
-    const auto [index, a, b] = load_intervals(intervals_, first);
+    const auto [index, a, b, turn] = load_intervals(intervals_, first);
     const Roll<T> roll = load_roll<T>(index.data(), false);
     const CurvedSample<T> at_a = lift(roll, a), at_b = lift(roll, b);
-    const IntervalKind<T> kind = classify(at_a, at_b, lift_bounds(roll, floor(a / two_pi)), b - a);
+    const IntervalKind<T> kind = classify(at_a, at_b, lift_bounds(roll, turn), b - a);
+    const MaskOf<T> falls_through = (at_b.value < T(0)) | ((at_b.value == T(0)) & (at_b.rate < T(0)));
     const unsigned falls = Lanes<T>::bits(kind.fall), unclear = Lanes<T>::bits(kind.unclear),
-                   sinking = Lanes<T>::bits((at_a.value > T(0)) & (at_b.value < T(0)));
+                   sinking = Lanes<T>::bits((at_a.value > T(0)) & falls_through);
     const auto guess = lanes_of(a + (b - a) * at_a.value / (at_a.value - at_b.value));
     for (std::size_t i = 0; i < count; ++i) {
       Search& search = searches_[index[i]];
       Interval interval = intervals_[first + i];
-      const bool at_last = (unclear >> i & 1u) && search.halvings == most_halvings;
+      const bool short_of_digits = interval.to - interval.from <= S(16) * std::numeric_limits<S>::epsilon() * std::abs(interval.to);
+      const bool at_last = (unclear >> i & 1u) && (search.halvings == most_halvings || short_of_digits);
       if ((falls >> i & 1u) || (at_last && (sinking >> i & 1u))) {
         interval.guess = guess[i];
         falls_.push_back(interval);
@@ -301,17 +312,17 @@ void ExactSolver<T>::classify_intervals() {
 template <class T>
 void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scene,
                               std::span<Outcome> outcomes) {
-  using std::sqrt;
+  using std::abs, std::sqrt;
   const T epsilon(std::numeric_limits<S>::epsilon());
   for (std::size_t first = 0; first < falls_.size(); first += width) {
     const std::size_t count = std::min(width, falls_.size() - first);
-    const auto [index, a, b] = load_intervals(falls_, first);
+    const auto [index, a, b, turn] = load_intervals(falls_, first);
     LaneArray<T> guess;
     for (std::size_t i = 0; i < width; ++i) guess[i] = falls_[first + (i < count ? i : 0)].guess;
     const Roll<T> roll = load_roll<T>(index.data(), false);
     const MaskOf<T> all_lanes = a == a;
     const T angle = polish_root([&](const T& x) { return lift(roll, x); }, a, b, Lanes<T>::load(guess.data()),
-                                !all_lanes, T(2) * epsilon * larger(T(1), b), all_lanes);
+                                !all_lanes, T(2) * epsilon * larger(T(1), abs(b)), all_lanes);
     const Trig<T> phi = trig(angle);
     const T spin = sqrt(vis_viva(roll, angle, phi) / contact_inertia(roll.hoop, phi));
     const Ascent<T> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), all_lanes);
@@ -323,7 +334,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
     for (std::size_t i = 0; i < count; ++i) {
       Search& search = searches_[index[i]];
       Outcome& outcome = outcomes[index[i]];
-      if (!std::isfinite(angles[i]) || !std::isfinite(heights[i])) {
+      if (!std::isfinite(angles[i]) || !std::isfinite(spins[i]) || !std::isfinite(heights[i])) {
         outcome = failed_outcome();
         continue;
       }
@@ -375,6 +386,7 @@ void ExactSolver<T>::take_times(std::span<Outcome> outcomes) {
   take_times(lifted_, &Search::first_angle, &Outcome::first_jump_time, outcomes);
   later_.clear();
   for (const std::uint32_t design : jumped_) {
+    if (outcomes[design].status == Status::failed) continue;
     if (is_later(design)) {
       later_.push_back(design);
     } else {
@@ -436,7 +448,7 @@ void ExactSolver<T>::take_times(const List& designs, S Search::*angle, double Ou
   for (const std::uint32_t design : designs) {
     const Search& search = searches_[design];
     if (search.panel_nodes == 0) {
-      outcomes[design].*time = static_cast<double>(halve_time(design, angle));
+      note_time(outcomes[design], time, halve_time(design, angle));
       continue;
     }
     const long part = static_cast<long>(std::floor(search.*angle * (S(parts_a_panel) / pi_of<S>)));
@@ -460,7 +472,7 @@ void ExactSolver<T>::take_times(const List& designs, S Search::*angle, double Ou
     const unsigned by_halving = Lanes<T>::bits(hard);
     for (std::size_t i = 0; i < count; ++i) {
       if (by_halving >> i & 1u) times[i] = halve_time(index[i], angle);
-      outcomes[index[i]].*time = static_cast<double>(times[i]);
+      note_time(outcomes[index[i]], time, times[i]);
     }
   }
   for (std::size_t first = 0, count = 0; first < due_.size(); first += count) {
@@ -490,13 +502,13 @@ void ExactSolver<T>::take_times(const List& designs, S Search::*angle, double Ou
       taken = taken + time_.panel(roll, end, parts, panel_nodes);
     const S edge = S(part) * (pi_of<S> / S(parts_a_panel));
     times = lanes_of(taken + time_.rest(roll, edge, to - T(edge), rest_nodes));
-    for (std::size_t i = 0; i < count; ++i) outcomes[index[i]].*time = static_cast<double>(times[i]);
+    for (std::size_t i = 0; i < count; ++i) note_time(outcomes[index[i]], time, times[i]);
   }
 }
 
 template <class T>
 ScalarOf<T> ExactSolver<T>::halve_time(std::uint32_t design, S Search::*angle) const {
-  return time_.halving(load_roll<S>(&design, true), searches_[design].release, searches_[design].*angle);
+  return time_.halving(load_roll<S>(&design, true), searches_[design].*angle);
 }
 
 /// As many designs of one part as there are lanes.

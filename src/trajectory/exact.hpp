@@ -23,8 +23,8 @@ struct Wanted {
 /// ends; integrate the times that are asked for.
 ///
 /// On any scalar: double; Batch, as many designs at once as the machine has lanes; long double, the tests'
-/// reference. A thread's own workspace. An outcome depends on the design, the scene and the block's other
-/// designs to within rounding (they share numbers of quadrature nodes), not on threads.
+/// reference. A thread's own workspace. An outcome depends on the design and the scene; its times also,
+/// within the tolerance, on the other designs of the call, which share numbers of nodes; never on threads.
 template <class T>
 class ExactSolver {
  public:
@@ -62,6 +62,7 @@ class ExactSolver {
   };
   struct Interval {
     std::uint32_t design;
+    S turn;  // the revolution it lies in
     S from, to, guess;
     bool falls;  // surely once, and nothing else
   };
@@ -71,7 +72,7 @@ class ExactSolver {
   };
   struct LoadedIntervals {
     Index index;
-    T from, to;
+    T from, to, turn;
   };
 
   void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);

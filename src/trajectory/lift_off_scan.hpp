@@ -113,7 +113,8 @@ IntervalKind<T> classify(const CurvedSample<T>& a, const CurvedSample<T>& b, con
   const T square = length * length * T(0.125);
   const MaskOf<T> up_a = a.value > T(0), up_b = b.value > T(0);
   const MaskOf<T> down_a = a.rate < T(0), down_b = b.rate < T(0);
-  const MaskOf<T> changes = up_a != up_b;
+  // neither != nor ^, which xsimd 8 gets wrong for SSE2's and AVX-512's masks
+  const MaskOf<T> changes = (up_a & !up_b) | (up_b & !up_a);
   const MaskOf<T> monotone = (down_a == down_b) & (smaller(abs(a.rate), abs(b.rate)) > bounds.third * square);
   const MaskOf<T> near = !(smaller(abs(a.value), abs(b.value)) > bounds.second * square);
   const MaskOf<T> fall = changes & up_a & monotone, unclear = (changes | near) & !monotone;

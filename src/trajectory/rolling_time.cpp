@@ -8,7 +8,7 @@ namespace leapmap {
 namespace {
 
 template <class T>
-const T pi_of = T(std::numbers::pi_v<ScalarOf<T>>);
+constexpr ScalarOf<T> pi_of = std::numbers::pi_v<ScalarOf<T>>;
 
 constexpr std::size_t most_starts = 64;  // beyond it the spans met are forgotten: memory stays bounded
 
@@ -95,7 +95,8 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
   hard = hard | !(roll.push > T(0)) | !(real | (-discriminant > T(4) * bend * bend));
 
   const T span = end - roll.release;
-  const T q0 = sqrt(-x1), q1 = sqrt(span - x1), half = T(0.5) * (q1 - q0);
+  const T q0 = sqrt(-x1), q1 = sqrt(span - x1);
+  const T reach = span / (q0 + q1), half = T(0.5) * reach;  // q1 - q0, which would cancel for a fast release
   // The other zero, x2 < x1 where bend > 0: the ellipse through it has the sum of distances to the panel's
   // ends.
   const T x2 = select(real & (bend > T(0)), -(roll.push + root) / bend, T(-1e6));
@@ -134,12 +135,11 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
   }
   const GaussRule<S>& rule = rules_[static_cast<std::size_t>(n)];
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const T q = q0 + (q1 - q0) * T(rule.node[i]);
-    const T x = x1 + q * q;
+    const T past = reach * T(rule.node[i]), x = past * (T(2) * q0 + past);
     const Trig<T> turned = trig(x);
-    total = total + T(rule.weight[i]) * q * slowness_at(x, turned, x_minus_sin(x, turned.sin));
+    total = total + T(rule.weight[i]) * (q0 + past) * slowness_at(x, turned, x_minus_sin(x, turned.sin));
   }
-  return T(2) * (q1 - q0) * total;
+  return T(2) * reach * total;
 }
 
 template <class T>
@@ -214,52 +214,71 @@ T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int
 }
 
 template <class T>
-ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& from, const S& to) const {
-  using std::abs, std::floor, std::sqrt;
-  const GaussRule<S>& gauss = rules_[6 + static_cast<std::size_t>(digits_ / S(2))];
-  const auto rule = [&](const auto& f, S a, S b) {
-    S sum(0);
-    for (std::size_t i = 0; i < gauss.node.size(); ++i)
-      sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
-    return sum * (b - a);
-  };
-  S total(0);
-  const auto halve = [&](const auto& self, const auto& f, S a, S b, S whole, int depth) -> void {
-    const S middle = a + (b - a) * S(0.5L);
-    const S left = rule(f, a, middle), right = rule(f, middle, b);
-    if (depth == 0 || abs(left + right - whole) <= S(0.1L) * tolerance_ * (total + left + right)) {
-      total += left + right;
-      return;
-    }
-    self(self, f, a, middle, left, depth - 1);
-    self(self, f, middle, b, right, depth - 1);
-  };
+ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
+  using std::abs, std::asin, std::floor, std::sqrt;
+  constexpr S epsilon = std::numeric_limits<S>::epsilon();
   constexpr int most_halvings = 60;
+  long panels_left = 20'000;
+  // The last resort of hard designs, so that a loose tolerance saves no nodes here: too few would miss a spike.
+  const S tolerance = std::min(tolerance_, S(1e-8L));
+  const GaussRule<S>& gauss = rules_[sizeof(S) > 8 ? 30 : 20];
 
   const Hoop<S>& hoop = roll.hoop;
   const S bend = -hoop.rho * cos_from_vertical(hoop, roll.release_trig);
   const S discriminant = roll.push * roll.push - roll.released * bend;
   const S x1 =
       discriminant >= S(0) && roll.push > S(0) ? -roll.released / (roll.push + sqrt(discriminant)) : S(-1);
-  const auto past_release = [&](S q) {
-    const S x = x1 + q * q;
-    return S(2) * q * slowness(contact_inertia(hoop, trig(roll.release + x)), vis_viva_past_release(roll, x));
+  const S q0 = sqrt(-x1);
+  S unsure(0);  // of E in the panel at hand, relative: it carries roundings of the largest of its terms
+  const auto slowness_past = [&](const S& x) {
+    const S E = vis_viva_past_release(roll, x);
+    const S terms = roll.released + S(2) * x * (abs(roll.push) + hoop.rho * std::min(x, S(1)));
+    unsure = std::max(unsure, E > S(0) ? S(4) * epsilon * terms / E : std::numeric_limits<S>::infinity());
+    return slowness(contact_inertia(hoop, trig(roll.release + x)), E);
   };
-  const auto at_angle = [&](S angle) {
-    return slowness(contact_inertia(hoop, trig(angle)), vis_viva_past_release(roll, angle - roll.release));
+  const auto near_release = [&](const S& past) { return S(2) * (q0 + past) * slowness_past(past * (S(2) * q0 + past)); };
+  const auto farther = [&](const S& x) { return slowness_past(x); };
+
+  S total(0);
+  const auto rule = [&](const auto& f, S a, S b) {
+    S sum(0);
+    for (std::size_t i = 0; i < gauss.node.size(); ++i) sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
+    --panels_left;
+    return sum * (b - a);
   };
-  S a = from;
-  if (a < roll.release + S(1)) {
-    const S b = std::min(to, roll.release + S(1));
-    const S q0 = sqrt(a - roll.release - x1), q1 = sqrt(b - roll.release - x1);
-    halve(halve, past_release, q0, q1, rule(past_release, q0, q1), most_halvings);
-    a = b;
-  }
-  const S eighth = pi_of<S> / S(4);
-  while (a < to) {
-    const S b = std::min(to, (floor(a / eighth + S(1e-9L)) + S(1)) * eighth);
-    halve(halve, at_angle, a, b, rule(at_angle, a, b), most_halvings);
-    a = b;
+  const auto halve = [&](const auto& self, const auto& f, S a, S b, S whole, int depth) -> void {
+    const S middle = a + (b - a) * S(0.5L);
+    unsure = S(0);
+    const S left = rule(f, a, middle), right = rule(f, middle, b), sum = left + right;
+    const bool agree = abs(sum - whole) <= std::max(S(0.1L) * tolerance * (total + sum), unsure * sum);
+    if (agree || depth == 0 || panels_left <= 0 || !(unsure < S(1))) {
+      total += agree ? sum : std::numeric_limits<S>::quiet_NaN();
+      return;
+    }
+    self(self, f, a, middle, left, depth - 1);
+    self(self, f, middle, b, right, depth - 1);
+  };
+
+  // Edges where the integrand may be sharp: the needles at 2 pi k, among eighths of a turn, and the minima of E.
+  const S eighth = pi_of<S> / S(4), turn = S(2) * pi_of<S>;
+  const S minimum = pi_of<S> - asin(std::min(S(1), hoop.sin_slope / hoop.rho)) - hoop.slope;
+  const S end = to - roll.release;
+  for (S x(0); x < end;) {
+    const S angle = roll.release + x;
+    const auto next = [&](const S& first, const S& step) {
+      const S after = first + step * (floor((angle - first) / step) + S(1)) - roll.release;
+      return after > x + S(1e-9L) ? after : after + step;
+    };
+    S b = std::min({end, next(S(0), eighth), next(minimum, turn)});
+    if (x < S(1)) {
+      b = std::min(b, S(1));
+      const auto past = [&](const S& at) { return at > S(0) ? at / (q0 + sqrt(q0 * q0 + at)) : S(0); };
+      const S from = past(x), until = past(b);
+      halve(halve, near_release, from, until, rule(near_release, from, until), most_halvings);
+    } else {
+      halve(halve, farther, x, b, rule(farther, x, b), most_halvings);
+    }
+    x = b;
   }
   return total;
 }

@@ -94,14 +94,14 @@ Story tell_exactly(const Design& design, const Scene& scene, double tolerance, d
   story.checked = story.outcome;
   story.candidates.clear();
 
-  // As a sweep solves it, so that every digit is the map's.
+  // As a sweep solves it: all but the times, which are within the tolerance, are the map's to the last digit.
   std::vector<LiftOff<double>> lift_offs;
   ExactSolver<Batch>(tolerance).solve({&design, 1}, scene, {&story.outcome, 1}, &lift_offs);
   const Hoop<double> hoop = derive<double>(design);
   const Roll<double> roll = begin_roll(hoop, design.release_angle, design.release_spin);
   const RollingTime<double> time(tolerance);
   for (LiftOff<double>& lift_off : lift_offs) {
-    lift_off.time = time.halving(roll, roll.release, lift_off.angle);
+    lift_off.time = time.halving(roll, lift_off.angle);
     story.candidates.push_back({lift_off, fly(hoop, lift_off)});
   }
   if (story.candidates.empty()) return story;
