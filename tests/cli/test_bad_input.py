@@ -129,6 +129,6 @@ def test_a_full_disk_ends_with_status_3_and_gives_the_space_back(tmp_path):
 
 
 def test_a_bad_design_is_a_status_and_the_sweep_goes_on(tmp_path):
-    path = sweep(tmp_path, '[design]\nslope = { values = [0.4] }\nmass_ratio = { values = [2, 3] }\n[numerics]\nmax_steps = 20\naudit = 0\n')
+    path = sweep(tmp_path, '[design]\nslope = { values = [0.4] }\nmass_ratio = { values = [2, 3] }\n[numerics]\nmethod = "gsl-rk8pd"\nmax_steps = 20\naudit = 0\n')
     text = leapmap("info", path).stdout
     assert "failed" in text

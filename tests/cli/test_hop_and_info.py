@@ -43,7 +43,9 @@ def test_a_hop_is_what_the_map_says_of_the_same_design(tmp_path):
                                      "--offset-ratio", repr(float(m["offset_ratio"][k]))).stdout)
             for name in ("jump_height", "jump_time", "jump_angle", "apex_time", "dip", "first_jump_time"):
                 stored = m[name][i, j, k]
-                assert (hop[name] is None and np.isnan(stored)) or hop[name] == stored
+                # times share their number of nodes with the tile's other designs: 1e-12, and the same digits else
+                same = abs(hop[name] / stored - 1) < 1e-12 if name.endswith("_time") and hop[name] else hop[name] == stored
+                assert same or (hop[name] is None and np.isnan(stored)), name
 
 
 def test_a_trace_holds_the_motion_from_release_to_landing(tmp_path):
@@ -127,7 +129,7 @@ def test_help_teaches_and_version_is_told():
 
 def test_an_audit_that_disagrees_ends_with_status_1_and_the_command_that_shows_it(tmp_path):
     (tmp_path / "spec.toml").write_text('[design]\nslope={from=0.1,to=0.8,count=40}\nmass_ratio={from=0.5,to=10,count=40}\n'
-                                        '[numerics]\ntolerance=3e-3\naudit=1\n')
+                                        '[numerics]\nmethod="gsl-rk8pd"\ntolerance=3e-3\naudit=1\n')
     done = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--quiet")
     assert done.returncode == 1 and done.stderr.count("\n") == 1
     command = done.stderr.split("see it by: leapmap ")[1].split()

@@ -41,10 +41,10 @@ def test_a_signal_keeps_finished_tiles_readable_in_the_part(number, status, tmp_
 
 
 def test_a_signal_during_the_audit_is_an_interruption_too(tmp_path):
-    (tmp_path / "spec.toml").write_text(LONG.replace("audit = 0", "audit = 1").replace("1e-13", "1e-4").replace("300", "900"))
+    (tmp_path / "spec.toml").write_text(LONG.replace("audit = 0", "audit = 1").replace("gsl-rk4", "exact").replace("300", "3000"))
     process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5"],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    time.sleep(8.0)  # solving takes some four seconds, auditing at 1e-13 twenty and more
+    time.sleep(4.0)  # solving takes less than a second, auditing by integration twenty and more
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=120)
     assert process.returncode == 130

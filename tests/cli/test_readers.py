@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-from support.program import leapmap, sweep
+from support.program import SMALL, leapmap, sweep
 
 FIELDS = {
     "jump_height": "<f8", "jump_time": "<f8", "spurious_first_jump": "u1", "status": "u1", "jump_angle": "<f8", "jump_spin": "<f8",
@@ -59,13 +59,24 @@ def test_root_attributes_tell_where_the_map_comes_from(grid):
     with h5py.File(grid) as m:
         a = m.attrs
         assert a["filetype"] == "leapmap map" and a["Conventions"].startswith("CF-")
-        assert list(a["version"]) == [1, 0]
+        assert list(a["version"]) == [1, 1]
         for name in ("title", "program_version", "git_revision", "spec", "date", "host", "method"):
             assert isinstance(a[name], str) and a[name], name
-        assert a["method"] == "gsl-rk8pd" and a["tolerance"] == 1e-10 and a["threads"] >= 1 and a["wall_time"] > 0
+        assert a["method"] == "exact" and a["tolerance"] == 1e-10 and a["threads"] >= 1 and a["wall_time"] > 0
         assert a["audit_designs"] == 14 and a["audit_flag_mismatches"] == 0
-        assert 0 <= a["audit_max_abs_height_error"] < 1e-8 and 0 <= a["audit_max_rel_time_error"] < 1e-8
+        assert a["audit_undecided"] == 0 and a["audit_beyond_tolerance"] == 0
+        assert 0 <= a["audit_max_abs_height_error"] < 1e-11 and 0 <= a["audit_max_rel_time_error"] < 1e-11
         assert a["audit_method"] != a["method"]
+
+
+def test_f4_halves_the_numbers_and_every_reader_still_sees_the_holes(grid, tmp_path):
+    single = sweep(tmp_path, SMALL, "--set", "precision=f4", "--set", "fields=[\"jump_height\",\"spurious_first_jump\"]")
+    with h5py.File(grid) as m, h5py.File(single) as s, xarray.open_dataset(single) as d:
+        assert s["jump_height"].dtype == np.float32 and "jump_time" not in s
+        assert np.array_equal(m["jump_height"][()].astype(np.float32), s["jump_height"][()], equal_nan=True)
+        assert np.array_equal(m["spurious_first_jump"][()], s["spurious_first_jump"][()])
+        assert np.array_equal(d.jump_height.values, s["jump_height"][()], equal_nan=True)
+    assert "jump_height" in leapmap("info", single).stdout
 
 
 @pytest.mark.parametrize("engine", ["netcdf4", "h5netcdf"])

@@ -10,15 +10,16 @@ from support.program import REFERENCE, sweep
 INPUTS = ["slope", "mass_ratio", "offset_ratio", "release_angle", "release_spin", "inertia_factor"]
 
 
-@pytest.mark.parametrize("table", ["noslip_top_release", "noslip_general"])
-def test_every_status_flag_and_count_is_equal_and_heights_and_times_are_within_1e_9(table, tmp_path):
+@pytest.mark.parametrize("table", ["noslip_top_release", "noslip_general", "noslip_stress"])
+@pytest.mark.parametrize("method,bound", [("auto", 1e-12), ("gsl-rk8pd", 1e-9)])
+def test_every_status_flag_and_count_is_equal_and_heights_and_times_are_within_the_bound(table, method, bound, tmp_path):
     rows = list(csv.DictReader((REFERENCE / f"{table}.csv").open()))
     with (tmp_path / "designs.csv").open("w") as file:
         writer = csv.DictWriter(file, INPUTS, extrasaction="ignore")
         writer.writeheader()
         writer.writerows(rows)
-    path = sweep(tmp_path, '[scene]\nradius = 1\ngravity = 1\n[design]\npoints = "designs.csv"\n',
-                 "--set", "numerics.method=gsl-rk8pd", "--set", "tolerance=1e-12")
+    settings = [] if method == "auto" else ["--set", f"numerics.method={method}", "--set", "tolerance=1e-12"]
+    path = sweep(tmp_path, '[scene]\nradius = 1\ngravity = 1\n[design]\npoints = "designs.csv"\n', *settings)
     with h5py.File(path) as m:
         meanings = m["status"].attrs["flag_meanings"].split()
         assert [meanings[s] for s in m["status"]] == [r["status"] for r in rows]
@@ -26,8 +27,10 @@ def test_every_status_flag_and_count_is_equal_and_heights_and_times_are_within_1
         assert list(m["candidates"]) == [int(r["candidates"] or 0) for r in rows]
         for name in INPUTS:
             assert list(m[name]) == [float(r[name]) for r in rows], "inputs are stored to the last bit"
-        for name in ("jump_height", "jump_time"):
+        for name in ("jump_height", "jump_time", "apex_time", "flight_time"):
             expected = np.array([float(r[name] or "nan") for r in rows])
-            scale = np.abs(expected) if name == "jump_time" else 1.0
+            scale = 1.0 if name == "jump_height" else np.abs(expected)
             assert np.array_equal(np.isnan(m[name]), np.isnan(expected))
-            assert np.nanmax(np.abs(m[name] - expected) / scale) < 1e-9  # the issue's own bound; measured 1e-12
+            # a release a hair past the unstable equilibrium amplifies any rounding of the inputs in its time
+            allowed = max(bound, 1e-5) if table == "noslip_stress" and name == "jump_time" else bound
+            assert np.nanmax(np.abs(m[name] - expected) / scale) < allowed, name
