@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Refuses a machine that lacks the instructions the program was compiled for, before any of them is met: compiled for
-/// the oldest machine there is, and run before everything else. LEAPMAP_FEATURES comes from CMakeLists.txt.
+/// Refuses a machine that lacks the instructions the program was compiled for, before any of them is met:
+/// compiled for the oldest machine there is, and run before everything else. LEAPMAP_FEATURES comes from
+/// CMakeLists.txt.
 #include <unistd.h>
 
 #include <cstdlib>

@@ -39,8 +39,8 @@ Flight<S> walk_toss(const Toss<S>& toss) {
   };
 
   // With y between L(psi) = psi sin(phi) - gamma psi^2 / 2 - (1 + cos phi) and L + 2, no landing is possible
-  // while L > 0. And y less its parabola repeats every turn, so that the highest apex is at most half a turn from the
-  // vertex.
+  // while L > 0. And y less its parabola repeats every turn, so that the highest apex is at most half a turn
+  // from the vertex.
   const S s = toss.phi.sin, vertex = s / toss.gravity, around = two_pi;
   const S clearance = s * s - S(2) * toss.gravity * (S(1) + toss.phi.cos);
   const S half_width =
@@ -183,8 +183,8 @@ Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
   return ascent;
 }
 
-/// The rest of a flight, psi in place of times and heights of rho; zero where it never clears the plane. Lanes outside
-/// `wanted` return anything.
+/// The rest of a flight, psi in place of times and heights of rho; zero where it never clears the plane.
+/// Lanes outside `wanted` return anything.
 template <class T>
 Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>& wanted) {
   using std::sqrt;

@@ -34,7 +34,8 @@ struct Difference {
 };
 
 /// `ours` may lack what its sweep was not asked for: only numbers of `fields`, by default all, must be there.
-Difference difference(const Outcome& ours, const Outcome& theirs, const std::vector<std::string>& fields = {}) {
+Difference difference(const Outcome& ours, const Outcome& theirs,
+                      const std::vector<std::string>& fields = {}) {
   Difference d;
   d.flags = ours.status != theirs.status || ours.spurious_first_jump != theirs.spurious_first_jump ||
             ours.candidates != theirs.candidates;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// How accurate this very sweep is: a random share of its outcomes, on their way to the map, solved again by an
-/// independent method.
+/// How accurate this very sweep is: a random share of its outcomes, on their way to the map, solved again by
+/// an independent method.
 #pragma once
 
 #include <cstddef>
@@ -40,14 +40,16 @@ class AuditDraw {
 /// What the two methods disagree on.
 struct AuditReport {
   std::size_t designs = 0;
-  std::string method;                 ///< of the audit
-  double max_abs_height_error = 0.0;  ///< [hoop diameters], of jump, first lift-off and dip, where the flags agree
-  double max_rel_time_error = 0.0;    ///< of the times to lift-off, apex and landing
-  std::size_t flag_mismatches = 0;    ///< designs whose status, spurious flag or number of candidates differ
-  /// Designs on which the audit's method gave up, or whose flags one unit in the last place of the inputs decides.
+  std::string method;  ///< of the audit
+  double max_abs_height_error =
+      0.0;  ///< [hoop diameters], of jump, first lift-off and dip, where the flags agree
+  double max_rel_time_error = 0.0;  ///< of the times to lift-off, apex and landing
+  std::size_t flag_mismatches = 0;  ///< designs whose status, spurious flag or number of candidates differ
+  /// Designs on which the audit's method gave up, or whose flags one unit in the last place of the inputs
+  /// decides.
   std::size_t undecided = 0;
-  std::size_t beyond_tolerance = 0;   ///< designs whose error is larger than it should be, see audit
-  std::optional<std::size_t> first_mismatch;    ///< the least design number whose flags differ
+  std::size_t beyond_tolerance = 0;           ///< designs whose error is larger than it should be, see audit
+  std::optional<std::size_t> first_mismatch;  ///< the least design number whose flags differ
   std::optional<std::size_t> first_inaccurate;  ///< the least design number beyond the tolerance
 };
 

@@ -251,7 +251,11 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
     const S from = std::max(at * step, search.release), to = std::min((at + part) * step, search.end);
     if (from < to) {
       const bool falls = search.flags.falls[static_cast<std::size_t>(search.turn)] >> search.node & 1u;
-      interval = {design, turn, from, to, (from + to) * S(0.5),
+      interval = {design,
+                  turn,
+                  from,
+                  to,
+                  (from + to) * S(0.5),
                   falls && from == at * step && to == (at + part) * step};
       return true;
     }
@@ -290,7 +294,8 @@ void ExactSolver<T>::classify_intervals() {
     for (std::size_t i = 0; i < count; ++i) {
       Search& search = searches_[index[i]];
       Interval interval = intervals_[first + i];
-      const bool short_of_digits = interval.to - interval.from <= S(16) * std::numeric_limits<S>::epsilon() * std::abs(interval.to);
+      const bool short_of_digits =
+          interval.to - interval.from <= S(16) * std::numeric_limits<S>::epsilon() * std::abs(interval.to);
       const bool at_last = (unclear >> i & 1u) && (search.halvings == most_halvings || short_of_digits);
       if ((falls >> i & 1u) || (at_last && (sinking >> i & 1u))) {
         interval.guess = guess[i];

@@ -219,7 +219,8 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
   constexpr S epsilon = std::numeric_limits<S>::epsilon();
   constexpr int most_halvings = 60;
   long panels_left = 20'000;
-  // The last resort of hard designs, so that a loose tolerance saves no nodes here: too few would miss a spike.
+  // The last resort of hard designs, so that a loose tolerance saves no nodes here: too few would miss a
+  // spike.
   const S tolerance = std::min(tolerance_, S(1e-8L));
   const GaussRule<S>& gauss = rules_[sizeof(S) > 8 ? 30 : 20];
 
@@ -236,13 +237,16 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
     unsure = std::max(unsure, E > S(0) ? S(4) * epsilon * terms / E : std::numeric_limits<S>::infinity());
     return slowness(contact_inertia(hoop, trig(roll.release + x)), E);
   };
-  const auto near_release = [&](const S& past) { return S(2) * (q0 + past) * slowness_past(past * (S(2) * q0 + past)); };
+  const auto near_release = [&](const S& past) {
+    return S(2) * (q0 + past) * slowness_past(past * (S(2) * q0 + past));
+  };
   const auto farther = [&](const S& x) { return slowness_past(x); };
 
   S total(0);
   const auto rule = [&](const auto& f, S a, S b) {
     S sum(0);
-    for (std::size_t i = 0; i < gauss.node.size(); ++i) sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
+    for (std::size_t i = 0; i < gauss.node.size(); ++i)
+      sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
     --panels_left;
     return sum * (b - a);
   };
@@ -259,7 +263,8 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
     self(self, f, middle, b, right, depth - 1);
   };
 
-  // Edges where the integrand may be sharp: the needles at 2 pi k, among eighths of a turn, and the minima of E.
+  // Edges where the integrand may be sharp: the needles at 2 pi k, among eighths of a turn, and the minima of
+  // E.
   const S eighth = pi_of<S> / S(4), turn = S(2) * pi_of<S>;
   const S minimum = pi_of<S> - asin(std::min(S(1), hoop.sin_slope / hoop.rho)) - hoop.slope;
   const S end = to - roll.release;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The methods on the same designs in one run, speed and error side by side.
 ///
-/// Designs: slope 0.1 to 0.8, mass ratio 0.5 to 10, offset 0.3 to 1, uniform, seeded; runway 4. items_per_second are
-/// designs a second; the errors are against long double at 1e-18; wrong counts designs whose status, flag or number of
-/// candidates differs from it. Engine is run_sweep on one thread: designs from axes, everything but the file.
+/// Designs: slope 0.1 to 0.8, mass ratio 0.5 to 10, offset 0.3 to 1, uniform, seeded; runway 4.
+/// items_per_second are designs a second; the errors are against long double at 1e-18; wrong counts designs
+/// whose status, flag or number of candidates differs from it. Engine is run_sweep on one thread: designs
+/// from axes, everything but the file.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -55,7 +56,8 @@ void tell_errors(benchmark::State& state, std::span<const Outcome> outcomes) {
   int wrong = 0;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Outcome &a = outcomes[i], &b = reference()[i];
-    if (a.status != b.status || a.candidates != b.candidates || a.spurious_first_jump != b.spurious_first_jump) {
+    if (a.status != b.status || a.candidates != b.candidates ||
+        a.spurious_first_jump != b.spurious_first_jump) {
       ++wrong;
     } else if (a.status == Status::jumped) {
       height = std::max(height, std::abs(a.jump_height - b.jump_height));
@@ -68,7 +70,9 @@ void tell_errors(benchmark::State& state, std::span<const Outcome> outcomes) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(outcomes.size()));
 }
 
-double tolerance(const benchmark::State& state) { return std::pow(10.0, -static_cast<double>(state.range(0))); }
+double tolerance(const benchmark::State& state) {
+  return std::pow(10.0, -static_cast<double>(state.range(0)));
+}
 
 template <class T>
 void Exact(benchmark::State& state) {
@@ -79,7 +83,8 @@ void Exact(benchmark::State& state) {
 }
 
 void ExactHeightsAndFlagsOnly(benchmark::State& state) {
-  ExactSolver<Batch> solver(tolerance(state), {.first_jump_time = false, .jump_time = false, .descent = false});
+  ExactSolver<Batch> solver(tolerance(state),
+                            {.first_jump_time = false, .jump_time = false, .descent = false});
   std::vector<Outcome> outcomes(count);
   for (auto _ : state) solver.solve(designs(), scene(), outcomes);
   tell_errors(state, outcomes);
@@ -98,9 +103,9 @@ void GslRk8pd(benchmark::State& state) {
 }
 
 void Engine(benchmark::State& state) {
-  const Spec spec = read_spec("", {"runway=4", "slope={from=0.1,to=0.8,count=64}", "mass_ratio={from=0.5,to=10,count=64}",
-                                   "offset_ratio={from=0.3,to=1,count=64}",
-                                   "tolerance=1e-" + std::to_string(state.range(0))});
+  const Spec spec = read_spec(
+      "", {"runway=4", "slope={from=0.1,to=0.8,count=64}", "mass_ratio={from=0.5,to=10,count=64}",
+           "offset_ratio={from=0.3,to=1,count=64}", "tolerance=1e-" + std::to_string(state.range(0))});
   const Tiling tiling(shape_of(spec));
   EngineOptions options;
   options.threads = static_cast<int>(state.range(1));

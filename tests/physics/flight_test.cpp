@@ -176,6 +176,39 @@ TEST(Flight, AFastSpinsThousandTurnsAreLeaptOverWithoutMissingApexOrLanding) {
   }
 }
 
+TEST(Flight, LanesFlyAsOneTossDoesThroughOneClimbOrMany) {
+  std::mt19937_64 random(8);
+  constexpr std::size_t width = Lanes<Batch>::count;
+  int several = 0;
+  for (int round = 0; round < 500; ++round) {
+    LaneArray<Batch> angles, spins;
+    Design design = testing::random_design(random);
+    const Hoop<double> hoop = derive<double>(design);
+    for (std::size_t i = 0; i < width; ++i) {
+      angles[i] = testing::uniform(random, 0.0, 20.0);
+      spins[i] = std::exp(testing::uniform(random, -0.5, 3.0));
+    }
+    const Batch angle = Lanes<Batch>::load(angles.data()), spin = Lanes<Batch>::load(spins.data());
+    Hoop<Batch> same;
+    same.rho = Batch(hoop.rho), same.cos_slope = Batch(hoop.cos_slope);
+    const Toss<Batch> toss = toss_of(same, angle, trig(angle), spin);
+    const Ascent<Batch> ascent = ascend(toss, spin == spin);
+    const Flight<Batch> flight = scaled(descend(toss, ascent, spin == spin), same, spin);
+    for (std::size_t i = 0; i < width; ++i) {
+      // the walk from knot to knot, another way to the same roots
+      const Toss<double> one = toss_of(hoop, angles[i], trig(angles[i]), spins[i]);
+      const Flight<double> walked =
+          one.fastest > 0.0 ? scaled(walk_toss(one), hoop, spins[i]) : Flight<double>{};
+      if (one.fastest > 2.0 * std::numbers::pi * one.gravity) ++several;
+      EXPECT_NEAR(lanes_of(flight.height)[i], walked.height, 1e-13 * (1.0 + walked.height));
+      EXPECT_NEAR(lanes_of(flight.apex_time)[i], walked.apex_time, 1e-12 * (1.0 + walked.apex_time));
+      EXPECT_NEAR(lanes_of(flight.flight_time)[i], walked.flight_time, 1e-12 * (1.0 + walked.flight_time));
+      EXPECT_NEAR(lanes_of(flight.dip)[i], walked.dip, 1e-13);
+    }
+  }
+  EXPECT_GT(several, 500) << "tosses that climb more than once are among them";
+}
+
 TEST(Flight, BackwardSpinFliesTheMirrorImage) {
   const Hoop<double> hoop = derive<double>(testing::paper_hoop());
   const Flight<double> forward = fly<double>(hoop, {0.0, 1.4, 2.3}),

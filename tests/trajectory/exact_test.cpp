@@ -333,5 +333,64 @@ TEST(ExactSolver, AReleaseAHairPastTheUnstableEquilibriumLiftsOffWhateverTheHair
   EXPECT_NEAR(times[3] - times[2], step, 1e-3);
 }
 
+/// Designs on which earlier versions, or other methods, went wrong.
+TEST(ExactSolver, ALooseToleranceMissesNoSpikeOfTheTime) {
+  const std::vector<std::pair<double, Design>> cases{
+      {1e-3,
+       {0.4699780057964516, 1898.4783603414612, 0.86578748422260754, 0.5, -0.40628755222287083,
+        2.3911550967083923}},
+      {1e-2,
+       {0.54865600114787505, 2.2472453901810825, 0.99999998993881134, 0.93698486119555513,
+        0.99039440216520469, 0.37573276662727711}},
+      {1e-1,
+       {2.2194412131503659e-09, 11.368102906201514, 0.99999093189518418, 8.9521227717562928e-06,
+        3.1223786397434963, 0.0095034009349929428}},
+      {1e-3,
+       {0.60160982562145282, 6.9082059410512677, 1.0, 0.0, -10.731207624221467, 9.3458654851786261e-12}},
+      {1e-10,
+       {1.2119473583694391, 11.694154552151653, 1.0, 77760615433.56958, 6.0914227265803866,
+        229.6010602045499}}};
+  for (const auto& [tolerance, design] : cases) {
+    const Outcome ours = solve_all<Batch>({design}, Scene{}, tolerance)[0],
+                  truth = reference({design}, Scene{})[0];
+    EXPECT_TRUE(same_flags(ours, truth)) << told(design);
+    EXPECT_LE(relative(ours.first_jump_time, truth.first_jump_time), tolerance) << told(design);
+  }
+}
+
+TEST(ExactSolver, AHairFromAStallItEndsWithANumberOrWithFailed) {
+  std::vector<Design> designs;
+  Design paper = testing::paper_hoop();
+  for (const auto& [angle, spin] : {std::pair{1.0, 0.65103936160503106}, {1000.0, 0.66965809370612239}}) {
+    paper.release_angle = angle;
+    for (const double nudge : {-1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9}) {
+      paper.release_spin = spin * (1.0 + nudge);
+      designs.push_back(paper);
+    }
+  }
+  designs.push_back(
+      {0.16133632270881876, 98954864695.251709, 1.0, 0.5, 2.3528226500176368, 0.24533301874889513});
+  designs.push_back({0.1232432324299282, 106.00316768436441, 1.0, 0.5, 350585.7845222436, 1.118e-11});
+  designs.push_back(
+      {0.267092567604634, 15783130.56, 0.99999999751976365, 1.0, 2.6074075003662545, 3.8457e-11});
+  for (const double tolerance : {1e-3, 1e-10, 1e-15}) {
+    for (const Outcome& o : solve_all<Batch>(designs, Scene{}, tolerance)) {
+      EXPECT_TRUE(o.status == Status::failed || o.candidates == 0 || std::isfinite(o.first_jump_time));
+      EXPECT_TRUE(o.status != Status::jumped || std::isfinite(o.jump_time));
+    }
+  }
+}
+
+TEST(ExactSolver, AFlightThatNeverClearsThePlaneHasNoDipEvenIfItCountsAsTheJump) {
+  const Design design{0.3190873, 150914.0, 0.61935165, 0.57923, -0.449154, 1.5};
+  Scene scene;
+  scene.hop_height = 0.0;
+  const Outcome outcome = solve_one(design, scene);
+  ASSERT_EQ(outcome.status, Status::jumped);
+  EXPECT_EQ(outcome.jump_height, 0.0);
+  EXPECT_EQ(outcome.dip, 0.0);
+  EXPECT_EQ(outcome.flight_time, 0.0);
+}
+
 }  // namespace
 }  // namespace leapmap
