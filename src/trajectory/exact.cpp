@@ -145,7 +145,7 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
 template <class T>
 void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene,
                              std::span<Outcome> outcomes) {
-  using std::asin, std::floor;
+  using std::abs, std::asin, std::atan2, std::floor;
   const T pi(pi_of<S>), two_pi = T(2) * pi;
   searching_.clear();
   for (std::size_t first = 0; first < designs.size(); first += width) {
@@ -161,7 +161,12 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
     const Hoop<T> hoop = derive(parameter(&Design::slope), parameter(&Design::mass_ratio),
                                 parameter(&Design::offset_ratio), parameter(&Design::inertia_factor));
     const T spin = parameter(&Design::release_spin);
-    const Roll<T> roll = begin_roll(hoop, parameter(&Design::release_angle), spin);
+    // A release many turns from 0 is taken back to the first, so that angles have digits to spare.
+    const T release_angle = parameter(&Design::release_angle);
+    const Trig<T> direction = trig(release_angle);
+    const T nearest =
+        select(abs(release_angle) > T(S(4) * pi_of<S>), atan2(direction.sin, direction.cos), release_angle);
+    const Roll<T> roll = begin_roll(hoop, nearest, spin);
 
     const T force =
         normal_force(hoop, roll.release_trig, spin, angular_acceleration(hoop, roll.release_trig, spin));
@@ -183,7 +188,8 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
     const unsigned in_the_air = Lanes<T>::bits(airborne), not_off = Lanes<T>::bits(uphill),
                    stalling = Lanes<T>::bits(uneven & !(least > T(0)));
     const auto release = lanes_of(roll.release), end = lanes_of(roll.release + two_pi * T(S(scene.runway))),
-               first_turn = lanes_of(floor(roll.release / two_pi)), minima = lanes_of(minimum),
+               first_turn = lanes_of(floor(roll.release / two_pi)),
+               turns_back = lanes_of(release_angle - nearest), minima = lanes_of(minimum),
                crests = lanes_of(crest);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t design = index[i];
@@ -195,6 +201,7 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
       } else {
         Search& search = searches_[design];
         search.release = release[i], search.end = end[i], search.first_turn = first_turn[i];
+        search.turned_back = turns_back[i];
         search.turn = search.node = search.halvings = 0, search.part = 0;
         search.stalls = false;
         searching_.push_back(design);
@@ -345,7 +352,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
       }
       if (outcome.candidates == 0) search.first_angle = angles[i];
       search.jump_angle = angles[i];
-      const LiftOff<double> lift_off{Outcome::none, static_cast<double>(angles[i]),
+      const LiftOff<double> lift_off{Outcome::none, static_cast<double>(angles[i] + search.turned_back),
                                      static_cast<double>(spins[i])};
       if (told_) told_->push_back(lift_off);
       const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]),

@@ -49,6 +49,7 @@ class ExactSolver {
   /// now part `part`.
   struct Search {
     S release, end;  // where the hoop is released, and where its runway ends or it stalls
+    S turned_back;   // whole turns by which all angles here are less than they are
     S first_turn;    // of the scan
     ScanFlags flags;
     int turn, node, halvings;

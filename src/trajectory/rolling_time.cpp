@@ -215,7 +215,7 @@ T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int
 
 template <class T>
 ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
-  using std::abs, std::asin, std::floor, std::sqrt;
+  using std::abs, std::asin, std::atan2, std::floor, std::sqrt;
   constexpr S epsilon = std::numeric_limits<S>::epsilon();
   constexpr int most_halvings = 60;
   long panels_left = 20'000;
@@ -230,12 +230,18 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
   const S x1 =
       discriminant >= S(0) && roll.push > S(0) ? -roll.released / (roll.push + sqrt(discriminant)) : S(-1);
   const S q0 = sqrt(-x1);
-  S unsure(0);  // of E in the panel at hand, relative: it carries roundings of the largest of its terms
+  const S release = atan2(roll.release_trig.sin, roll.release_trig.cos);  // of whole turns nothing depends
+  S unsure(
+      0);  // of J / E in the panel at hand, relative: roundings of E's largest terms, and of the angle in J
   const auto slowness_past = [&](const S& x) {
     const S E = vis_viva_past_release(roll, x);
     const S terms = roll.released + S(2) * x * (abs(roll.push) + hoop.rho * std::min(x, S(1)));
-    unsure = std::max(unsure, E > S(0) ? S(4) * epsilon * terms / E : std::numeric_limits<S>::infinity());
-    return slowness(contact_inertia(hoop, trig(roll.release + x)), E);
+    const Trig<S> phi = trig(release + x);
+    const S J = contact_inertia(hoop, phi);
+    const S in_J = hoop.rho * abs(phi.sin) * (S(4) + x) / J;
+    unsure =
+        std::max(unsure, E > S(0) ? S(4) * epsilon * (terms / E + in_J) : std::numeric_limits<S>::infinity());
+    return slowness(J, E);
   };
   const auto near_release = [&](const S& past) {
     return S(2) * (q0 + past) * slowness_past(past * (S(2) * q0 + past));
@@ -269,9 +275,9 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
   const S minimum = pi_of<S> - asin(std::min(S(1), hoop.sin_slope / hoop.rho)) - hoop.slope;
   const S end = to - roll.release;
   for (S x(0); x < end;) {
-    const S angle = roll.release + x;
+    const S angle = release + x;
     const auto next = [&](const S& first, const S& step) {
-      const S after = first + step * (floor((angle - first) / step) + S(1)) - roll.release;
+      const S after = first + step * (floor((angle - first) / step) + S(1)) - release;
       return after > x + S(1e-9L) ? after : after + step;
     };
     S b = std::min({end, next(S(0), eighth), next(minimum, turn)});
