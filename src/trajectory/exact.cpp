@@ -12,56 +12,12 @@ namespace {
 template <class S>
 constexpr S pi_of = std::numbers::pi_v<S>;
 
-// What the rows of a block hold, number by number.
-template <class T>
-std::array<T, 8> motion_row(const Roll<T>& roll) {
-  const Hoop<T>& h = roll.hoop;
-  return {h.sin_slope, h.cos_slope, h.rho, h.clearance, h.Ic, h.J_min, roll.level, h.slope};
-}
-template <class T>
-std::array<T, 8> release_row(const Roll<T>& roll, const Quiet<T>& quiet) {
-  const Trig<T>& phi = roll.release_trig;
-  return {roll.release,  phi.sin,   phi.cos,        phi.versine,
-          roll.released, roll.push, quiet.vis_viva, quiet.distance};
-}
-/// A time that the quadrature could not tell makes the design failed: no field of it is to be believed.
-template <class S>
-void note_time(Outcome& outcome, double Outcome::*time, const S& taken) {
-  if (std::isfinite(taken)) {
-    outcome.*time = static_cast<double>(taken);
-  } else {
-    outcome = failed_outcome();
-  }
-}
-
-enum LiftOffRow { angle_of, spin_of, apex_of, last_apex_of, sunk_of, dip_of };
-
 }  // namespace
 
 template <class T>
 ExactSolver<T>::ExactSolver(double tolerance, const Wanted& wanted)
-    : wanted_(wanted),
-      time_(tolerance),
-      nodes_(scan_nodes<S>()),
-      searches_(block),
-      motions_(block),
-      releases_(block),
-      lift_offs_(block) {
+    : wanted_(wanted), time_(tolerance), nodes_(scan_nodes<S>()), searches_(block), rows_(block) {
   for (std::size_t k = 0; k < part_length_.size(); ++k) part_length_[k] = S(1) / S(std::uint64_t{1} << k);
-}
-
-template <class T>
-typename ExactSolver<T>::Index ExactSolver<T>::index_of(const List& designs, std::size_t first) const {
-  Index index;
-  for (std::size_t i = 0; i < width; ++i) index[i] = designs[first + i < designs.size() ? first + i : first];
-  return index;
-}
-
-template <class T>
-T ExactSolver<T>::gather(const Index& index, S Search::*member) const {
-  LaneArray<T> lanes;
-  for (std::size_t i = 0; i < width; ++i) lanes[i] = searches_[index[i]].*member;
-  return Lanes<T>::load(lanes.data());
 }
 
 template <class T>
@@ -74,26 +30,6 @@ typename ExactSolver<T>::LoadedIntervals ExactSolver<T>::load_intervals(
     index[i] = interval.design, from[i] = interval.from, to[i] = interval.to, turn[i] = interval.turn;
   }
   return {index, Lanes<T>::load(from.data()), Lanes<T>::load(to.data()), Lanes<T>::load(turn.data())};
-}
-
-template <class T>
-template <class U>
-Roll<U> ExactSolver<T>::load_roll(const std::uint32_t* index, bool with_release) const {
-  Roll<U> roll;
-  Hoop<U>& h = roll.hoop;
-  const std::array<U, 8> m = load_rows<U>(motions_.data(), index);
-  h.sin_slope = m[0], h.cos_slope = m[1], h.rho = m[2], h.clearance = m[3], h.Ic = m[4], h.J_min = m[5];
-  roll.level = m[6], h.slope = m[7];
-  if (!with_release) return roll;
-  const std::array<U, 8> r = load_rows<U>(releases_.data(), index);
-  roll.release = r[0], roll.release_trig = {r[1], r[2], r[3]}, roll.released = r[4], roll.push = r[5];
-  return roll;
-}
-
-template <class T>
-Quiet<T> ExactSolver<T>::load_quiet(const Index& index) const {
-  const std::array<T, 8> row = load_rows<T>(releases_.data(), index.data());
-  return {row[6], row[7]};
 }
 
 template <class T>
@@ -181,9 +117,7 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
     const T minimum = phase + two_pi * (floor((roll.release - phase) / two_pi) + T(1));
     const T least = vis_viva_past_release(roll, minimum - roll.release);
     const T at_edge = vis_viva_past_release(roll, RollingTime<T>::first_panel(roll) * pi - roll.release);
-    store_rows(motion_row(roll), motions_.data(), index.data(), count);
-    store_rows(release_row(roll, Quiet<T>{smaller(least, at_edge), minimum - roll.release}), releases_.data(),
-               index.data(), count);
+    rows_.store(roll, Quiet<T>{smaller(least, at_edge), minimum - roll.release}, index.data(), count);
 
     const unsigned in_the_air = Lanes<T>::bits(airborne), not_off = Lanes<T>::bits(uphill),
                    stalling = Lanes<T>::bits(uneven & !(least > T(0)));
@@ -205,7 +139,8 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
         search.turn = search.node = search.halvings = 0, search.part = 0;
         search.stalls = false;
         searching_.push_back(design);
-        if (stalling >> i & 1u) find_stall(search, load_roll<S>(&design, true), minima[i], crests[i]);
+        if (stalling >> i & 1u)
+          find_stall(search, rows_.template load_roll<S>(&design), minima[i], crests[i]);
       }
     }
   }
@@ -234,7 +169,7 @@ void ExactSolver<T>::scan(const List& designs) {
       while (turns < turns_a_scan && search.end > S(2) * pi_of<S> * (search.first_turn + S(turns))) ++turns;
     }
     std::array<ScanFlags, 8> flags;
-    scan_turns(nodes_, load_roll<T>(index.data(), false), gather(index, &Search::first_turn), turns,
+    scan_turns(nodes_, rows_.template load_motion<T>(index.data()), gather(index, &Search::first_turn), turns,
                flags.data());
     for (std::size_t i = 0; i < width; ++i) searches_[index[i]].flags = flags[i];
   }
@@ -291,7 +226,7 @@ void ExactSolver<T>::classify_intervals() {
   for (std::size_t first = 0; first < intervals_.size(); first += width) {
     const std::size_t count = std::min(width, intervals_.size() - first);
     const auto [index, a, b, turn] = load_intervals(intervals_, first);
-    const Roll<T> roll = load_roll<T>(index.data(), false);
+    const Roll<T> roll = rows_.template load_motion<T>(index.data());
     const CurvedSample<T> at_a = lift(roll, a), at_b = lift(roll, b);
     const IntervalKind<T> kind = classify(at_a, at_b, lift_bounds(roll, turn), b - a);
     const MaskOf<T> falls_through = (at_b.value < T(0)) | ((at_b.value == T(0)) & (at_b.rate < T(0)));
@@ -331,7 +266,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
     const auto [index, a, b, turn] = load_intervals(falls_, first);
     LaneArray<T> guess;
     for (std::size_t i = 0; i < width; ++i) guess[i] = falls_[first + (i < count ? i : 0)].guess;
-    const Roll<T> roll = load_roll<T>(index.data(), false);
+    const Roll<T> roll = rows_.template load_motion<T>(index.data());
     const MaskOf<T> all_lanes = a == a;
     const T angle = polish_root([&](const T& x) { return lift(roll, x); }, a, b, Lanes<T>::load(guess.data()),
                                 !all_lanes, T(2) * epsilon * larger(T(1), abs(b)), all_lanes);
@@ -342,7 +277,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
     const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
                apexes = lanes_of(apex_time);
     store_rows<T>({angle, spin, ascent.apex, ascent.last_apex, ascent.sunk, ascent.dip, T(0), T(0)},
-                  lift_offs_.data(), index.data(), count);
+                  rows_.lift_offs.data(), index.data(), count);
     for (std::size_t i = 0; i < count; ++i) {
       Search& search = searches_[index[i]];
       Outcome& outcome = outcomes[index[i]];
@@ -370,8 +305,8 @@ void ExactSolver<T>::land(std::span<Outcome> outcomes) const {
   for (std::size_t first = 0; first < jumped_.size(); first += width) {
     const std::size_t count = std::min(width, jumped_.size() - first);
     const Index index = index_of(jumped_, first);
-    const Roll<T> roll = load_roll<T>(index.data(), false);
-    const std::array<T, 8> row = load_rows<T>(lift_offs_.data(), index.data());
+    const Roll<T> roll = rows_.template load_motion<T>(index.data());
+    const std::array<T, 8> row = load_rows<T>(rows_.lift_offs.data(), index.data());
     const T spin = row[spin_of];
     const Toss<T> toss = toss_of(roll.hoop, row[angle_of], trig(row[angle_of]), spin);
     const Ascent<T> ascent{T(0), row[apex_of], row[last_apex_of], row[sunk_of], row[dip_of]};
@@ -382,158 +317,6 @@ void ExactSolver<T>::land(std::span<Outcome> outcomes) const {
       outcomes[index[i]].dip = static_cast<double>(dips[i]);
     }
   }
-}
-
-/// The times of all first lift-offs and jumps.
-template <class T>
-void ExactSolver<T>::take_times(std::span<Outcome> outcomes) {
-  start_clocks();
-  const auto is_later = [&](std::uint32_t design) {
-    return searches_[design].jump_angle > searches_[design].first_angle;
-  };
-  if (!wanted_.first_jump_time)
-    std::erase_if(lifted_, [&](std::uint32_t design) {
-      return outcomes[design].status != Status::jumped || is_later(design);
-    });
-  take_times(lifted_, &Search::first_angle, &Outcome::first_jump_time, outcomes);
-  later_.clear();
-  for (const std::uint32_t design : jumped_) {
-    if (outcomes[design].status == Status::failed) continue;
-    if (is_later(design)) {
-      later_.push_back(design);
-    } else {
-      outcomes[design].jump_time = outcomes[design].first_jump_time;
-    }
-  }
-  if (wanted_.jump_time) take_times(later_, &Search::jump_angle, &Outcome::jump_time, outcomes);
-}
-
-template <class T>
-void ExactSolver<T>::start_clocks() {
-  for (std::size_t first = 0; first < lifted_.size(); first += width) {
-    const std::size_t count = std::min(width, lifted_.size() - first);
-    const Index index = index_of(lifted_, first);
-    const Roll<T> roll = load_roll<T>(index.data(), true);
-    const Quiet<T> quiet = load_quiet(index);
-    MaskOf<T> hard = roll.push != roll.push;
-    const NodesNeeded<T> needed = time_.needed(roll, quiet, hard);
-    const T panel = time_.first_panel(roll),
-            time = time_.stretch(roll, quiet, needed, panel * T(pi_of<S>), hard);
-    const unsigned by_halving = Lanes<T>::bits(hard);
-    const auto panels = lanes_of(panel), times = lanes_of(time), panel_nodes = lanes_of(needed.panel),
-               rest_nodes = lanes_of(needed.rest);
-    for (std::size_t i = 0; i < count; ++i) {
-      Search& search = searches_[index[i]];
-      search.panel = static_cast<long>(panels[i]), search.panel_time = times[i];
-      search.panel_nodes = by_halving >> i & 1u ? 0 : static_cast<int>(panel_nodes[i]);
-      search.rest_nodes = static_cast<int>(rest_nodes[i]);
-    }
-  }
-}
-
-/// Sorts parts by part, by counting where they are few.
-template <class T>
-void ExactSolver<T>::sort_parts(std::vector<Part>& parts) {
-  if (parts.empty()) return;
-  const auto [least, most] = std::ranges::minmax(parts, {}, &Part::number);
-  const auto range = static_cast<std::size_t>(most.number - least.number) + 1;
-  if (range > block) {
-    std::ranges::sort(parts, {}, &Part::number);
-    return;
-  }
-  places_.assign(range + 1, 0);
-  const long base = least.number;
-  for (const Part& part : parts) ++places_[static_cast<std::size_t>(part.number - base) + 1];
-  for (std::size_t i = 1; i < range; ++i) places_[i] += places_[i - 1];
-  sorted_parts_.resize(parts.size());
-  for (const Part& part : parts)
-    sorted_parts_[places_[static_cast<std::size_t>(part.number - base)]++] = part;
-  std::swap(parts, sorted_parts_);
-}
-
-/// One of the outcome's times. Designs are taken in order of angle, so that those in the lanes have panels in
-/// common.
-template <class T>
-void ExactSolver<T>::take_times(const List& designs, S Search::*angle, double Outcome::*time,
-                                std::span<Outcome> outcomes) {
-  early_.clear(), due_.clear();
-  for (const std::uint32_t design : designs) {
-    const Search& search = searches_[design];
-    if (search.panel_nodes == 0) {
-      note_time(outcomes[design], time, halve_time(design, angle));
-      continue;
-    }
-    const long part = static_cast<long>(std::floor(search.*angle * (S(parts_a_panel) / pi_of<S>)));
-    (part < search.panel * parts_a_panel ? early_ : due_).push_back({part, design});
-  }
-  sort_parts(early_);
-  sort_parts(due_);
-  for (std::size_t first = 0, count = 0; first < early_.size(); first += count) {
-    const Index index = index_of_part(early_, first, count);
-    int rest_nodes = time_.rest_nodes_near_release();
-    for (const std::uint32_t design : index) rest_nodes = std::max(rest_nodes, searches_[design].rest_nodes);
-    const Roll<T> roll = load_roll<T>(index.data(), true);
-    const T to = gather(index, angle), edge(S(early_[first].number) * (pi_of<S> / S(parts_a_panel)));
-    const Quiet<T> quiet = load_quiet(index);
-    MaskOf<T> hard = to != to;
-    const NodesNeeded<T> needed = time_.needed(roll, quiet, hard);
-    const bool with_rest = all(edge > roll.release + T(0.4));
-    T taken = time_.stretch(roll, quiet, needed, with_rest ? edge : to, hard);
-    if (with_rest) taken = taken + time_.rest(roll, lanes_of(edge)[0], to - edge, rest_nodes);
-    auto times = lanes_of(taken);
-    const unsigned by_halving = Lanes<T>::bits(hard);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (by_halving >> i & 1u) times[i] = halve_time(index[i], angle);
-      note_time(outcomes[index[i]], time, times[i]);
-    }
-  }
-  for (std::size_t first = 0, count = 0; first < due_.size(); first += count) {
-    const Index index = index_of_part(due_, first, count);
-    int panel_nodes = 0, rest_nodes = 0;
-    long begin = std::numeric_limits<long>::max();
-    LaneArray<T> panels;
-    for (std::size_t i = 0; i < width; ++i) {
-      const Search& search = searches_[index[i]];
-      panels[i] = S(search.panel);
-      begin = std::min(begin, search.panel);
-      panel_nodes = std::max(panel_nodes, search.panel_nodes);
-      rest_nodes = std::max(rest_nodes, search.rest_nodes);
-    }
-    const Roll<T> roll = load_roll<T>(index.data(), false);
-    const T to = gather(index, angle), first_panel = Lanes<T>::load(panels.data());
-    T taken = gather(index, &Search::panel_time);
-    const long part = due_[first].number;
-    const long end = (part - (part % parts_a_panel + parts_a_panel) % parts_a_panel) / parts_a_panel;
-    for (long panel = begin; panel < end; ++panel)
-      taken = taken +
-              select(T(S(panel)) >= first_panel, time_.panel(roll, panel, parts_a_panel, panel_nodes), T(0));
-    auto times = lanes_of(taken);
-    for (std::size_t i = 0; i < count; ++i)
-      searches_[index[i]].panel = end, searches_[index[i]].panel_time = times[i];
-    if (const int parts = static_cast<int>(part - end * parts_a_panel); parts > 0)
-      taken = taken + time_.panel(roll, end, parts, panel_nodes);
-    const S edge = S(part) * (pi_of<S> / S(parts_a_panel));
-    times = lanes_of(taken + time_.rest(roll, edge, to - T(edge), rest_nodes));
-    for (std::size_t i = 0; i < count; ++i) note_time(outcomes[index[i]], time, times[i]);
-  }
-}
-
-template <class T>
-ScalarOf<T> ExactSolver<T>::halve_time(std::uint32_t design, S Search::*angle) const {
-  return time_.halving(load_roll<S>(&design, true), searches_[design].*angle);
-}
-
-/// As many designs of one part as there are lanes.
-template <class T>
-typename ExactSolver<T>::Index ExactSolver<T>::index_of_part(const std::vector<Part>& parts,
-                                                             std::size_t first, std::size_t& count) const {
-  Index index;
-  index.fill(parts[first].design);
-  for (count = 1; count < width && first + count < parts.size(); ++count) {
-    if (parts[first + count].number != parts[first].number) break;
-    index[count] = parts[first + count].design;
-  }
-  return index;
 }
 
 template class ExactSolver<double>;

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "trajectory/exact_rows.hpp"
 #include "trajectory/lift_off_scan.hpp"
 #include "trajectory/outcome.hpp"
-#include "trajectory/rolling_time.hpp"
 
 namespace leapmap {
 
@@ -91,21 +91,26 @@ class ExactSolver {
   S halve_time(std::uint32_t design, S Search::*angle) const;
   void take_times(const List& designs, S Search::*angle, double Outcome::*time, std::span<Outcome> outcomes);
 
-  Index index_of(const List& designs, std::size_t first) const;
+  Index index_of(const List& designs, std::size_t first) const {
+    Index index;
+    for (std::size_t i = 0; i < width; ++i)
+      index[i] = designs[first + i < designs.size() ? first + i : first];
+    return index;
+  }
+  T gather(const Index& index, S Search::*member) const {
+    LaneArray<T> lanes;
+    for (std::size_t i = 0; i < width; ++i) lanes[i] = searches_[index[i]].*member;
+    return Lanes<T>::load(lanes.data());
+  }
   Index index_of_part(const std::vector<Part>& parts, std::size_t first, std::size_t& count) const;
-  Quiet<T> load_quiet(const Index& index) const;
   LoadedIntervals load_intervals(const std::vector<Interval>& intervals, std::size_t first) const;
-  T gather(const Index& index, S Search::*member) const;
-  template <class U>
-  Roll<U> load_roll(const std::uint32_t* index, bool with_release) const;
 
   Wanted wanted_;
   std::vector<LiftOff<double>>* told_ = nullptr;
   RollingTime<T> time_;
   ScanNodes<S> nodes_;
-  // Of each design in the block: its search; its hoop and level; its release; its last lift-off and its clock
-  std::vector<Search> searches_;
-  std::vector<Row<S>> motions_, releases_, lift_offs_;
+  std::vector<Search> searches_;  // of each design in the block
+  BlockRows<T> rows_;
   List searching_, still_searching_, unscanned_, lifted_, jumped_, later_;
   std::vector<Interval> intervals_, falls_;
   std::vector<Part> early_, due_, sorted_parts_;
