@@ -180,7 +180,7 @@ TEST(Flight, LanesFlyAsOneTossDoesThroughOneClimbOrMany) {
   std::mt19937_64 random(8);
   constexpr std::size_t width = Lanes<Batch>::count;
   int several = 0;
-  for (int round = 0; round < 500; ++round) {
+  for (std::size_t round = 0; round < 4000 / width; ++round) {
     LaneArray<Batch> angles, spins;
     Design design = testing::random_design(random);
     const Hoop<double> hoop = derive<double>(design);
