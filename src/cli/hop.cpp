@@ -130,14 +130,20 @@ std::string json_text(const Spec& spec, const Story& story) {
         R"({{"time": {}, "angle": {}, "normal_force": {}, "extremum": "{}", "makes_lift_off": {}}})",
         json_number(graze.time * second), json_number(graze.angle), json_number(graze.normal_force),
         graze.minimum ? "minimum" : "maximum", graze.makes_lift_off()));
+  std::string check = "null";
+  if (story.checked)
+    check = fmt::format(
+        R"({{"method": "gsl-rk8pd", "tolerance": 1e-12, "status": "{}", "candidates": {}, "jump_height": {}, "jump_time": {}}})",
+        name_of(story.checked->status), story.checked->candidates, json_number(story.checked->jump_height),
+        json_number(story.checked->jump_time * second));
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
       "\"radius\": {}, "
       "\"gravity\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  \"lift_offs\": [{}],\n  "
-      "\"grazes\": [{}]\n}}\n",
+      "\"grazes\": [{}],\n  \"check\": {}\n}}\n",
       fmt::join(design, ", "), spec.friction, spec.scene.runway, spec.scene.hop_height, spec.scene.radius,
       spec.scene.gravity, resolved_method(spec.numerics), spec.numerics.tolerance,
-      fmt::join(outcome, ",\n  "), fmt::join(candidates, ", "), fmt::join(grazes, ", "));
+      fmt::join(outcome, ",\n  "), fmt::join(candidates, ", "), fmt::join(grazes, ", "), check);
 }
 
 int run(const HopArguments& arguments) {
