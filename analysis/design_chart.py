@@ -3,7 +3,8 @@
 """Draws the design chart of a map: jump height, or jump time, over slope and mass ratio, one panel for each L/R.
 
 Filled contours with labelled isolines; hatched where the first lift-off is spurious; grey where there is no jump,
-with stalled, airborne, failed and not computed designs told apart; a star at the paper's hoop.
+with stalled, airborne, failed and not computed designs told apart; a star at the paper's hoop. Needs jump_height or
+jump_time; spurious_first_jump, jump_angle (gaps at cliffs) and status are drawn if the map has them.
 """
 import math
 
@@ -64,11 +65,12 @@ def titled(name, value):
     return f"{SYMBOLS.get(name, name)} = {shown}"
 
 
-def caption(fixed):
-    """What the axes do not tell: the parameters and the scene all panels share."""
+def caption(fixed, columns):
+    """What the axes do not tell: the parameters and the scene all panels share; on two lines below a single panel."""
     words = [titled(k, fixed[k]) for k in SYMBOLS if k in fixed]
     words += [f"runway {fixed['runway']:g} turns", f"jump from {fixed['hop_height']:g} diameters", f"R = {1e3 * fixed['radius']:g} mm"]
-    return ",  ".join(words)
+    half = len(words) if columns > 1 else (len(words) + 1) // 2
+    return "\n".join(",  ".join(part) for part in (words[:half], words[half:]) if part)
 
 
 def draw_panel(axis, degrees, ratios, plane, flags, angle, status, look):
@@ -94,11 +96,9 @@ def draw_panel(axis, degrees, ratios, plane, flags, angle, status, look):
 def chart(m, name):
     """One figure: the field over slope and mass ratio."""
     keep = ("mass_ratio", "slope")
-    wanted = (name, "spurious_first_jump", "jump_angle", "status")
-    missing = [k for k in keep if k not in m.dims] + [k for k in wanted if k not in m.fields]
+    missing = [k for k in keep if k not in m.dims]
     if missing:
-        raise NotAMap(f"{m.path}: has no {missing[0]}; a design chart wants a sweep over slope and mass_ratio with the "
-                      "fields jump_height, jump_time, jump_angle, spurious_first_jump and status")
+        raise NotAMap(f"{m.path}: has no {missing[0]}; a design chart wants a sweep over slope and mass_ratio")
     if min(len(m.dims[k]) for k in keep) < 2:
         raise NotAMap(f"{m.path}: a design chart wants at least two slopes and two mass ratios")
     if not np.isfinite(m.fields[name]).any():
@@ -115,8 +115,15 @@ def chart(m, name):
     def planes(field):
         return [(where, plane[np.ix_(*order)]) for where, plane in sliced(m, field, keep)]
 
-    panels, flags, angles, statuses = (planes(k) for k in wanted)
-    meaning = {c: i for c, i in zip(m.about["status"]["flag_meanings"].split(), m.about["status"]["flag_values"])}
+    panels = planes(name)
+    # What a map was not asked to store is not drawn: hatching, gaps of isolines at cliffs, reasons why there is no jump.
+    flags, angles = (planes(k) if k in m.fields else [(w, np.zeros(p.shape)) for w, p in panels]
+                     for k in ("spurious_first_jump", "jump_angle"))
+    if "status" in m.fields:
+        meaning = {c: i for c, i in zip(m.about["status"]["flag_meanings"].split(), m.about["status"]["flag_values"])}
+        told = [{c: plane == meaning[c] for c in STATUSES} for _, plane in planes("status")]
+    else:
+        told = [{c: np.isnan(plane) & (c == "no_jump") for c in STATUSES} for _, plane in panels]
     fixed = m.numbers()
 
     columns = min(4, len(panels))
@@ -125,9 +132,8 @@ def chart(m, name):
     figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, layout="constrained",
                                 figsize=(width * columns + 0.9, height * rows + 0.95))
     starred = False
-    for axis, (where, plane), (_, flag), (_, angle), (_, status) in zip(axes.flat, panels, flags, angles, statuses):
-        told = {c: status == meaning[c] for c in STATUSES}
-        filled = draw_panel(axis, np.degrees(slopes), ratios, plane, flag, angle, told, look)
+    for axis, (where, plane), (_, flag), (_, angle), ends in zip(axes.flat, panels, flags, angles, told):
+        filled = draw_panel(axis, np.degrees(slopes), ratios, plane, flag, angle, ends, look)
         inside = slopes[0] <= PAPER["slope"] <= slopes[-1] and ratios[0] <= PAPER["mass_ratio"] <= ratios[-1]
         if inside and shows_paper(where, fixed):
             starred = True
@@ -139,13 +145,13 @@ def chart(m, name):
         axis.set_title("\n".join(titled(k, v) for k, v in where.items()))
     for axis in axes.flat[len(panels):]:
         axis.set_visible(False)
-    figure.supxlabel(f"slope [degrees]\n{caption(fixed)}", fontsize=9)
+    figure.supxlabel(f"slope [degrees]\n{caption(fixed, columns)}", fontsize=9)
     figure.supylabel("mass ratio mₚ/m", fontsize=9)
     bar = figure.colorbar(filled, ax=axes, label=label, ticks=levels, shrink=0.9, pad=0.015)
     bar.ax.set_yticklabels([f"{v:g}" for v in levels])
     handles = [plt.Rectangle((0, 0), 1, 1, facecolor="white", edgecolor=style.EDGE, hatch="///", label="first lift-off is spurious")]
     for code, (colour, words) in STATUSES.items():
-        if (m.fields["status"] == meaning[code]).any():
+        if any(ends[code].any() for ends in told):
             handles.append(plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="#808080", label=words))
     if starred:
         handles.append(plt.Line2D([], [], marker="*", color="none", markerfacecolor=style.MARK, markeredgecolor="white",
@@ -159,7 +165,10 @@ def main():
     p = style.parser(__doc__, "a map over slope and mass_ratio, for example maps/slope_mass_ratio_offset.h5", "maps/design_chart")
     arguments = p.parse_args()
     m = read_map(arguments.source)
-    for name in FIELDS:
+    drawn = [name for name in FIELDS if name in m.fields]
+    if not drawn:
+        raise NotAMap(f"{m.path}: has no {' or '.join(FIELDS)}; a design chart wants one of them")
+    for name in drawn:
         style.save(chart(m, name), f"{style.stem(arguments.output)}_{name}")
 
 

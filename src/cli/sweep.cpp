@@ -127,7 +127,7 @@ std::vector<hdf5::Attribute> run_audit(const Spec& spec, const AuditDraw& draw,
   };
   const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
   tell(report.first_mismatch, both + " disagree on status, flag or candidates");
-  tell(report.first_inaccurate, both + " differ by more than the tolerance");
+  tell(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
   return {{"audit_designs", static_cast<std::int64_t>(report.designs)},
           {"audit_method", report.method},
           {"audit_max_abs_height_error", report.max_abs_height_error},
@@ -155,7 +155,7 @@ int run(const SweepArguments& arguments) {
   const auto begin = Clock::now();
   std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
   opening.emplace_back("threads", std::int64_t{threads});
-  AuditDraw draw(spec.numerics.audit, tiling);
+  AuditDraw draw(spec, tiling);
   MapWriter writer(map, layout, tiling, opening, arguments.overwrite);
   note_signals();
   std::array<std::size_t, status_count> totals{};

@@ -25,13 +25,15 @@ struct AuditSample {
 /// Draws samples tile by tile; which ones depends on the spec alone. Over all tiles, ceil(share * designs).
 class AuditDraw {
  public:
-  AuditDraw(double share, const Tiling& tiling) : share_(share), tiling_(&tiling) {}
+  AuditDraw(const Spec& spec, const Tiling& tiling)
+      : share_(spec.numerics.audit), single_(spec.output.precision == "f4"), tiling_(&tiling) {}
   /// Tiles come in order.
   void take(const Tile& tile, std::span<const Outcome> outcomes);
   const std::vector<AuditSample>& samples() const { return samples_; }
 
  private:
   double share_;
+  bool single_;  // the map rounds to f4, and so do the samples
   const Tiling* tiling_;
   std::size_t seen_ = 0;
   std::vector<AuditSample> samples_;
@@ -48,8 +50,9 @@ struct AuditReport {
   /// Designs on which the audit's method gave up, or whose flags one unit in the last place of the inputs
   /// decides.
   std::size_t undecided = 0;
-  std::size_t beyond_tolerance = 0;           ///< designs whose error is larger than it should be, see audit
-  std::optional<std::size_t> first_mismatch;  ///< the least design number whose flags differ
+  double allowed_error = 0.0;                   ///< see audit; for heights, relative to 1 + height
+  std::size_t beyond_tolerance = 0;             ///< designs whose error is larger
+  std::optional<std::size_t> first_mismatch;    ///< the least design number whose flags differ
   std::optional<std::size_t> first_inaccurate;  ///< the least design number beyond the tolerance
 };
 
@@ -59,8 +62,9 @@ std::string audit_method(const Numerics& numerics);
 /// Solves the samples again and compares. An error is beyond the tolerance if it is larger than
 /// numerics.tolerance (a hundred times that for an adaptive stepper, whose tolerance is per step; no less
 /// than 1e-11, the audit's own error), and larger than 10 times what one unit in the last place of the inputs
-/// makes of it. stop_requested is asked after each design; once true, the report covers what was done until
-/// then.
+/// makes of it.
+/// A map in f4 is allowed a rounding of f4 on top. stop_requested is asked after each design; once true, the
+/// report covers what was done until then.
 AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
                   const std::function<bool()>& stop_requested = {});
 

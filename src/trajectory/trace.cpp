@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "physics/flight_search.hpp"
 #include "physics/rolling.hpp"
@@ -73,6 +74,7 @@ Story tell(const Design& design, const Scene& scene, const IntegrationOptions& o
     };
   }
   story.outcome = RollingIntegration(options).solve(design, scene, observer);
+  ExactSolver<Batch>(1e-12).solve({&design, 1}, scene, {&story.checked, 1});
 
   if (interval > 0.0 && story.outcome.status == Status::jumped) {
     const Candidate& jump = story.candidates.back();
@@ -91,7 +93,7 @@ Story tell_exactly(const Design& design, const Scene& scene, double tolerance, d
   options.stepper = find_gsl_stepper("gsl-rk8pd");
   options.control.relative = options.control.absolute = 1e-12;
   Story story = tell(design, scene, options, interval, graze_limit);
-  story.checked = story.outcome;
+  std::swap(story.checked, story.outcome);
   story.candidates.clear();
 
   // As a sweep solves it: all but the times, which are within the tolerance, are the map's to the last digit.

@@ -34,7 +34,7 @@ struct Candidate {
 
 struct Story {
   Outcome outcome;
-  std::optional<Outcome> checked;  ///< the integration's outcome, where another method's is told
+  Outcome checked;  ///< by a second method: integration if `outcome` is exact, and the other way round
   std::vector<Candidate> candidates;
   std::vector<Graze> grazes;  ///< zeros of the normal force decided by a hair, see Graze
   std::vector<TracePoint>

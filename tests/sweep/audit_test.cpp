@@ -22,7 +22,7 @@ Spec grid(const std::string& method, const std::string& tolerance, const std::st
 
 std::vector<AuditSample> drawn_from(const Spec& spec, int threads = 0) {
   const Tiling tiling(shape_of(spec));
-  AuditDraw draw(spec.numerics.audit, tiling);
+  AuditDraw draw(spec, tiling);
   EngineOptions options;
   options.threads = threads;
   run_sweep(spec, tiling, options,
@@ -81,6 +81,15 @@ TEST(Audit, SeesAWrongNumberThatWasStored) {
   jumped->outcome.spurious_first_jump ^= 1;
   report = audit(spec, samples, 0);
   EXPECT_EQ(report.first_mismatch, jumped->number);
+}
+
+TEST(Audit, OfAMapInF4TellsTheErrorOfF4) {
+  Spec spec = grid("exact", "1e-12", "0.3");
+  spec.output.precision = "f4";
+  const AuditReport report = audit(spec, drawn_from(spec), 0);
+  EXPECT_GT(report.max_rel_time_error, 1e-9);
+  EXPECT_LT(report.max_rel_time_error, 6e-8);
+  EXPECT_EQ(report.beyond_tolerance, 0u);
 }
 
 TEST(Audit, AllowsForWhatTheInputsRoundingsDo) {
