@@ -95,12 +95,17 @@ int run(const std::string& path, bool only_spec) {
   if (map.attribute("wall_time").empty())
     fmt::print("INCOMPLETE: what an interrupted sweep left; designs not computed are holes\n");
   fmt::print("method {}, tolerance {}\n", map.attribute("method"), map.attribute("tolerance"));
+  const auto short_form = [&](const std::string& name) {
+    const std::string text = map.attribute(name);
+    return text.empty() ? text : fmt::format("{:.1e}", std::stod(text));
+  };
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
     fmt::print(
         "audit: {} designs again by {}: height within {} diameters, time within {} relative, {} flags "
-        "differ\n",
-        audited, map.attribute("audit_method"), map.attribute("audit_max_abs_height_error"),
-        map.attribute("audit_max_rel_time_error"), map.attribute("audit_flag_mismatches"));
+        "differ, {} errors beyond the tolerance, {} designs nobody can decide\n",
+        audited, map.attribute("audit_method"), short_form("audit_max_abs_height_error"),
+        short_form("audit_max_rel_time_error"), map.attribute("audit_flag_mismatches"),
+        map.attribute("audit_beyond_tolerance"), map.attribute("audit_undecided"));
   fmt::print("\ndimensions\n");
   for (const auto& dimension : map.dimensions()) {
     const auto [least, most] = std::ranges::minmax(dimension.values);
