@@ -99,9 +99,11 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
     const T spin = parameter(&Design::release_spin);
     // A release many turns from 0 is taken back to the first, so that angles have digits to spare.
     const T release_angle = parameter(&Design::release_angle);
-    const Trig<T> direction = trig(release_angle);
-    const T nearest =
-        select(abs(release_angle) > T(S(4) * pi_of<S>), atan2(direction.sin, direction.cos), release_angle);
+    T nearest = release_angle;
+    if (const MaskOf<T> far = abs(release_angle) > T(S(4) * pi_of<S>); any(far)) {
+      const Trig<T> direction = trig(release_angle);
+      nearest = select(far, atan2(direction.sin, direction.cos), release_angle);
+    }
     const Roll<T> roll = begin_roll(hoop, nearest, spin);
 
     const T force =
