@@ -10,6 +10,7 @@
 #include "map/schema.hpp"
 #include "map/trace_file.hpp"
 #include "support/errors.hpp"
+#include "sweep/audit.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap::cli {
@@ -45,17 +46,12 @@ std::string verdict(const Story& story, const Scene& scene) {
   }
 }
 
-/// The method that checks, as in tell and tell_exactly.
-std::string check_method(const Spec& spec) {
-  return resolved_method(spec.numerics) == "exact" ? "gsl-rk8pd" : "exact";
-}
-
-/// How well it agrees.
+/// How well the method that audits this one agrees.
 std::string check_line(const Spec& spec, const Story& story) {
   const Outcome &a = story.outcome, &b = story.checked;
-  const std::string by = check_method(spec) + " at 1e-12";
+  const std::string by = audit_method(spec.numerics) + " at 1e-12";
   if (b.status == Status::failed) return fmt::format("Check: {} gave up on this design.", by);
-  if (a.status != b.status || a.candidates != b.candidates || a.spurious_first_jump != b.spurious_first_jump)
+  if (!same_flags(a, b))
     return fmt::format("Check: {} DISAGREES: {}, {} lift-offs.", by, name_of(b.status), b.candidates);
   if (a.status != Status::jumped) return fmt::format("Check: {} agrees.", by);
   return fmt::format("Check: {} agrees, height within {:.1e} diameters, time within {:.1e}.", by,
@@ -139,7 +135,7 @@ std::string json_text(const Spec& spec, const Story& story) {
         graze.minimum ? "minimum" : "maximum", graze.makes_lift_off()));
   const std::string check = fmt::format(
       R"({{"method": "{}", "tolerance": 1e-12, "status": "{}", "candidates": {}, "jump_height": {}, "jump_time": {}}})",
-      check_method(spec), name_of(story.checked.status), story.checked.candidates,
+      audit_method(spec.numerics), name_of(story.checked.status), story.checked.candidates,
       json_number(story.checked.jump_height), json_number(story.checked.jump_time * second));
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "

@@ -49,9 +49,7 @@ MapLayout layout_of(const Spec& spec) {
     }
   }
   for (const Field& field : map_fields())
-    if (spec.output.fields.empty() ||
-        std::ranges::find(spec.output.fields, field.name) != spec.output.fields.end())
-      layout.fields.push_back(&field);
+    if (stores(spec.output, field.name)) layout.fields.push_back(&field);
   layout.time_unit = time_unit(spec.scene);
   layout.single = spec.output.precision == "f4";
   return layout;

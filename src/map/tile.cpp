@@ -56,6 +56,14 @@ Tile Tiling::tile(std::size_t number) const {
   return tile;
 }
 
+std::size_t Tiling::number(const Tile& tile, std::size_t index) const {
+  std::vector<std::size_t> position;
+  unravel(index, tile.extent, position);
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < shape_.size(); ++i) number = number * shape_[i] + tile.start[i] + position[i];
+  return number;
+}
+
 void unravel(std::size_t index, const std::vector<std::size_t>& extent, std::vector<std::size_t>& position) {
   position.resize(extent.size());
   for (std::size_t i = extent.size(); i-- > 0;) {

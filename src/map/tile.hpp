@@ -26,6 +26,8 @@ class Tiling {
 
   std::size_t size() const { return tiles_; }
   Tile tile(std::size_t number) const;
+  /// The number in the whole map, C order, of a tile's design `index`.
+  std::size_t number(const Tile& tile, std::size_t index) const;
   const std::vector<std::size_t>& shape() const { return shape_; }
   const std::vector<std::size_t>& tile_shape() const { return tile_shape_; }
   std::size_t designs() const { return designs_; }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <xsimd/xsimd.hpp>
 
 namespace leapmap {
@@ -52,6 +53,9 @@ template <class T>
 using MaskOf = typename Lanes<T>::Mask;
 template <class T>
 using ScalarOf = typename Lanes<T>::Scalar;
+
+template <class T>
+inline constexpr ScalarOf<T> pi_of = std::numbers::pi_v<ScalarOf<T>>;
 
 /// The lanes of a value as an array.
 template <class T>

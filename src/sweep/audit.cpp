@@ -34,21 +34,18 @@ struct Difference {
   double height = 0.0, time = 0.0;
 };
 
-/// `ours` may lack what its sweep was not asked for: only numbers of `fields`, by default all, must be there.
-Difference difference(const Outcome& ours, const Outcome& theirs,
-                      const std::vector<std::string>& fields = {}) {
+/// `ours` may lack what its sweep was not asked to store.
+Difference difference(const Outcome& ours, const Outcome& theirs, const Output& output = {}) {
   Difference d;
-  d.flags = ours.status != theirs.status || ours.spurious_first_jump != theirs.spurious_first_jump ||
-            ours.candidates != theirs.candidates;
+  d.flags = !same_flags(ours, theirs);
   if (d.flags) return d;
   const auto compare = [&](std::string_view field, double Outcome::*member, double& most, bool is_relative) {
     const double a = ours.*member, b = theirs.*member;
     if (std::isnan(a) && std::isnan(b)) return;
-    const bool asked_for = fields.empty() || std::ranges::find(fields, field) != fields.end();
     const double error = is_relative && b != 0.0 ? std::abs(a / b - 1.0) : std::abs(a - b);
     if (!std::isnan(error)) {
       most = std::max(most, error);
-    } else if (asked_for) {
+    } else if (stores(output, field)) {
       most = std::numeric_limits<double>::infinity();
     }
   };
@@ -91,15 +88,10 @@ void AuditDraw::take(const Tile& tile, std::span<const Outcome> outcomes) {
     return static_cast<std::size_t>(std::ceil(share_ * static_cast<double>(designs)));
   };
   const std::size_t count = due(seen_ + tile.count) - due(seen_);
-  std::vector<std::size_t> position;
   for (std::size_t i = 0; i < count; ++i) {  // one at random from each of `count` equal shares of the tile
     const std::size_t begin = i * tile.count / count, end = std::max(begin + 1, (i + 1) * tile.count / count);
     const std::size_t drawn = begin + mix(seen_ + i) % (end - begin);
-    unravel(drawn, tile.extent, position);
-    std::size_t number = 0;
-    for (std::size_t k = 0; k < position.size(); ++k)
-      number = number * tiling_->shape()[k] + tile.start[k] + position[k];
-    samples_.push_back({number, outcomes[drawn]});
+    samples_.push_back({tiling_->number(tile, drawn), outcomes[drawn]});
     if (!single_) continue;
     for (const Field& field : map_fields())
       if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
@@ -121,16 +113,12 @@ AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int th
   const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
   const double allowed =
       std::max(spec.numerics.tolerance * (integrates ? 1.0 : adaptive_slack), own_error) + rounding;
-  IntegrationOptions options;
-  options.stepper = find_gsl_stepper("gsl-rk8pd");
-  options.control.relative = options.control.absolute = audit_tolerance;
-
   AuditReport report;
   report.method = audit_method(spec.numerics);
   report.allowed_error = allowed;
   std::mutex reporting;
   parallel_for_each(samples.size(), threads, [&] {
-    return [&, rolling = std::make_unique<RollingIntegration>(options),
+    return [&, rolling = std::make_unique<RollingIntegration>(adaptive("gsl-rk8pd", audit_tolerance)),
             exact = std::make_unique<ExactSolver<double>>(audit_tolerance)](std::size_t i) {
       const auto& [number, ours] = samples[i];
       const Design design = space.at(number);
@@ -140,7 +128,7 @@ AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int th
       } else {
         exact->solve({&design, 1}, spec.scene, {&theirs, 1});
       }
-      const Difference d = difference(ours, theirs, spec.output.fields);
+      const Difference d = difference(ours, theirs, spec.output);
       const double height_allowed = allowed * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
       bool inaccurate = !d.flags && (d.height > height_allowed || d.time > allowed);
       bool undecided = theirs.status == Status::failed && ours.status != Status::failed;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sweep/solver.hpp"
 
-#include <algorithm>
 #include <memory>
 
 #include "trajectory/exact.hpp"
@@ -10,10 +9,7 @@ namespace leapmap {
 
 Solver make_solver(const Spec& spec) {
   if (resolved_method(spec.numerics) == "exact") {
-    const auto stored = [&](std::string_view field) {
-      const auto& fields = spec.output.fields;
-      return fields.empty() || std::ranges::find(fields, field) != fields.end();
-    };
+    const auto stored = [&](std::string_view field) { return stores(spec.output, field); };
     const Wanted wanted{.first_jump_time = stored("first_jump_time"),
                         .jump_time = stored("jump_time"),
                         .descent = stored("flight_time") || stored("dip")};

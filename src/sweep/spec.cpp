@@ -242,11 +242,6 @@ std::string find_points(const Spec& spec) {
   return fs::exists(beside, ignored) ? beside.string() : spec.points;
 }
 
-/// Whether a stepper's own settings are set.
-bool in_effect(const Numerics& numerics) {
-  return numerics.fixed_step > 0.0 || numerics.absolute_tolerance > 0.0;
-}
-
 }  // namespace
 
 std::string origin_of(const Spec& spec) { return spec.origin.empty() ? "command line" : spec.origin; }
@@ -284,12 +279,14 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
   if (!given("mu_kinetic")) spec.coulomb.mu_kinetic = spec.coulomb.mu_static;
 
-  if (resolved_method(spec.numerics) == "exact") {
-    for (const Entry& entry : entries)
-      if (entry.option->key == "absolute_tolerance" || entry.option->key == "fixed_step")
-        if (in_effect(spec.numerics))
-          refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method),
-                 "with method = \"gsl-...\"");
+  for (const Entry& entry : entries) {
+    const std::string_view key = entry.option->key;
+    const double set = key == "fixed_step"           ? spec.numerics.fixed_step
+                       : key == "absolute_tolerance" ? spec.numerics.absolute_tolerance
+                                                     : 0.0;
+    if (set > 0.0 && resolved_method(spec.numerics) == "exact")
+      refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method),
+             "with method = \"gsl-...\"");
   }
 
   if (!spec.points.empty()) {

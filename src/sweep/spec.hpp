@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trajectory/rolling_integration.hpp"
@@ -74,6 +75,9 @@ std::string origin_of(const Spec& spec);
 
 /// The spec as resolved: TOML that read_spec turns into the same Spec again, every key and value written out.
 std::string resolved_text(const Spec& spec);
+
+/// Whether a map has that field.
+bool stores(const Output& output, std::string_view field);
 
 /// The stepper and its controls that numerics asks for, where the method is one of GSL's.
 IntegrationOptions integration_options(const Numerics& numerics);

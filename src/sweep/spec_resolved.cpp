@@ -62,6 +62,10 @@ std::string resolved_text(const Spec& original) {
   return text;
 }
 
+bool stores(const Output& output, std::string_view field) {
+  return output.fields.empty() || std::ranges::find(output.fields, field) != output.fields.end();
+}
+
 std::string resolved_method(const Numerics& numerics) {
   return numerics.method == "auto" ? "exact" : numerics.method;
 }

@@ -7,13 +7,6 @@
 #include "physics/flight_search.hpp"
 
 namespace leapmap {
-namespace {
-
-template <class S>
-constexpr S pi_of = std::numbers::pi_v<S>;
-
-}  // namespace
-
 template <class T>
 ExactSolver<T>::ExactSolver(double tolerance, const Wanted& wanted)
     : wanted_(wanted), time_(tolerance), nodes_(scan_nodes<S>()), searches_(block), rows_(block) {

@@ -7,9 +7,6 @@
 namespace leapmap {
 namespace {
 
-template <class S>
-constexpr S pi_of = std::numbers::pi_v<S>;
-
 /// A time that the quadrature could not tell makes the design failed: no field of it is to be believed.
 template <class S>
 void note_time(Outcome& outcome, double Outcome::*time, const S& taken) {
@@ -106,9 +103,10 @@ void ExactSolver<T>::take_times(const List& designs, S Search::*angle, double Ou
   }
   sort_parts(early_);
   sort_parts(due_);
+  const int nodes_near_release = time_.rest_nodes_near_release();
   for (std::size_t first = 0, count = 0; first < early_.size(); first += count) {
     const Index index = index_of_part(early_, first, count);
-    int rest_nodes = time_.rest_nodes_near_release();
+    int rest_nodes = nodes_near_release;
     for (const std::uint32_t design : index) rest_nodes = std::max(rest_nodes, searches_[design].rest_nodes);
     const Roll<T> roll = rows_.template load_roll<T>(index.data());
     const T to = gather(index, angle), edge(S(early_[first].number) * (pi_of<S> / S(parts_a_panel)));

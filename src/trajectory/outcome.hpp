@@ -59,6 +59,12 @@ struct Outcome {
 bool consider(Outcome& outcome, const Scene& scene, const Design& design, const LiftOff<double>& lift_off,
               const Flight<double>& flight);
 
+/// Whether two methods see the same: status, spurious flag and number of candidates.
+inline bool same_flags(const Outcome& a, const Outcome& b) {
+  return a.status == b.status && a.spurious_first_jump == b.spurious_first_jump &&
+         a.candidates == b.candidates;
+}
+
 /// The outcome of a design that a method gave up on.
 inline Outcome failed_outcome() {
   Outcome outcome;

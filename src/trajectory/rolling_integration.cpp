@@ -49,6 +49,13 @@ Sample<double> spin_guard(const Hoop<double>& hoop, const RollingState& y) {
 
 }  // namespace
 
+IntegrationOptions adaptive(std::string_view stepper, double tolerance) {
+  IntegrationOptions options;
+  options.stepper = find_gsl_stepper(stepper);
+  options.control.relative = options.control.absolute = tolerance;
+  return options;
+}
+
 RollingIntegration::RollingIntegration(const IntegrationOptions& options)
     : options_(options),
       hoop_(derive<double>(Design{})),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 
 #include "numerics/gsl_integrator.hpp"
 #include "trajectory/outcome.hpp"
@@ -17,6 +18,9 @@ struct IntegrationOptions {
   StepControl control;
   long max_steps = 1'000'000;  ///< a design that needs more is given up as failed
 };
+
+/// Adaptive steps of the stepper of that name, which must be one of GSL's, with both tolerances the same.
+IntegrationOptions adaptive(std::string_view stepper, double tolerance);
 
 /// A place where the normal force touched zero, or nearly so, without an obvious answer.
 struct Graze {

@@ -7,15 +7,34 @@
 namespace leapmap {
 namespace {
 
-template <class T>
-constexpr ScalarOf<T> pi_of = std::numbers::pi_v<ScalarOf<T>>;
-
 constexpr std::size_t most_starts = 64;  // beyond it the spans met are forgotten: memory stays bounded
 
 /// sqrt(J / E) = dt / dphi.
 template <class T>
 T slowness(const T& inertia, const T& vis_viva) {
   return inertia * reciprocal_sqrt(inertia * vis_viva);
+}
+
+/// E near the release, released + 2 push x + bend x^2, and its zeros.
+template <class T>
+struct ReleaseParabola {
+  T bend, discriminant, root;
+  MaskOf<T> real;  ///< whether it has zeros
+  /// The nearer zero. Without one E is far from zero if its least value is, over the distance that takes: -1
+  /// will do.
+  T nearer;
+};
+
+template <class T>
+ReleaseParabola<T> parabola_at_release(const Roll<T>& roll) {
+  using std::sqrt;
+  ReleaseParabola<T> p;
+  p.bend = -roll.hoop.rho * cos_from_vertical(roll.hoop, roll.release_trig);
+  p.discriminant = roll.push * roll.push - roll.released * p.bend;
+  p.root = sqrt(larger(p.discriminant, T(0)));
+  p.real = p.discriminant >= T(0);
+  p.nearer = select(p.real, -roll.released / (roll.push + p.root), T(-1));
+  return p;
 }
 
 /// The square of acosh(1 + x), from below; within 1 % for x < 1. Without a logarithm: it is only for node
@@ -85,13 +104,7 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
   using std::floor, std::sqrt;
   const Hoop<T>& hoop = roll.hoop;
   const T rho2 = T(2) * hoop.rho;
-  const T bend = -hoop.rho * cos_from_vertical(hoop, roll.release_trig);
-  const T discriminant = roll.push * roll.push - roll.released * bend;
-  const T root = sqrt(larger(discriminant, T(0)));
-  const MaskOf<T> real = discriminant >= T(0);
-  // Without real zeros E is far from zero if its least value is, over the distance that takes: x1 = -1 will
-  // do then.
-  const T x1 = select(real, -roll.released / (roll.push + root), T(-1));
+  const auto [bend, discriminant, root, real, x1] = parabola_at_release(roll);
   hard = hard | !(roll.push > T(0)) | !(real | (-discriminant > T(4) * bend * bend));
 
   const T span = end - roll.release;
@@ -225,10 +238,7 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
   const GaussRule<S>& gauss = rules_[sizeof(S) > 8 ? 30 : 20];
 
   const Hoop<S>& hoop = roll.hoop;
-  const S bend = -hoop.rho * cos_from_vertical(hoop, roll.release_trig);
-  const S discriminant = roll.push * roll.push - roll.released * bend;
-  const S x1 =
-      discriminant >= S(0) && roll.push > S(0) ? -roll.released / (roll.push + sqrt(discriminant)) : S(-1);
+  const S x1 = roll.push > S(0) ? parabola_at_release(roll).nearer : S(-1);
   const S q0 = sqrt(-x1);
   const S release = atan2(roll.release_trig.sin, roll.release_trig.cos);  // of whole turns nothing depends
   S unsure(
@@ -246,7 +256,6 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
   const auto near_release = [&](const S& past) {
     return S(2) * (q0 + past) * slowness_past(past * (S(2) * q0 + past));
   };
-  const auto farther = [&](const S& x) { return slowness_past(x); };
 
   S total(0);
   const auto rule = [&](const auto& f, S a, S b) {
@@ -287,7 +296,7 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
       const S from = past(x), until = past(b);
       halve(halve, near_release, from, until, rule(near_release, from, until), most_halvings);
     } else {
-      halve(halve, farther, x, b, rule(farther, x, b), most_halvings);
+      halve(halve, slowness_past, x, b, rule(slowness_past, x, b), most_halvings);
     }
     x = b;
   }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
 
 #include "physics/flight_search.hpp"
 #include "physics/rolling.hpp"
@@ -15,6 +14,7 @@ namespace leapmap {
 namespace {
 
 constexpr double most_points = 1e7;
+constexpr double check_tolerance = 1e-12;
 
 TracePoint rolling_point(const Hoop<double>& hoop, const Design& design, double t, const RollingState& y) {
   const Trig<double> phi = trig(y[0]);
@@ -41,10 +41,9 @@ TracePoint flight_point(const Hoop<double>& hoop, const Design& design, const Li
           Phase::flight};
 }
 
-}  // namespace
-
-Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval,
-           double graze_limit) {
+/// The story as the integration tells it, unchecked.
+Story integrated(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval,
+                 double graze_limit) {
   const Hoop<double> hoop = derive<double>(design);
   Story story;
   double next_sample = 0.0;
@@ -74,7 +73,6 @@ Story tell(const Design& design, const Scene& scene, const IntegrationOptions& o
     };
   }
   story.outcome = RollingIntegration(options).solve(design, scene, observer);
-  ExactSolver<Batch>(1e-12).solve({&design, 1}, scene, {&story.checked, 1});
 
   if (interval > 0.0 && story.outcome.status == Status::jumped) {
     const Candidate& jump = story.candidates.back();
@@ -87,13 +85,19 @@ Story tell(const Design& design, const Scene& scene, const IntegrationOptions& o
   return story;
 }
 
+}  // namespace
+
+Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval,
+           double graze_limit) {
+  Story story = integrated(design, scene, options, interval, graze_limit);
+  ExactSolver<Batch>(check_tolerance).solve({&design, 1}, scene, {&story.checked, 1});
+  return story;
+}
+
 Story tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval,
                    double graze_limit) {
-  IntegrationOptions options;
-  options.stepper = find_gsl_stepper("gsl-rk8pd");
-  options.control.relative = options.control.absolute = 1e-12;
-  Story story = tell(design, scene, options, interval, graze_limit);
-  std::swap(story.checked, story.outcome);
+  Story story = integrated(design, scene, adaptive("gsl-rk8pd", check_tolerance), interval, graze_limit);
+  story.checked = story.outcome;
   story.candidates.clear();
 
   // As a sweep solves it: all but the times, which are within the tolerance, are the map's to the last digit.

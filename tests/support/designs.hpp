@@ -28,13 +28,7 @@ inline Design random_design(std::mt19937_64& random) {
   return design;
 }
 
-/// Adaptive integration by the stepper of that name.
-inline IntegrationOptions adaptive(std::string_view stepper, double tolerance) {
-  IntegrationOptions options;
-  options.stepper = find_gsl_stepper(stepper);
-  options.control.relative = options.control.absolute = tolerance;
-  return options;
-}
+using leapmap::adaptive;
 
 inline Outcome solve(const Design& design, const Scene& scene = {}, std::string_view stepper = "gsl-rk8pd",
                      double tolerance = 1e-12) {

@@ -57,15 +57,10 @@ TEST(Engine, SolvesEachDesignOfEachTileInItsPlace) {
   const DesignSpace space(spec);
   const Solver solve = make_solver(spec);
   std::size_t expected_number = 0;
-  std::vector<std::size_t> position;
   run_sweep(spec, tiling, {}, [&](const Tile& tile, std::span<const Outcome> outcomes) {
     EXPECT_EQ(tile.start, tiling.tile(expected_number++).start) << "tiles come in order";
     for (std::size_t i = 0; i < tile.count; i += 17) {
-      unravel(i, tile.extent, position);
-      std::size_t number = 0;
-      for (std::size_t k = 0; k < position.size(); ++k)
-        number = number * tiling.shape()[k] + tile.start[k] + position[k];
-      const Design design = space.at(number);
+      const Design design = space.at(tiling.number(tile, i));
       Outcome outcome;
       solve({&design, 1}, {&outcome, 1});
       EXPECT_EQ(outcome.status, outcomes[i].status);
