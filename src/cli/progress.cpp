@@ -7,6 +7,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include "cli/spoken.hpp"
+
 namespace leapmap::cli {
 namespace {
 
@@ -16,32 +18,25 @@ extern "C" void note_signal(int signal) { signal_noted = signal; }
 
 }  // namespace
 
-Progress::Progress(std::size_t total, bool quiet)
-    : total_(total), shown_(!quiet && ::isatty(STDERR_FILENO)) {}
+Progress::Progress(std::size_t total, std::size_t already, bool quiet)
+    : total_(total), already_(already), quiet_(quiet), terminal_(::isatty(STDERR_FILENO)) {}
 
 Progress::~Progress() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (terminal_ && !quiet_) fmt::print(stderr, "\r\033[K");
 }
 
 void Progress::update(std::size_t done) {
   const auto now = Clock::now();
-  if (!shown_ || now - last_ < std::chrono::milliseconds(200)) return;
+  if (quiet_ || now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::minutes(1))) return;
   last_ = now;
   const double passed = std::chrono::duration<double>(now - begin_).count();
-  const double rate = static_cast<double>(done) / passed;
-  fmt::print(stderr, "\r\033[K{} of {} designs, {:.0f} %, {:.4g} designs/s, {} to go", done, total_,
-             100.0 * static_cast<double>(done) / static_cast<double>(total_), rate,
-             spoken_duration(static_cast<double>(total_ - done) / rate));
+  const double rate = static_cast<double>(done - already_) / passed;
+  const std::string line =
+      fmt::format("{} of {} designs, {:.0f} %, {:.4g} designs/s, {} to go", grouped(done), grouped(total_),
+                  100.0 * static_cast<double>(done) / static_cast<double>(total_), rate,
+                  spoken_duration(static_cast<double>(total_ - done) / rate));
+  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "leapmap: ", line, terminal_ ? "" : "\n");
   std::fflush(stderr);
-}
-
-std::string spoken_duration(double seconds) {
-  if (seconds < 1.0) return fmt::format("{:.2g} s", seconds);
-  if (seconds < 60.0) return fmt::format("{:.3g} s", seconds);
-  const auto whole = static_cast<long long>(seconds + 0.5);
-  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
-  if (whole < 86400) return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
-  return fmt::format("{:.3g} days", seconds / 86400.0);
 }
 
 void note_signals() {

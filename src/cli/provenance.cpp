@@ -23,6 +23,7 @@ std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filet
           {"version", std::vector<std::int32_t>{format_major, format_minor}},
           {"program_version", std::string(program_version())},
           {"git_revision", std::string(git_revision())},
+          {"instruction_set", std::string(instruction_set())},
           {"spec", resolved_text(spec)},
           {"date", fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"host", std::string(host.data())},

@@ -10,106 +10,40 @@
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
 #include "cli/provenance.hpp"
+#include "cli/spoken.hpp"
+#include "cli/sweep_plan.hpp"
 #include "map/writer.hpp"
 #include "support/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
+#include "sweep/map_layout.hpp"
+#include "sweep/map_spec.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
+#include "sweep/retry.hpp"
 
 namespace leapmap::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// At most so much work is lost to kill -9 or a power cut.
+constexpr std::chrono::seconds commit_interval{1};
+
 struct SweepArguments {
   std::string spec, map;
   std::vector<std::string> overrides;
   int threads = 0;
-  bool overwrite = false, dry_run = false, quiet = false;
+  bool resume = false, overwrite = false, retry_failed = false, dry_run = false, quiet = false;
 };
-
-MapAxis describe(const Option& option, std::vector<double> values) {
-  return {std::string(option.key), std::string(option.unit == "sqrt(g/R)" ? "1" : option.unit),
-          fmt::format("{}{}", option.meaning, option.unit == "sqrt(g/R)" ? ", in sqrt(g/R)" : ""),
-          std::move(values)};
-}
-
-MapLayout layout_of(const Spec& spec) {
-  MapLayout layout;
-  for (const Axis& axis : spec.axes)
-    layout.axes.push_back(describe(*find_option("design", axis.key), axis.values));
-  if (spec.axes.empty()) {
-    for (const Option* parameter : design_parameters()) {
-      const double constant = value_of(*parameter, spec.design);
-      layout.columns.push_back(describe(*parameter, std::vector(spec.list.count, constant)));
-      for (const Axis& column : spec.list.columns)
-        if (column.key == parameter->key) layout.columns.back().values = column.values;
-    }
-  }
-  for (const Field& field : map_fields())
-    if (stores(spec.output, field.name)) layout.fields.push_back(&field);
-  layout.time_unit = time_unit(spec.scene);
-  layout.single = spec.output.precision == "f4";
-  return layout;
-}
-
-std::string title_of(const Spec& spec) {
-  std::vector<std::string_view> names;
-  for (const Axis& axis : spec.axes) names.push_back(axis.key);
-  return spec.axes.empty() ? fmt::format("Jumps of {} hoop designs", spec.list.count)
-                           : fmt::format("Jumps of passive hoops over {}", fmt::join(names, " x "));
-}
-
-/// "61,696"
-std::string grouped(std::uint64_t number) {
-  const std::string digits = fmt::format("{}", number);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
-    text += digits[i];
-  }
-  return text;
-}
-
-std::string spoken_bytes(double bytes) {
-  const std::array units{"B", "kB", "MB", "GB", "TB", "PB"};
-  std::size_t unit = 0;
-  for (; bytes >= 1000.0 && unit + 1 < units.size(); ++unit) bytes /= 1000.0;
-  return fmt::format("{:.3g} {}", bytes, units[unit]);
-}
-
-void plan(const Spec& spec, const std::string& map, const MapLayout& layout, const Tiling& tiling,
-          int threads) {
-  fmt::print("map      {}\n", map.empty() ? "(none: give -o or output.file)" : map);
-  if (spec.axes.empty()) fmt::print("list     {} designs {}\n", grouped(spec.list.count), spec.list.path);
-  for (const Axis& axis : spec.axes)
-    fmt::print("axis     {} from {:.6g} to {:.6g}, {} values\n", axis.key, axis.values.front(),
-               axis.values.back(), axis.values.size());
-  fmt::print("designs  {} in {} tiles of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
-             fmt::join(tiling.tile_shape(), " x "));
-  fmt::print("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
-  const double tile_bytes = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
-  double axis_values = 0.0;
-  for (const Axis& axis : spec.axes) axis_values += static_cast<double>(axis.values.size());
-  // Each thread holds one tile, and four more each may wait to be written; HDF5 caches a megabyte a dataset.
-  const double memory = 5.0 * threads * tile_bytes + 1e6 * static_cast<double>(layout.fields.size()) + 2e7 +
-                        40.0 * axis_values +
-                        (spec.axes.empty() ? 64.0 * static_cast<double>(spec.list.count) : 0.0);
-  fmt::print("memory   about {}\n", spoken_bytes(memory));
-  fmt::print("file     about {}\n", spoken_bytes(static_cast<double>(map_bytes(layout, tiling)) + 5e4));
-  const double seconds = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs()) / threads;
-  fmt::print("time     about {} on {} threads\n", spoken_duration(seconds), threads);
-}
 
 /// Runs the audit; its result as attributes. A disagreement sets status and is told with the command to see
 /// it.
-std::vector<hdf5::Attribute> run_audit(const Spec& spec, const AuditDraw& draw,
+std::vector<hdf5::Attribute> run_audit(const Spec& spec, std::span<const AuditSample> samples,
                                        const SweepArguments& arguments, int& status) {
   if (spec.numerics.audit <= 0.0) return {};
-  const AuditReport report =
-      audit(spec, draw.samples(), arguments.threads, [] { return noted_signal() != 0; });
+  const AuditReport report = audit(spec, samples, arguments.threads, [] { return noted_signal() != 0; });
   if (!arguments.quiet)
     fmt::print(
         "audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
@@ -135,6 +69,150 @@ std::vector<hdf5::Attribute> run_audit(const Spec& spec, const AuditDraw& draw,
           {"audit_beyond_tolerance", static_cast<std::int64_t>(report.beyond_tolerance)}};
 }
 
+/// What the user types to go on with an interrupted sweep.
+std::string resume_command(const SweepArguments& arguments, const std::string& map) {
+  std::string command = fmt::format("leapmap sweep {} -o {} --resume", quoted(arguments.spec), quoted(map));
+  for (const std::string& set : arguments.overrides) command += " --set " + quoted(set);
+  return command + (arguments.overwrite ? " --overwrite" : "");
+}
+
+/// What a resumed sweep has to share with the one that began: the spec, the format, and the program, as far
+/// as numbers depend on it.
+void refuse_other_beginning(const MapReader& part, const std::string& name, const Spec& spec,
+                            std::span<const hdf5::Attribute> now) {
+  constexpr std::string_view allowed = "another -o, or --overwrite to start anew";
+  if (const auto difference = first_difference(spec_of(part, name), spec))
+    throw InputError(
+        fmt::format("{}: was begun with another spec: {}; allowed: that spec (leapmap info --spec {}), {}",
+                    name, *difference, quoted(name), allowed));
+  if (hdf5::read_integers(part.file(), "version") != std::vector<std::int64_t>{format_major, format_minor})
+    throw InputError(fmt::format("{}: has another format version; allowed: {}", name, allowed));
+  for (const auto& [key, value] : now)
+    if (key == "program_version" || key == "git_revision" || key == "instruction_set")
+      if (part.attribute(key) != std::get<std::string>(value))
+        throw InputError(
+            fmt::format("{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one, {}",
+                        name, key, part.attribute(key), std::get<std::string>(value), allowed));
+}
+
+/// Begins a map, or goes on with what an earlier sweep left of it.
+MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
+                   const MapLayout& layout, const Tiling& tiling, std::span<const hdf5::Attribute> opening) {
+  const std::string part = part_of(map);
+  if (!arguments.resume || !std::filesystem::exists(part) || hdf5::File::blank(part))
+    return MapWriter::begin(map, layout, tiling, opening, arguments.overwrite);
+  try {
+    MapWriter writer = MapWriter::resume(map, layout, tiling, arguments.overwrite);
+    refuse_other_beginning(writer.reader(), part, spec, opening);
+    writer.verify();
+    return writer;
+  } catch (const IoError& error) {
+    throw IoError(fmt::format("{}; it cannot be gone on with: --overwrite starts anew", error.what()));
+  }
+}
+
+/// True if a sweep to be resumed has ended already: its map is there, of the same spec.
+bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec) {
+  if (!arguments.resume || arguments.overwrite || std::filesystem::exists(part_of(map)) ||
+      !std::filesystem::exists(map))
+    return false;
+  return !first_difference(spec_of(MapReader(map), map), spec);
+}
+
+/// The samples of the tiles that are in the map already.
+std::vector<AuditSample> samples_of(const Spec& spec, const Tiling& tiling, const MapWriter& writer) {
+  std::vector<AuditSample> samples;
+  if (spec.numerics.audit <= 0.0 || writer.progress().tiles == 0) return samples;
+  const MapReader map = writer.reader();
+  const Solver solve = make_solver(spec);
+  for (std::size_t t = 0; t < writer.progress().tiles; ++t)
+    std::ranges::move(audit_samples(spec, tiling, tiling.tile(t), solve, map), std::back_inserter(samples));
+  return samples;
+}
+
+/// Solves what is missing in the map, committing every second. Returns the number of designs there are then.
+std::size_t solve_rest(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout,
+                       const Tiling& tiling, MapWriter& writer, std::vector<AuditSample>& samples) {
+  std::size_t done = writer.progress().designs();
+  Progress progress(tiling.designs(), done, arguments.quiet);
+  EngineOptions options;
+  options.threads = arguments.threads;
+  options.first_tile = writer.progress().tiles;
+  options.stop_requested = [] { return noted_signal() != 0; };
+  std::size_t committed = done;
+  auto last_commit = Clock::now();
+  const double seconds_before = writer.progress().seconds;
+  const auto begin = Clock::now();
+  const auto store = [&](const EncodedTile& tile, const std::vector<AuditSample>& drawn,
+                         std::size_t designs) {
+    writer.write(tile);
+    samples.insert(samples.end(), drawn.begin(), drawn.end());
+    progress.update(done += designs);
+    if (const auto now = Clock::now(); now - last_commit >= commit_interval) {
+      writer.set_seconds(seconds_before + std::chrono::duration<double>(now - begin).count());
+      writer.commit();
+      committed = done;
+      last_commit = Clock::now();
+    }
+  };
+  try {
+    run_sweep(spec, tiling, options, [&] {
+      const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
+      return
+          [&, encoder](std::size_t number, const Tile& tile, std::span<const Outcome> outcomes) -> Prepared {
+            const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number, outcomes));
+            auto drawn = audit_samples(spec, tiling, tile, outcomes);
+            const std::size_t bytes = encoded->bytes() + drawn.size() * sizeof(AuditSample);
+            return {[&store, encoded, drawn = std::move(drawn), designs = tile.count] {
+                      store(*encoded, drawn, designs);
+                    },
+                    bytes};
+          };
+    });
+    writer.set_seconds(seconds_before + std::chrono::duration<double>(Clock::now() - begin).count());
+    writer.commit();  // a full disk is told before the audit takes its time
+  } catch (const IoError& error) {
+    if (committed == 0) throw;
+    throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by --resume",
+                              error.what(), grouped(committed), grouped(tiling.designs())));
+  }
+  return done;
+}
+
+void print_totals(const std::array<std::int64_t, status_count>& totals) {
+  for (std::size_t i = 0; i < totals.size(); ++i)
+    if (totals[i] > 0)
+      fmt::print("         {:>12} {}\n", grouped(static_cast<std::uint64_t>(totals[i])),
+                 name_of(static_cast<Status>(i)));
+}
+
+/// Solves an existing map's failed designs again.
+int retry(const SweepArguments& arguments, Spec spec, const std::string& map) {
+  Spec there;
+  {
+    const MapReader reader(map);
+    there = spec_of(reader, map);
+  }
+  if (const auto difference = first_difference(there, spec, true))
+    throw InputError(
+        fmt::format("{}: is of other designs: {}; allowed: its own spec (leapmap info --spec {})", map,
+                    *difference, quoted(map)));
+  spec.numerics = retry_numerics(there.numerics, spec.numerics);
+  note_signals();
+  const RetryReport report = retry_failed(map, spec, arguments.threads, [] { return noted_signal() != 0; });
+  if (noted_signal() != 0) {
+    fmt::print(stderr, "leapmap: interrupted; {} is as it was\n", map);
+    return 128 + noted_signal();
+  }
+  if (arguments.quiet) return 0;
+  fmt::print("retried  {} failed designs by {} at tolerance {:g}: {} settled, {} still failed\n",
+             grouped(report.retried), resolved_method(spec.numerics), spec.numerics.tolerance,
+             grouped(report.retried - report.still_failed), grouped(report.still_failed));
+  print_totals(report.statuses);
+  fmt::print("map      {}\n", map);
+  return 0;
+}
+
 int run(const SweepArguments& arguments) {
   const Spec spec = read_spec(arguments.spec, arguments.overrides);
   const std::string map = arguments.map.empty() ? spec.output.file : arguments.map;
@@ -142,56 +220,47 @@ int run(const SweepArguments& arguments) {
   const MapLayout layout = layout_of(spec);
   const int threads = thread_count(arguments.threads);
   if (arguments.dry_run) {
-    plan(spec, map, layout, tiling, threads);
+    print_plan(spec, map, tiling, threads);
     return 0;
   }
   if (map.empty())
     throw InputError(
         fmt::format("{}: output.file is not set; allowed: a file's name there or with -o", arguments.spec));
+  if (arguments.retry_failed) return retry(arguments, spec, map);
+  if (is_done(arguments, map, spec)) {
+    if (!arguments.quiet) fmt::print("map      {} is whole already\n", map);
+    return 0;
+  }
 
   int status = 0;
-  const auto begin = Clock::now();
   std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
   opening.emplace_back("threads", std::int64_t{threads});
-  AuditDraw draw(spec, tiling);
-  MapWriter writer(map, layout, tiling, opening, arguments.overwrite);
+  MapWriter writer = open_map(arguments, map, spec, layout, tiling, opening);
   note_signals();
-  std::array<std::size_t, status_count> totals{};
-  std::size_t done = 0;
-  {
-    Progress progress(tiling.designs(), arguments.quiet);
-    EngineOptions options;
-    options.threads = arguments.threads;
-    options.stop_requested = [] { return noted_signal() != 0; };
-    options.progress = [&](std::size_t designs) { progress.update(designs); };
-    done = run_sweep(spec, tiling, options, [&](const Tile& tile, std::span<const Outcome> outcomes) {
-      for (const Outcome& outcome : outcomes) ++totals[static_cast<std::size_t>(outcome.status)];
-      if (spec.numerics.audit > 0.0) draw.take(tile, outcomes);
-      writer.write(tile, outcomes);
-    });
-  }
+  const auto begin = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const double seconds_before = writer.progress().seconds;
+  std::vector<AuditSample> samples = samples_of(spec, tiling, writer);
+  const std::size_t already = writer.progress().designs();
+  const std::size_t done = solve_rest(arguments, spec, layout, tiling, writer, samples);
   const double solving = seconds();
   std::vector<hdf5::Attribute> closing;
-  if (noted_signal() == 0) {
-    writer.flush();  // a full disk is told before the audit takes its time
-    closing = run_audit(spec, draw, arguments, status);
-  }
+  if (noted_signal() == 0) closing = run_audit(spec, samples, arguments, status);
   if (noted_signal() != 0) {
-    const std::string part = writer.keep_part();
-    fmt::print(stderr, "leapmap: interrupted after {} of {} designs; {} holds them\n", grouped(done),
-               grouped(tiling.designs()), part);
+    writer.set_seconds(seconds_before + seconds());
+    writer.keep();
+    fmt::print(stderr, "leapmap: interrupted after {} of {} designs, which {} keeps; go on by: {}\n",
+               grouped(done), grouped(tiling.designs()), part_of(map), resume_command(arguments, map));
     return 128 + noted_signal();
   }
-  closing.emplace_back("wall_time", seconds());
+  writer.set_seconds(seconds_before + seconds());
   writer.finish(closing);
   if (arguments.quiet) return status;
-  fmt::print("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done),
-             spoken_duration(solving), static_cast<double>(done) / solving, threads,
+  fmt::print("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done - already),
+             spoken_duration(solving), static_cast<double>(done - already) / solving, threads,
              resolved_method(spec.numerics));
-  for (std::size_t i = 0; i < totals.size(); ++i)
-    if (totals[i] > 0)
-      fmt::print("         {:>12} {}\n", grouped(totals[i]), name_of(static_cast<Status>(i)));
+  if (already > 0) fmt::print("resumed  {} designs were there already\n", grouped(already));
+  print_totals(writer.progress().statuses);
   fmt::print("map      {}\n", map);
   return status;
 }
@@ -210,7 +279,16 @@ void add_sweep(CLI::App& app, int& status) {
       ->take_all();
   command->add_option("--threads", arguments->threads, "threads to use; default: all")
       ->check(CLI::Range(1, 4096));
-  command->add_flag("--overwrite", arguments->overwrite, "replace an existing map");
+  auto* resume = command->add_flag("--resume", arguments->resume,
+                                   "go on with the MAP.part that an interrupted sweep left, if there is one");
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "replace an existing map; without --resume its .part as well");
+  command
+      ->add_flag(
+          "--retry-failed", arguments->retry_failed,
+          "solve the failed designs of an existing map again: by the spec's method if it is not the map's, "
+          "else by the other one")
+      ->excludes(resume);
   command->add_flag("--dry-run", arguments->dry_run,
                     "tell designs, memory, file size and time, and compute nothing else");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/hdf5.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 
 #include "support/errors.hpp"
 
@@ -19,18 +14,6 @@ namespace {
 herr_t keep_description(unsigned, const H5E_error2_t* error, void* reason) {
   if (error->desc && *error->desc) *static_cast<std::string*>(reason) = error->desc;
   return 0;
-}
-
-/// Of a system call's failure HDF5 tells time, name, buffer and offset, over several lines: the system's own
-/// words do.
-std::string in_one_line(std::string reason) {
-  constexpr std::string_view system_words = "error message = '";
-  if (const std::size_t found = reason.find(system_words); found != std::string::npos) {
-    const std::size_t start = found + system_words.size();
-    return reason.substr(start, reason.find('\'', start) - start);
-  }
-  std::ranges::replace(reason, '\n', ' ');
-  return reason;
 }
 
 Handle scalar() { return {H5Screate(H5S_SCALAR), H5Sclose, "creating a dataspace"}; }
@@ -46,12 +29,40 @@ Handle text_type() {
   return type;
 }
 
+/// An attribute to be written: the one that is there if it has that type and shape, else a new one. HDF5
+/// numbers attributes as they are created, up to 65,535, so that one written again and again must not be a
+/// new one.
+Handle writable_attribute(hid_t object, const std::string& name, hid_t type, hid_t space,
+                          const std::string& what) {
+  if (has_attribute(object, name)) {
+    Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+    const Handle old_type(H5Aget_type(attribute), H5Tclose, what),
+        old_space(H5Aget_space(attribute), H5Sclose, what);
+    if (H5Tequal(old_type, type) > 0 && H5Sextent_equal(old_space, space) > 0) return attribute;
+  }
+  remove_attribute(object, name);
+  return {H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, what};
+}
+
 void write(hid_t object, const std::string& name, hid_t file_type, hid_t memory_type, hid_t space,
            const void* values) {
   const std::string what = fmt::format("writing attribute {}", name);
-  const Handle attribute(H5Acreate2(object, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose, what);
-  check(H5Awrite(attribute, memory_type, values), what);
+  check(H5Awrite(writable_attribute(object, name, file_type, space, what), memory_type, values), what);
+}
+
+/// The dataspaces of a block, in memory and in the file.
+std::pair<Handle, Handle> select(hid_t dataset, const std::vector<std::size_t>& start,
+                                 const std::vector<std::size_t>& extent, const std::string& what) {
+  const std::vector<hsize_t> from(start.begin(), start.end()), by(extent.begin(), extent.end());
+  Handle file(H5Dget_space(dataset), H5Sclose, what);
+  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, from.data(), nullptr, by.data(), nullptr), what);
+  Handle memory(H5Screate_simple(static_cast<int>(by.size()), by.data(), nullptr), H5Sclose, what);
+  return {std::move(memory), std::move(file)};
+}
+
+hssize_t points_of(hid_t attribute, const std::string& what) {
+  const Handle space(H5Aget_space(attribute), H5Sclose, what);
+  return H5Sget_simple_extent_npoints(space);
 }
 
 }  // namespace
@@ -60,36 +71,14 @@ void fail(const std::string& what) {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_description, &reason);
   H5Eclear2(H5E_DEFAULT);
-  throw IoError(reason.empty() ? what : fmt::format("{}: {}", what, in_one_line(reason)));
+  std::ranges::replace(reason, '\n', ' ');
+  if (reason.empty()) throw IoError(what);
+  throw IoError(reason.starts_with(what) ? reason : fmt::format("{}: {}", what, reason));
 }
 
 void initialise() {
-  static const bool done = [] {
-    H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    return true;
-  }();
-  static_cast<void>(done);
-}
-
-Handle create_file(const std::string& path) {
-  initialise();
-  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-  }
-  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, path);
-  check(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), path);
-  check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), path);
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path);
-  check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), path);
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose, path + ": cannot be created"};
-}
-
-Handle open_file(const std::string& path) {
-  initialise();
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, path + ": cannot be read as HDF5"};
+  [[maybe_unused]] static const herr_t once = H5dont_atexit();
+  [[maybe_unused]] thread_local const herr_t quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
 Handle create_dataset(hid_t file, const DatasetPlan& plan) {
@@ -99,6 +88,10 @@ Handle create_dataset(hid_t file, const DatasetPlan& plan) {
   check(H5Pset_obj_track_times(creation, false), what);  // the same spec gives the same bytes
   if (!plan.chunk.empty())
     check(H5Pset_chunk(creation, static_cast<int>(plan.chunk.size()), plan.chunk.data()), what);
+  if (plan.compression > 0) {
+    if (H5Tget_size(plan.type) > 1) check(H5Pset_shuffle(creation), what);
+    check(H5Pset_deflate(creation, static_cast<unsigned>(plan.compression)), what);
+  }
   if (plan.fill) check(H5Pset_fill_value(creation, plan.type, plan.fill), what);
   const Handle space(H5Screate_simple(static_cast<int>(plan.shape.size()), plan.shape.data(), nullptr),
                      H5Sclose, what);
@@ -111,6 +104,13 @@ void write_attribute(hid_t object, const std::string& name, std::string_view tex
   const char* pointer = terminated.c_str();
   const Handle type = text_type();
   write(object, name, type, type, scalar(), &pointer);
+}
+
+void write_attribute(hid_t object, const std::string& name, std::span<const std::string> texts) {
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  const Handle type = text_type();
+  write(object, name, type, type, simple(texts.size()), pointers.data());
 }
 
 void write_attribute(hid_t object, const std::string& name, double value) {
@@ -129,6 +129,10 @@ void write_attribute(hid_t object, const std::string& name, std::int64_t value) 
   write(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, scalar(), &value);
 }
 
+void write_attribute(hid_t object, const std::string& name, std::span<const std::int64_t> values) {
+  write(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, simple(values.size()), values.data());
+}
+
 void write_attribute(hid_t object, const std::string& name, std::span<const std::int32_t> values) {
   write(object, name, H5T_STD_I32LE, H5T_NATIVE_INT32, simple(values.size()), values.data());
 }
@@ -142,20 +146,12 @@ void annotate(hid_t object, std::span<const Attribute> attributes) {
     std::visit([&, &key = name](const auto& v) { write_attribute(object, key, v); }, value);
 }
 
-void finish_file(Handle file, const std::string& part, const std::string& path) {
-  check(H5Fflush(file, H5F_SCOPE_LOCAL), part + ": cannot be written");
-  if (!file.close()) fail(part + ": cannot be written");
-  const int descriptor = ::open(part.c_str(), O_RDONLY);
-  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int reason = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!synced) throw IoError(fmt::format("{}: cannot be brought to disk: {}", part, std::strerror(reason)));
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) throw IoError(fmt::format("{}: cannot be given its name: {}", path, error.message()));
-}
-
 bool has_attribute(hid_t object, const std::string& name) { return H5Aexists(object, name.c_str()) > 0; }
+
+void remove_attribute(hid_t object, const std::string& name) {
+  if (has_attribute(object, name))
+    check(H5Adelete(object, name.c_str()), fmt::format("replacing attribute {}", name));
+}
 
 std::string read_text(hid_t object, const std::string& name) {
   const std::string what = fmt::format("reading attribute {}", name);
@@ -163,14 +159,47 @@ std::string read_text(hid_t object, const std::string& name) {
   const Handle file_type(H5Aget_type(attribute), H5Tclose, what);
   if (H5Tget_class(file_type) != H5T_STRING || H5Tis_variable_str(file_type) <= 0)
     throw IoError(what + ": it is not text");
-  const Handle space(H5Aget_space(attribute), H5Sclose, what);
-  if (H5Sget_simple_extent_npoints(space) != 1) throw IoError(what + ": it is not one text");
+  if (points_of(attribute, what) != 1) throw IoError(what + ": it is not one text");
   const Handle type = text_type();
   char* text = nullptr;
   check(H5Aread(attribute, type, &text), what);
   std::string copy = text ? text : "";
   H5free_memory(text);
   return copy;
+}
+
+double read_number(hid_t object, const std::string& name) {
+  const std::string what = fmt::format("reading attribute {}", name);
+  const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+  if (points_of(attribute, what) != 1) throw IoError(what + ": it is not one number");
+  double value = 0.0;
+  check(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), what);
+  return value;
+}
+
+std::vector<std::int64_t> read_integers(hid_t object, const std::string& name) {
+  constexpr hssize_t most = 64;
+  const std::string what = fmt::format("reading attribute {}", name);
+  const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+  const hssize_t count = points_of(attribute, what);
+  if (count < 1 || count > most) throw IoError(what + ": it is not a few numbers");
+  std::vector<std::int64_t> values(static_cast<std::size_t>(count));
+  check(H5Aread(attribute, H5T_NATIVE_INT64, values.data()), what);
+  return values;
+}
+
+std::vector<double> read_block(hid_t dataset, const std::vector<std::size_t>& start,
+                               const std::vector<std::size_t>& extent, const std::string& what) {
+  const auto [memory, file] = select(dataset, start, extent, what);
+  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(memory)));
+  check(H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, file, H5P_DEFAULT, values.data()), what);
+  return values;
+}
+
+void write_block(hid_t dataset, const std::vector<std::size_t>& start, const std::vector<std::size_t>& extent,
+                 std::span<const double> values, const std::string& what) {
+  const auto [memory, file] = select(dataset, start, extent, what);
+  check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, file, H5P_DEFAULT, values.data()), what);
 }
 
 std::vector<hsize_t> shape_of(hid_t dataset) {

@@ -18,8 +18,8 @@ namespace leapmap::hdf5 {
 /// Throws IoError with `what` and HDF5's innermost reason. HDF5's own printing is off.
 [[noreturn]] void fail(const std::string& what);
 
-/// Initialises HDF5 for this process: quiet, and without its handler at exit, which can hang after a full
-/// disk.
+/// Initialises HDF5 for this process, without its handler at exit, which can hang after a full disk, and
+/// makes it quiet for this thread. To be called on each thread that calls HDF5.
 void initialise();
 
 /// Owns an identifier of any kind.
@@ -54,13 +54,6 @@ inline void check(herr_t status, const std::string& what) {
   if (status < 0) fail(what);
 }
 
-/// A new file, replacing an old one, in a folder made if need be: V18 format, link and attribute creation
-/// order tracked (netCDF readers need it).
-Handle create_file(const std::string& path);
-
-/// An existing file, read-only.
-Handle open_file(const std::string& path);
-
 /// A dataset to be created: creation order tracked, chunked if chunk is not empty.
 struct DatasetPlan {
   std::string name;
@@ -68,29 +61,41 @@ struct DatasetPlan {
   std::span<const hsize_t> shape;
   std::span<const hsize_t> chunk = {};
   const void* fill = nullptr;  ///< of `type`; unset: zero
+  int compression = 0;         ///< > 0: bytes shuffled (but single ones), deflated at that level
 };
 Handle create_dataset(hid_t file, const DatasetPlan& plan);
 
-/// Attributes: UTF-8 text of variable length, or numbers of the given file type.
+/// Attributes: UTF-8 text of variable length, or numbers of the given file type. An older one of that name
+/// goes.
 void write_attribute(hid_t object, const std::string& name, std::string_view text);
+void write_attribute(hid_t object, const std::string& name, std::span<const std::string> texts);
 void write_attribute(hid_t object, const std::string& name, double value);
 void write_attribute(hid_t object, const std::string& name, std::span<const double> values);
 void write_attribute(hid_t object, const std::string& name, std::span<const float> values);
 void write_attribute(hid_t object, const std::string& name, std::int64_t value);
+void write_attribute(hid_t object, const std::string& name, std::span<const std::int64_t> values);
 void write_attribute(hid_t object, const std::string& name, std::span<const std::int32_t> values);
 void write_attribute(hid_t object, const std::string& name, std::span<const std::uint8_t> values);
 
 /// A named value of a file's root.
-using Attribute =
-    std::pair<std::string, std::variant<std::string, double, std::int64_t, std::vector<std::int32_t>>>;
+using Attribute = std::pair<std::string, std::variant<std::string, double, std::int64_t,
+                                                      std::vector<std::int64_t>, std::vector<std::int32_t>>>;
 void annotate(hid_t object, std::span<const Attribute> attributes);
 
-/// Closes a file written under the name `part`, brings it to disk and gives it its name, in place of an older
-/// file.
-void finish_file(Handle file, const std::string& part, const std::string& path);
+/// No error if there is none.
+void remove_attribute(hid_t object, const std::string& name);
 
 bool has_attribute(hid_t object, const std::string& name);
+/// Each throws IoError if there is no such attribute, or it is of another kind.
 std::string read_text(hid_t object, const std::string& name);
+double read_number(hid_t object, const std::string& name);
+std::vector<std::int64_t> read_integers(hid_t object, const std::string& name);
+
+/// A block of a dataset in C order, as doubles whatever its type. `what` is for messages. Throws IoError.
+std::vector<double> read_block(hid_t dataset, const std::vector<std::size_t>& start,
+                               const std::vector<std::size_t>& extent, const std::string& what);
+void write_block(hid_t dataset, const std::vector<std::size_t>& start, const std::vector<std::size_t>& extent,
+                 std::span<const double> values, const std::string& what);
 
 /// A dataset's number of values along each dimension.
 std::vector<hsize_t> shape_of(hid_t dataset);

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Reads a map: its axes, attributes and fields, a block at a time.
+/// Reads a map, or the .part of one: its axes, attributes and fields, a block at a time.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "map/hdf5.hpp"
+#include "map/hdf5_driver.hpp"
 #include "map/tile.hpp"
 
 namespace leapmap {
 
 class MapReader {
  public:
-  /// Opens a map (or the .part of one). Throws IoError if it is no leapmap map, or of a newer major version.
+  /// Opens a map (or the .part of one). Throws IoError if it is no leapmap map, or of a newer major version,
+  /// InputError while a sweep is writing it.
   explicit MapReader(const std::string& path);
+  /// Reads a file that is open already and stays so; path is for messages.
+  MapReader(const std::string& path, hid_t file);
 
   /// A dimension: its name, unit and values.
   struct Dimension {
@@ -28,17 +31,25 @@ class MapReader {
   const std::vector<std::string>& fields() const { return fields_; }
   std::string unit(const std::string& field) const;
 
+  /// False for what a sweep left that was stopped: designs not computed are holes.
+  bool is_whole() const;
+
   /// A root attribute as text, numbers in their shortest form; empty if it is not there.
   std::string attribute(const std::string& name) const;
 
-  /// A block of a field, C order; codes as numbers.
+  /// The root, for attributes of other kinds.
+  hid_t file() const { return file_; }
+
+  /// A block of a field, C order; codes as numbers. Throws IoError.
   std::vector<double> read(const std::string& field, const Tile& block) const;
 
  private:
+  void survey();
   hdf5::Handle open(const std::string& dataset) const;
 
   std::string path_;
-  hdf5::Handle file_;
+  hdf5::File own_;
+  hid_t file_;
   std::vector<Dimension> dimensions_;
   std::vector<std::string> fields_;
 };

@@ -14,7 +14,7 @@ namespace leapmap {
 inline constexpr std::string_view map_filetype = "leapmap map";
 inline constexpr std::string_view trace_filetype = "leapmap trace";
 inline constexpr int format_major = 1;  ///< readers refuse a newer one
-inline constexpr int format_minor = 1;  ///< 1: quantities may be f4
+inline constexpr int format_minor = 2;  ///< 1: f4; 2: compression, status_counts, the NeXus group
 
 /// A measured quantity, stored as f8, NaN where it does not apply.
 struct Quantity {

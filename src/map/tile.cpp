@@ -64,6 +64,17 @@ std::size_t Tiling::number(const Tile& tile, std::size_t index) const {
   return number;
 }
 
+std::size_t Tiling::designs_before(const Tile& tile) const {
+  // Along each dimension: all tiles that start earlier there, and at the same place along those before it.
+  std::size_t before = 0, same = 1, beyond = designs_;
+  for (std::size_t i = 0; i < shape_.size(); ++i) {
+    beyond /= shape_[i];
+    before += same * tile.start[i] * beyond;
+    same *= tile.extent[i];
+  }
+  return before;
+}
+
 void unravel(std::size_t index, const std::vector<std::size_t>& extent, std::vector<std::size_t>& position) {
   position.resize(extent.size());
   for (std::size_t i = extent.size(); i-- > 0;) {

@@ -28,6 +28,8 @@ class Tiling {
   Tile tile(std::size_t number) const;
   /// The number in the whole map, C order, of a tile's design `index`.
   std::size_t number(const Tile& tile, std::size_t index) const;
+  /// How many designs the tiles before this one hold.
+  std::size_t designs_before(const Tile& tile) const;
   const std::vector<std::size_t>& shape() const { return shape_; }
   const std::vector<std::size_t>& tile_shape() const { return tile_shape_; }
   std::size_t designs() const { return designs_; }

@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 
+#include "map/hdf5_driver.hpp"
 #include "map/schema.hpp"
 #include "support/errors.hpp"
 
@@ -50,7 +51,7 @@ void refuse_other_file(const std::string& path) {
   if (!std::filesystem::exists(path, ignored) || !std::filesystem::is_regular_file(path, ignored)) return;
   bool trace = false;
   try {
-    const Handle file = hdf5::open_file(path);
+    const hdf5::File file = hdf5::File::open(path);
     trace = hdf5::has_attribute(file, "filetype") && hdf5::read_text(file, "filetype") == trace_filetype;
   } catch (const IoError&) {
   }
@@ -65,7 +66,7 @@ void write_trace(const std::string& path, const Story& story, const Scene& scene
   refuse_other_file(path);
   const double second = time_unit(scene), metre = scene.radius;
   const std::string part = path + ".part";
-  Handle file = hdf5::create_file(part);
+  hdf5::File file = hdf5::File::create(part);
   try {
     hdf5::annotate(file, attributes);
     const auto points = [&](double TracePoint::*member, double unit) {
@@ -102,7 +103,7 @@ void write_trace(const std::string& path, const Story& story, const Scene& scene
     write_series(file, "candidate_angle", "rad", "angle at the lift-off", angles, &candidate);
     write_series(file, "candidate_spin", "rad s-1", "spin at the lift-off", spins, &candidate);
     write_series(file, "candidate_height", "1", "apex of its flight, in hoop diameters", heights, &candidate);
-    hdf5::finish_file(std::move(file), part, path);
+    file.finish(path);
   } catch (...) {
     ::unlink(part.c_str());
     throw;

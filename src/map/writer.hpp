@@ -1,69 +1,80 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Writes a map tile by tile. Until it is whole it is called FILE.part; FILE itself is only ever a whole map.
+/// Writes a map tile by tile. Until it is whole it is called FILE.part, which survives whatever stops the
+/// program and can be gone on with; FILE itself is only ever a whole map.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "map/hdf5.hpp"
-#include "map/schema.hpp"
-#include "map/tile.hpp"
-#include "trajectory/outcome.hpp"
+#include "map/hdf5_driver.hpp"
+#include "map/layout.hpp"
+#include "map/reader.hpp"
+#include "map/tile_encoder.hpp"
 
 namespace leapmap {
 
-/// A parameter as the map shows it: an axis (a dimension scale) or a column of a list of designs.
-struct MapAxis {
-  std::string name;
-  std::string unit;
-  std::string long_name;
-  std::vector<double> values;
-};
+/// What a map holds so far.
+struct MapProgress {
+  std::size_t tiles = 0;                              ///< the first so many, in the order of their numbers
+  std::array<std::int64_t, status_count> statuses{};  ///< designs in them, by how they ended
+  double seconds = 0.0;                               ///< of work, over all sessions
 
-struct MapLayout {
-  std::vector<MapAxis> axes;     ///< one dimension each; empty: a list, whose one dimension is `design`
-  std::vector<MapAxis> columns;  ///< of a list: its parameters, along `design`
-  std::vector<const Field*> fields;
-  double time_unit = 1.0;  ///< sqrt(R/g) [s]
-  bool single = false;     ///< quantities as f4, not f8
+  std::size_t designs() const {
+    return static_cast<std::size_t>(std::accumulate(statuses.begin(), statuses.end(), std::int64_t{0}));
+  }
 };
 
 class MapWriter {
  public:
   /// Creates FILE.part and everything in it but the values. Refuses (InputError) to replace FILE or FILE.part
-  /// unless overwrite is set; throws IoError if it cannot be written.
-  MapWriter(const std::string& path, const MapLayout& layout, const Tiling& tiling,
-            std::span<const hdf5::Attribute> attributes, bool overwrite);
-  /// Without finish or keep_part before it: removes what was written.
+  /// unless overwrite is set, and while another program holds FILE.part; throws IoError if it cannot be
+  /// written.
+  static MapWriter begin(const std::string& path, const MapLayout& layout, const Tiling& tiling,
+                         std::span<const hdf5::Attribute> attributes, bool overwrite);
+  /// Goes on with FILE.part, as of its last commit. Throws as begin does, and IoError if it is not whole.
+  static MapWriter resume(const std::string& path, const MapLayout& layout, const Tiling& tiling,
+                          bool overwrite);
+  /// Without finish or keep before it: FILE.part is left as of its last commit, or removed if that holds no
+  /// tile.
   ~MapWriter();
-  MapWriter(const MapWriter&) = delete;
-  MapWriter& operator=(const MapWriter&) = delete;
+  MapWriter(MapWriter&&) = default;
 
-  /// Stores a tile's outcomes, in the tile's order. Not for two threads at once.
-  void write(const Tile& tile, std::span<const Outcome> outcomes);
-  /// Brings what was written so far to the file; throws IoError if the disk is full.
-  void flush();
+  /// Reads the tiles that are there again. Throws IoError if they are not what was written.
+  void verify();
+  /// Stores the next tile. One thread at a time.
+  void write(const EncodedTile& tile);
+  /// Brings all tiles so far to disk at once. Throws IoError if the disk is full: what was committed stays.
+  void commit();
+  /// What was written so far; `seconds` is for the caller to count.
+  const MapProgress& progress() const { return progress_; }
+  void set_seconds(double seconds) { progress_.seconds = seconds; }
   /// Adds closing attributes, brings everything to disk and gives the file its name.
   void finish(std::span<const hdf5::Attribute> attributes);
-  /// Closes the unfinished file and leaves it as FILE.part, whose name is returned.
-  std::string keep_part();
+  /// Commits and closes the unfinished file, which stays FILE.part.
+  void keep();
+
+  /// The unfinished file, to be read while this writer lives.
+  MapReader reader() const { return MapReader(part_, file_); }
 
  private:
-  void close_datasets();
+  MapWriter(const std::string& path, const MapLayout& layout, const Tiling& tiling);
+  void write_progress();
 
   std::string path_, part_;
-  hdf5::Handle file_;
-  std::vector<const Field*> fields_;
+  const MapLayout* layout_;
+  const Tiling* tiling_;
+  hdf5::File file_;
   std::vector<hdf5::Handle> datasets_;
-  double time_unit_;
-  bool settled_ = false;
-  std::vector<double> quantities_;
-  std::vector<std::uint8_t> codes_;
+  MapProgress progress_;
+  std::uint32_t checksum_ = 0;  ///< of all chunks so far
+  bool committed_ = false;      ///< FILE.part is worth keeping
 };
 
-/// How many bytes the map's values take.
-std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling);
+/// The name of a map while it is not whole.
+inline std::string part_of(const std::string& path) { return path + ".part"; }
 
 }  // namespace leapmap

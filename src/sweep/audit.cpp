@@ -83,23 +83,54 @@ Difference sensitivity(ExactSolver<double>& exact, const Design& design, const S
 
 }  // namespace
 
-void AuditDraw::take(const Tile& tile, std::span<const Outcome> outcomes) {
+std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile) {
   const auto due = [&](std::size_t designs) {
-    return static_cast<std::size_t>(std::ceil(share_ * static_cast<double>(designs)));
+    return static_cast<std::size_t>(std::ceil(share * static_cast<double>(designs)));
   };
-  const std::size_t count = due(seen_ + tile.count) - due(seen_);
+  const std::size_t before = tiling.designs_before(tile), count = due(before + tile.count) - due(before);
+  std::vector<std::size_t> drawn;
   for (std::size_t i = 0; i < count; ++i) {  // one at random from each of `count` equal shares of the tile
     const std::size_t begin = i * tile.count / count, end = std::max(begin + 1, (i + 1) * tile.count / count);
-    const std::size_t drawn = begin + mix(seen_ + i) % (end - begin);
-    samples_.push_back({tiling_->number(tile, drawn), outcomes[drawn]});
-    if (!single_) continue;
+    drawn.push_back(begin + mix(before + i) % (end - begin));
+  }
+  return drawn;
+}
+
+std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
+                                       std::span<const Outcome> outcomes) {
+  std::vector<AuditSample> samples;
+  for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile)) {
+    samples.push_back({tiling.number(tile, drawn), outcomes[drawn]});
+    if (spec.output.precision != "f4") continue;
     for (const Field& field : map_fields())
       if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
-        double& value = samples_.back().outcome.*quantity->member;
+        double& value = samples.back().outcome.*quantity->member;
         value = static_cast<float>(value);
       }
   }
-  seen_ += tile.count;
+  return samples;
+}
+
+std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
+                                       const Solver& solve, const MapReader& map) {
+  const std::vector<std::size_t> drawn = audit_draw(spec.numerics.audit, tiling, tile);
+  std::vector<AuditSample> samples;
+  const DesignSpace space(spec);
+  for (const std::size_t index : drawn) {
+    samples.push_back({tiling.number(tile, index), {}});
+    const Design design = space.at(samples.back().number);
+    solve({&design, 1}, {&samples.back().outcome, 1});
+  }
+  if (samples.empty()) return samples;
+  for (const Field& field : map_fields()) {
+    const auto* quantity = std::get_if<Quantity>(&field.source);
+    if (!quantity || !stores(spec.output, field.name)) continue;
+    const std::vector<double> values = map.read(std::string(field.name), tile);
+    const double unit = quantity->is_time ? time_unit(spec.scene) : 1.0;
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+      samples[i].outcome.*quantity->member = values[drawn[i]] / unit;
+  }
+  return samples;
 }
 
 std::string audit_method(const Numerics& numerics) {

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "map/reader.hpp"
 #include "map/tile.hpp"
+#include "sweep/solver.hpp"
 #include "sweep/spec.hpp"
 #include "trajectory/outcome.hpp"
 
@@ -22,22 +24,18 @@ struct AuditSample {
   Outcome outcome;
 };
 
-/// Draws samples tile by tile; which ones depends on the spec alone. Over all tiles, ceil(share * designs).
-class AuditDraw {
- public:
-  AuditDraw(const Spec& spec, const Tiling& tiling)
-      : share_(spec.numerics.audit), single_(spec.output.precision == "f4"), tiling_(&tiling) {}
-  /// Tiles come in order.
-  void take(const Tile& tile, std::span<const Outcome> outcomes);
-  const std::vector<AuditSample>& samples() const { return samples_; }
+/// The designs of a tile that the audit looks at, by their place in it; which ones depends on the spec alone.
+/// Over all tiles, ceil(share * designs).
+std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile);
 
- private:
-  double share_;
-  bool single_;  // the map rounds to f4, and so do the samples
-  const Tiling* tiling_;
-  std::size_t seen_ = 0;
-  std::vector<AuditSample> samples_;
-};
+/// The samples drawn from a tile's outcomes, rounded as the map rounds them.
+std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
+                                       std::span<const Outcome> outcomes);
+
+/// The samples of a tile that is in the map already: its designs solved again, for the flags, which are the
+/// same alone and among others, with the quantities that the map holds.
+std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
+                                       const Solver& solve, const MapReader& map);
 
 /// What the two methods disagree on.
 struct AuditReport {

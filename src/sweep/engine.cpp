@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sweep/engine.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <random>
 #include <vector>
@@ -12,30 +13,42 @@
 
 namespace leapmap {
 
+namespace {
+
+struct Item {
+  Prepared prepared;
+  std::size_t designs;
+};
+
+}  // namespace
+
 std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options,
-                      const TileSink& sink) {
-  const int threads = thread_count(options.threads);
+                      const std::function<Prepare()>& make_prepare) {
   const DesignSpace space(spec);
-
   std::size_t delivered = 0;
-  OrderedDelivery<std::vector<Outcome>> delivery(
-      [&](std::size_t number, const std::vector<Outcome>& outcomes) {
-        sink(tiling.tile(number), outcomes);
-        delivered += outcomes.size();
-        if (options.progress) options.progress(delivered);
+  OrderedDelivery<Item> delivery(
+      options.first_tile,
+      [&](Item& item) {
+        item.prepared.take();
+        delivered += item.designs;
       },
-      4 * static_cast<std::size_t>(threads));
+      most_waiting_bytes);
 
-  parallel_for_each(tiling.size(), threads, [&] {
-    // A thread's own: the method's workspace and the designs of the tile in hand.
-    return [&, solve = make_solver(spec), designs = std::vector<Design>()](std::size_t number) mutable {
+  const std::size_t count = tiling.size() - std::min(options.first_tile, tiling.size());
+  parallel_for_each(count, thread_count(options.threads), [&] {
+    // A thread's own: the method's workspace, the encoder's, and the tile in hand.
+    return [&, solve = make_solver(spec), prepare = make_prepare(), designs = std::vector<Design>(),
+            outcomes = std::vector<Outcome>()](std::size_t i) mutable {
       try {
+        const std::size_t number = options.first_tile + i;
         const Tile tile = tiling.tile(number);
         designs.resize(tile.count);
-        std::vector<Outcome> outcomes(tile.count);
+        outcomes.assign(tile.count, Outcome{});
         space.fill(tile, designs);
         solve(designs, outcomes);
-        const bool wanted = delivery.bring(number, std::move(outcomes));
+        Prepared prepared = prepare(number, tile, outcomes);
+        const std::size_t bytes = prepared.bytes;
+        const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
         return wanted && !(options.stop_requested && options.stop_requested());
       } catch (...) {
         delivery.abandon();
@@ -43,6 +56,7 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
       }
     };
   });
+  delivery.finish();
   return delivered;
 }
 

@@ -12,21 +12,31 @@
 
 namespace leapmap {
 
+/// Of tiles prepared and not yet taken; enough to go on while a commit waits for the disk.
+inline constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
+
 struct EngineOptions {
   int threads = 0;                       ///< 0: as many as OpenMP offers
+  std::size_t first_tile = 0;            ///< tiles before it are there already
   std::function<bool()> stop_requested;  ///< asked after each tile; true: no further tile is begun
-  std::function<void(std::size_t designs_done)> progress;  ///< after each tile handed on
 };
 
-/// Takes a tile's outcomes, in the tile's order. Called for one tile at a time, tiles in order of their
-/// numbers, from whichever thread; what it throws ends the sweep and is thrown on by run_sweep.
-using TileSink = std::function<void(const Tile&, std::span<const Outcome>)>;
+/// What is left to do with a tile once a thread has prepared it: `take` is called in the order of the tiles'
+/// numbers, from one thread that does nothing else; until then it holds `bytes` of memory.
+struct Prepared {
+  std::function<void()> take;
+  std::size_t bytes = 0;
+};
 
-/// Solves every tile; returns the number of designs handed on, all of them unless a stop was requested.
-/// Outcomes depend on the spec alone, not on threads or timing; memory does not grow with the number of
-/// designs.
+/// Prepares a tile, on the thread that solved it: encodes, compresses. Outcomes come in the tile's order.
+using Prepare = std::function<Prepared(std::size_t number, const Tile&, std::span<const Outcome>)>;
+
+/// Solves every tile from first_tile on; returns the number of designs handed on, all of them unless a stop
+/// was requested. make_prepare is called once on each thread. What Prepare or `take` throws ends the sweep
+/// and is thrown on. Outcomes depend on the spec alone, not on threads or timing; memory does not grow with
+/// the number of designs, nor when whoever takes them is slow.
 std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options,
-                      const TileSink& sink);
+                      const std::function<Prepare()>& make_prepare);
 
 /// Seconds per design on one thread, from a seeded sample solved for about the given time.
 double seconds_per_design(const Spec& spec, double seconds);

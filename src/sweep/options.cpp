@@ -144,6 +144,12 @@ const std::array options{
            "type of stored numbers: f8, or f4 with 7 digits and half the size",
            {},
            precisions},
+    Option{"output",
+           "compression",
+           IntegerSlot{[](Spec& s) -> long& { return s.output.compression; }},
+           "1",
+           "0: none; 1 (fast) to 9 (small): shuffle and deflate, read by every HDF5 program",
+           {0, 9}},
 };
 
 std::string shown(const Option& option, double value) {
@@ -179,6 +185,12 @@ std::vector<const Option*> design_parameters() {
   for (const Option& option : options)
     if (std::holds_alternative<ParameterSlot>(option.slot)) parameters.push_back(&option);
   return parameters;
+}
+
+std::vector<double> list_values(const Spec& spec, const Option& parameter) {
+  const auto column = std::ranges::find(spec.list.columns, parameter.key, &Axis::key);
+  return column != spec.list.columns.end() ? column->values
+                                           : std::vector(spec.list.count, value_of(parameter, spec.design));
 }
 
 std::string flag_of(const Option& parameter) {

@@ -48,6 +48,9 @@ inline double value_of(const Option& parameter, const Design& design) {
   return design.*std::get<ParameterSlot>(parameter.slot).member;
 }
 
+/// The values of a parameter along a spec's list of designs.
+std::vector<double> list_values(const Spec& spec, const Option& parameter);
+
 /// The command line's name for a parameter, for example "--mass-ratio".
 std::string flag_of(const Option& parameter);
 

@@ -247,29 +247,38 @@ std::string find_points(const Spec& spec) {
 std::string origin_of(const Spec& spec) { return spec.origin.empty() ? "command line" : spec.origin; }
 
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {
+  Spec spec = parse_spec(path.empty() ? "" : read_text(path), path, overrides);
+  if (spec.points.empty()) return spec;
+  spec.points =
+      std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
+  spec.list = read_points(spec.points, origin_of(spec));
+  return spec;
+}
+
+Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
   Spec spec;
-  spec.origin = path;
+  spec.origin = origin;
   toml::table file;
   try {
-    if (!path.empty()) file = toml::parse(read_text(path));
+    file = toml::parse(text);
   } catch (const toml::parse_error& error) {
     throw InputError(
-        fmt::format("{}:{}: not TOML: {}", path, error.source().begin.line, error.description()));
+        fmt::format("{}:{}: not TOML: {}", origin, error.source().begin.line, error.description()));
   }
-  std::vector<Entry> entries = entries_of(file, path);
+  std::vector<Entry> entries = entries_of(file, origin);
 
   std::vector<toml::table> values;
   values.reserve(overrides.size());  // entries point into it
-  for (const std::string& text : overrides) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) throw InputError(fmt::format("--set {}: allowed: KEY=VALUE", text));
-    const std::string name = text.substr(0, equals);
+  for (const std::string& set : overrides) {
+    const std::size_t equals = set.find('=');
+    if (equals == std::string::npos) throw InputError(fmt::format("--set {}: allowed: KEY=VALUE", set));
+    const std::string name = set.substr(0, equals);
     const std::size_t dot = name.find('.');
     const std::string section = dot == std::string::npos ? "" : name.substr(0, dot);
     const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
     const Option* option = find_option(section, key);
-    if (!option) refuse_key("--set " + text, section, key);
-    values.push_back(parse_override(text, std::string_view(text).substr(equals + 1)));
+    if (!option) refuse_key("--set " + set, section, key);
+    values.push_back(parse_override(set, std::string_view(set).substr(equals + 1)));
     override_with(entries, {option, "command line", {}, values.back().get("v")});
   }
 
@@ -289,15 +298,10 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
              "with method = \"gsl-...\"");
   }
 
-  if (!spec.points.empty()) {
-    if (!spec.axes.empty())
-      throw InputError(
-          fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
-                      origin_of(spec), spec.axes.front().key));
-    spec.points =
-        std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
-    spec.list = read_points(spec.points, origin_of(spec));
-  }
+  if (!spec.points.empty() && !spec.axes.empty())
+    throw InputError(
+        fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
+                    origin_of(spec), spec.axes.front().key));
   double designs = 1.0;
   for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
   if (designs > static_cast<double>(most_designs))

@@ -37,6 +37,7 @@ struct Output {
   std::string file;                 ///< the map; -o overrides it
   std::vector<std::string> fields;  ///< datasets to store; empty: all
   std::string precision = "f8";     ///< of stored numbers: "f8" or "f4"
+  long compression = 1;             ///< deflate's level, 0 to 9; 0: none
 };
 
 /// One parameter that varies over a grid of designs: values in the parameter's own unit (angles in rad).
@@ -69,6 +70,9 @@ struct Spec {
 /// An empty path means an empty spec: every key at its default. Throws InputError (see support/errors.hpp)
 /// for anything that is not allowed, IoError if the file cannot be read.
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The same from a TOML text; origin is for messages. A list of designs is left as its path.
+Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides);
 
 /// The spec's file, for messages; "command line" if there is none.
 std::string origin_of(const Spec& spec);

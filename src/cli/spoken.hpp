@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Numbers and command lines as people read and type them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace leapmap::cli {
+
+/// "61,696".
+std::string grouped(std::uint64_t number);
+/// "4.2 MB".
+std::string spoken_bytes(double bytes);
+/// "1 h 02 min", "3 min 20 s", "4.2 s".
+std::string spoken_duration(double seconds);
+/// A word as a shell takes it, in quotes where it needs them.
+std::string quoted(const std::string& word);
+
+}  // namespace leapmap::cli

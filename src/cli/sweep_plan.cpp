@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sweep_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/spoken.hpp"
+#include "sweep/audit.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/engine.hpp"
+#include "sweep/map_layout.hpp"
+
+namespace leapmap::cli {
+
+void print_plan(const Spec& spec, const std::string& map, const Tiling& tiling, int threads) {
+  const MapLayout layout = layout_of(spec);
+  fmt::print("map      {}\n", map.empty() ? "(none: give -o or output.file)" : map);
+  if (spec.axes.empty()) fmt::print("list     {} designs {}\n", grouped(spec.list.count), spec.list.path);
+  for (const Axis& axis : spec.axes)
+    fmt::print("axis     {} from {:.6g} to {:.6g}, {} values\n", axis.key, axis.values.front(),
+               axis.values.back(), axis.values.size());
+  fmt::print("designs  {} in {} tiles of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
+             fmt::join(tiling.tile_shape(), " x "));
+  fmt::print("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
+  const double tile_bytes = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
+  double axis_values = 0.0;
+  for (const Axis& axis : spec.axes) axis_values += static_cast<double>(axis.values.size());
+  const double file = static_cast<double>(map_bytes(layout, tiling)) + 5e4;
+  const double memory = threads * tile_bytes + std::min(file, static_cast<double>(most_waiting_bytes)) + 2e7 +
+                        40.0 * axis_values +
+                        (spec.axes.empty() ? 64.0 * static_cast<double>(spec.list.count) : 0.0);
+  std::vector<std::string_view> fields;
+  for (const Field* field : layout.fields) fields.push_back(field->name);
+  fmt::print("audit    {:g} of them, again by {}\n", spec.numerics.audit, audit_method(spec.numerics));
+  fmt::print("fields   {} in {}\n", fmt::join(fields, ", "), spec.output.precision);
+  fmt::print("memory   about {}, at most\n", spoken_bytes(memory));
+  fmt::print("file     about {}{}\n", spoken_bytes(file),
+             layout.compression > 0 ? " before compression" : "");
+  const double seconds = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs()) / threads;
+  fmt::print("time     about {} on {} threads\n", spoken_duration(seconds), threads);
+}
+
+}  // namespace leapmap::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A file whose changes take effect all at once: whatever stops the program, kill -9 or a power cut, the file
+/// is found as of its last commit.
+///
+/// What was committed is never overwritten in place: such writes wait in memory. A commit brings what was
+/// appended to disk, then appends the waiting writes as a journal (a redo log with a checksum), then makes
+/// them, then cuts the journal off. Whoever opens the file next finds a whole journal and makes its writes
+/// again, or none, and all is as before. The first bytes, an HDF5 file's signature, always wait, so that a
+/// file never committed is told from one that was.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace leapmap {
+
+class JournaledFile {
+ public:
+  enum class Access {
+    read,    ///< of a file that exists; a journal is read as if it had been made
+    change,  ///< of a file that exists; a journal is made
+    create,  ///< anew; an existing file is emptied, once nobody else holds it
+  };
+
+  /// Opens and locks the file: several readers, or one writer. Throws InputError if somebody else holds it,
+  /// IoError if it cannot be opened.
+  JournaledFile(const std::string& path, Access access);
+  /// Abandons what was not committed.
+  ~JournaledFile();
+  JournaledFile(const JournaledFile&) = delete;
+  JournaledFile& operator=(const JournaledFile&) = delete;
+
+  /// Bytes from offset on, as last written; beyond the end: 0. Throws IoError.
+  void read(std::uint64_t offset, std::span<std::byte> bytes) const;
+  /// Throws IoError, for instance on a full disk; what was committed stays.
+  void write(std::uint64_t offset, std::span<const std::byte> bytes);
+  /// All writes so far take effect, on disk when this returns, in a file `size` bytes long. Throws IoError.
+  void commit(std::uint64_t size);
+  /// Drops what was not committed and gives its space back; from now on writes and commits do nothing.
+  void abandon();
+  /// Gives the file another name, in place of an older file there, still locked. Throws IoError.
+  void rename(const std::string& path);
+
+  /// Where the bytes written so far end.
+  std::uint64_t end() const;
+  /// True if nothing was ever committed.
+  bool blank() const;
+  const std::string& path() const { return path_; }
+  Access access() const { return access_; }
+
+ private:
+  struct Write {
+    std::uint64_t offset;
+    std::vector<std::byte> bytes;
+  };
+  void lock() const;
+  void read_journal();
+  void write_journal(std::uint64_t size);
+  void make_waiting_writes();
+
+  std::string path_;
+  Access access_;
+  int descriptor_ = -1;
+  std::uint64_t committed_ = 0;  ///< bytes below it are not overwritten in place
+  std::uint64_t stored_ = 0;     ///< bytes the file has on disk, a journal not counted
+  std::vector<Write> waiting_;   ///< in the order they came
+  bool abandoned_ = false;
+  bool journal_valid_ = false;  ///< the journal on disk is whole and must not be cut off
+};
+
+}  // namespace leapmap

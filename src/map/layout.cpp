@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/layout.hpp"
+
+#include <fmt/format.h>
+#include <hdf5_hl.h>
+
+#include <array>
+#include <limits>
+
+namespace leapmap {
+namespace {
+
+using hdf5::check;
+using hdf5::Handle;
+
+void describe(hid_t dataset, std::string_view unit, std::string_view long_name) {
+  hdf5::write_attribute(dataset, "long_name", long_name);
+  hdf5::write_attribute(dataset, "units", unit);
+}
+
+/// One parameter's values, as a dataset of its own.
+Handle write_values(hid_t file, const MapAxis& axis) {
+  const hsize_t count = axis.values.size();
+  Handle dataset = hdf5::create_dataset(file, {axis.name, H5T_IEEE_F64LE, {&count, 1}});
+  check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, axis.values.data()),
+        "writing " + axis.name);
+  describe(dataset, axis.unit, axis.long_name);
+  return dataset;
+}
+
+/// The dimensions of a map as dimension scales: its axes, or `design` counting a list's designs from 0.
+std::vector<Handle> write_scales(hid_t file, const MapLayout& layout, std::size_t designs) {
+  std::vector<Handle> scales;
+  for (const MapAxis& axis : layout.axes) scales.push_back(write_values(file, axis));
+  if (layout.axes.empty()) {
+    std::vector<std::int64_t> numbers(designs);
+    for (std::size_t i = 0; i < designs; ++i) numbers[i] = static_cast<std::int64_t>(i);
+    const hsize_t count = designs;
+    scales.push_back(hdf5::create_dataset(file, {"design", H5T_STD_I64LE, {&count, 1}}));
+    check(H5Dwrite(scales[0], H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
+          "writing design");
+    describe(scales[0], "1", "number of the design in its list, from 0");
+  }
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    check(H5DSset_scale(scales[i], layout.axes.empty() ? "design" : layout.axes[i].name.c_str()),
+          "making a dimension scale");
+  return scales;
+}
+
+void attach(hid_t dataset, const std::vector<Handle>& scales) {
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    check(H5DSattach_scale(dataset, scales[i], static_cast<unsigned>(i)), "attaching a dimension scale");
+}
+
+std::vector<hsize_t> to_hsize(const std::vector<std::size_t>& extents) {
+  return {extents.begin(), extents.end()};
+}
+
+Handle create_field(hid_t file, const Field& field, const MapLayout& layout, const Tiling& tiling) {
+  const std::vector<hsize_t> shape = to_hsize(tiling.shape()), chunk = to_hsize(tiling.tile_shape());
+  const auto* code = std::get_if<Code>(&field.source);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
+  hdf5::DatasetPlan plan{std::string(field.name), H5T_IEEE_F64LE, shape, chunk, &nan, layout.compression};
+  if (code) plan.type = H5T_STD_U8LE, plan.fill = &code->fill;
+  if (!code && layout.single) plan.type = H5T_IEEE_F32LE, plan.fill = &nanf;
+  Handle dataset = hdf5::create_dataset(file, plan);
+  describe(dataset, field.unit, field.long_name);
+  if (!code) {
+    // netCDF wants the fill value in the dataset's own type
+    layout.single ? hdf5::write_attribute(dataset, "_FillValue", std::array{nanf})
+                  : hdf5::write_attribute(dataset, "_FillValue", std::array{nan});
+    return dataset;
+  }
+  hdf5::write_attribute(dataset, "_FillValue", std::array{code->fill});
+  if (code->names.empty()) return dataset;
+  std::vector<std::uint8_t> values(code->names.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint8_t>(i);
+  hdf5::write_attribute(dataset, "flag_values", values);
+  hdf5::write_attribute(dataset, "flag_meanings", fmt::format("{}", fmt::join(code->names, " ")));
+  return dataset;
+}
+
+Handle create_group(hid_t parent, const char* name, std::string_view nexus_class) {
+  Handle group(H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+               fmt::format("creating group {}", name));
+  hdf5::write_attribute(group, "NX_class", nexus_class);
+  return group;
+}
+
+/// NeXus's way to say what to plot (NXdata: signal and axes), for silx and H5Web. Links are soft: netCDF's
+/// readers pass over them and do not see each dataset twice.
+void write_nexus(hid_t file, const MapLayout& layout) {
+  hdf5::write_attribute(file, "NX_class", "NXroot");
+  hdf5::write_attribute(file, "default", "entry");
+  const Handle entry = create_group(file, "entry", "NXentry"), data = create_group(entry, "data", "NXdata");
+  hdf5::write_attribute(entry, "default", "data");
+  std::vector<std::string> axes, signals;
+  for (const MapAxis& axis : layout.axes) axes.push_back(axis.name);
+  if (axes.empty()) axes.push_back("design");
+  for (const Field* field : layout.fields) signals.emplace_back(field->name);
+  for (const auto* names : {&axes, &signals})
+    for (const std::string& name : *names)
+      check(H5Lcreate_soft(("/" + name).c_str(), data, name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+            "linking " + name);
+  hdf5::write_attribute(data, "axes", axes);
+  hdf5::write_attribute(data, "signal", signals.front());
+  signals.erase(signals.begin());
+  if (!signals.empty()) hdf5::write_attribute(data, "auxiliary_signals", signals);
+}
+
+}  // namespace
+
+std::size_t value_bytes(const MapLayout& layout, const Field& field) {
+  return std::holds_alternative<Code>(field.source) ? 1 : layout.single ? 4 : 8;
+}
+
+std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
+  std::uint64_t per_design = layout.axes.empty() ? 8 + 8 * layout.columns.size() : 0;
+  for (const Field* field : layout.fields) per_design += value_bytes(layout, *field);
+  return per_design * tiling.designs();
+}
+
+void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling) {
+  const std::vector<Handle> scales = write_scales(file, layout, tiling.designs());
+  for (const MapAxis& column : layout.columns) attach(write_values(file, column), scales);
+  for (const Field* field : layout.fields) attach(create_field(file, *field, layout, tiling), scales);
+  write_nexus(file, layout);
+}
+
+std::vector<Handle> open_fields(hid_t file, const MapLayout& layout) {
+  std::vector<Handle> datasets;
+  for (const Field* field : layout.fields) {
+    const std::string name(field->name);
+    datasets.emplace_back(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "opening " + name);
+  }
+  return datasets;
+}
+
+}  // namespace leapmap

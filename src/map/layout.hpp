@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What stands in a map before its first value: axes, columns, empty fields, and a NeXus group that tells
+/// viewers what to plot.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "map/hdf5.hpp"
+#include "map/schema.hpp"
+#include "map/tile.hpp"
+
+namespace leapmap {
+
+/// A parameter as the map shows it: an axis (a dimension scale) or a column of a list of designs.
+struct MapAxis {
+  std::string name;
+  std::string unit;
+  std::string long_name;
+  std::vector<double> values;
+};
+
+struct MapLayout {
+  std::vector<MapAxis> axes;     ///< one dimension each; empty: a list, whose one dimension is `design`
+  std::vector<MapAxis> columns;  ///< of a list: its parameters, along `design`
+  std::vector<const Field*> fields;
+  double time_unit = 1.0;  ///< sqrt(R/g) [s]
+  bool single = false;     ///< quantities as f4, not f8
+  int compression = 0;     ///< deflate's level, after a shuffle of bytes; 0: none
+};
+
+/// Bytes of one value of a field as stored: 1, 4 or 8.
+std::size_t value_bytes(const MapLayout& layout, const Field& field);
+
+/// How many bytes the map's values take before compression.
+std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling);
+
+/// Creates every dataset in an empty file and writes axes and columns. Throws IoError.
+void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling);
+
+/// The datasets of the layout's fields, in its order. Throws IoError.
+std::vector<hdf5::Handle> open_fields(hid_t file, const MapLayout& layout);
+
+}  // namespace leapmap

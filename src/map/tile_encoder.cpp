@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/tile_encoder.hpp"
+
+#include <libdeflate.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <new>
+#include <numeric>
+
+namespace leapmap {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "chunks are written as they lie in memory");
+
+template <class T, class Value>
+void gather_as(std::span<const Outcome> outcomes, std::byte* to, const Value& value) {
+  for (const Outcome& outcome : outcomes) {
+    const T stored = value(outcome);
+    std::memcpy(to, &stored, sizeof stored);
+    to += sizeof stored;
+  }
+}
+
+/// `count` times the fill value of a field.
+void fill(std::span<std::byte> bytes, const Field& field, std::size_t size) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
+  const auto* code = std::get_if<Code>(&field.source);
+  const void* value = code        ? static_cast<const void*>(&code->fill)
+                      : size == 4 ? static_cast<const void*>(&nanf)
+                                  : &nan;
+  for (std::size_t i = 0; i < bytes.size(); i += size) std::memcpy(bytes.data() + i, value, size);
+}
+
+}  // namespace
+
+void TileEncoder::Free::operator()(libdeflate_compressor* compressor) const {
+  libdeflate_free_compressor(compressor);
+}
+
+TileEncoder::TileEncoder(const MapLayout& layout, const Tiling& tiling)
+    : layout_(&layout), tiling_(&tiling), columns_(layout.fields.size()) {
+  if (layout.compression == 0) return;
+  compressor_.reset(libdeflate_alloc_compressor(layout.compression));
+  if (!compressor_) throw std::bad_alloc();
+}
+
+EncodedTile TileEncoder::encode(std::size_t number, std::span<const Outcome> outcomes) {
+  const Tile tile = tiling_->tile(number);
+  assert(outcomes.size() == tile.count);
+  EncodedTile encoded;
+  encoded.number = number;
+  for (const Outcome& outcome : outcomes) ++encoded.statuses[static_cast<std::size_t>(outcome.status)];
+  gather(outcomes);
+  for (std::size_t f = 0; f < columns_.size(); ++f)
+    encoded.chunks.push_back(filter(spread(tile, f), value_bytes(*layout_, *layout_->fields[f])));
+  return encoded;
+}
+
+void TileEncoder::gather(std::span<const Outcome> outcomes) {
+  for (std::size_t f = 0; f < columns_.size(); ++f)
+    columns_[f].resize(outcomes.size() * value_bytes(*layout_, *layout_->fields[f]));
+  constexpr std::size_t block = 128;  // outcomes that stay in the first cache for all fields
+  for (std::size_t first = 0; first < outcomes.size(); first += block) {
+    const auto some = outcomes.subspan(first, std::min(block, outcomes.size() - first));
+    for (std::size_t f = 0; f < columns_.size(); ++f) {
+      const Field& field = *layout_->fields[f];
+      std::byte* to = columns_[f].data() + first * value_bytes(*layout_, field);
+      if (const auto* code = std::get_if<Code>(&field.source)) {
+        gather_as<std::uint8_t>(some, to, code->value);
+        continue;
+      }
+      const auto& quantity = std::get<Quantity>(field.source);
+      const double unit = quantity.is_time ? layout_->time_unit : 1.0;
+      const auto value = [&](const Outcome& outcome) { return outcome.*quantity.member * unit; };
+      layout_->single
+          ? gather_as<float>(some, to, [&](const Outcome& o) { return static_cast<float>(value(o)); })
+          : gather_as<double>(some, to, value);
+    }
+  }
+}
+
+/// A field's values where they belong in the chunk, which is larger than a tile cut short by the map's edge.
+std::span<const std::byte> TileEncoder::spread(const Tile& tile, std::size_t field) {
+  const std::vector<std::size_t>& shape = tiling_->tile_shape();
+  if (tile.extent == shape) return columns_[field];
+  const std::size_t size = value_bytes(*layout_, *layout_->fields[field]);
+  const std::size_t row = tile.extent.back() * size;
+  chunk_.resize(std::accumulate(shape.begin(), shape.end(), size, std::multiplies<>()));
+  fill(chunk_, *layout_->fields[field], size);
+  std::vector<std::size_t> position;
+  for (std::size_t first = 0; first < tile.count; first += tile.extent.back()) {
+    unravel(first, tile.extent, position);
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < shape.size(); ++k) place = place * shape[k] + position[k];
+    std::memcpy(chunk_.data() + place * size, columns_[field].data() + first * size, row);
+  }
+  return chunk_;
+}
+
+/// HDF5's filters: first bytes of equal rank together (for values of more than one byte), then zlib's format.
+EncodedChunk TileEncoder::filter(std::span<const std::byte> values, std::size_t size) {
+  if (!compressor_) return {{values.begin(), values.end()}};
+  const bool shuffles = size > 1;
+  if (shuffles) {
+    shuffled_.resize(values.size());
+    const std::size_t count = values.size() / size;
+    for (std::size_t rank = 0; rank < size; ++rank)
+      for (std::size_t i = 0; i < count; ++i) shuffled_[rank * count + i] = values[i * size + rank];
+    values = shuffled_;
+  }
+  EncodedChunk chunk{std::vector<std::byte>(values.size())};
+  const std::size_t packed = libdeflate_zlib_compress(compressor_.get(), values.data(), values.size(),
+                                                      chunk.bytes.data(), chunk.bytes.size());
+  if (packed == 0) return {{values.begin(), values.end()}, shuffles ? 2u : 1u};  // it would not get smaller
+  chunk.bytes.resize(packed);
+  chunk.bytes.shrink_to_fit();
+  return chunk;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A tile's outcomes as the chunks of the file: typed, shuffled and deflated. The expensive half of writing,
+/// done by each thread for itself.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "map/layout.hpp"
+#include "trajectory/outcome.hpp"
+
+struct libdeflate_compressor;
+
+namespace leapmap {
+
+/// One field's chunk, as HDF5's filters would have made it.
+struct EncodedChunk {
+  std::vector<std::byte> bytes;
+  std::uint32_t skipped_filters = 0;  ///< bit i: the dataset's filter i was not applied, as it gained nothing
+};
+
+struct EncodedTile {
+  std::size_t number = 0;
+  std::vector<EncodedChunk> chunks;                    ///< in the layout's order of fields
+  std::array<std::uint64_t, status_count> statuses{};  ///< how many designs ended in each way
+
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const EncodedChunk& chunk : chunks) sum += chunk.bytes.size();
+    return sum;
+  }
+};
+
+/// Encodes tile after tile. One a thread.
+class TileEncoder {
+ public:
+  /// Keeps references to both.
+  TileEncoder(const MapLayout& layout, const Tiling& tiling);
+  /// Outcomes in the tile's order. What reaches over the map's edge holds fill values.
+  EncodedTile encode(std::size_t number, std::span<const Outcome> outcomes);
+
+ private:
+  struct Free {
+    void operator()(libdeflate_compressor* compressor) const;
+  };
+  void gather(std::span<const Outcome> outcomes);
+  std::span<const std::byte> spread(const Tile& tile, std::size_t field);
+  EncodedChunk filter(std::span<const std::byte> values, std::size_t size);
+
+  const MapLayout* layout_;
+  const Tiling* tiling_;
+  std::unique_ptr<libdeflate_compressor, Free> compressor_;
+  std::vector<std::vector<std::byte>> columns_;  ///< a field's values each, in the tile's order
+  std::vector<std::byte> chunk_, shuffled_;
+};
+
+}  // namespace leapmap

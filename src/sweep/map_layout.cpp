@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/map_layout.hpp"
+
+#include <fmt/format.h>
+
+#include "sweep/options.hpp"
+
+namespace leapmap {
+namespace {
+
+MapAxis describe(const Option& option, std::vector<double> values) {
+  return {std::string(option.key), std::string(option.unit == "sqrt(g/R)" ? "1" : option.unit),
+          fmt::format("{}{}", option.meaning, option.unit == "sqrt(g/R)" ? ", in sqrt(g/R)" : ""),
+          std::move(values)};
+}
+
+}  // namespace
+
+MapLayout layout_of(const Spec& spec) {
+  MapLayout layout;
+  for (const Axis& axis : spec.axes)
+    layout.axes.push_back(describe(*find_option("design", axis.key), axis.values));
+  if (spec.axes.empty())
+    for (const Option* parameter : design_parameters())
+      layout.columns.push_back(describe(*parameter, list_values(spec, *parameter)));
+  for (const Field& field : map_fields())
+    if (stores(spec.output, field.name)) layout.fields.push_back(&field);
+  layout.time_unit = time_unit(spec.scene);
+  layout.single = spec.output.precision == "f4";
+  layout.compression = static_cast<int>(spec.output.compression);
+  return layout;
+}
+
+std::string title_of(const Spec& spec) {
+  std::vector<std::string_view> names;
+  for (const Axis& axis : spec.axes) names.push_back(axis.key);
+  return spec.axes.empty() ? fmt::format("Jumps of {} hoop designs", spec.list.count)
+                           : fmt::format("Jumps of passive hoops over {}", fmt::join(names, " x "));
+}
+
+}  // namespace leapmap

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What of a spec the map shows: its axes or designs, and the fields asked for.
+#pragma once
+
+#include <string>
+
+#include "map/layout.hpp"
+#include "sweep/spec.hpp"
+
+namespace leapmap {
+
+MapLayout layout_of(const Spec& spec);
+
+/// The map's title, for example "Jumps of passive hoops over slope x mass_ratio".
+std::string title_of(const Spec& spec);
+
+}  // namespace leapmap

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/map_spec.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sweep/designs.hpp"
+#include "sweep/options.hpp"
+
+namespace leapmap {
+namespace {
+
+/// The values of an option: a number's alone, an axis's all.
+std::vector<double> numbers_of(Spec& spec, const Option& option) {
+  const auto axis = std::ranges::find(spec.axes, option.key, &Axis::key);
+  if (axis != spec.axes.end()) return axis->values;
+  if (const auto* slot = std::get_if<ParameterSlot>(&option.slot)) {
+    if (spec.axes.empty()) return list_values(spec, option);
+    return {spec.design.*slot->member};
+  }
+  if (const auto* slot = std::get_if<NumberSlot>(&option.slot)) return {(*slot)(spec)};
+  if (const auto* slot = std::get_if<IntegerSlot>(&option.slot)) return {static_cast<double>((*slot)(spec))};
+  return {};
+}
+
+std::vector<std::string> texts_of(Spec& spec, const Option& option) {
+  if (const auto* slot = std::get_if<TextSlot>(&option.slot)) return {(*slot)(spec)};
+  if (const auto* slot = std::get_if<TextsSlot>(&option.slot)) return (*slot)(spec);
+  return {};
+}
+
+std::string told(const std::vector<double>& numbers, const std::vector<std::string>& texts) {
+  if (!texts.empty() || numbers.empty())
+    return texts.empty() ? "not set" : fmt::format("{}", fmt::join(texts, ", "));
+  if (numbers.size() == 1) return fmt::format("{}", numbers[0]);
+  return fmt::format("{} values from {} to {}", numbers.size(), numbers.front(), numbers.back());
+}
+
+}  // namespace
+
+Spec spec_of(const MapReader& map, const std::string& origin) {
+  Spec spec = parse_spec(map.attribute("spec"), origin, {});
+  if (!spec.axes.empty()) return spec;
+  spec.list = {spec.points, {}, map.shape()[0]};
+  const Tile all{{0}, {spec.list.count}, spec.list.count};
+  for (const Option* parameter : design_parameters()) {
+    const std::string name(parameter->key);
+    if (std::ranges::find(map.fields(), name) != map.fields().end())
+      spec.list.columns.push_back({name, map.read(name, all)});
+  }
+  return spec;
+}
+
+std::optional<std::string> first_difference(const Spec& original_there, const Spec& original_here,
+                                            bool only_designs) {
+  Spec there = original_there, here = original_here;
+  for (Spec* spec : {&there, &here}) {
+    spec->numerics.method = resolved_method(spec->numerics);
+    spec->output.file.clear();
+    spec->points.clear();  // where a list was read from does not count, only what it holds
+  }
+  const auto keys = [](const Spec& spec) {
+    std::vector<std::string_view> names;
+    for (const Axis& axis : spec.axes) names.push_back(axis.key);
+    return fmt::format("{}", fmt::join(names, ", "));
+  };
+  if (keys(there) != keys(here))
+    return fmt::format("its axes are [{}] there and [{}] here", keys(there), keys(here));
+  for (const Option& option : spec_options()) {
+    if (only_designs && option.section == "numerics") continue;
+    const auto a = numbers_of(there, option), b = numbers_of(here, option);
+    const auto c = texts_of(there, option), d = texts_of(here, option);
+    if (a != b || c != d)
+      return fmt::format("{}.{} is {} there and {} here", option.section, option.key, told(a, c), told(b, d));
+  }
+  return {};
+}
+
+}  // namespace leapmap

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/retry.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "map/reader.hpp"
+#include "map/schema.hpp"
+#include "support/errors.hpp"
+#include "sweep/audit.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/parallel.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr auto failed = static_cast<double>(Status::failed);
+
+/// A failed design: its tile, its place in it, and what it comes to now.
+struct Failed {
+  std::size_t tile, index;
+  Outcome outcome;
+};
+
+/// Solves some designs on all threads, a few at a time.
+void solve(const Spec& spec, const Tiling& tiling, std::vector<Failed>& designs, int threads,
+           const std::function<bool()>& stop_requested) {
+  constexpr std::size_t at_once = 64;
+  const DesignSpace space(spec);
+  parallel_for_each((designs.size() + at_once - 1) / at_once, threads, [&] {
+    return [&, solver = make_solver(spec)](std::size_t group) {
+      std::vector<Design> some;
+      const std::size_t first = group * at_once, last = std::min(first + at_once, designs.size());
+      for (std::size_t i = first; i < last; ++i)
+        some.push_back(space.at(tiling.number(tiling.tile(designs[i].tile), designs[i].index)));
+      std::vector<Outcome> outcomes(some.size());
+      solver(some, outcomes);
+      for (std::size_t i = first; i < last; ++i) designs[i].outcome = outcomes[i - first];
+      return !(stop_requested && stop_requested());
+    };
+  });
+}
+
+double stored_value(const Field& field, const Outcome& outcome, double time_unit) {
+  if (const auto* code = std::get_if<Code>(&field.source)) return code->value(outcome);
+  const auto& quantity = std::get<Quantity>(field.source);
+  return outcome.*quantity.member * (quantity.is_time ? time_unit : 1.0);
+}
+
+/// Puts the outcomes of one tile's designs in their places in every field.
+void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Failed> designs) {
+  for (const Field& field : map_fields()) {
+    if (!stores(spec.output, field.name)) continue;
+    const std::string name(field.name), what = "retrying failed designs in " + name;
+    const hdf5::Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, what);
+    std::vector<double> values = hdf5::read_block(dataset, tile.start, tile.extent, what);
+    for (const Failed& design : designs)
+      values[design.index] = stored_value(field, design.outcome, time_unit(spec.scene));
+    hdf5::write_block(dataset, tile.start, tile.extent, values, what);
+  }
+}
+
+}  // namespace
+
+Numerics retry_numerics(const Numerics& there, const Numerics& here) {
+  const bool other = resolved_method(there) != resolved_method(here) || there.tolerance != here.tolerance ||
+                     there.absolute_tolerance != here.absolute_tolerance ||
+                     there.fixed_step != here.fixed_step || there.max_steps != here.max_steps;
+  if (other) return here;
+  Numerics numerics;
+  numerics.method = audit_method(there);
+  numerics.tolerance = std::min(there.tolerance, 1e-12);
+  return numerics;
+}
+
+RetryReport retry_failed(const std::string& path, const Spec& spec, int threads,
+                         const std::function<bool()>& stop_requested) {
+  constexpr std::size_t most_at_once = 100'000;
+  const std::string copy = path + ".retry";
+  hdf5::File file = hdf5::File::copy(path, copy);
+  RetryReport report;
+  try {
+    const MapReader map(path, file);
+    if (!map.is_whole()) throw InputError(path + ": is not whole; allowed: a whole map, by sweep --resume");
+    if (!stores(spec.output, "status"))
+      throw InputError(path + ": holds no status; allowed: a map with that field");
+    const Tiling tiling(map.shape());
+    std::vector<Failed> waiting;
+    const auto settle = [&] {
+      solve(spec, tiling, waiting, threads, stop_requested);
+      for (auto first = waiting.begin(); first != waiting.end();) {
+        const auto last =
+            std::find_if(first, waiting.end(), [&](const Failed& f) { return f.tile != first->tile; });
+        store(file, spec, tiling.tile(first->tile), {first, last});
+        first = last;
+      }
+      report.retried += waiting.size();
+      for (const Failed& design : waiting) ++report.statuses[static_cast<std::size_t>(design.outcome.status)];
+      waiting.clear();
+    };
+    for (std::size_t t = 0; t < tiling.size(); ++t) {
+      const std::vector<double> statuses = map.read("status", tiling.tile(t));
+      for (std::size_t i = 0; i < statuses.size(); ++i) {
+        if (statuses[i] == failed) {
+          waiting.push_back({t, i, {}});
+        } else if (statuses[i] >= 0.0 && statuses[i] < status_count) {
+          ++report.statuses[static_cast<std::size_t>(statuses[i])];
+        }
+      }
+      if (waiting.size() >= most_at_once || t + 1 == tiling.size()) settle();
+      if (stop_requested && stop_requested()) {
+        file.abandon();
+        ::unlink(copy.c_str());
+        return {};
+      }
+    }
+    report.still_failed = static_cast<std::size_t>(report.statuses[static_cast<std::size_t>(Status::failed)]);
+    hdf5::write_attribute(file, "status_counts", report.statuses);
+    hdf5::write_attribute(file, "retry_designs", static_cast<std::int64_t>(report.retried));
+    hdf5::write_attribute(file, "retry_method", resolved_method(spec.numerics));
+    hdf5::write_attribute(file, "retry_tolerance", spec.numerics.tolerance);
+    file.finish(path);
+  } catch (...) {
+    file.abandon();
+    ::unlink(copy.c_str());
+    throw;
+  }
+  return report;
+}
+
+}  // namespace leapmap

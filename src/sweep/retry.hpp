@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Solves the failed designs of a map again.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "sweep/spec.hpp"
+#include "trajectory/outcome.hpp"
+
+namespace leapmap {
+
+struct RetryReport {
+  std::size_t retried = 0, still_failed = 0;
+  std::array<std::int64_t, status_count> statuses{};  ///< of the whole map, after
+};
+
+/// How failed designs of a map made by `there` are solved again: as `here` says if that is another way, else
+/// by the method that audits it.
+Numerics retry_numerics(const Numerics& there, const Numerics& here);
+
+/// Solves the designs with status failed in the map `path` again, spec.numerics saying how, and stores what
+/// comes out: on a copy, PATH.retry, which takes the map's place once it is whole. All else in the map stays.
+/// Throws InputError if the map is not whole, holds no status, or is in use; IoError. Once stop_requested,
+/// the map stays as it was and the report is empty.
+RetryReport retry_failed(const std::string& path, const Spec& spec, int threads,
+                         const std::function<bool()>& stop_requested = {});
+
+}  // namespace leapmap
