@@ -27,6 +27,11 @@ class Map:
     fields: dict = field(default_factory=dict)  # name -> array
     about: dict = field(default_factory=dict)  # name -> its attributes (units, long_name, ...)
 
+    @property
+    def whole(self):
+        """False for the .part that a stopped sweep left: designs not computed are holes, status not_computed."""
+        return "tiles_done" not in self.attributes
+
     def code(self, name, meaning):
         """Where the code `name` has this meaning."""
         about = self.about[name]
@@ -59,6 +64,8 @@ def _read(path, filetype):
                           "use a newer leapmap")
         result = Map(path, attributes)
         for name, dataset in file.items():
+            if not isinstance(dataset, h5py.Dataset):  # the group that tells viewers what to plot
+                continue
             result.about[name] = dict(dataset.attrs)
             if h5py.h5ds.is_scale(dataset.id):
                 continue

@@ -8,11 +8,21 @@
 #include <limits>
 
 #include "cli/commands.hpp"
+#include "cli/spoken.hpp"
 #include "map/reader.hpp"
 #include "map/schema.hpp"
+#include "support/errors.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/map_spec.hpp"
 
 namespace leapmap::cli {
 namespace {
+
+struct InfoArguments {
+  std::string path;
+  bool only_spec = false, failed = false;
+  std::size_t limit = 20;
+};
 
 struct Extreme {
   double value;
@@ -81,31 +91,57 @@ void print_counts(const Code& code, const Summary& summary, std::size_t designs)
   }
 }
 
-int run(const std::string& path, bool only_spec) {
-  const MapReader map(path);
-  if (only_spec) {
+/// Lists failed designs, each with the command that shows what happens.
+int list_failed(const MapReader& map, const InfoArguments& arguments) {
+  if (std::ranges::find(map.fields(), "status") == map.fields().end())
+    throw InputError(arguments.path + ": holds no status; allowed: a map with that field");
+  const Spec spec = spec_of(map, arguments.path);
+  const DesignSpace space(spec);
+  std::size_t failed = 0;
+  for_each_block(map, "status", [&](std::size_t first, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] != static_cast<double>(Status::failed) || ++failed > arguments.limit) continue;
+      fmt::print("{}  # design {}\n", hop_command(spec, space.at(first + i)), first + i);
+    }
+  });
+  if (failed > arguments.limit)
+    fmt::print("# and {} more (--limit {})\n", grouped(failed - arguments.limit), failed);
+  fmt::print("# {} failed designs{}\n", grouped(failed),
+             failed > 0 ? "; leapmap sweep --retry-failed solves them again by another method" : "");
+  return 0;
+}
+
+int run(const InfoArguments& arguments) {
+  const MapReader map(arguments.path);
+  if (arguments.only_spec) {
     fmt::print("{}", map.attribute("spec"));
     return 0;
   }
+  if (arguments.failed) return list_failed(map, arguments);
+  const auto short_form = [&](const std::string& name, const char* form) {
+    return hdf5::has_attribute(map.file(), name)
+               ? fmt::format(fmt::runtime(fmt::format("{{:{}}}", form)), hdf5::read_number(map.file(), name))
+               : "?";
+  };
   std::size_t designs = 1;
   fmt::print("{}\n", map.attribute("title"));
   fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {} s\n", map.attribute("date"),
              map.attribute("host"), map.attribute("program_version"), map.attribute("git_revision"),
-             map.attribute("threads"), map.attribute("wall_time").empty() ? "?" : map.attribute("wall_time"));
-  if (map.attribute("wall_time").empty())
-    fmt::print("INCOMPLETE: what an interrupted sweep left; designs not computed are holes\n");
+             map.attribute("threads"), short_form("wall_time", ".3g"));
+  if (!map.is_whole())
+    fmt::print(
+        "INCOMPLETE: what a sweep left that was stopped; designs not computed are holes (sweep --resume)\n");
   fmt::print("method {}, tolerance {}\n", map.attribute("method"), map.attribute("tolerance"));
-  const auto short_form = [&](const std::string& name) {
-    const std::string text = map.attribute(name);
-    return text.empty() ? text : fmt::format("{:.1e}", std::stod(text));
-  };
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
     fmt::print(
         "audit: {} designs again by {}: height within {} diameters, time within {} relative, {} flags "
         "differ, {} errors beyond the tolerance, {} designs nobody can decide\n",
-        audited, map.attribute("audit_method"), short_form("audit_max_abs_height_error"),
-        short_form("audit_max_rel_time_error"), map.attribute("audit_flag_mismatches"),
+        audited, map.attribute("audit_method"), short_form("audit_max_abs_height_error", ".1e"),
+        short_form("audit_max_rel_time_error", ".1e"), map.attribute("audit_flag_mismatches"),
         map.attribute("audit_beyond_tolerance"), map.attribute("audit_undecided"));
+  if (hdf5::has_attribute(map.file(), "retry_designs"))
+    fmt::print("retried: {} failed designs by {} at tolerance {}\n", map.attribute("retry_designs"),
+               map.attribute("retry_method"), map.attribute("retry_tolerance"));
   fmt::print("\ndimensions\n");
   for (const auto& dimension : map.dimensions()) {
     const auto [least, most] = std::ranges::minmax(dimension.values);
@@ -114,6 +150,14 @@ int run(const std::string& path, bool only_spec) {
     designs *= dimension.values.size();
   }
   fmt::print("\nfields, {} designs\n", designs);
+  if (std::ranges::find(map.fields(), "status") == map.fields().end() &&
+      hdf5::has_attribute(map.file(), "status_counts")) {
+    fmt::print("status, not stored but counted\n");
+    Summary counted;
+    const std::vector<std::int64_t> counts = hdf5::read_integers(map.file(), "status_counts");
+    std::ranges::copy(counts, counted.counts.begin());
+    print_counts(std::get<Code>(find_field("status")->source), counted, designs);
+  }
   for (const std::string& name : map.fields()) {
     const Field* field = find_field(name);
     const Summary summary = summarise(map, name);
@@ -137,11 +181,13 @@ int run(const std::string& path, bool only_spec) {
 void add_info(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("info", "tell what is in a map: axes, statuses, extremes and where they are");
-  auto path = std::make_shared<std::string>();
-  auto only_spec = std::make_shared<bool>(false);
-  command->add_option("MAP", *path, "the map, HDF5")->required();
-  command->add_flag("--spec", *only_spec, "print the resolved spec that made it, and nothing else");
-  command->callback([path, only_spec, &status] { status = run(*path, *only_spec); });
+  auto arguments = std::make_shared<InfoArguments>();
+  command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")->required();
+  command->add_flag("--spec", arguments->only_spec, "print the resolved spec that made it, and nothing else");
+  command->add_flag("--failed", arguments->failed,
+                    "list the failed designs, each as the command that reproduces it");
+  command->add_option("--limit", arguments->limit, "list at most so many; default: 20");
+  command->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

@@ -28,13 +28,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// At most so much work is lost to kill -9 or a power cut.
-constexpr std::chrono::seconds commit_interval{1};
-
 struct SweepArguments {
   std::string spec, map;
   std::vector<std::string> overrides;
   int threads = 0;
+  double commit_interval = 1.0;  // s
   bool resume = false, overwrite = false, retry_failed = false, dry_run = false, quiet = false;
 };
 
@@ -130,7 +128,7 @@ std::vector<AuditSample> samples_of(const Spec& spec, const Tiling& tiling, cons
   return samples;
 }
 
-/// Solves what is missing in the map, committing every second. Returns the number of designs there are then.
+/// Solves what is missing in the map, committing now and then. Returns the number of designs there are then.
 std::size_t solve_rest(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout,
                        const Tiling& tiling, MapWriter& writer, std::vector<AuditSample>& samples) {
   std::size_t done = writer.progress().designs();
@@ -148,7 +146,8 @@ std::size_t solve_rest(const SweepArguments& arguments, const Spec& spec, const 
     writer.write(tile);
     samples.insert(samples.end(), drawn.begin(), drawn.end());
     progress.update(done += designs);
-    if (const auto now = Clock::now(); now - last_commit >= commit_interval) {
+    if (const auto now = Clock::now();
+        std::chrono::duration<double>(now - last_commit).count() >= arguments.commit_interval) {
       writer.set_seconds(seconds_before + std::chrono::duration<double>(now - begin).count());
       writer.commit();
       committed = done;
@@ -289,6 +288,10 @@ void add_sweep(CLI::App& app, int& status) {
           "solve the failed designs of an existing map again: by the spec's method if it is not the map's, "
           "else by the other one")
       ->excludes(resume);
+  command
+      ->add_option("--commit-interval", arguments->commit_interval,
+                   "seconds between commits: kill -9 or a power cut loses no more than that; default: 1")
+      ->check(CLI::Range(0.0, 86400.0));
   command->add_flag("--dry-run", arguments->dry_run,
                     "tell designs, memory, file size and time, and compute nothing else");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using hdf5::check;
 
-/// Attributes of the root while the map is not whole; that of the tiles goes when it is.
+/// Attributes of the root; that of the tiles goes when the map is whole.
 constexpr const char *tiles_attribute = "tiles_done", *checksum_attribute = "tiles_checksum",
                      *statuses_attribute = "status_counts", *seconds_attribute = "wall_time";
 
@@ -147,7 +147,6 @@ void MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
   write_progress();
   hdf5::annotate(file_, attributes);
   hdf5::remove_attribute(file_, tiles_attribute);
-  hdf5::remove_attribute(file_, checksum_attribute);
   datasets_.clear();
   file_.finish(path_);
 }

@@ -68,6 +68,8 @@ std::string hop_command(const Spec& spec, const Design& design) {
     command += fmt::format(" --set absolute_tolerance={}", spec.numerics.absolute_tolerance);
   if (spec.numerics.fixed_step > 0.0)
     command += fmt::format(" --set fixed_step={}", spec.numerics.fixed_step);
+  if (spec.numerics.max_steps != Numerics{}.max_steps)
+    command += fmt::format(" --set max_steps={}", spec.numerics.max_steps);
   return command;
 }
 

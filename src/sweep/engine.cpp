@@ -22,6 +22,16 @@ struct Item {
 
 }  // namespace
 
+std::function<Prepare()> in_order(TileSink sink) {
+  return [sink = std::move(sink)] {
+    return [sink](std::size_t, const Tile& tile, std::span<const Outcome> outcomes) {
+      return Prepared{
+          [sink, tile, kept = std::vector(outcomes.begin(), outcomes.end())] { sink(tile, kept); },
+          outcomes.size_bytes()};
+    };
+  };
+}
+
 std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options,
                       const std::function<Prepare()>& make_prepare) {
   const DesignSpace space(spec);

@@ -31,6 +31,12 @@ struct Prepared {
 /// Prepares a tile, on the thread that solved it: encodes, compresses. Outcomes come in the tile's order.
 using Prepare = std::function<Prepared(std::size_t number, const Tile&, std::span<const Outcome>)>;
 
+/// Takes a tile's outcomes as they are.
+using TileSink = std::function<void(const Tile&, std::span<const Outcome>)>;
+
+/// Prepares nothing: hands a copy of each tile's outcomes to the sink, in order.
+std::function<Prepare()> in_order(TileSink sink);
+
 /// Solves every tile from first_tile on; returns the number of designs handed on, all of them unless a stop
 /// was requested. make_prepare is called once on each thread. What Prepare or `take` throws ends the sweep
 /// and is thrown on. Outcomes depend on the spec alone, not on threads or timing; memory does not grow with

@@ -64,6 +64,51 @@ void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Faile
   }
 }
 
+/// Settles every failed design of the copy and says so in it. Empty if there was none, or a stop was
+/// requested.
+RetryReport settle_all(const hdf5::File& file, const std::string& path, const Spec& spec, int threads,
+                       const std::function<bool()>& stop_requested) {
+  constexpr std::size_t most_at_once = 100'000;
+  const MapReader map(path, file);
+  if (!map.is_whole()) throw InputError(path + ": is not whole; allowed: a whole map, by sweep --resume");
+  if (!stores(spec.output, "status"))
+    throw InputError(path + ": holds no status; allowed: a map with that field");
+  const Tiling tiling(map.shape());
+  RetryReport report;
+  std::vector<Failed> waiting;
+  const auto settle = [&] {
+    solve(spec, tiling, waiting, threads, stop_requested);
+    for (auto first = waiting.begin(); first != waiting.end();) {
+      const auto last =
+          std::find_if(first, waiting.end(), [&](const Failed& f) { return f.tile != first->tile; });
+      store(file, spec, tiling.tile(first->tile), {first, last});
+      first = last;
+    }
+    report.retried += waiting.size();
+    for (const Failed& design : waiting) ++report.statuses[static_cast<std::size_t>(design.outcome.status)];
+    waiting.clear();
+  };
+  for (std::size_t t = 0; t < tiling.size(); ++t) {
+    const std::vector<double> statuses = map.read("status", tiling.tile(t));
+    for (std::size_t i = 0; i < statuses.size(); ++i) {
+      if (statuses[i] == failed) {
+        waiting.push_back({t, i, {}});
+      } else if (statuses[i] >= 0.0 && statuses[i] < status_count) {
+        ++report.statuses[static_cast<std::size_t>(statuses[i])];
+      }
+    }
+    if (waiting.size() >= most_at_once || t + 1 == tiling.size()) settle();
+    if (stop_requested && stop_requested()) return {};
+  }
+  report.still_failed = static_cast<std::size_t>(report.statuses[static_cast<std::size_t>(Status::failed)]);
+  hdf5::remove_attribute(file, "tiles_checksum");  // of the tiles as they were
+  hdf5::write_attribute(file, "status_counts", report.statuses);
+  hdf5::write_attribute(file, "retry_designs", static_cast<std::int64_t>(report.retried));
+  hdf5::write_attribute(file, "retry_method", resolved_method(spec.numerics));
+  hdf5::write_attribute(file, "retry_tolerance", spec.numerics.tolerance);
+  return report;
+}
+
 }  // namespace
 
 Numerics retry_numerics(const Numerics& there, const Numerics& here) {
@@ -79,57 +124,20 @@ Numerics retry_numerics(const Numerics& there, const Numerics& here) {
 
 RetryReport retry_failed(const std::string& path, const Spec& spec, int threads,
                          const std::function<bool()>& stop_requested) {
-  constexpr std::size_t most_at_once = 100'000;
   const std::string copy = path + ".retry";
   hdf5::File file = hdf5::File::copy(path, copy);
-  RetryReport report;
-  try {
-    const MapReader map(path, file);
-    if (!map.is_whole()) throw InputError(path + ": is not whole; allowed: a whole map, by sweep --resume");
-    if (!stores(spec.output, "status"))
-      throw InputError(path + ": holds no status; allowed: a map with that field");
-    const Tiling tiling(map.shape());
-    std::vector<Failed> waiting;
-    const auto settle = [&] {
-      solve(spec, tiling, waiting, threads, stop_requested);
-      for (auto first = waiting.begin(); first != waiting.end();) {
-        const auto last =
-            std::find_if(first, waiting.end(), [&](const Failed& f) { return f.tile != first->tile; });
-        store(file, spec, tiling.tile(first->tile), {first, last});
-        first = last;
-      }
-      report.retried += waiting.size();
-      for (const Failed& design : waiting) ++report.statuses[static_cast<std::size_t>(design.outcome.status)];
-      waiting.clear();
-    };
-    for (std::size_t t = 0; t < tiling.size(); ++t) {
-      const std::vector<double> statuses = map.read("status", tiling.tile(t));
-      for (std::size_t i = 0; i < statuses.size(); ++i) {
-        if (statuses[i] == failed) {
-          waiting.push_back({t, i, {}});
-        } else if (statuses[i] >= 0.0 && statuses[i] < status_count) {
-          ++report.statuses[static_cast<std::size_t>(statuses[i])];
-        }
-      }
-      if (waiting.size() >= most_at_once || t + 1 == tiling.size()) settle();
-      if (stop_requested && stop_requested()) {
-        file.abandon();
-        ::unlink(copy.c_str());
-        return {};
-      }
-    }
-    report.still_failed = static_cast<std::size_t>(report.statuses[static_cast<std::size_t>(Status::failed)]);
-    hdf5::write_attribute(file, "status_counts", report.statuses);
-    hdf5::write_attribute(file, "retry_designs", static_cast<std::int64_t>(report.retried));
-    hdf5::write_attribute(file, "retry_method", resolved_method(spec.numerics));
-    hdf5::write_attribute(file, "retry_tolerance", spec.numerics.tolerance);
-    file.finish(path);
-  } catch (...) {
+  const auto discard = [&] {
     file.abandon();
     ::unlink(copy.c_str());
+  };
+  try {
+    const RetryReport report = settle_all(file, path, spec, threads, stop_requested);
+    report.retried > 0 ? file.finish(path) : discard();
+    return report;
+  } catch (...) {
+    discard();
     throw;
   }
-  return report;
 }
 
 }  // namespace leapmap

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What the engine and the file add to a bare loop over the same stepper and event search, in one run.
+/// What the engine adds to a bare loop over the same stepper and event search, in one run.
 ///
 /// Designs: slope 0.1 to 0.8, mass ratio 0.5 to 10, offset 0.3 to 1, uniform, seeded; runway 4; gsl-rk8pd at
 /// 1e-10. Compare items_per_second of the rows: they are designs a second.
 #include <benchmark/benchmark.h>
 
-#include <filesystem>
 #include <random>
 
-#include "map/writer.hpp"
 #include "sweep/engine.hpp"
 
 namespace leapmap {
@@ -54,37 +52,17 @@ void Engine(benchmark::State& state) {
   options.threads = static_cast<int>(state.range(0));
   for (auto _ : state) {
     double sum = 0.0;
-    run_sweep(spec, tiling, options, [&](const Tile&, std::span<const Outcome> outcomes) {
-      for (const Outcome& outcome : outcomes)
-        sum += outcome.status == Status::jumped ? outcome.jump_height : 0.0;
-    });
+    run_sweep(spec, tiling, options, in_order([&](const Tile&, std::span<const Outcome> outcomes) {
+                for (const Outcome& outcome : outcomes)
+                  sum += outcome.status == Status::jumped ? outcome.jump_height : 0.0;
+              }));
     benchmark::DoNotOptimize(sum);
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(designs));
 }
 
-void EngineAndFile(benchmark::State& state) {
-  const Spec spec = random_list();
-  const Tiling tiling({designs});
-  MapLayout layout;
-  for (const Axis& column : spec.list.columns) layout.columns.push_back({column.key, "1", "", column.values});
-  for (const Field& field : map_fields()) layout.fields.push_back(&field);
-  const std::string path = std::filesystem::temp_directory_path() / "leapmap_benchmark.h5";
-  EngineOptions options;
-  options.threads = static_cast<int>(state.range(0));
-  for (auto _ : state) {
-    MapWriter writer(path, layout, tiling, {}, true);
-    run_sweep(spec, tiling, options,
-              [&](const Tile& tile, std::span<const Outcome> outcomes) { writer.write(tile, outcomes); });
-    writer.finish({});
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(designs));
-  std::filesystem::remove(path);
-}
-
 BENCHMARK(BareLoop)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Engine)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(EngineAndFile)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace leapmap

@@ -8,6 +8,7 @@
 #include "map/reader.hpp"
 #include "map/writer.hpp"
 #include "support/errors.hpp"
+#include "support/small_map.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace leapmap {
@@ -15,51 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-MapLayout small_layout() {
-  MapLayout layout;
-  layout.axes = {{"slope", "rad", "slope of the plane", {0.1, 0.2, 0.3}},
-                 {"mass_ratio", "1", "mass ratio", {1, 2, 3, 4, 5}}};
-  for (const Field& field : map_fields()) layout.fields.push_back(&field);
-  layout.time_unit = 0.5;
-  return layout;
-}
-
-const std::vector<hdf5::Attribute> attributes{
-    {"filetype", std::string(map_filetype)},
-    {"version", std::vector<std::int32_t>{format_major, format_minor}},
-    {"title", std::string("täst")}};
-
-Outcome numbered(std::size_t number) {
-  Outcome outcome;
-  outcome.status = number % 2 ? Status::jumped : Status::no_jump;
-  outcome.candidates = static_cast<std::uint8_t>(number);
-  outcome.jump_height = static_cast<double>(number) + 0.25;
-  outcome.jump_time = static_cast<double>(number);
-  return outcome;
-}
-
-/// Writes every tile of the small map, each design's outcome carrying its number.
-void write_all(MapWriter& writer, const Tiling& tiling) {
-  for (std::size_t t = 0; t < tiling.size(); ++t) {
-    const Tile tile = tiling.tile(t);
-    std::vector<Outcome> outcomes;
-    std::vector<std::size_t> position;
-    for (std::size_t i = 0; i < tile.count; ++i) {
-      unravel(i, tile.extent, position);
-      outcomes.push_back(numbered((tile.start[0] + position[0]) * 5 + tile.start[1] + position[1]));
-    }
-    writer.write(tile, outcomes);
-  }
-}
+using testing::small_attributes, testing::small_layout, testing::numbered;
 
 TEST(MapFile, WhatIsWrittenTileByTileIsReadBackInPlace) {
   const testing::TemporaryFolder folder;
   const Tiling tiling({3, 5}, {2, 2});  // tiles cut short on both sides
   {
-    MapWriter writer(folder / "map.h5", small_layout(), tiling, attributes, false);
-    write_all(writer, tiling);
+    const MapLayout layout = small_layout();
+    MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, small_attributes, false);
+    testing::write_rest(writer, layout, tiling);
     EXPECT_FALSE(fs::exists(folder / "map.h5")) << "until it is whole it has no name";
-    writer.finish(std::vector<hdf5::Attribute>{{"wall_time", 1.5}, {"audit_designs", std::int64_t{7}}});
+    writer.set_seconds(1.5);
+    writer.finish(std::vector<hdf5::Attribute>{{"audit_designs", std::int64_t{7}}});
   }
   EXPECT_FALSE(fs::exists(folder / "map.h5.part"));
   const MapReader map(folder / "map.h5");
@@ -89,8 +57,8 @@ TEST(MapFile, AListHasOneDimensionAndItsParametersAlongIt) {
   layout.axes.clear();
   layout.columns = {{"slope", "rad", "slope of the plane", {0.3, 0.1}}};
   const Tiling tiling({2}, {2});
-  MapWriter writer(folder / "list.h5", layout, tiling, attributes, false);
-  writer.write(tiling.tile(0), std::vector{numbered(0), numbered(1)});
+  MapWriter writer = MapWriter::begin(folder / "list.h5", layout, tiling, small_attributes, false);
+  testing::write_rest(writer, layout, tiling);
   writer.finish({});
   const MapReader map(folder / "list.h5");
   ASSERT_EQ(map.dimensions().size(), 1u);
@@ -101,7 +69,11 @@ TEST(MapFile, AListHasOneDimensionAndItsParametersAlongIt) {
 
 TEST(MapFile, AnUnfinishedMapLeavesNothingBehind) {
   const testing::TemporaryFolder folder;
-  { MapWriter writer(folder / "map.h5", small_layout(), Tiling({3, 5}, {3, 5}), attributes, false); }
+  {
+    const MapLayout layout = small_layout();
+    const Tiling tiling({3, 5}, {3, 5});
+    const MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, small_attributes, false);
+  }
   EXPECT_FALSE(fs::exists(folder / "map.h5"));
   EXPECT_FALSE(fs::exists(folder / "map.h5.part"));
 }
@@ -109,16 +81,15 @@ TEST(MapFile, AnUnfinishedMapLeavesNothingBehind) {
 TEST(MapFile, AKeptPartShowsItsHolesAsNotComputed) {
   const testing::TemporaryFolder folder;
   const Tiling tiling({3, 5}, {1, 5});
-  std::string part;
-  {
-    MapWriter writer(folder / "map.h5", small_layout(), tiling, attributes, false);
-    writer.write(tiling.tile(0), std::vector<Outcome>(5, numbered(1)));
-    part = writer.keep_part();
-  }
-  EXPECT_EQ(part, folder / "map.h5.part");
-  const MapReader map(part);
+  const MapLayout layout = small_layout();
+  MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, small_attributes, false);
+  writer.write(testing::numbered_tile(layout, tiling, 0));
+  EXPECT_THROW(MapReader(folder / "map.h5.part"), InputError) << "nobody reads what is being written";
+  writer.keep();
+  const MapReader map(folder / "map.h5.part");
+  EXPECT_FALSE(map.is_whole());
   const Tile whole{{0, 0}, {3, 5}, 15};
-  EXPECT_EQ(map.read("status", whole)[4], 1.0);
+  EXPECT_EQ(map.read("status", whole)[4], 2.0);
   EXPECT_EQ(map.read("status", whole)[5], 0.0);
   EXPECT_EQ(map.read("spurious_first_jump", whole)[5], 255.0);
   EXPECT_TRUE(std::isnan(map.read("jump_height", whole)[14]));
@@ -128,7 +99,9 @@ TEST(MapFile, ExistingFilesAreRefusedAndLeftAlone) {
   const testing::TemporaryFolder folder;
   const std::string existing = folder.write("map.h5", "precious");
   const auto create = [&](const std::string& path, bool overwrite) {
-    MapWriter writer(path, small_layout(), Tiling({3, 5}, {3, 5}), attributes, overwrite);
+    const MapLayout layout = small_layout();
+    const Tiling tiling({3, 5}, {3, 5});
+    const MapWriter writer = MapWriter::begin(path, layout, tiling, small_attributes, overwrite);
   };
   EXPECT_THROW(create(existing, false), InputError);
   EXPECT_EQ(fs::file_size(existing), 8u);
@@ -143,7 +116,9 @@ TEST(MapFile, WhatCannotBeWrittenIsAnIoError) {
   const testing::TemporaryFolder folder;
   const std::string file = folder.write("file", "");
   const auto create = [&](const std::string& path) {
-    MapWriter writer(path, small_layout(), Tiling({3, 5}, {3, 5}), attributes, false);
+    const MapLayout layout = small_layout();
+    const Tiling tiling({3, 5}, {3, 5});
+    const MapWriter writer = MapWriter::begin(path, layout, tiling, small_attributes, false);
   };
   EXPECT_THROW(create(file + "/map.h5"), IoError);
   EXPECT_THROW(create("/proc/map.h5"), IoError);
@@ -161,14 +136,17 @@ TEST(MapFile, FilesOfAnotherTypeOrANewerVersionAreRefusedWithAReason) {
     }
     return "(accepted)";
   };
-  EXPECT_NE(complaint(folder / "nowhere.h5").find("no such file"), std::string::npos);
+  EXPECT_NE(complaint(folder / "nowhere.h5").find("No such file"), std::string::npos);
   EXPECT_NE(complaint(folder.write("text.h5", "not HDF5")).find("cannot be read as HDF5"), std::string::npos);
-  hdf5::create_file(folder / "other.h5");
+  hdf5::File::create(folder / "other.h5").finish(folder / "other.h5");
   EXPECT_NE(complaint(folder / "other.h5").find("not a leapmap map"), std::string::npos);
   {
-    auto newer = attributes;
+    auto newer = small_attributes;
     newer[1].second = std::vector<std::int32_t>{format_major + 1, 0};
-    MapWriter writer(folder / "newer.h5", small_layout(), Tiling({3, 5}, {3, 5}), newer, false);
+    const MapLayout layout = small_layout();
+    const Tiling tiling({3, 5}, {3, 5});
+    MapWriter writer = MapWriter::begin(folder / "newer.h5", layout, tiling, newer, false);
+    testing::write_rest(writer, layout, tiling);
     writer.finish({});
   }
   EXPECT_NE(complaint(folder / "newer.h5").find("newer leapmap"), std::string::npos);

@@ -50,5 +50,15 @@ TEST(Unravel, TheLastDimensionIsFastest) {
   EXPECT_EQ(position, (std::vector<std::size_t>{1, 0, 1}));
 }
 
+TEST(Tiling, KnowsHowManyDesignsComeBeforeATile) {
+  const Tiling tiling({7, 9, 5}, {4, 4, 3});
+  std::size_t before = 0;
+  for (std::size_t t = 0; t < tiling.size(); ++t) {
+    EXPECT_EQ(tiling.designs_before(tiling.tile(t)), before);
+    before += tiling.tile(t).count;
+  }
+  EXPECT_EQ(before, tiling.designs());
+}
+
 }  // namespace
 }  // namespace leapmap

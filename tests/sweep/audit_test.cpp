@@ -22,12 +22,13 @@ Spec grid(const std::string& method, const std::string& tolerance, const std::st
 
 std::vector<AuditSample> drawn_from(const Spec& spec, int threads = 0) {
   const Tiling tiling(shape_of(spec));
-  AuditDraw draw(spec, tiling);
+  std::vector<AuditSample> samples;
   EngineOptions options;
   options.threads = threads;
-  run_sweep(spec, tiling, options,
-            [&](const Tile& tile, std::span<const Outcome> outcomes) { draw.take(tile, outcomes); });
-  return draw.samples();
+  run_sweep(spec, tiling, options, in_order([&](const Tile& tile, std::span<const Outcome> outcomes) {
+              std::ranges::copy(audit_samples(spec, tiling, tile, outcomes), std::back_inserter(samples));
+            }));
+  return samples;
 }
 
 TEST(Audit, DrawsTheShareAskedForEachDesignOnceAndKnowsItsNumber) {

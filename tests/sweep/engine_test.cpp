@@ -29,9 +29,9 @@ std::vector<Outcome> outcomes_of(const Spec& spec, int threads) {
   std::vector<Outcome> all;
   EngineOptions options;
   options.threads = threads;
-  run_sweep(spec, tiling, options, [&](const Tile&, std::span<const Outcome> outcomes) {
-    all.insert(all.end(), outcomes.begin(), outcomes.end());
-  });
+  run_sweep(spec, tiling, options, in_order([&](const Tile&, std::span<const Outcome> outcomes) {
+              all.insert(all.end(), outcomes.begin(), outcomes.end());
+            }));
   return all;
 }
 
@@ -57,7 +57,7 @@ TEST(Engine, SolvesEachDesignOfEachTileInItsPlace) {
   const DesignSpace space(spec);
   const Solver solve = make_solver(spec);
   std::size_t expected_number = 0;
-  run_sweep(spec, tiling, {}, [&](const Tile& tile, std::span<const Outcome> outcomes) {
+  const auto check = [&](const Tile& tile, std::span<const Outcome> outcomes) {
     EXPECT_EQ(tile.start, tiling.tile(expected_number++).start) << "tiles come in order";
     for (std::size_t i = 0; i < tile.count; i += 17) {
       const Design design = space.at(tiling.number(tile, i));
@@ -68,76 +68,120 @@ TEST(Engine, SolvesEachDesignOfEachTileInItsPlace) {
         EXPECT_EQ(outcome.jump_height, outcomes[i].jump_height);
       }
     }
-  });
+  };
+  run_sweep(spec, tiling, {}, in_order(check));
   EXPECT_EQ(expected_number, tiling.size());
 }
 
 TEST(Engine, AnErrorOfTheSinkEndsTheSweepAndIsThrownOn) {
   const Spec spec = small_grid();
   int taken = 0;
-  EXPECT_THROW(run_sweep(spec, Tiling(shape_of(spec)), {.threads = 4, .stop_requested = {}, .progress = {}},
-                         [&](const Tile&, std::span<const Outcome>) {
-                           if (++taken == 3) throw std::runtime_error("disk full");
-                         }),
-               std::runtime_error);
+  EngineOptions options;
+  options.threads = 4;
+  EXPECT_THROW(
+      run_sweep(spec, Tiling(shape_of(spec)), options, in_order([&](const Tile&, std::span<const Outcome>) {
+                  if (++taken == 3) throw std::runtime_error("disk full");
+                })),
+      std::runtime_error);
   EXPECT_EQ(taken, 3) << "nothing is handed on after an error";
 }
 
 TEST(Engine, AStopKeepsWhatWasDoneInOrder) {
   const Spec spec = small_grid();
   const Tiling tiling(shape_of(spec));
-  std::atomic<std::size_t> designs{0};
+  std::atomic<std::size_t> solved{0};
+  std::size_t taken = 0;
   EngineOptions options;
   options.threads = 2;
-  options.stop_requested = [&] { return designs > 200; };
-  options.progress = [&](std::size_t done) { designs = done; };
-  std::size_t taken = 0;
-  const std::size_t done =
-      run_sweep(spec, tiling, options,
-                [&](const Tile&, std::span<const Outcome> outcomes) { taken += outcomes.size(); });
+  options.stop_requested = [&] { return solved > 200; };
+  const std::size_t done = run_sweep(spec, tiling, options, [&] {
+    return [&](std::size_t, const Tile& tile, std::span<const Outcome>) {
+      solved += tile.count;
+      return Prepared{[&taken, count = tile.count] { taken += count; }};
+    };
+  });
   EXPECT_EQ(done, taken);
+  EXPECT_EQ(done, solved) << "what was begun is brought to its end";
   EXPECT_GT(done, 200u);
   EXPECT_LT(done, tiling.designs());
 }
 
+TEST(Engine, GoesOnAtAnyTile) {
+  const Spec spec = small_grid();
+  const Tiling tiling(shape_of(spec));
+  EngineOptions options;
+  for (const std::size_t first : {std::size_t{1}, tiling.size() / 2, tiling.size() - 1, tiling.size()}) {
+    options.first_tile = first;
+    std::size_t next = first;
+    const std::size_t done =
+        run_sweep(spec, tiling, options, in_order([&](const Tile& tile, std::span<const Outcome>) {
+                    EXPECT_EQ(tile.start, tiling.tile(next++).start);
+                  }));
+    EXPECT_EQ(next, tiling.size());
+    const std::size_t before =
+        first < tiling.size() ? tiling.designs_before(tiling.tile(first)) : tiling.designs();
+    EXPECT_EQ(done, tiling.designs() - before);
+  }
+}
+
 TEST(OrderedDelivery, HandsOnInOrderAndHoldsBackTheFast) {
-  std::vector<std::size_t> order;
-  OrderedDelivery<int> delivery([&](std::size_t number, int) { order.push_back(number); }, 2);
-  EXPECT_TRUE(delivery.bring(2, 0));
-  EXPECT_TRUE(delivery.bring(1, 0));
-  EXPECT_TRUE(order.empty());
+  std::vector<int> order;
+  OrderedDelivery<int> delivery(
+      10, [&](int& item) { order.push_back(item); }, 2);
+  EXPECT_TRUE(delivery.bring(12, 12, 1));
+  EXPECT_TRUE(delivery.bring(11, 11, 1));
   std::atomic<bool> brought{false};
   std::thread early([&] {
-    delivery.bring(3, 0);  // two wait already: this one has to
+    delivery.bring(13, 13, 1);  // two bytes wait already: this one has to
     brought = true;
   });
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_FALSE(brought);
-  EXPECT_TRUE(delivery.bring(0, 0));
+  EXPECT_TRUE(delivery.bring(10, 10, 100)) << "the one whose turn it is never waits, however large";
   early.join();
-  EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3}));
+  delivery.finish();
+  EXPECT_EQ(order, (std::vector<int>{10, 11, 12, 13}));
+}
+
+TEST(OrderedDelivery, HoldsBackTheFastWhileTakingIsSlow) {
+  std::atomic<int> brought{0}, most_ahead{0};
+  int taken = 0;
+  OrderedDelivery<int> delivery(
+      0,
+      [&](int&) {
+        most_ahead = std::max(most_ahead.load(), brought - ++taken);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      },
+      5);
+  for (std::size_t i = 0; i < 40; ++i) delivery.bring(i, 0, 1), ++brought;
+  delivery.finish();
+  EXPECT_EQ(taken, 40);
+  EXPECT_LE(most_ahead, 7) << "five may wait, one is being taken, one brings itself";
 }
 
 TEST(OrderedDelivery, AnErrorWhileTakingAbandonsTheDeliveryAtOnce) {
-  int taken = 0;
+  std::atomic<int> taken{0};
   OrderedDelivery<int> delivery(
-      [&](std::size_t, int) {
+      0,
+      [&](int&) {
         ++taken;
         throw std::runtime_error("disk full");
       },
       2);
-  EXPECT_THROW(delivery.bring(0, 0), std::runtime_error);
-  EXPECT_FALSE(delivery.bring(1, 0)) << "nobody else may take the same item again";
-  EXPECT_EQ(taken, 1);
+  delivery.bring(0, 0, 1);
+  while (delivery.bring(1, 0, 1)) std::this_thread::yield();
+  EXPECT_THROW(delivery.finish(), std::runtime_error);
+  EXPECT_EQ(taken, 1) << "nothing is taken after an error";
 }
 
 TEST(OrderedDelivery, AbandoningLetsWaitingThreadsGo) {
-  OrderedDelivery<int> delivery([](std::size_t, int) {}, 0);
-  std::thread waiting([&] { EXPECT_FALSE(delivery.bring(5, 0)); });
+  OrderedDelivery<int> delivery(
+      0, [](int&) {}, 0);
+  std::thread waiting([&] { EXPECT_FALSE(delivery.bring(5, 0, 1)); });
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   delivery.abandon();
   waiting.join();
-  EXPECT_FALSE(delivery.bring(0, 0));
+  EXPECT_FALSE(delivery.bring(0, 0, 1));
 }
 
 TEST(ParallelForEach, EachNumberOnceAndAnExceptionFromAnyThreadIsThrownOn) {

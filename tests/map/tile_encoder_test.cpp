@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/tile_encoder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+#include <random>
+
+#include "support/small_map.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace leapmap {
+namespace {
+
+/// Outcomes of every kind of bits: numbers that nothing compresses, NaN, infinities, zeros.
+std::vector<Outcome> wild(std::size_t count, bool compressible) {
+  std::mt19937_64 random(5);
+  const auto number = [&] { return compressible ? 0.5 : std::bit_cast<double>(random()); };
+  std::vector<Outcome> outcomes(count);
+  for (Outcome& o : outcomes) {
+    o.status = static_cast<Status>(random() % status_count);
+    o.spurious_first_jump = static_cast<std::uint8_t>(random());
+    o.candidates = static_cast<std::uint8_t>(random());
+    for (const Field& field : map_fields())
+      if (const auto* quantity = std::get_if<Quantity>(&field.source)) o.*quantity->member = number();
+  }
+  return outcomes;
+}
+
+/// The one map of all 7 x 9 x 5 outcomes, read back by HDF5's own filters, is what was put in.
+void expect_round_trip(int compression, bool single, bool compressible) {
+  SCOPED_TRACE(::testing::Message() << "compression " << compression << ", f4 " << single << ", compressible "
+                                    << compressible);
+  const testing::TemporaryFolder folder;
+  const std::vector<std::size_t> shape{7, 9, 5};
+  const Tiling tiling(shape, {4, 4, 3});  // tiles cut short along every dimension
+  MapLayout layout = testing::small_layout();
+  layout.axes = {{"slope", "rad", "", std::vector<double>(7)},
+                 {"mass_ratio", "1", "", std::vector<double>(9)},
+                 {"offset_ratio", "1", "", std::vector<double>(5)}};
+  layout.compression = compression;
+  layout.single = single;
+  const std::vector<Outcome> outcomes = wild(tiling.designs(), compressible);
+  MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, testing::small_attributes, false);
+  TileEncoder encoder(layout, tiling);
+  std::size_t bytes = 0;
+  for (std::size_t t = 0; t < tiling.size(); ++t) {
+    const Tile tile = tiling.tile(t);
+    std::vector<Outcome> some;
+    for (std::size_t i = 0; i < tile.count; ++i) some.push_back(outcomes[tiling.number(tile, i)]);
+    const EncodedTile encoded = encoder.encode(t, some);
+    bytes += encoded.bytes();
+    writer.write(encoded);
+  }
+  writer.finish({});
+  if (compressible && compression > 0) {
+    EXPECT_LT(bytes, map_bytes(layout, tiling) / 2);
+  }
+  const MapReader map(folder / "map.h5");
+  for (const Field& field : map_fields()) {
+    const std::vector<double> stored =
+        map.read(std::string(field.name), Tile{{0, 0, 0}, shape, tiling.designs()});
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+      double expected;
+      if (const auto* code = std::get_if<Code>(&field.source)) {
+        expected = code->value(outcomes[i]);
+      } else {
+        const auto& quantity = std::get<Quantity>(field.source);
+        expected = outcomes[i].*quantity.member * (quantity.is_time ? layout.time_unit : 1.0);
+        if (single) expected = static_cast<float>(expected);
+      }
+      const bool same = std::isnan(expected) ? std::isnan(stored[i]) : stored[i] == expected;
+      ASSERT_TRUE(same) << field.name << " " << i << ": " << stored[i] << " " << expected;
+    }
+  }
+}
+
+TEST(TileEncoder, WhatItEncodesHdf5DecodesToTheSameBits) {
+  for (const int compression : {0, 1, 6, 9})
+    for (const bool single : {false, true})
+      for (const bool compressible : {false, true}) expect_round_trip(compression, single, compressible);
+}
+
+TEST(TileEncoder, CountsHowTheDesignsEnded) {
+  const MapLayout layout = testing::small_layout();
+  const Tiling tiling({3, 5}, {2, 3});
+  const EncodedTile encoded = testing::numbered_tile(layout, tiling, 0);  // designs 0 to 2 and 5 to 7
+  EXPECT_EQ(encoded.statuses[static_cast<std::size_t>(Status::jumped)], 3u);
+  EXPECT_EQ(encoded.statuses[static_cast<std::size_t>(Status::no_jump)], 3u);
+}
+
+TEST(TileEncoder, StoresWhatDoesNotGetSmallerAsItIs) {
+  MapLayout layout = testing::small_layout();
+  layout.fields = {find_field("jump_height"), find_field("status")};
+  const Tiling tiling({3, 5}, {3, 5});
+  const EncodedTile encoded = TileEncoder(layout, tiling).encode(0, wild(15, false));
+  EXPECT_EQ(encoded.chunks[0].skipped_filters, 2u) << "shuffled, not deflated";
+  EXPECT_EQ(encoded.chunks[0].bytes.size(), 15u * 8u);
+}
+
+}  // namespace
+}  // namespace leapmap

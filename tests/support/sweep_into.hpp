@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A sweep into a map, without the program around it.
+#pragma once
+
+#include <memory>
+
+#include "map/writer.hpp"
+#include "sweep/engine.hpp"
+
+namespace leapmap::testing {
+
+inline void sweep_into(MapWriter& writer, const Spec& spec, const MapLayout& layout, const Tiling& tiling,
+                       const EngineOptions& options = {}) {
+  run_sweep(spec, tiling, options, [&] {
+    return [&, encoder = std::make_shared<TileEncoder>(layout, tiling)](std::size_t number, const Tile&,
+                                                                        std::span<const Outcome> outcomes) {
+      const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number, outcomes));
+      return Prepared{[&writer, encoded] { writer.write(*encoded); }, encoded->bytes()};
+    };
+  });
+}
+
+}  // namespace leapmap::testing
