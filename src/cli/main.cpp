@@ -2,6 +2,7 @@
 /// leapmap: which slope, mass ratio and L/R make a passive hoop jump, how high and how soon.
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -28,6 +29,7 @@ int complain(int status, std::string_view what) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow (ulimit -f) is an error of the write, not an end
   int status = done;
   CLI::App app{
       "leapmap maps the jumps of passive hoops: thin hoops with an off-centre mass that roll down a plane "

@@ -31,7 +31,15 @@ std::string resolved_text(const Spec& original) {
     quoted_text << toml::value<std::string>(value);
     return quoted_text.str();
   };
+  const auto axes = [&] {  // in spec order, which is the order of the map's dimensions
+    for (const Axis& axis : spec.axes) {
+      std::vector<std::string> values;
+      for (const double value : axis.values) values.push_back(number(value));
+      line(*find_option("design", axis.key), fmt::format("{{ values = [{}] }}", fmt::join(values, ", ")));
+    }
+  };
   for (const Option& option : spec_options()) {
+    if (option.key == "points") axes();  // after all numbers of the section
     const auto is_axis = [&](const Axis& axis) { return axis.key == option.key; };
     if (option.section == "design" && std::ranges::any_of(spec.axes, is_axis)) continue;
     std::visit(
@@ -52,12 +60,6 @@ std::string resolved_text(const Spec& original) {
           }
         },
         option.slot);
-    if (option.key != "release_spin") continue;
-    for (const Axis& axis : spec.axes) {  // in spec order, which is the order of the map's dimensions
-      std::vector<std::string> values;
-      for (const double value : axis.values) values.push_back(number(value));
-      text += fmt::format("{} = {{ values = [{}] }}\n", axis.key, fmt::join(values, ", "));
-    }
   }
   return text;
 }

@@ -59,7 +59,7 @@ def test_root_attributes_tell_where_the_map_comes_from(grid):
     with h5py.File(grid) as m:
         a = m.attrs
         assert a["filetype"] == "leapmap map" and a["Conventions"].startswith("CF-")
-        assert list(a["version"]) == [1, 1]
+        assert list(a["version"]) == [1, 2]
         for name in ("title", "program_version", "git_revision", "spec", "date", "host", "method"):
             assert isinstance(a[name], str) and a[name], name
         assert a["method"] == "exact" and a["tolerance"] == 1e-10 and a["threads"] >= 1 and a["wall_time"] > 0
@@ -113,10 +113,57 @@ def test_stock_tools_read_it(grid, points):
     assert "0.40000000000000002" in values
 
 
+@pytest.mark.parametrize("which", ["grid", "points"])
+def test_nexus_viewers_are_led_to_the_plot(which, request):
+    """NeXus's own rules for NXdata: https://manual.nexusformat.org/classes/base_classes/NXdata.html"""
+    with h5py.File(request.getfixturevalue(which)) as m:
+        group = m
+        for nexus_class in ("NXroot", "NXentry"):
+            assert group.attrs["NX_class"] == nexus_class
+            group = group[group.attrs["default"]]
+        assert group.attrs["NX_class"] == "NXdata" and group.attrs["signal"] == "jump_height"
+        signal = group[group.attrs["signal"]]
+        assert signal == m["jump_height"], "a link, not a copy"
+        assert len(group.attrs["axes"]) == signal.ndim
+        for i, axis in enumerate(group.attrs["axes"]):
+            assert group[axis].shape == (signal.shape[i],)
+        for name in group.attrs["auxiliary_signals"]:
+            assert group[name].shape == signal.shape
+
+
+# The clauses of CF-1.8 that a map of ours can break; Debian has no conformance checker, and no clause on
+# geography, time since an epoch, cells or compression by gathering applies.
+def test_conformance_to_cf(grid, points):
+    names = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
+    udunits = {"1", "s", "rad"}
+    for path in (grid, points):
+        with h5py.File(path) as h, xarray.open_dataset(path, decode_cf=False) as d:
+            assert "CF-1.8" in d.attrs["Conventions"]  # 2.6.1
+            assert d.attrs["title"]  # 2.6.2
+            for name, v in d.variables.items():
+                assert names.match(name)  # 2.3
+                assert v.dtype.kind in "fiu" and v.dtype.itemsize <= 8  # 2.2
+                assert len(set(v.dims)) == len(v.dims)  # 2.4: no dimension twice
+                assert v.attrs["units"] in udunits and v.attrs["long_name"]  # 3.1, 3.2
+                assert "standard_name" not in v.attrs  # 3.3: there is none for what we tell
+                if name in d.sizes:  # 2.5.1, 5: a coordinate variable is one-dimensional and has no missing values
+                    assert v.dims == (name,) and "_FillValue" not in v.attrs and np.isfinite(v.values).all()
+                    assert len(np.unique(v.values)) == v.size
+                    continue
+                if "_FillValue" in v.attrs:
+                    assert h[name].attrs["_FillValue"].dtype == v.dtype  # 2.5.1
+                assert not {"valid_range", "valid_min", "valid_max"} & set(v.attrs)
+                if "flag_values" in v.attrs:  # 3.5
+                    assert h[name].attrs["flag_values"].dtype == v.dtype
+                    meanings = v.attrs["flag_meanings"].split(" ")
+                    assert len(meanings) == len(v.attrs["flag_values"]) == len(set(v.attrs["flag_values"]))
+                    assert all(re.match(r"[A-Za-z0-9_.+@-]+$", meaning) for meaning in meanings)
+
+
 def test_only_the_fields_asked_for_are_stored(tmp_path):
     path = sweep(tmp_path, '[design]\nslope = { values = [0.3, 0.4] }\n[output]\nfields = ["status", "jump_height"]\n')
     with h5py.File(path) as m:
-        assert set(m) == {"slope", "status", "jump_height"}
+        assert set(m) == {"slope", "status", "jump_height", "entry"}
     assert leapmap("info", path).returncode == 0
 
 

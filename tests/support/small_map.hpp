@@ -2,8 +2,6 @@
 /// A map of 3 x 5 designs whose outcomes carry their numbers.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <functional>
 #include <string>
 #include <vector>

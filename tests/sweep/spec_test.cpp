@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sweep/spec.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -128,6 +129,20 @@ TEST(Spec, ResolvedTextReadsBackAsTheSameSpec) {
   EXPECT_EQ(again.output.file, spec.output.file);
   EXPECT_EQ(again.output.fields, spec.output.fields);
   EXPECT_EQ(resolved_text(again), resolved_text(spec));
+}
+
+TEST(Spec, ResolvedTextKeepsAnAxisOverAnyParameterAndOverAllOfThem) {
+  std::vector<std::string> all;
+  for (const Option* parameter : design_parameters()) {
+    const std::string axis = fmt::format("{}={{values=[0.25,0.5]}}", parameter->key);
+    all.push_back(axis);
+    for (const std::vector<std::string>& settings : {std::vector{axis}, all}) {
+      const Spec spec = read_spec("", settings), again = parse_spec(resolved_text(spec), "text", {});
+      ASSERT_EQ(again.axes.size(), settings.size());
+      for (std::size_t i = 0; i < settings.size(); ++i) EXPECT_EQ(again.axes[i].key, spec.axes[i].key);
+      EXPECT_EQ(resolved_text(again), resolved_text(spec));
+    }
+  }
 }
 
 TEST(Spec, MuKineticIsMuStaticUnlessGiven) {

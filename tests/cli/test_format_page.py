@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""src/map/FORMAT.md names every dataset and attribute of a map with its type and unit, and nothing else."""
+import re
+
+import h5py
+import numpy as np
+import pytest
+from support.program import TOP, leapmap, sweep
+
+PAGE = (TOP / "src" / "map" / "FORMAT.md").read_text()
+
+
+def section(title):
+    return PAGE.split(f"## {title}\n")[1].split("\n## ")[0]
+
+
+def rows(title):
+    """The table's rows as {name: cells}; a row may name several."""
+    found = {}
+    for line in section(title).splitlines():
+        names = re.match(r"\| (`[^|]*`) \|", line)
+        if names:
+            for name in re.findall(r"`(\w+)`", names[1]):
+                found[name] = [cell.strip() for cell in line.strip("|").split("|")]
+    return found
+
+
+@pytest.fixture(scope="module")
+def maps(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("maps")
+    (folder / "designs.csv").write_text("slope,mass_ratio\n0.4,2.44\n0.5,1\n")
+    axes = "".join(f"{k} = {{ values = [{v}] }}\n" for k, v in {
+        "slope": "0.3, 0.4", "mass_ratio": "2, 3", "offset_ratio": "0.9, 1", "inertia_factor": "1", "release_angle": "3.1",
+        "release_spin": "0, 0.1"}.items())
+    grid = sweep(folder, f"[design]\n{axes}[numerics]\nmethod = \"gsl-rk8pd\"\nmax_steps = 60\naudit = 0\n", name="grid.h5")
+    retried = leapmap("sweep", folder / "spec.toml", "-o", grid, "--retry-failed")
+    assert retried.returncode == 0, retried.stderr
+    return [grid, sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5")]
+
+
+def kind(dtype):
+    return {np.dtype("<f8"): "f8", np.dtype("<f4"): "f4", np.dtype("u1"): "u1", np.dtype("<i8"): "i8", np.dtype("<i4"): "i4"}.get(dtype, "text")
+
+
+def test_the_version_is_the_files(maps):
+    with h5py.File(maps[0]) as m:
+        major, minor = m.attrs["version"]
+    assert f"version {major}.{minor}\n" in PAGE.splitlines()[0] + "\n"
+
+
+def test_each_dataset_is_on_the_page_with_type_and_unit_and_the_page_names_no_other(maps):
+    page = {**rows("Dimensions"), **{k: v for k, v in rows("Fields").items() if k not in ("long_name", "units", "_FillValue")}}
+    seen = set()
+    for path in maps:
+        with h5py.File(path) as m:
+            for name, dataset in m.items():
+                if not isinstance(dataset, h5py.Dataset):
+                    continue
+                cells = page[name]
+                assert kind(dataset.dtype) in cells[1].split(", "), name
+                assert dataset.attrs["units"] in cells[2:4], name
+                seen.add(name)
+    attributes = {"flag_values", "flag_meanings", "DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME"}
+    assert set(page) - attributes == seen
+
+
+def test_each_attribute_is_on_the_page_with_its_type_and_the_page_names_no_other(maps):
+    page = rows("The root's attributes")
+    seen = set()
+    for path in maps:
+        with h5py.File(path) as m:
+            for name in m.attrs:
+                dtype = h5py.h5a.open(m.id, name.encode()).dtype
+                assert page[name][1].split(" ")[0].rstrip(",") == kind(dtype), name
+                seen.add(name)
+            for dataset in m.values():
+                if isinstance(dataset, h5py.Dataset):
+                    for name in dataset.attrs:
+                        assert f"`{name}`" in section("Fields"), name
+    assert set(page) == seen
+
+
+def test_every_checksum_is_what_the_page_says(maps):
+    import zlib
+    with h5py.File(maps[1]) as m:
+        crc = 0
+        for name in (n for n in m if isinstance(m[n], h5py.Dataset) and m[n].chunks):
+            mask, data = m[name].id.read_direct_chunk((0,))
+            crc = zlib.crc32(np.uint32(mask).tobytes(), zlib.crc32(data, crc))
+        assert crc == m.attrs["tiles_checksum"]

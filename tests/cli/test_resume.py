@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whatever stops a sweep, --resume ends it with the map of a sweep that was never stopped."""
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+import pytest
+from support.program import PROGRAM, SMALL, finished, leapmap
+
+# About a second and a half on two cores, in some 800 tiles.
+SPEC = """
+[design]
+slope = { from = "2 deg", to = "50 deg", count = 160 }
+mass_ratio = { from = 0.1, to = 20, count = 160, scale = "log" }
+offset_ratio = { from = 0.3, to = 1.0, count = 100 }
+[numerics]
+audit = 1e-4
+[output]
+fields = ["jump_height", "jump_time", "spurious_first_jump", "status"]
+"""
+
+
+def values(path):
+    """Every dataset's bytes, and the attributes that tell of numbers."""
+    with h5py.File(path) as m:
+        datasets = {name: d[()].tobytes() for name, d in m.items() if isinstance(d, h5py.Dataset)}
+        about = {k: np.asarray(m.attrs[k]).tobytes() for k in m.attrs
+                 if k.startswith(("audit_", "status_counts", "tiles_checksum")) and k != "audit_method"}
+        return datasets, about
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "spec.toml").write_text(SPEC)
+    begin = time.time()
+    done = leapmap("sweep", folder / "spec.toml", "-o", folder / "map.h5")
+    assert done.returncode == 0, done.stderr
+    return folder / "map.h5", time.time() - begin
+
+
+def command(folder, *more):
+    # committed after every tile, so that a kill meets commits as often as computing
+    return [str(w) for w in (PROGRAM, "sweep", folder / "spec.toml", "-o", folder / "map.h5", "--commit-interval", "0", *more)]
+
+
+def killed(folder, seconds, number=signal.SIGKILL, *more):
+    process = subprocess.Popen(command(folder, *more), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(seconds)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=60)
+    return process.returncode, out, err
+
+
+def tiles_done(part):
+    with h5py.File(part) as p:
+        return int(p.attrs.get("tiles_done", 10**9))
+
+
+def test_killed_at_20_random_moments_it_is_gone_on_with_to_the_same_bits(uninterrupted, tmp_path):
+    whole, duration = uninterrupted
+    expected = values(whole)
+    moments = random.Random(4)
+    resumed_in_the_middle = 0
+    for run in range(20):
+        folder = tmp_path / str(run)
+        folder.mkdir()
+        (folder / "spec.toml").write_text(SPEC)
+        # Commits after every tile make it slower; some are killed twice, the second time while resuming.
+        status, _, _ = killed(folder, moments.uniform(0.0, 2.0 * duration))
+        assert status in (-signal.SIGKILL, 0)
+        if run % 3 == 0:
+            killed(folder, moments.uniform(0.0, duration), signal.SIGKILL, "--resume")
+        assert (folder / "map.h5").exists() != (folder / "map.h5.part").exists() or not (folder / "map.h5").exists()
+        done = finished(*command(folder, "--resume"))
+        assert done.returncode == 0, done.stderr
+        resumed_in_the_middle += "resumed" in done.stdout
+        assert values(folder / "map.h5") == expected
+        assert not (folder / "map.h5.part").exists()
+        shutil.rmtree(folder)
+    assert resumed_in_the_middle >= 5, "kills were to fall into the work"
+
+
+def test_a_part_cut_anywhere_is_refused_with_a_line_or_gone_on_with(uninterrupted, tmp_path):
+    (tmp_path / "spec.toml").write_text(SPEC)
+    assert killed(tmp_path, 0.5 * uninterrupted[1], signal.SIGINT)[0] == 130
+    part = tmp_path / "map.h5.part"
+    bytes_ = part.read_bytes()
+    cuts = random.Random(5)
+    for cut in [0, 1, 7, 8, 47, 48, len(bytes_) - 1, *(cuts.randrange(len(bytes_)) for _ in range(25))]:
+        part.write_bytes(bytes_[:cut])
+        told = leapmap("info", part)
+        assert told.returncode == 3 and told.stderr.count("\n") == 1, told.stderr
+        if cut == 0:
+            continue  # nothing was ever written: --resume begins anew
+        done = finished(*command(tmp_path, "--resume"))
+        assert done.returncode == 3 and done.stderr.count("\n") == 1 and "--overwrite" in done.stderr, (cut, done.stderr)
+        assert not (tmp_path / "map.h5").exists()
+    part.write_bytes(bytes_ + os.urandom(5000))  # what a commit that never came left
+    assert finished(*command(tmp_path, "--resume")).returncode == 0
+    assert values(tmp_path / "map.h5") == values(uninterrupted[0])
+
+
+def test_ctrl_c_tells_the_command_that_goes_on_and_it_does(uninterrupted, tmp_path):
+    (tmp_path / "spec.toml").write_text(SPEC)
+    status, out, err = killed(tmp_path, 0.4 * uninterrupted[1], signal.SIGTERM, "--set", "output.compression=2")
+    assert status == 143 and out == "" and err.count("\n") == 1
+    line = err.split("go on by: leapmap ")[1].strip()
+    done = subprocess.run(f"{PROGRAM} {line}", shell=True, capture_output=True, text=True)
+    assert done.returncode == 0 and "resumed" in done.stdout, done.stderr
+    assert values(tmp_path / "map.h5")[0] == values(uninterrupted[0])[0], "compression changes no value"
+    again = subprocess.run(f"{PROGRAM} {line}", shell=True, capture_output=True, text=True)
+    assert again.returncode == 0 and "whole already" in again.stdout
+
+
+def test_a_second_ctrl_c_stops_at_once_and_leaves_a_part_to_go_on_with(tmp_path):
+    slow = SPEC.replace("audit = 1e-4", 'method = "gsl-rk4"\ntolerance = 1e-13\naudit = 0')
+    (tmp_path / "spec.toml").write_text(slow)
+    process = subprocess.Popen(command(tmp_path), stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    begin = time.time()
+    process.communicate(timeout=60)
+    assert process.returncode in (-signal.SIGINT, 130) and time.time() - begin < 5.0
+    assert leapmap("info", tmp_path / "map.h5.part").returncode == 0
+    assert not (tmp_path / "map.h5").exists()
+
+
+def test_another_spec_is_refused_by_its_key(uninterrupted, tmp_path):
+    (tmp_path / "spec.toml").write_text(SPEC)
+    assert killed(tmp_path, 0.4 * uninterrupted[1], signal.SIGINT)[0] == 130
+    before = (tmp_path / "map.h5.part").read_bytes()
+    for key, setting in {"numerics.tolerance": "tolerance=1e-9", "scene.runway": "runway=3", "design.slope": "slope={values=[0.1,0.2]}",
+                         "output.precision": "precision=f4", "output.fields": 'fields=["status"]', "design.release_spin": "release_spin=0.1"}.items():
+        done = finished(*command(tmp_path, "--resume", "--set", setting))
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and key in done.stderr, done.stderr
+    assert (tmp_path / "map.h5.part").read_bytes() == before
+    done = finished(*command(tmp_path, "--overwrite", "--set", "runway=3"))
+    assert done.returncode == 0, "--overwrite starts anew"
+
+
+def test_a_list_is_gone_on_with_unless_its_designs_changed(tmp_path):
+    rows = [f"{0.1 + 1e-5 * i},{1 + 1e-4 * i}" for i in range(60000)]
+    (tmp_path / "designs.csv").write_text("slope,mass_ratio\n" + "\n".join(rows))
+    (tmp_path / "spec.toml").write_text('[design]\npoints = "designs.csv"\n[numerics]\nmethod = "gsl-rk8pd"\naudit = 0\n')
+    assert killed(tmp_path, 0.7, signal.SIGINT)[0] == 130
+    (tmp_path / "designs.csv").write_text("slope,mass_ratio\n" + "\n".join(rows[:-1] + ["0.3,2"]))
+    done = finished(*command(tmp_path, "--resume"))
+    assert done.returncode == 2 and "design.slope" in done.stderr, done.stderr
+    (tmp_path / "designs.csv").write_text("mass_ratio,slope\n" + "\n".join(",".join(r.split(",")[::-1]) for r in rows))
+    done = finished(*command(tmp_path, "--resume"))
+    assert done.returncode == 0 and "resumed" in done.stdout, "the columns' order does not matter"
+
+
+def test_two_sweeps_on_one_output_the_second_is_refused(tmp_path):
+    (tmp_path / "spec.toml").write_text(SPEC.replace("audit = 1e-4", 'method = "gsl-rk8pd"\naudit = 0'))
+    first = subprocess.Popen(command(tmp_path), stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    try:
+        time.sleep(1.0)
+        for more in ([], ["--overwrite"], ["--resume"]):
+            second = finished(*command(tmp_path, *more))
+            assert second.returncode == 2 and second.stderr.count("\n") == 1 and "map.h5.part" in second.stderr, second.stderr
+        reading = leapmap("info", tmp_path / "map.h5.part")
+        assert reading.returncode == 2 and "writing" in reading.stderr
+    finally:
+        first.send_signal(signal.SIGINT)
+        first.communicate(timeout=120)
+    assert first.returncode == 130
+
+
+def test_resume_without_anything_to_go_on_with_begins_anew(tmp_path):
+    (tmp_path / "spec.toml").write_text(SMALL)
+    assert finished(*command(tmp_path, "--resume")).returncode == 0
+    assert "whole already" in finished(*command(tmp_path, "--resume")).stdout
+    other = finished(*command(tmp_path, "--resume", "--set", "runway=3"))
+    assert other.returncode == 2 and "exists already" in other.stderr
+
+
+def grown(folder, limit=None):
+    """A sweep of 40,000 designs and all fields, 3 MB; limit: of the bytes a file may have."""
+    def preexec():
+        if limit:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    words = command(folder, "--resume", "--set", "slope={from=0.1,to=0.8,count=200}", "--set", "mass_ratio={from=0.1,to=20,count=200}",
+                    "--set", "offset_ratio=1", "--set", "audit=0", "--set", "compression=0")
+    return subprocess.run(words, capture_output=True, text=True, preexec_fn=preexec)
+
+
+def test_a_file_that_may_not_grow_is_gone_on_with_once_it_may(tmp_path):
+    (tmp_path / "spec.toml").write_text(SMALL)
+    for limit in (300_000, 900_000, 1_700_000):
+        done = grown(tmp_path, limit)
+        assert done.returncode == 3 and done.stderr.count("\n") == 1, done.stderr
+        assert "File too large" in done.stderr and "designs are kept" in done.stderr, done.stderr
+        assert leapmap("info", tmp_path / "map.h5.part").returncode == 0
+    last = grown(tmp_path)
+    assert last.returncode == 0 and "resumed" in last.stdout, last.stderr
+    (tmp_path / "whole").mkdir()
+    (tmp_path / "whole" / "spec.toml").write_text(SMALL)
+    assert grown(tmp_path / "whole").returncode == 0
+    assert values(tmp_path / "map.h5") == values(tmp_path / "whole" / "map.h5")
+
+
+def test_a_full_disk_ends_with_status_3_and_with_space_again_the_sweep_goes_on(tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mounted = finished("mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", disk)
+    if mounted.returncode != 0:
+        pytest.skip(f"mounting a tmpfs is not allowed here: {mounted.stderr.strip()}")
+    try:
+        (disk / "spec.toml").write_text(SMALL)
+        (disk / "ballast").write_bytes(bytes(2_500_000))
+        done = grown(disk)
+        assert done.returncode == 3 and done.stderr.count("\n") == 1, done.stderr
+        assert "No space left" in done.stderr and "designs are kept" in done.stderr, done.stderr
+        assert not (disk / "map.h5").exists()
+        (disk / "ballast").unlink()  # 4 MB hold the map once, not twice
+        done = grown(disk)
+        assert done.returncode == 0 and "resumed" in done.stdout, done.stderr
+        got = values(disk / "map.h5")
+        (disk / "map.h5").unlink()
+        assert grown(disk).returncode == 0
+        assert values(disk / "map.h5") == got
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+FAILING = """
+[design]
+slope = { from = 0.1, to = 0.8, count = 20 }
+mass_ratio = { from = 0.5, to = 10, count = 30 }
+[numerics]
+method = "gsl-rk8pd"
+max_steps = 40
+audit = 0
+"""
+
+
+def test_failed_designs_are_listed_as_commands_that_fail_and_retried(tmp_path):
+    (tmp_path / "spec.toml").write_text(FAILING)
+    assert finished(*command(tmp_path)).returncode == 0
+    with h5py.File(tmp_path / "map.h5") as m:
+        failed = int((m["status"][()] == 6).sum())
+        assert failed > 100 and m.attrs["status_counts"][6] == failed
+        assert np.isnan(m["jump_height"][()][m["status"][()] == 6]).all()
+    listed = leapmap("info", tmp_path / "map.h5", "--failed", "--limit", 2).stdout.splitlines()
+    assert len([line for line in listed if line.startswith("leapmap hop")]) == 2
+    assert f"{failed} failed designs" in listed[-1]
+    hop = subprocess.run(listed[0].replace("leapmap", PROGRAM, 1), shell=True, capture_output=True, text=True)
+    assert hop.returncode == 1 and "gave up" in hop.stdout, hop.stdout
+    done = finished(*command(tmp_path, "--retry-failed"))
+    assert done.returncode == 0 and f"{failed} settled, 0 still failed" in done.stdout, done.stdout + done.stderr
+    with h5py.File(tmp_path / "map.h5") as m:
+        assert (m["status"][()] == 6).sum() == 0 and m.attrs["status_counts"].sum() == 600
+        assert np.isfinite(m["jump_height"][()][m["status"][()] == 1]).all()
+    other = finished(*command(tmp_path, "--retry-failed", "--set", "slope=0.3"))
+    assert other.returncode == 2 and "axes" in other.stderr
+    assert sorted(os.listdir(tmp_path)) == ["map.h5", "spec.toml"]
+
+
+def test_a_map_that_stores_no_status_still_counts_the_failed(tmp_path):
+    (tmp_path / "spec.toml").write_text(FAILING + '[output]\nfields = ["jump_height"]\n')
+    assert finished(*command(tmp_path)).returncode == 0
+    assert " failed\n" in leapmap("info", tmp_path / "map.h5").stdout
+    refused = leapmap("info", tmp_path / "map.h5", "--failed")
+    assert refused.returncode == 2 and "status" in refused.stderr
