@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The README's second command: installs what Debian provides, builds with ASan and UBSan, runs the C++ tests there,
-# then builds for use and runs all tests: C++, the program from outside, the readers of its files, the charts.
+# fuzzes the readers for ten seconds, then builds for use and runs all tests: C++, the program from outside, the readers of its files, the charts.
 set -eu
 cd "$(dirname "$0")/.."
 sh sweeps/install_packages.sh tests
@@ -11,6 +11,8 @@ git ls-files 'src/*.[ch]pp' 'tests/*.[ch]pp' | xargs -r clang-format --dry-run -
 cmake --preset dev -DLEAPMAP_TESTS=ON
 cmake --build --preset dev --target leapmap-tests
 ctest --preset dev --no-tests=error -j 2 -E '^(cli|analysis)\.'
+
+sh tests/fuzz/run.sh 10
 
 cmake --preset release -DLEAPMAP_STRICT=ON -DLEAPMAP_TESTS=ON -DLEAPMAP_BENCHMARKS=ON
 cmake --build --preset release

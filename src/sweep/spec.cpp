@@ -183,8 +183,8 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
   for (const auto& [section, node] : file) {
     const std::string place = fmt::format("{}:{}", origin, node.source().begin.line);
     const toml::table* table = node.as_table();
-    const bool known =
-        std::ranges::any_of(spec_options(), [&in = section](const Option& o) { return o.section == in.str(); });
+    const bool known = std::ranges::any_of(
+        spec_options(), [&in = section](const Option& o) { return o.section == in.str(); });
     if (const Option* option = find_option("", section.str()); option && !table)
       throw InputError(fmt::format("{}: {}: a key stands below its section; allowed: [{}] above it", place,
                                    section.str(), option->section));

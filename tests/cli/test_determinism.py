@@ -11,7 +11,7 @@ def contents(path):
     with h5py.File(path) as m:
         data = {name: (d[()].tobytes(), str(d.dtype), {k: np.asarray(v).tobytes() for k, v in d.attrs.items()
                                                        if k not in ("DIMENSION_LIST", "REFERENCE_LIST")})
-                for name, d in m.items()}
+                for name, d in m.items() if isinstance(d, h5py.Dataset)}
         return data, {k: np.asarray(v).tobytes() for k, v in m.attrs.items() if k not in VOLATILE}
 
 

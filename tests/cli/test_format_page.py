@@ -84,7 +84,7 @@ def test_every_checksum_is_what_the_page_says(maps):
     import zlib
     with h5py.File(maps[1]) as m:
         crc = 0
-        for name in (n for n in m if isinstance(m[n], h5py.Dataset) and m[n].chunks):
+        for name in [n for n in rows("Fields") if n in m]:
             mask, data = m[name].id.read_direct_chunk((0,))
             crc = zlib.crc32(np.uint32(mask).tobytes(), zlib.crc32(data, crc))
         assert crc == m.attrs["tiles_checksum"]

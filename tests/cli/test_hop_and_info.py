@@ -78,7 +78,7 @@ def test_info_counts_statuses_and_places_extremes(tmp_path):
     assert leapmap("info", path, "--spec").stdout.startswith("[scene]")  # a TOML and nothing else
 
 
-@pytest.mark.parametrize("make,word", [(lambda p: None, "no such file"), (lambda p: p.write_text("words"), "cannot be read as HDF5"),
+@pytest.mark.parametrize("make,word", [(lambda p: None, "No such file"), (lambda p: p.write_text("words"), "cannot be read as HDF5"),
                                        (lambda p: h5py.File(p, "w").close(), "not a leapmap map")])
 def test_info_refuses_other_files_with_one_line(make, word, tmp_path):
     make(tmp_path / "x.h5")

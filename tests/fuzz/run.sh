@@ -8,7 +8,7 @@ seconds=${1:-600}
 cmake --preset fuzz > /dev/null
 cmake --build --preset fuzz --target spec-fuzz map-fuzz
 work=$(mktemp -d "$([ -w /dev/shm ] && echo /dev/shm || echo /tmp)/leapmap-fuzz-XXXXXX")  # in memory: files are synced all the time
-export TMPDIR="$work"
+export TMPDIR="$work" LSAN_OPTIONS="suppressions=$PWD/tests/fuzz/leaks_of_others.txt:print_suppressions=0"
 trap 'rm -rf "$work"' EXIT
 for subject in spec map; do
   mkdir "$work/$subject"
