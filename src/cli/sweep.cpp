@@ -5,36 +5,24 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
 #include "cli/provenance.hpp"
 #include "cli/spoken.hpp"
-#include "cli/sweep_plan.hpp"
-#include "map/writer.hpp"
+#include "cli/sweep.hpp"
 #include "support/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
 #include "sweep/map_layout.hpp"
-#include "sweep/map_spec.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
-#include "sweep/retry.hpp"
 
 namespace leapmap::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-struct SweepArguments {
-  std::string spec, map;
-  std::vector<std::string> overrides;
-  int threads = 0;
-  double commit_interval = 1.0;  // s
-  bool resume = false, overwrite = false, retry_failed = false, dry_run = false, quiet = false;
-};
 
 /// Runs the audit; its result as attributes. A disagreement sets status and is told with the command to see
 /// it.
@@ -65,56 +53,6 @@ std::vector<hdf5::Attribute> run_audit(const Spec& spec, std::span<const AuditSa
           {"audit_flag_mismatches", static_cast<std::int64_t>(report.flag_mismatches)},
           {"audit_undecided", static_cast<std::int64_t>(report.undecided)},
           {"audit_beyond_tolerance", static_cast<std::int64_t>(report.beyond_tolerance)}};
-}
-
-/// What the user types to go on with an interrupted sweep.
-std::string resume_command(const SweepArguments& arguments, const std::string& map) {
-  std::string command = fmt::format("leapmap sweep {} -o {} --resume", quoted(arguments.spec), quoted(map));
-  for (const std::string& set : arguments.overrides) command += " --set " + quoted(set);
-  return command + (arguments.overwrite ? " --overwrite" : "");
-}
-
-/// What a resumed sweep has to share with the one that began: the spec, the format, and the program, as far
-/// as numbers depend on it.
-void refuse_other_beginning(const MapReader& part, const std::string& name, const Spec& spec,
-                            std::span<const hdf5::Attribute> now) {
-  constexpr std::string_view allowed = "another -o, or --overwrite to start anew";
-  if (const auto difference = first_difference(spec_of(part, name), spec))
-    throw InputError(
-        fmt::format("{}: was begun with another spec: {}; allowed: that spec (leapmap info --spec {}), {}",
-                    name, *difference, quoted(name), allowed));
-  if (hdf5::read_integers(part.file(), "version") != std::vector<std::int64_t>{format_major, format_minor})
-    throw InputError(fmt::format("{}: has another format version; allowed: {}", name, allowed));
-  for (const auto& [key, value] : now)
-    if (key == "program_version" || key == "git_revision" || key == "instruction_set")
-      if (part.attribute(key) != std::get<std::string>(value))
-        throw InputError(
-            fmt::format("{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one, {}",
-                        name, key, part.attribute(key), std::get<std::string>(value), allowed));
-}
-
-/// Begins a map, or goes on with what an earlier sweep left of it.
-MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
-                   const MapLayout& layout, const Tiling& tiling, std::span<const hdf5::Attribute> opening) {
-  const std::string part = part_of(map);
-  if (!arguments.resume || !std::filesystem::exists(part) || hdf5::File::blank(part))
-    return MapWriter::begin(map, layout, tiling, opening, arguments.overwrite);
-  try {
-    MapWriter writer = MapWriter::resume(map, layout, tiling, arguments.overwrite);
-    refuse_other_beginning(writer.reader(), part, spec, opening);
-    writer.verify();
-    return writer;
-  } catch (const IoError& error) {
-    throw IoError(fmt::format("{}; it cannot be gone on with: --overwrite starts anew", error.what()));
-  }
-}
-
-/// True if a sweep to be resumed has ended already: its map is there, of the same spec.
-bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec) {
-  if (!arguments.resume || arguments.overwrite || std::filesystem::exists(part_of(map)) ||
-      !std::filesystem::exists(map))
-    return false;
-  return !first_difference(spec_of(MapReader(map), map), spec);
 }
 
 /// The samples of the tiles that are in the map already.
@@ -178,40 +116,6 @@ std::size_t solve_rest(const SweepArguments& arguments, const Spec& spec, const 
   return done;
 }
 
-void print_totals(const std::array<std::int64_t, status_count>& totals) {
-  for (std::size_t i = 0; i < totals.size(); ++i)
-    if (totals[i] > 0)
-      fmt::print("         {:>12} {}\n", grouped(static_cast<std::uint64_t>(totals[i])),
-                 name_of(static_cast<Status>(i)));
-}
-
-/// Solves an existing map's failed designs again.
-int retry(const SweepArguments& arguments, Spec spec, const std::string& map) {
-  Spec there;
-  {
-    const MapReader reader(map);
-    there = spec_of(reader, map);
-  }
-  if (const auto difference = first_difference(there, spec, true))
-    throw InputError(
-        fmt::format("{}: is of other designs: {}; allowed: its own spec (leapmap info --spec {})", map,
-                    *difference, quoted(map)));
-  spec.numerics = retry_numerics(there.numerics, spec.numerics);
-  note_signals();
-  const RetryReport report = retry_failed(map, spec, arguments.threads, [] { return noted_signal() != 0; });
-  if (noted_signal() != 0) {
-    fmt::print(stderr, "leapmap: interrupted; {} is as it was\n", map);
-    return 128 + noted_signal();
-  }
-  if (arguments.quiet) return 0;
-  fmt::print("retried  {} failed designs by {} at tolerance {:g}: {} settled, {} still failed\n",
-             grouped(report.retried), resolved_method(spec.numerics), spec.numerics.tolerance,
-             grouped(report.retried - report.still_failed), grouped(report.still_failed));
-  print_totals(report.statuses);
-  fmt::print("map      {}\n", map);
-  return 0;
-}
-
 int run(const SweepArguments& arguments) {
   const Spec spec = read_spec(arguments.spec, arguments.overrides);
   const std::string map = arguments.map.empty() ? spec.output.file : arguments.map;
@@ -225,7 +129,7 @@ int run(const SweepArguments& arguments) {
   if (map.empty())
     throw InputError(
         fmt::format("{}: output.file is not set; allowed: a file's name there or with -o", arguments.spec));
-  if (arguments.retry_failed) return retry(arguments, spec, map);
+  if (arguments.retry_failed) return retry_sweep(arguments, spec, map);
   if (is_done(arguments, map, spec)) {
     if (!arguments.quiet) fmt::print("map      {} is whole already\n", map);
     return 0;
@@ -265,6 +169,13 @@ int run(const SweepArguments& arguments) {
 }
 
 }  // namespace
+
+void print_totals(const std::array<std::int64_t, status_count>& totals) {
+  for (std::size_t i = 0; i < totals.size(); ++i)
+    if (totals[i] > 0)
+      fmt::print("         {:>12} {}\n", grouped(static_cast<std::uint64_t>(totals[i])),
+                 name_of(static_cast<Status>(i)));
+}
 
 void add_sweep(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("sweep", "solve the designs of a spec into a map (HDF5)");

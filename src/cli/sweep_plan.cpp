@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/sweep_plan.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "cli/spoken.hpp"
+#include "cli/sweep.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"

@@ -114,8 +114,9 @@ Handle access_to(JournaledFile& file) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file.path());
   check(H5Pset_driver(access, driver_id(), &target), file.path());
   check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG),
-        file.path());  // nothing may write after we have closed
-  check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), file.path());
+        file.path());                                // nothing may write after we have closed
+  if (file.access() != JournaledFile::Access::read)  // a map that others have repacked may be read as well
+    check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), file.path());
   return access;
 }
 
@@ -174,6 +175,13 @@ File File::copy(const std::string& from, const std::string& to) {
 }
 
 bool File::blank(const std::string& path) { return JournaledFile(path, JournaledFile::Access::read).blank(); }
+
+File& File::operator=(File&& other) noexcept {
+  abandon();
+  bytes_ = std::move(other.bytes_);
+  handle_ = std::move(other.handle_);
+  return *this;
+}
 
 File::~File() { abandon(); }
 

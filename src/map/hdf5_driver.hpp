@@ -23,7 +23,7 @@ class File {
   /// A copy of a file, to be changed. Throws as both of these do.
   static File copy(const std::string& from, const std::string& to);
   File(File&&) = default;
-  File& operator=(File&&) = default;
+  File& operator=(File&& other) noexcept;
   /// Abandons what was not flushed.
   ~File();
 

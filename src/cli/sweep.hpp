@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The parts of leapmap sweep.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "map/writer.hpp"
+#include "sweep/spec.hpp"
+
+namespace leapmap::cli {
+
+struct SweepArguments {
+  std::string spec, map;
+  std::vector<std::string> overrides;
+  int threads = 0;
+  double commit_interval = 1.0;  ///< [s]
+  bool resume = false, overwrite = false, retry_failed = false, dry_run = false, quiet = false;
+};
+
+/// --dry-run: prints designs, fields, memory, file size and time; times a sample of designs for half a
+/// second.
+void print_plan(const Spec& spec, const std::string& map, const Tiling& tiling, int threads);
+
+/// Begins a map, or goes on with what an earlier sweep left of it. opening: the root's attributes of a new
+/// one.
+MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
+                   const MapLayout& layout, const Tiling& tiling, std::span<const hdf5::Attribute> opening);
+
+/// True if a sweep to be resumed has ended already: its map is there, of the same spec.
+bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec);
+
+/// What the user types to go on with an interrupted sweep.
+std::string resume_command(const SweepArguments& arguments, const std::string& map);
+
+/// --retry-failed: solves an existing map's failed designs again. Returns the exit status.
+int retry_sweep(const SweepArguments& arguments, Spec spec, const std::string& map);
+
+/// Designs by how they ended.
+void print_totals(const std::array<std::int64_t, status_count>& totals);
+
+}  // namespace leapmap::cli

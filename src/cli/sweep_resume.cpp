@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/spoken.hpp"
+#include "cli/sweep.hpp"
+#include "support/errors.hpp"
+#include "sweep/map_spec.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+bool exists(const std::string& path) {
+  std::error_code ignored;  // of a folder that may not be entered: creating the file there tells
+  return std::filesystem::exists(path, ignored);
+}
+
+/// What a resumed sweep has to share with the one that began: the spec, the format, and the program, as far
+/// as numbers depend on it.
+void refuse_other_beginning(const MapReader& part, const std::string& name, const Spec& spec,
+                            std::span<const hdf5::Attribute> now) {
+  constexpr std::string_view allowed = "another -o, or --overwrite to start anew";
+  if (hdf5::read_integers(part.file(), "version") != std::vector<std::int64_t>{format_major, format_minor})
+    throw InputError(fmt::format("{}: has another format version; allowed: {}", name, allowed));
+  for (const auto& [key, value] : now)
+    if (key == "program_version" || key == "git_revision" || key == "instruction_set")
+      if (part.attribute(key) != std::get<std::string>(value))
+        throw InputError(
+            fmt::format("{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one, {}",
+                        name, key, part.attribute(key), std::get<std::string>(value), allowed));
+  if (const auto difference = first_difference(spec_of(part, name), spec))
+    throw InputError(
+        fmt::format("{}: was begun with another spec: {}; allowed: that spec (leapmap info --spec {}), {}",
+                    name, *difference, quoted(name), allowed));
+}
+
+}  // namespace
+
+std::string resume_command(const SweepArguments& arguments, const std::string& map) {
+  std::string command = fmt::format("leapmap sweep {} -o {} --resume", quoted(arguments.spec), quoted(map));
+  for (const std::string& set : arguments.overrides) command += " --set " + quoted(set);
+  return command + (arguments.overwrite ? " --overwrite" : "");
+}
+
+MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
+                   const MapLayout& layout, const Tiling& tiling, std::span<const hdf5::Attribute> opening) {
+  const std::string part = part_of(map);
+  if (!arguments.resume || !exists(part) || hdf5::File::blank(part))
+    return MapWriter::begin(map, layout, tiling, opening, arguments.overwrite);
+  try {
+    MapWriter writer = MapWriter::resume(map, layout, tiling, arguments.overwrite);
+    refuse_other_beginning(writer.reader(), part, spec, opening);
+    writer.verify();
+    return writer;
+  } catch (const IoError& error) {
+    throw IoError(fmt::format("{}; it cannot be gone on with: --overwrite starts anew", error.what()));
+  }
+}
+
+bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec) {
+  if (!arguments.resume || arguments.overwrite || exists(part_of(map)) || !exists(map)) return false;
+  return !first_difference(spec_of(MapReader(map), map), spec);
+}
+
+}  // namespace leapmap::cli

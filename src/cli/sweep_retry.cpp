@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "cli/progress.hpp"
+#include "cli/spoken.hpp"
+#include "cli/sweep.hpp"
+#include "support/errors.hpp"
+#include "sweep/map_spec.hpp"
+#include "sweep/retry.hpp"
+
+namespace leapmap::cli {
+
+int retry_sweep(const SweepArguments& arguments, Spec spec, const std::string& map) {
+  Spec there;
+  {
+    const MapReader reader(map);
+    there = spec_of(reader, map);
+  }
+  if (const auto difference = first_difference(there, spec, true))
+    throw InputError(
+        fmt::format("{}: is of other designs: {}; allowed: its own spec (leapmap info --spec {})", map,
+                    *difference, quoted(map)));
+  spec.numerics = retry_numerics(there.numerics, spec.numerics);
+  note_signals();
+  const RetryReport report = retry_failed(map, spec, arguments.threads, [] { return noted_signal() != 0; });
+  if (noted_signal() != 0) {
+    fmt::print(stderr, "leapmap: interrupted; {} is as it was\n", map);
+    return 128 + noted_signal();
+  }
+  if (arguments.quiet) return 0;
+  fmt::print("retried  {} failed designs by {} at tolerance {:g}: {} settled, {} still failed\n",
+             grouped(report.retried), resolved_method(spec.numerics), spec.numerics.tolerance,
+             grouped(report.retried - report.still_failed), grouped(report.still_failed));
+  print_totals(report.statuses);
+  fmt::print("map      {}\n", map);
+  return 0;
+}
+
+}  // namespace leapmap::cli
