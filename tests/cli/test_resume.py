@@ -31,7 +31,7 @@ def values(path):
     with h5py.File(path) as m:
         datasets = {name: d[()].tobytes() for name, d in m.items() if isinstance(d, h5py.Dataset)}
         about = {k: np.asarray(m.attrs[k]).tobytes() for k in m.attrs
-                 if k.startswith(("audit_", "status_counts", "tiles_checksum")) and k != "audit_method"}
+                 if k in ("audit_designs", "audit_flag_mismatches", "audit_beyond_tolerance", "status_counts", "tiles_checksum")}
         return datasets, about
 
 
