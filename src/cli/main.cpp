@@ -8,6 +8,7 @@
 #include <new>
 
 #include "cli/commands.hpp"
+#include "cli/progress.hpp"
 #include "support/errors.hpp"
 #include "support/version.hpp"
 
@@ -22,7 +23,7 @@ int complain(int status, std::string_view what) {
     const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
     line += control ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c)) : std::string(1, c);
   }
-  fmt::print(stderr, "leapmap: {}\n", line);
+  leapmap::cli::tell(line);
   return status;
 }
 

@@ -14,7 +14,11 @@ namespace {
 
 volatile std::sig_atomic_t signal_noted = 0;  // a signal handler can reach nothing but a global
 
-extern "C" void note_signal(int signal) { signal_noted = signal; }
+extern "C" void note_signal(int signal) {
+  signal_noted = signal;
+  std::signal(SIGINT, SIG_DFL);  // a second one, whichever, ends the program
+  std::signal(SIGTERM, SIG_DFL);
+}
 
 }  // namespace
 
@@ -22,7 +26,7 @@ Progress::Progress(std::size_t total, std::size_t already, bool quiet)
     : total_(total), already_(already), quiet_(quiet), terminal_(::isatty(STDERR_FILENO)) {}
 
 Progress::~Progress() {
-  if (terminal_ && !quiet_) fmt::print(stderr, "\r\033[K");
+  if (terminal_ && !quiet_) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::update(std::size_t done) {
@@ -35,14 +39,16 @@ void Progress::update(std::size_t done) {
       fmt::format("{} of {} designs, {:.0f} %, {:.4g} designs/s, {} to go", grouped(done), grouped(total_),
                   100.0 * static_cast<double>(done) / static_cast<double>(total_), rate,
                   spoken_duration(static_cast<double>(total_ - done) / rate));
-  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "leapmap: ", line, terminal_ ? "" : "\n");
+  terminal_ ? static_cast<void>(std::fputs(("\r\033[K" + line).c_str(), stderr)) : tell(line);
   std::fflush(stderr);
 }
+
+void tell(const std::string& line) { std::fputs(("leapmap: " + line + "\n").c_str(), stderr); }
 
 void note_signals() {
   struct sigaction action {};
   action.sa_handler = note_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }

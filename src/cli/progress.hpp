@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <string>
 
 namespace leapmap::cli {
 
@@ -23,6 +24,9 @@ class Progress {
   bool quiet_, terminal_;
   Clock::time_point begin_ = Clock::now(), last_ = begin_;
 };
+
+/// A line on stderr. A terminal that is gone or a log on a full disk is no reason to stop.
+void tell(const std::string& line);
 
 /// From now on the first SIGINT or SIGTERM is only noted, so that work can be brought to a good end; the
 /// second one ends the program at once.

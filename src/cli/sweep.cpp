@@ -37,15 +37,15 @@ std::vector<hdf5::Attribute> run_audit(const Spec& spec, std::span<const AuditSa
         grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
         report.flag_mismatches,
         report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "");
-  const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
+  const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (!design) return;
     status = 1;
-    fmt::print(stderr, "leapmap: audit: {} on design {}; see it by: {}\n", what, *design,
-               hop_command(spec, DesignSpace(spec).at(*design)));
+    tell(fmt::format("audit: {} on design {}; see it by: {}", what, *design,
+                     hop_command(spec, DesignSpace(spec).at(*design))));
   };
   const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
-  tell(report.first_mismatch, both + " disagree on status, flag or candidates");
-  tell(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
+  complain(report.first_mismatch, both + " disagree on status, flag or candidates");
+  complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
   return {{"audit_designs", static_cast<std::int64_t>(report.designs)},
           {"audit_method", report.method},
           {"audit_max_abs_height_error", report.max_abs_height_error},
@@ -56,69 +56,94 @@ std::vector<hdf5::Attribute> run_audit(const Spec& spec, std::span<const AuditSa
 }
 
 /// The samples of the tiles that are in the map already.
-std::vector<AuditSample> samples_of(const Spec& spec, const Tiling& tiling, const MapWriter& writer) {
+std::vector<AuditSample> samples_of(const SweepArguments& arguments, const Spec& spec, const Tiling& tiling,
+                                    const MapWriter& writer) {
   std::vector<AuditSample> samples;
   if (spec.numerics.audit <= 0.0 || writer.progress().tiles == 0) return samples;
+  std::vector<std::vector<AuditSample>> by_tile(writer.progress().tiles);
+  parallel_for_each(by_tile.size(), arguments.threads, [&] {
+    return [&, solve = make_solver(spec)](std::size_t t) {
+      by_tile[t] = audit_samples(spec, tiling, tiling.tile(t), solve);
+      return noted_signal() == 0;
+    };
+  });
   const MapReader map = writer.reader();
-  const Solver solve = make_solver(spec);
-  for (std::size_t t = 0; t < writer.progress().tiles; ++t)
-    std::ranges::move(audit_samples(spec, tiling, tiling.tile(t), solve, map), std::back_inserter(samples));
+  for (std::size_t t = 0; t < by_tile.size() && noted_signal() == 0; ++t) {
+    take_quantities(map, spec, tiling, tiling.tile(t), by_tile[t]);
+    std::ranges::move(by_tile[t], std::back_inserter(samples));
+  }
   return samples;
 }
 
-/// Solves what is missing in the map, committing now and then. Returns the number of designs there are then.
-std::size_t solve_rest(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout,
-                       const Tiling& tiling, MapWriter& writer, std::vector<AuditSample>& samples) {
-  std::size_t done = writer.progress().designs();
-  Progress progress(tiling.designs(), done, arguments.quiet);
+/// Solves what is missing in the map, committing now and then.
+void solve_rest(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout,
+                const Tiling& tiling, MapWriter& writer, std::vector<AuditSample>& samples) {
+  Progress progress(tiling.designs(), writer.progress().designs(), arguments.quiet);
   EngineOptions options;
   options.threads = arguments.threads;
   options.first_tile = writer.progress().tiles;
   options.stop_requested = [] { return noted_signal() != 0; };
-  std::size_t committed = done;
   auto last_commit = Clock::now();
   const double seconds_before = writer.progress().seconds;
   const auto begin = Clock::now();
-  const auto store = [&](const EncodedTile& tile, const std::vector<AuditSample>& drawn,
-                         std::size_t designs) {
+  const auto store = [&](const EncodedTile& tile, const std::vector<AuditSample>& drawn) {
     writer.write(tile);
     samples.insert(samples.end(), drawn.begin(), drawn.end());
-    progress.update(done += designs);
-    if (const auto now = Clock::now();
-        std::chrono::duration<double>(now - last_commit).count() >= arguments.commit_interval) {
-      writer.set_seconds(seconds_before + std::chrono::duration<double>(now - begin).count());
-      writer.commit();
-      committed = done;
-      last_commit = Clock::now();
-    }
+    progress.update(writer.progress().designs());
+    const auto now = Clock::now();
+    if (std::chrono::duration<double>(now - last_commit).count() < arguments.commit_interval) return;
+    writer.set_seconds(seconds_before + std::chrono::duration<double>(now - begin).count());
+    writer.commit();
+    last_commit = Clock::now();
   };
-  try {
-    run_sweep(spec, tiling, options, [&] {
-      const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
-      return
-          [&, encoder](std::size_t number, const Tile& tile, std::span<const Outcome> outcomes) -> Prepared {
-            const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number, outcomes));
-            auto drawn = audit_samples(spec, tiling, tile, outcomes);
-            const std::size_t bytes = encoded->bytes() + drawn.size() * sizeof(AuditSample);
-            return {[&store, encoded, drawn = std::move(drawn), designs = tile.count] {
-                      store(*encoded, drawn, designs);
-                    },
-                    bytes};
-          };
-    });
-    writer.set_seconds(seconds_before + std::chrono::duration<double>(Clock::now() - begin).count());
-    writer.commit();  // a full disk is told before the audit takes its time
-  } catch (const IoError& error) {
-    if (committed == 0) throw;
-    throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by --resume",
-                              error.what(), grouped(committed), grouped(tiling.designs())));
+  run_sweep(spec, tiling, options, [&] {
+    const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
+    return [&, encoder](std::size_t number, const Tile& tile, std::span<const Outcome> outcomes) -> Prepared {
+      const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number, outcomes));
+      auto drawn = audit_samples(spec, tiling, tile, outcomes);
+      const std::size_t bytes = encoded->bytes() + drawn.size() * sizeof(AuditSample);
+      return {[&store, encoded, drawn = std::move(drawn)] { store(*encoded, drawn); }, bytes};
+    };
+  });
+}
+
+/// All of a sweep between the map's opening and its end. Returns the exit status.
+int fill(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout, const Tiling& tiling,
+         const std::string& map, MapWriter& writer) {
+  int status = 0;
+  const auto begin = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const double seconds_before = writer.progress().seconds;
+  const std::size_t already = writer.progress().designs();
+  std::vector<AuditSample> samples = samples_of(arguments, spec, tiling, writer);
+  if (noted_signal() == 0) solve_rest(arguments, spec, layout, tiling, writer, samples);
+  const double solving = seconds();
+  const std::size_t done = writer.progress().designs();
+  writer.set_seconds(seconds_before + solving);
+  writer.commit();  // a full disk is told before the audit takes its time
+  std::vector<hdf5::Attribute> closing;
+  if (noted_signal() == 0) closing = run_audit(spec, samples, arguments, status);
+  writer.set_seconds(seconds_before + seconds());
+  if (noted_signal() != 0) {
+    writer.keep();
+    tell(fmt::format("interrupted after {} of {} designs, which {} keeps; go on by: {}", grouped(done),
+                     grouped(tiling.designs()), part_of(map), resume_command(arguments, map)));
+    return 128 + noted_signal();
   }
-  return done;
+  writer.finish(closing);
+  if (arguments.quiet) return status;
+  fmt::print("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done - already),
+             spoken_duration(solving), static_cast<double>(done - already) / solving,
+             thread_count(arguments.threads), resolved_method(spec.numerics));
+  if (already > 0) fmt::print("resumed  {} designs were there already\n", grouped(already));
+  print_totals(writer.progress().statuses);
+  fmt::print("map      {}\n", map);
+  return status;
 }
 
 int run(const SweepArguments& arguments) {
   const Spec spec = read_spec(arguments.spec, arguments.overrides);
-  const std::string map = arguments.map.empty() ? spec.output.file : arguments.map;
+  const std::string map = behind_links(arguments.map.empty() ? spec.output.file : arguments.map);
   const Tiling tiling(shape_of(spec));
   const MapLayout layout = layout_of(spec);
   const int threads = thread_count(arguments.threads);
@@ -135,37 +160,18 @@ int run(const SweepArguments& arguments) {
     return 0;
   }
 
-  int status = 0;
   std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
   opening.emplace_back("threads", std::int64_t{threads});
   MapWriter writer = open_map(arguments, map, spec, layout, tiling, opening);
   note_signals();
-  const auto begin = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  const double seconds_before = writer.progress().seconds;
-  std::vector<AuditSample> samples = samples_of(spec, tiling, writer);
-  const std::size_t already = writer.progress().designs();
-  const std::size_t done = solve_rest(arguments, spec, layout, tiling, writer, samples);
-  const double solving = seconds();
-  std::vector<hdf5::Attribute> closing;
-  if (noted_signal() == 0) closing = run_audit(spec, samples, arguments, status);
-  if (noted_signal() != 0) {
-    writer.set_seconds(seconds_before + seconds());
-    writer.keep();
-    fmt::print(stderr, "leapmap: interrupted after {} of {} designs, which {} keeps; go on by: {}\n",
-               grouped(done), grouped(tiling.designs()), part_of(map), resume_command(arguments, map));
-    return 128 + noted_signal();
+  try {
+    return fill(arguments, spec, layout, tiling, map, writer);
+  } catch (const IoError& error) {
+    if (writer.committed() == 0) throw;
+    throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by: {}",
+                              error.what(), grouped(writer.committed()), grouped(tiling.designs()),
+                              resume_command(arguments, map)));
   }
-  writer.set_seconds(seconds_before + seconds());
-  writer.finish(closing);
-  if (arguments.quiet) return status;
-  fmt::print("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done - already),
-             spoken_duration(solving), static_cast<double>(done - already) / solving, threads,
-             resolved_method(spec.numerics));
-  if (already > 0) fmt::print("resumed  {} designs were there already\n", grouped(already));
-  print_totals(writer.progress().statuses);
-  fmt::print("map      {}\n", map);
-  return status;
 }
 
 }  // namespace
@@ -201,7 +207,8 @@ void add_sweep(CLI::App& app, int& status) {
       ->excludes(resume);
   command
       ->add_option("--commit-interval", arguments->commit_interval,
-                   "seconds between commits: kill -9 or a power cut loses no more than that; default: 1")
+                   "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
+                   "hand; default: 1")
       ->check(CLI::Range(0.0, 86400.0));
   command->add_flag("--dry-run", arguments->dry_run,
                     "tell designs, memory, file size and time, and compute nothing else");

@@ -32,11 +32,14 @@ MapWriter open_map(const SweepArguments& arguments, const std::string& map, cons
 /// True if a sweep to be resumed has ended already: its map is there, of the same spec.
 bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec);
 
+/// The file behind a symbolic link, which is to stay one; any other name as it is.
+std::string behind_links(const std::string& map);
+
 /// What the user types to go on with an interrupted sweep.
 std::string resume_command(const SweepArguments& arguments, const std::string& map);
 
 /// --retry-failed: solves an existing map's failed designs again. Returns the exit status.
-int retry_sweep(const SweepArguments& arguments, Spec spec, const std::string& map);
+int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::string& map);
 
 /// Designs by how they ended.
 void print_totals(const std::array<std::int64_t, status_count>& totals);

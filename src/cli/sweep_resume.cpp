@@ -37,6 +37,15 @@ void refuse_other_beginning(const MapReader& part, const std::string& name, cons
 
 }  // namespace
 
+std::string behind_links(const std::string& map) {
+  constexpr int most_links = 40;  // as the kernel: links may form a ring
+  std::filesystem::path path = map;
+  std::error_code error;
+  for (int i = 0; i < most_links && std::filesystem::is_symlink(path, error); ++i)
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
+  return path.string();
+}
+
 std::string resume_command(const SweepArguments& arguments, const std::string& map) {
   std::string command = fmt::format("leapmap sweep {} -o {} --resume", quoted(arguments.spec), quoted(map));
   for (const std::string& set : arguments.overrides) command += " --set " + quoted(set);
@@ -53,7 +62,7 @@ MapWriter open_map(const SweepArguments& arguments, const std::string& map, cons
     refuse_other_beginning(writer.reader(), part, spec, opening);
     writer.verify();
     return writer;
-  } catch (const IoError& error) {
+  } catch (const BrokenFile& error) {
     throw IoError(fmt::format("{}; it cannot be gone on with: --overwrite starts anew", error.what()));
   }
 }

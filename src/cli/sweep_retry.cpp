@@ -10,7 +10,7 @@
 
 namespace leapmap::cli {
 
-int retry_sweep(const SweepArguments& arguments, Spec spec, const std::string& map) {
+int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::string& map) {
   Spec there;
   {
     const MapReader reader(map);
@@ -20,18 +20,18 @@ int retry_sweep(const SweepArguments& arguments, Spec spec, const std::string& m
     throw InputError(
         fmt::format("{}: is of other designs: {}; allowed: its own spec (leapmap info --spec {})", map,
                     *difference, quoted(map)));
-  spec.numerics = retry_numerics(there.numerics, spec.numerics);
+  there.numerics = retry_numerics(there.numerics, spec.numerics);
   note_signals();
-  const RetryReport report = retry_failed(map, spec, arguments.threads, [] { return noted_signal() != 0; });
-  if (noted_signal() != 0) {
-    fmt::print(stderr, "leapmap: interrupted; {} is as it was\n", map);
+  const auto report = retry_failed(map, there, arguments.threads, [] { return noted_signal() != 0; });
+  if (!report) {
+    tell(fmt::format("interrupted; {} is as it was", map));
     return 128 + noted_signal();
   }
   if (arguments.quiet) return 0;
   fmt::print("retried  {} failed designs by {} at tolerance {:g}: {} settled, {} still failed\n",
-             grouped(report.retried), resolved_method(spec.numerics), spec.numerics.tolerance,
-             grouped(report.retried - report.still_failed), grouped(report.still_failed));
-  print_totals(report.statuses);
+             grouped(report->retried), resolved_method(there.numerics), there.numerics.tolerance,
+             grouped(report->retried - report->still_failed), grouped(report->still_failed));
+  print_totals(report->statuses);
   fmt::print("map      {}\n", map);
   return 0;
 }

@@ -14,10 +14,9 @@
 namespace leapmap::hdf5 {
 namespace {
 
-/// What HDF5 holds of an open file. HDF5 allocates space by moving `end`.
+/// What HDF5 holds of an open file.
 struct Driver : H5FD_t {
   JournaledFile* file = nullptr;
-  haddr_t end = 0;
 };
 
 /// What the property list of an open carries to it.
@@ -49,13 +48,13 @@ H5FD_t* open(const char*, unsigned, hid_t access, haddr_t) {
 }
 
 herr_t flush(H5FD_t* base, hid_t, hbool_t) {
-  return guarded([&] { driver(base).file->commit(driver(base).end); });
+  return guarded([&] { driver(base).file->commit(); });
 }
 
-/// HDF5 writes its last after its last flush.
+/// Commits nothing: HDF5 closes a file it could not make sense of as well. File::close commits.
 herr_t close(H5FD_t* base) {
-  const std::unique_ptr<Driver> closed(&driver(base));
-  return closed->file->access() == JournaledFile::Access::read ? 0 : flush(base, H5P_DEFAULT, true);
+  delete &driver(base);
+  return 0;
 }
 
 /// The features of HDF5's own driver for POSIX files, but for the handle.
@@ -65,10 +64,11 @@ herr_t query(const H5FD_t*, unsigned long* features) {
   return 0;
 }
 
-haddr_t get_eoa(const H5FD_t* base, H5FD_mem_t) { return driver(base).end; }
+/// HDF5 allocates space by moving the file's end.
+haddr_t get_eoa(const H5FD_t* base, H5FD_mem_t) { return driver(base).file->size(); }
 
 herr_t set_eoa(H5FD_t* base, H5FD_mem_t, haddr_t end) {
-  driver(base).end = end;
+  driver(base).file->resize(end);
   return 0;
 }
 
@@ -102,14 +102,12 @@ hid_t driver_id() {
     std::copy(std::begin(map), std::end(map), made.fl_map);
     return made;
   }();
-  static const hid_t id = [] {
-    initialise();
-    return H5FDregister(&driver_class);
-  }();
+  static const hid_t id = H5FDregister(&driver_class);
   return id;
 }
 
 Handle access_to(JournaledFile& file) {
+  initialise();
   const Target target{&file};
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file.path());
   check(H5Pset_driver(access, driver_id(), &target), file.path());
@@ -128,8 +126,12 @@ Handle creation_of(const std::string& path) {
 }
 
 Handle open_in(JournaledFile& file, unsigned flags) {
-  return {H5Fopen(file.path().c_str(), flags, access_to(file)), H5Fclose,
-          file.path() + ": cannot be read as HDF5"};
+  const Handle access = access_to(file);
+  try {
+    return {H5Fopen(file.path().c_str(), flags, access), H5Fclose, file.path() + ": cannot be read as HDF5"};
+  } catch (const IoError& error) {
+    throw BrokenFile(error.what());
+  }
 }
 
 }  // namespace
@@ -156,7 +158,7 @@ File File::open(const std::string& path) {
 File File::change(const std::string& path) {
   File file(std::make_unique<JournaledFile>(path, JournaledFile::Access::change));
   file.handle_ = open_in(*file.bytes_, H5F_ACC_RDWR);
-  file.flush();  // gives back what was written after the last flush
+  file.flush();  // cuts off what was written after the last one
   return file;
 }
 
@@ -169,7 +171,9 @@ File File::copy(const std::string& from, const std::string& to) {
     original.read(offset, bytes);
     file.bytes_->write(offset, bytes);
   }
-  file.bytes_->commit(original.end());
+  file.bytes_->resize(original.end());
+  std::error_code ignored;
+  std::filesystem::permissions(to, std::filesystem::status(from, ignored).permissions(), ignored);
   file.handle_ = open_in(*file.bytes_, H5F_ACC_RDWR);
   return file;
 }
@@ -187,10 +191,15 @@ File::~File() { abandon(); }
 
 void File::flush() { check(H5Fflush(handle_, H5F_SCOPE_LOCAL), bytes_->path() + ": cannot be written"); }
 
-void File::finish(const std::string& path) {
+void File::close() {
   flush();
   if (!handle_.close()) fail(bytes_->path() + ": cannot be written");
-  bytes_->rename(path);
+  bytes_->commit();  // HDF5 writes its last as it closes
+}
+
+void File::finish(const std::string& path, bool replace) {
+  close();
+  bytes_->rename(path, replace);
   bytes_.reset();
 }
 

@@ -16,11 +16,12 @@ class File {
   /// A new file, emptying an old one, in a folder made if need be: V18 format, link and attribute creation
   /// order tracked (netCDF readers need it). Throws InputError if somebody else holds it, IoError.
   static File create(const std::string& path);
-  /// An existing file, read-only. Throws as create does, and IoError if it is not HDF5 or not whole.
+  /// An existing file, read-only. Throws as create does, and BrokenFile if it is not HDF5 or not whole.
   static File open(const std::string& path);
   /// An existing file, to be changed.
   static File change(const std::string& path);
-  /// A copy of a file, to be changed. Throws as both of these do.
+  /// A copy of a file, to be changed. Until it is closed it is blank: no journal, nothing to go on with.
+  /// Throws as both of these do.
   static File copy(const std::string& from, const std::string& to);
   File(File&&) = default;
   File& operator=(File&& other) noexcept;
@@ -31,8 +32,10 @@ class File {
   bool is_open() const { return bytes_ != nullptr; }
   /// Brings all that was written to disk, or nothing of it. Throws IoError.
   void flush();
-  /// Flushes, closes the file and gives it its name, in place of an older file. Throws IoError.
-  void finish(const std::string& path);
+  /// Flushes and closes the file, which stays locked while this lives. Throws IoError.
+  void close();
+  /// Closes the file and gives it its name, in place of an older file if `replace`. Throws IoError.
+  void finish(const std::string& path, bool replace = true);
   /// Drops what was not flushed and closes the file.
   void abandon();
   /// True if nothing was ever flushed: whoever created it was killed before that.

@@ -41,6 +41,15 @@ void sync(int descriptor, const std::string& path) {
   if (::fsync(descriptor) != 0) fail(path, "cannot be brought to disk");
 }
 
+/// Brings a file's name to disk. Nothing is to be done if that cannot be: the name is there all the same.
+void sync_folder(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path();
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 std::uint64_t size_on_disk(int descriptor, const std::string& path) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) fail(path, "cannot be read");
@@ -84,7 +93,9 @@ std::uint32_t checksum_of(std::span<const std::byte> journal) {
 }  // namespace
 
 JournaledFile::JournaledFile(const std::string& path, Access access) : path_(path), access_(access) {
-  const int flags = access == Access::read ? O_RDONLY : access == Access::change ? O_RDWR : O_RDWR | O_CREAT;
+  const int flags = access == Access::read     ? O_RDONLY
+                    : access == Access::change ? O_RDWR | O_NOFOLLOW
+                                               : O_RDWR | O_NOFOLLOW | O_CREAT;
   descriptor_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(path, access == Access::create ? "cannot be created" : "cannot be opened");
   try {
@@ -94,6 +105,7 @@ JournaledFile::JournaledFile(const std::string& path, Access access) : path_(pat
     } else {
       committed_ = stored_ = size_on_disk(descriptor_, path);
       read_journal();
+      size_ = committed_;
       if (access == Access::change && journal_valid_) make_waiting_writes();
     }
   } catch (...) {
@@ -148,19 +160,21 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
   stored_ = std::max(stored_, offset + bytes.size());
 }
 
-void JournaledFile::commit(std::uint64_t size) {
+void JournaledFile::commit() {
   if (abandoned_) return;
   sync(descriptor_, path_);  // what was appended has to be there before anything refers to it
+  const bool first = committed_ == 0;
   if (!waiting_.empty()) {
-    write_journal(size);
+    write_journal();
     journal_valid_ = true;
   }
-  committed_ = size;
+  committed_ = size_;
   make_waiting_writes();
+  if (first) sync_folder(path_);  // else a power cut may take the file's name away
 }
 
-void JournaledFile::write_journal(std::uint64_t size) {
-  const Footer footer{.begin = std::max(size, stored_), .size = size};
+void JournaledFile::write_journal() {
+  const Footer footer{.begin = std::max(size_, stored_), .size = size_};
   std::vector<std::byte> journal;
   for (const Write& write : waiting_) {
     append(journal, write.offset);
@@ -212,14 +226,14 @@ void JournaledFile::abandon() {
   if (!journal_valid_) static_cast<void>(::ftruncate(descriptor_, static_cast<off_t>(committed_)) != 0);
 }
 
-void JournaledFile::rename(const std::string& path) {
-  if (std::rename(path_.c_str(), path.c_str()) != 0) fail(path, "cannot be given its name");
+void JournaledFile::rename(const std::string& path, bool replace) {
+  int failed = -1;
+  if (!replace) failed = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);
+  const bool unknown = !replace && failed != 0 && (errno == EINVAL || errno == ENOSYS);  // to the file system
+  if (replace || unknown) failed = std::rename(path_.c_str(), path.c_str());
+  if (failed != 0) fail(path, "cannot be given its name");
   path_ = path;
-  const std::string folder = std::filesystem::path(path).parent_path();
-  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // the name is there; only a power cut could still take it away
-  ::fsync(descriptor);
-  ::close(descriptor);
+  sync_folder(path);
 }
 
 std::uint64_t JournaledFile::end() const {

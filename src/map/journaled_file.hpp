@@ -37,12 +37,15 @@ class JournaledFile {
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
   /// Throws IoError, for instance on a full disk; what was committed stays.
   void write(std::uint64_t offset, std::span<const std::byte> bytes);
-  /// All writes so far take effect, on disk when this returns, in a file `size` bytes long. Throws IoError.
-  void commit(std::uint64_t size);
+  /// How long the file is from the next commit on.
+  void resize(std::uint64_t size) { size_ = size; }
+  std::uint64_t size() const { return size_; }
+  /// All writes so far take effect, on disk when this returns, in a file size() bytes long. Throws IoError.
+  void commit();
   /// Drops what was not committed and gives its space back; from now on writes and commits do nothing.
   void abandon();
-  /// Gives the file another name, in place of an older file there, still locked. Throws IoError.
-  void rename(const std::string& path);
+  /// Gives the file another name, still locked, in place of an older file there if `replace`. Throws IoError.
+  void rename(const std::string& path, bool replace);
 
   /// Where the bytes written so far end.
   std::uint64_t end() const;
@@ -58,7 +61,7 @@ class JournaledFile {
   };
   void lock() const;
   void read_journal();
-  void write_journal(std::uint64_t size);
+  void write_journal();
   void make_waiting_writes();
 
   std::string path_;
@@ -66,6 +69,7 @@ class JournaledFile {
   int descriptor_ = -1;
   std::uint64_t committed_ = 0;  ///< bytes below it are not overwritten in place
   std::uint64_t stored_ = 0;     ///< bytes the file has on disk, a journal not counted
+  std::uint64_t size_ = 0;       ///< bytes it is to have after the next commit
   std::vector<Write> waiting_;   ///< in the order they came
   bool abandoned_ = false;
   bool journal_valid_ = false;  ///< the journal on disk is whole and must not be cut off

@@ -6,12 +6,17 @@
 
 #include <array>
 #include <limits>
+#include <numeric>
+
+#include "support/errors.hpp"
 
 namespace leapmap {
 namespace {
 
 using hdf5::check;
 using hdf5::Handle;
+
+constexpr const char* design_long_name = "number of the design in its list, from 0";
 
 void describe(hid_t dataset, std::string_view unit, std::string_view long_name) {
   hdf5::write_attribute(dataset, "long_name", long_name);
@@ -39,7 +44,7 @@ std::vector<Handle> write_scales(hid_t file, const MapLayout& layout, std::size_
     scales.push_back(hdf5::create_dataset(file, {"design", H5T_STD_I64LE, {&count, 1}}));
     check(H5Dwrite(scales[0], H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
           "writing design");
-    describe(scales[0], "1", "number of the design in its list, from 0");
+    describe(scales[0], "1", design_long_name);
   }
   for (std::size_t i = 0; i < scales.size(); ++i)
     check(H5DSset_scale(scales[i], layout.axes.empty() ? "design" : layout.axes[i].name.c_str()),
@@ -126,6 +131,29 @@ void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling) {
   for (const MapAxis& column : layout.columns) attach(write_values(file, column), scales);
   for (const Field* field : layout.fields) attach(create_field(file, *field, layout, tiling), scales);
   write_nexus(file, layout);
+}
+
+void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling) {
+  const auto check_one = [&](const std::string& name, const std::string& unit, const std::string& long_name,
+                             const std::vector<double>& values) {
+    const Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "opening " + name);
+    bool same =
+        hdf5::read_text(dataset, "units") == unit && hdf5::read_text(dataset, "long_name") == long_name;
+    if (!values.empty()) {
+      same = same && hdf5::shape_of(dataset) == std::vector<hsize_t>{values.size()} &&
+             hdf5::read_block(dataset, {0}, {values.size()}, "reading " + name) == values;
+    }
+    if (!same) throw BrokenFile(name + " is not what was written");
+  };
+  for (const auto* axes : {&layout.axes, &layout.columns})
+    for (const MapAxis& axis : *axes) check_one(axis.name, axis.unit, axis.long_name, axis.values);
+  if (layout.axes.empty()) {
+    std::vector<double> numbers(tiling.designs());
+    std::iota(numbers.begin(), numbers.end(), 0.0);
+    check_one("design", "1", design_long_name, numbers);
+  }
+  for (const Field* field : layout.fields)
+    check_one(std::string(field->name), std::string(field->unit), std::string(field->long_name), {});
 }
 
 std::vector<Handle> open_fields(hid_t file, const MapLayout& layout) {

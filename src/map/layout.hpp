@@ -39,6 +39,10 @@ std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling);
 /// Creates every dataset in an empty file and writes axes and columns. Throws IoError.
 void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling);
 
+/// Throws BrokenFile, saying what, unless axes, columns and descriptions in a file are those that lay_out
+/// writes.
+void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling);
+
 /// The datasets of the layout's fields, in its order. Throws IoError.
 std::vector<hdf5::Handle> open_fields(hid_t file, const MapLayout& layout);
 

@@ -51,6 +51,8 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
         "--overwrite to start anew",
         writer.part_));
   writer.file_ = hdf5::File::create(writer.part_);
+  writer.begun_ = true;
+  writer.replace_ = overwrite;
   refuse_existing_map(path, overwrite);  // again, now that nobody else can make it
   hdf5::annotate(writer.file_, attributes);
   lay_out(writer.file_, layout, tiling);
@@ -64,7 +66,7 @@ MapWriter MapWriter::resume(const std::string& path, const MapLayout& layout, co
                             bool overwrite) {
   refuse_existing_map(path, overwrite);
   MapWriter writer(path, layout, tiling);
-  writer.committed_ = true;
+  writer.replace_ = overwrite;
   writer.file_ = hdf5::File::change(writer.part_);
   return writer;
 }
@@ -72,23 +74,23 @@ MapWriter MapWriter::resume(const std::string& path, const MapLayout& layout, co
 MapWriter::~MapWriter() {
   if (!file_.is_open()) return;
   datasets_.clear();
+  if (committed_ == 0 && begun_) ::unlink(part_.c_str());  // while it is still ours
   file_.abandon();
-  if (!committed_) ::unlink(part_.c_str());
 }
 
 void MapWriter::verify() {
-  const std::string unusable = part_ + ": cannot be gone on with: ";
   const auto one = [&](const char* name) {
     const std::vector<std::int64_t> values = hdf5::read_integers(file_, name);
-    if (values.size() != 1) throw IoError(fmt::format("{}{} is not one number", unusable, name));
+    if (values.size() != 1) throw BrokenFile(fmt::format("{}: {} is not one number", part_, name));
     return values[0];
   };
+  check_layout(file_, *layout_, *tiling_);
   const std::int64_t tiles = hdf5::has_attribute(file_, tiles_attribute)
                                  ? one(tiles_attribute)
                                  : static_cast<std::int64_t>(tiling_->size());
   const std::vector<std::int64_t> statuses = hdf5::read_integers(file_, statuses_attribute);
   if (tiles < 0 || static_cast<std::size_t>(tiles) > tiling_->size() || statuses.size() != status_count)
-    throw IoError(unusable + "what it says of itself does not fit its spec");
+    throw BrokenFile(part_ + ": what it says of itself does not fit its spec");
   progress_.tiles = static_cast<std::size_t>(tiles);
   std::ranges::copy(statuses, progress_.statuses.begin());
   progress_.seconds = hdf5::read_number(file_, seconds_attribute);
@@ -100,15 +102,15 @@ void MapWriter::verify() {
     for (const hdf5::Handle& dataset : datasets_) {
       hsize_t size = 0;
       std::uint32_t skipped_filters = 0;
-      check(H5Dget_chunk_storage_size(dataset, place.data(), &size), unusable + "reading a tile");
+      check(H5Dget_chunk_storage_size(dataset, place.data(), &size), part_ + ": reading a tile");
       bytes.resize(size);
       check(H5Dread_chunk(dataset, H5P_DEFAULT, place.data(), &skipped_filters, bytes.data()),
-            unusable + "reading a tile");
+            part_ + ": reading a tile");
       checksum_ = checksum_of(checksum_, bytes, skipped_filters);
     }
   }
-  if (checksum_ != one(checksum_attribute))
-    throw IoError(unusable + "its tiles are not what was written; allowed: --overwrite to start anew");
+  if (checksum_ != one(checksum_attribute)) throw BrokenFile(part_ + ": its tiles are not what was written");
+  committed_ = progress_.designs();
 }
 
 void MapWriter::write(const EncodedTile& tile) {
@@ -139,7 +141,7 @@ void MapWriter::write_progress() {
 void MapWriter::commit() {
   write_progress();
   file_.flush();
-  committed_ = committed_ || progress_.tiles > 0;
+  committed_ = progress_.designs();
 }
 
 void MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
@@ -148,13 +150,14 @@ void MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
   hdf5::annotate(file_, attributes);
   hdf5::remove_attribute(file_, tiles_attribute);
   datasets_.clear();
-  file_.finish(path_);
+  file_.finish(path_, replace_);
 }
 
 void MapWriter::keep() {
   commit();
   datasets_.clear();
-  file_.finish(part_);
+  file_.close();
+  file_ = {};
 }
 
 }  // namespace leapmap

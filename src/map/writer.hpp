@@ -35,20 +35,23 @@ class MapWriter {
   /// written.
   static MapWriter begin(const std::string& path, const MapLayout& layout, const Tiling& tiling,
                          std::span<const hdf5::Attribute> attributes, bool overwrite);
-  /// Goes on with FILE.part, as of its last commit. Throws as begin does, and IoError if it is not whole.
+  /// Opens FILE.part, as of its last commit, to go on with it after verify. Throws as begin does, and
+  /// BrokenFile if it is not whole.
   static MapWriter resume(const std::string& path, const MapLayout& layout, const Tiling& tiling,
                           bool overwrite);
-  /// Without finish or keep before it: FILE.part is left as of its last commit, or removed if that holds no
-  /// tile.
+  /// Without finish or keep before it: FILE.part is left as of its last commit, or removed if it is new and
+  /// that holds no tile.
   ~MapWriter();
   MapWriter(MapWriter&&) = default;
 
-  /// Reads the tiles that are there again. Throws IoError if they are not what was written.
+  /// Reads all that is there again. Throws BrokenFile if it is not what was written.
   void verify();
   /// Stores the next tile. One thread at a time.
   void write(const EncodedTile& tile);
   /// Brings all tiles so far to disk at once. Throws IoError if the disk is full: what was committed stays.
   void commit();
+  /// Designs that FILE.part keeps whatever happens.
+  std::size_t committed() const { return committed_; }
   /// What was written so far; `seconds` is for the caller to count.
   const MapProgress& progress() const { return progress_; }
   void set_seconds(double seconds) { progress_.seconds = seconds; }
@@ -71,7 +74,9 @@ class MapWriter {
   std::vector<hdf5::Handle> datasets_;
   MapProgress progress_;
   std::uint32_t checksum_ = 0;  ///< of all chunks so far
-  bool committed_ = false;      ///< FILE.part is worth keeping
+  std::size_t committed_ = 0;   ///< designs
+  bool begun_ = false;          ///< FILE.part is of this writer's making
+  bool replace_ = false;        ///< FILE may be there
 };
 
 /// The name of a map while it is not whole.

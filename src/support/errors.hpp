@@ -17,4 +17,9 @@ struct IoError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A file that is not what it should be: an IoError that writing it anew would cure.
+struct BrokenFile : IoError {
+  using IoError::IoError;
+};
+
 }  // namespace leapmap

@@ -101,36 +101,41 @@ std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, c
   std::vector<AuditSample> samples;
   for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile)) {
     samples.push_back({tiling.number(tile, drawn), outcomes[drawn]});
-    if (spec.output.precision != "f4") continue;
-    for (const Field& field : map_fields())
-      if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
-        double& value = samples.back().outcome.*quantity->member;
-        value = static_cast<float>(value);
-      }
+    for (const Field& field : map_fields()) {
+      const auto* quantity = std::get_if<Quantity>(&field.source);
+      if (!quantity) continue;
+      double& value = samples.back().outcome.*quantity->member;
+      const double unit = quantity->is_time ? time_unit(spec.scene) : 1.0, stored = value * unit;
+      value = (spec.output.precision == "f4" ? static_cast<float>(stored) : stored) / unit;
+    }
   }
   return samples;
 }
 
 std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
-                                       const Solver& solve, const MapReader& map) {
-  const std::vector<std::size_t> drawn = audit_draw(spec.numerics.audit, tiling, tile);
+                                       const Solver& solve) {
   std::vector<AuditSample> samples;
   const DesignSpace space(spec);
-  for (const std::size_t index : drawn) {
-    samples.push_back({tiling.number(tile, index), {}});
+  for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile)) {
+    samples.push_back({tiling.number(tile, drawn), {}});
     const Design design = space.at(samples.back().number);
     solve({&design, 1}, {&samples.back().outcome, 1});
   }
-  if (samples.empty()) return samples;
+  return samples;
+}
+
+void take_quantities(const MapReader& map, const Spec& spec, const Tiling& tiling, const Tile& tile,
+                     std::span<AuditSample> samples) {
+  if (samples.empty()) return;
+  const std::vector<std::size_t> drawn = audit_draw(spec.numerics.audit, tiling, tile);
   for (const Field& field : map_fields()) {
     const auto* quantity = std::get_if<Quantity>(&field.source);
     if (!quantity || !stores(spec.output, field.name)) continue;
     const std::vector<double> values = map.read(std::string(field.name), tile);
     const double unit = quantity->is_time ? time_unit(spec.scene) : 1.0;
-    for (std::size_t i = 0; i < drawn.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
       samples[i].outcome.*quantity->member = values[drawn[i]] / unit;
   }
-  return samples;
 }
 
 std::string audit_method(const Numerics& numerics) {

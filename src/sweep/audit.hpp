@@ -33,9 +33,12 @@ std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, c
                                        std::span<const Outcome> outcomes);
 
 /// The samples of a tile that is in the map already: its designs solved again, for the flags, which are the
-/// same alone and among others, with the quantities that the map holds.
+/// same alone and among others. The quantities, whose last bits may not be, are then to be taken from the
+/// map.
 std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
-                                       const Solver& solve, const MapReader& map);
+                                       const Solver& solve);
+void take_quantities(const MapReader& map, const Spec& spec, const Tiling& tiling, const Tile& tile,
+                     std::span<AuditSample> samples);
 
 /// What the two methods disagree on.
 struct AuditReport {

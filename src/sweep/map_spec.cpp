@@ -68,7 +68,7 @@ std::optional<std::string> first_difference(const Spec& original_there, const Sp
   if (keys(there) != keys(here))
     return fmt::format("its axes are [{}] there and [{}] here", keys(there), keys(here));
   for (const Option& option : spec_options()) {
-    if (only_designs && option.section == "numerics") continue;
+    if (only_designs && option.section != "scene" && option.section != "design") continue;
     const auto a = numbers_of(there, option), b = numbers_of(here, option);
     const auto c = texts_of(there, option), d = texts_of(here, option);
     if (a != b || c != d)

@@ -15,7 +15,7 @@ namespace leapmap {
 Spec spec_of(const MapReader& map, const std::string& origin);
 
 /// In words, the first key in which `here` differs from `there`; none if both give the same map. output.file
-/// does not count; with only_designs, neither does [numerics].
+/// does not count; with only_designs, nothing but [scene] and [design] does.
 std::optional<std::string> first_difference(const Spec& there, const Spec& here, bool only_designs = false);
 
 }  // namespace leapmap

@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <vector>
 
 #include "map/reader.hpp"
 #include "map/schema.hpp"
+#include "map/writer.hpp"
 #include "support/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
@@ -64,10 +66,9 @@ void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Faile
   }
 }
 
-/// Settles every failed design of the copy and says so in it. Empty if there was none, or a stop was
-/// requested.
-RetryReport settle_all(const hdf5::File& file, const std::string& path, const Spec& spec, int threads,
-                       const std::function<bool()>& stop_requested) {
+/// Settles every failed design of the copy and says so in it. Nothing: a stop was requested.
+std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string& path, const Spec& spec,
+                                      int threads, const std::function<bool()>& stop_requested) {
   constexpr std::size_t most_at_once = 100'000;
   const MapReader map(path, file);
   if (!map.is_whole()) throw InputError(path + ": is not whole; allowed: a whole map, by sweep --resume");
@@ -98,12 +99,14 @@ RetryReport settle_all(const hdf5::File& file, const std::string& path, const Sp
       }
     }
     if (waiting.size() >= most_at_once || t + 1 == tiling.size()) settle();
-    if (stop_requested && stop_requested()) return {};
+    if (stop_requested && stop_requested()) return std::nullopt;
   }
   report.still_failed = static_cast<std::size_t>(report.statuses[static_cast<std::size_t>(Status::failed)]);
   hdf5::remove_attribute(file, "tiles_checksum");  // of the tiles as they were
   hdf5::write_attribute(file, "status_counts", report.statuses);
-  hdf5::write_attribute(file, "retry_designs", static_cast<std::int64_t>(report.retried));
+  const std::int64_t before =
+      hdf5::has_attribute(file, "retry_designs") ? hdf5::read_integers(file, "retry_designs")[0] : 0;
+  hdf5::write_attribute(file, "retry_designs", before + static_cast<std::int64_t>(report.retried));
   hdf5::write_attribute(file, "retry_method", resolved_method(spec.numerics));
   hdf5::write_attribute(file, "retry_tolerance", spec.numerics.tolerance);
   return report;
@@ -122,17 +125,19 @@ Numerics retry_numerics(const Numerics& there, const Numerics& here) {
   return numerics;
 }
 
-RetryReport retry_failed(const std::string& path, const Spec& spec, int threads,
-                         const std::function<bool()>& stop_requested) {
-  const std::string copy = path + ".retry";
+std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spec, int threads,
+                                        const std::function<bool()>& stop_requested) {
+  const std::string copy = part_of(path);
+  if (std::error_code ignored; std::filesystem::exists(copy, ignored) && !hdf5::File::blank(copy))
+    throw InputError(copy + ": is what an interrupted sweep left; allowed: --resume first, or its removal");
   hdf5::File file = hdf5::File::copy(path, copy);
   const auto discard = [&] {
+    ::unlink(copy.c_str());  // while it is still ours
     file.abandon();
-    ::unlink(copy.c_str());
   };
   try {
-    const RetryReport report = settle_all(file, path, spec, threads, stop_requested);
-    report.retried > 0 ? file.finish(path) : discard();
+    const auto report = settle_all(file, path, spec, threads, stop_requested);
+    report && report->retried > 0 ? file.finish(path) : discard();
     return report;
   } catch (...) {
     discard();

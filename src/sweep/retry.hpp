@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "sweep/spec.hpp"
@@ -22,11 +23,11 @@ struct RetryReport {
 /// by the method that audits it.
 Numerics retry_numerics(const Numerics& there, const Numerics& here);
 
-/// Solves the designs with status failed in the map `path` again, spec.numerics saying how, and stores what
-/// comes out: on a copy, PATH.retry, which takes the map's place once it is whole. All else in the map stays.
-/// Throws InputError if the map is not whole, holds no status, or is in use; IoError. Once stop_requested,
-/// the map stays as it was and the report is empty.
-RetryReport retry_failed(const std::string& path, const Spec& spec, int threads,
-                         const std::function<bool()>& stop_requested = {});
+/// Solves the designs with status failed in the map `path`, which is of this spec, again, spec.numerics
+/// saying how, and stores what comes out: on a copy, PATH.part, which takes the map's place once it is whole.
+/// All else in the map stays. Throws InputError if the map is not whole, holds no status, or is in use;
+/// IoError. Nothing: stopped on request, and the map is as it was.
+std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spec, int threads,
+                                        const std::function<bool()>& stop_requested = {});
 
 }  // namespace leapmap

@@ -69,7 +69,8 @@ std::vector<Bytes> write_rounds(const std::string& path, unsigned seed) {
     file.write(0, stamp);
     put(model, 0, stamp);
     if (round == 3) model.resize(model.size() - model.size() / 4);  // HDF5 gives space back now and then
-    file.commit(model.size());
+    file.resize(model.size());
+    file.commit();
     states.push_back(model);
     EXPECT_EQ(content_of(file, model.size()), model);
   }
@@ -203,13 +204,15 @@ TEST(JournaledFile, KeepsItsLastCommitWhenTheDiskIsFull) {
     JournaledFile file(folder / "file", Access::create);
     put(committed, 0, Bytes(100, std::byte{7}));
     file.write(0, committed);
-    file.commit(100);
+    file.resize(100);
+    file.commit();
     file.write(50, Bytes(10, std::byte{8}));
     file.write(100, Bytes(10, std::byte{8}));
     testing::before_system_call = [](const testing::SystemCall& call) {
       if (call.kind == testing::SystemCall::Kind::write) throw IoError("no space left");
     };
-    EXPECT_THROW(file.commit(110), IoError);
+    file.resize(110);
+    EXPECT_THROW(file.commit(), IoError);
     testing::before_system_call = nullptr;
   }
   EXPECT_EQ(bytes_of(folder / "file"), committed);

@@ -47,7 +47,7 @@ TEST(Retry, SettlesTheFailedByAnotherMethodAndLeavesTheRest) {
 
   spec.numerics = retry_numerics(spec.numerics, spec.numerics);
   EXPECT_EQ(spec.numerics.method, "exact");
-  const RetryReport report = retry_failed(folder / "map.h5", spec, 2);
+  const RetryReport report = retry_failed(folder / "map.h5", spec, 2).value();
   EXPECT_EQ(report.retried, static_cast<std::size_t>(failed));
   EXPECT_EQ(report.still_failed, 0u);
   EXPECT_EQ(std::accumulate(report.statuses.begin(), report.statuses.end(), std::int64_t{0}), 600);
@@ -69,7 +69,7 @@ TEST(Retry, SettlesTheFailedByAnotherMethodAndLeavesTheRest) {
       EXPECT_EQ(after[i], before[i]);
     }
   EXPECT_EQ(hdf5::read_integers(map.file(), "retry_designs")[0], failed);
-  EXPECT_FALSE(std::filesystem::exists(folder / "map.h5.retry"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "map.h5.part"));
 }
 
 TEST(Retry, OfAMapWithoutStatusOrUnfinishedIsRefusedAndLeavesNothingBehind) {
@@ -78,7 +78,7 @@ TEST(Retry, OfAMapWithoutStatusOrUnfinishedIsRefusedAndLeavesNothingBehind) {
   EXPECT_THROW(retry_failed(folder / "bare.h5", bare, 1), InputError);
   const Spec whole = sweep(folder / "whole.h5", {});
   const auto written = std::filesystem::last_write_time(folder / "whole.h5");
-  EXPECT_EQ(retry_failed(folder / "whole.h5", whole, 1).retried, 0u);
+  EXPECT_EQ(retry_failed(folder / "whole.h5", whole, 1)->retried, 0u);
   EXPECT_EQ(std::filesystem::last_write_time(folder / "whole.h5"), written)
       << "nothing failed: nothing is touched";
   EXPECT_THROW(retry_failed(folder / "nowhere.h5", whole, 1), IoError);
@@ -92,7 +92,7 @@ TEST(Retry, StoppedItLeavesTheMapAsItWas) {
   const Tile all{{0, 0}, {20, 30}, 600};
   const auto before = MapReader(folder / "map.h5").read("status", all);
   spec.numerics = retry_numerics(spec.numerics, spec.numerics);
-  EXPECT_EQ(retry_failed(folder / "map.h5", spec, 1, [] { return true; }).retried, 0u);
+  EXPECT_FALSE(retry_failed(folder / "map.h5", spec, 1, [] { return true; }));
   EXPECT_EQ(MapReader(folder / "map.h5").read("status", all), before);
 }
 
