@@ -7,6 +7,7 @@ with stalled, airborne, failed and not computed designs told apart; a star at th
 jump_time; spurious_first_jump, jump_angle (gaps at cliffs) and status are drawn if the map has them.
 """
 import math
+import sys
 
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap, PowerNorm
@@ -123,7 +124,9 @@ def chart(m, name):
         meaning = {c: i for c, i in zip(m.about["status"]["flag_meanings"].split(), m.about["status"]["flag_values"])}
         told = [{c: plane == meaning[c] for c in STATUSES} for _, plane in planes("status")]
     else:
-        told = [{c: np.isnan(plane) & (c == "no_jump") for c in STATUSES} for _, plane in panels]
+        m.fields["computed"] = m.computed()
+        told = [{c: np.isnan(plane) & ((done & (c == "no_jump")) | (~done & (c == "not_computed"))) for c in STATUSES}
+                for (_, plane), (_, done) in zip(panels, planes("computed"))]
     fixed = m.numbers()
 
     columns = min(4, len(panels))
@@ -145,6 +148,8 @@ def chart(m, name):
         axis.set_title("\n".join(titled(k, v) for k, v in where.items()))
     for axis in axes.flat[len(panels):]:
         axis.set_visible(False)
+    if not m.whole:
+        figure.text(0.01, 0.01, f"INCOMPLETE: {m.computed().mean():.0%} of the designs are computed", color=style.MARK, fontsize=9)
     figure.supxlabel(f"slope [degrees]\n{caption(fixed, columns)}", fontsize=9)
     figure.supylabel("mass ratio mₚ/m", fontsize=9)
     bar = figure.colorbar(filled, ax=axes, label=label, ticks=levels, shrink=0.9, pad=0.015)
@@ -168,6 +173,8 @@ def main():
     drawn = [name for name in FIELDS if name in m.fields]
     if not drawn:
         raise NotAMap(f"{m.path}: has no {' or '.join(FIELDS)}; a design chart wants one of them")
+    if not m.whole:
+        print(f"{m.path}: INCOMPLETE, {m.computed().mean():.0%} of its designs are computed; the others are left white", file=sys.stderr)
     for name in drawn:
         style.save(chart(m, name), f"{style.stem(arguments.output)}_{name}")
 

@@ -26,11 +26,24 @@ class Map:
     dims: dict = field(default_factory=dict)  # name -> values, in the order of the fields' dimensions
     fields: dict = field(default_factory=dict)  # name -> array
     about: dict = field(default_factory=dict)  # name -> its attributes (units, long_name, ...)
+    tile: tuple = ()  # how many designs a chunk holds along each axis
 
     @property
     def whole(self):
         """False for the .part that a stopped sweep left: designs not computed are holes, status not_computed."""
         return "tiles_done" not in self.attributes
+
+    def computed(self):
+        """Where designs are computed, as a boolean array; in a whole map, everywhere. Fields without status hold the same
+        values where a design does not jump and where it was not computed yet."""
+        shape = [len(v) for v in self.dims.values()]
+        if self.whole:
+            return np.ones(shape, bool)
+        tiles = [-(-n // k) for n, k in zip(shape, self.tile)]
+        done = (np.arange(np.prod(tiles)) < self.attributes["tiles_done"]).reshape(tiles)  # tiles come in C order
+        for axis, k in enumerate(self.tile):
+            done = np.repeat(done, k, axis)
+        return done[tuple(slice(n) for n in shape)]
 
     def code(self, name, meaning):
         """Where the code `name` has this meaning."""
@@ -70,6 +83,7 @@ def _read(path, filetype):
             if h5py.h5ds.is_scale(dataset.id):
                 continue
             result.fields[name] = dataset[()]
+            result.tile = dataset.chunks or result.tile
             for dimension in dataset.dims:  # the order of dimensions is the fields' own
                 scale = dimension[0]
                 result.dims.setdefault(scale.name.lstrip("/"), scale[()])

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "cli/commands.hpp"
@@ -69,13 +70,19 @@ Summary summarise(const MapReader& map, const std::string& name) {
   return summary;
 }
 
+/// A value of a dimension; a design's number whole.
+std::string coordinate(const MapReader::Dimension& dimension, std::size_t position) {
+  const double value = dimension.values[position];
+  return dimension.name == "design" ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value);
+}
+
 std::string place(const MapReader& map, std::size_t design) {
   std::vector<std::size_t> position;
   unravel(design, map.shape(), position);
   std::vector<std::string> coordinates;
   for (std::size_t i = 0; i < position.size(); ++i) {
     const auto& dimension = map.dimensions()[i];
-    coordinates.push_back(fmt::format("{} {:.6g}", dimension.name, dimension.values[position[i]]));
+    coordinates.push_back(fmt::format("{} {}", dimension.name, coordinate(dimension, position[i])));
   }
   return fmt::format("{}", fmt::join(coordinates, ", "));
 }
@@ -107,11 +114,35 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
   if (failed > arguments.limit)
     fmt::print("# and {} more (--limit {})\n", grouped(failed - arguments.limit), failed);
   fmt::print("# {} failed designs{}\n", grouped(failed),
-             failed > 0 ? "; leapmap sweep --retry-failed solves them again by another method" : "");
+             failed > 0
+                 ? fmt::format("; solve them again by: leapmap info --spec {0} > spec.toml && leapmap sweep "
+                               "spec.toml -o {0} --retry-failed",
+                               quoted(arguments.path))
+                 : "");
   return 0;
 }
 
+/// How much of a stopped sweep's map is there, and how to go on.
+void print_incomplete(const MapReader& map, const std::string& part) {
+  std::size_t designs = 1, done = 0;
+  for (const std::size_t extent : map.shape()) designs *= extent;
+  for (const std::int64_t count : hdf5::read_integers(map.file(), "status_counts"))
+    done += static_cast<std::size_t>(count);
+  const std::string name = part.ends_with(".part") ? part.substr(0, part.size() - 5) : part;
+  fmt::print(
+      "INCOMPLETE: {} of {} designs, {:.3g} %; the others are holes; go on by: leapmap sweep SPEC.toml -o {} "
+      "--resume\n",
+      grouped(done), grouped(designs), 100.0 * static_cast<double>(done) / static_cast<double>(designs),
+      quoted(name));
+}
+
 int run(const InfoArguments& arguments) {
+  std::error_code ignored;
+  if (const std::string part = arguments.path + ".part";
+      !std::filesystem::exists(arguments.path, ignored) && std::filesystem::exists(part, ignored))
+    throw IoError(
+        fmt::format("{}: is not there yet, only {}: ask for that, or end it by leapmap sweep --resume",
+                    arguments.path, part));
   const MapReader map(arguments.path);
   if (arguments.only_spec) {
     fmt::print("{}", map.attribute("spec"));
@@ -128,14 +159,13 @@ int run(const InfoArguments& arguments) {
   fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {} s\n", map.attribute("date"),
              map.attribute("host"), map.attribute("program_version"), map.attribute("git_revision"),
              map.attribute("threads"), short_form("wall_time", ".3g"));
-  if (!map.is_whole())
-    fmt::print(
-        "INCOMPLETE: what a sweep left that was stopped; designs not computed are holes (sweep --resume)\n");
+  if (!map.is_whole()) print_incomplete(map, arguments.path);
   fmt::print("method {}, tolerance {}\n", map.attribute("method"), map.attribute("tolerance"));
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
     fmt::print(
-        "audit: {} designs again by {}: height within {} diameters, time within {} relative, {} flags "
+        "audit{}: {} designs again by {}: height within {} diameters, time within {} relative, {} flags "
         "differ, {} errors beyond the tolerance, {} designs nobody can decide\n",
+        hdf5::has_attribute(map.file(), "retry_designs") ? " (before failed designs were retried)" : "",
         audited, map.attribute("audit_method"), short_form("audit_max_abs_height_error", ".1e"),
         short_form("audit_max_rel_time_error", ".1e"), map.attribute("audit_flag_mismatches"),
         map.attribute("audit_beyond_tolerance"), map.attribute("audit_undecided"));

@@ -33,10 +33,11 @@ std::vector<hdf5::Attribute> run_audit(const Spec& spec, std::span<const AuditSa
   if (!arguments.quiet)
     fmt::print(
         "audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
-        "differ{}\n",
+        "differ{}{}\n",
         grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
         report.flag_mismatches,
-        report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "");
+        report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "",
+        report.failed > 0 ? fmt::format("; {} failed, not compared", report.failed) : "");
   const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (!design) return;
     status = 1;
@@ -127,7 +128,7 @@ int fill(const SweepArguments& arguments, const Spec& spec, const MapLayout& lay
   if (noted_signal() != 0) {
     writer.keep();
     tell(fmt::format("interrupted after {} of {} designs, which {} keeps; go on by: {}", grouped(done),
-                     grouped(tiling.designs()), part_of(map), resume_command(arguments, map)));
+                     grouped(tiling.designs()), part_of(map), sweep_command(arguments, map, "--resume")));
     return 128 + noted_signal();
   }
   writer.finish(closing);
@@ -135,8 +136,10 @@ int fill(const SweepArguments& arguments, const Spec& spec, const MapLayout& lay
   fmt::print("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done - already),
              spoken_duration(solving), static_cast<double>(done - already) / solving,
              thread_count(arguments.threads), resolved_method(spec.numerics));
-  if (already > 0) fmt::print("resumed  {} designs were there already\n", grouped(already));
   print_totals(writer.progress().statuses);
+  if (writer.progress().statuses[static_cast<std::size_t>(Status::failed)] > 0)
+    fmt::print("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", quoted(map),
+               sweep_command(arguments, map, "--retry-failed"));
   fmt::print("map      {}\n", map);
   return status;
 }
@@ -146,9 +149,8 @@ int run(const SweepArguments& arguments) {
   const std::string map = behind_links(arguments.map.empty() ? spec.output.file : arguments.map);
   const Tiling tiling(shape_of(spec));
   const MapLayout layout = layout_of(spec);
-  const int threads = thread_count(arguments.threads);
   if (arguments.dry_run) {
-    print_plan(spec, map, tiling, threads);
+    print_plan(arguments, spec, map, tiling);
     return 0;
   }
   if (map.empty())
@@ -161,16 +163,24 @@ int run(const SweepArguments& arguments) {
   }
 
   std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
-  opening.emplace_back("threads", std::int64_t{threads});
+  opening.emplace_back("threads", std::int64_t{thread_count(arguments.threads)});
   MapWriter writer = open_map(arguments, map, spec, layout, tiling, opening);
   note_signals();
+  if (arguments.resume && !arguments.quiet) {
+    const std::size_t there = writer.progress().designs();
+    fmt::print("resumed  {}\n", there > 0
+                                    ? fmt::format("{} of {} designs were there already", grouped(there),
+                                                  grouped(tiling.designs()))
+                                    : fmt::format("nothing to go on with in {}: begun anew", part_of(map)));
+    std::fflush(stdout);
+  }
   try {
     return fill(arguments, spec, layout, tiling, map, writer);
   } catch (const IoError& error) {
-    if (writer.committed() == 0) throw;
+    if (writer.committed() == 0) throw IoError(fmt::format("{}; nothing is kept", error.what()));
     throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by: {}",
                               error.what(), grouped(writer.committed()), grouped(tiling.designs()),
-                              resume_command(arguments, map)));
+                              sweep_command(arguments, map, "--resume")));
   }
 }
 
@@ -187,7 +197,8 @@ void add_sweep(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("sweep", "solve the designs of a spec into a map (HDF5)");
   auto arguments = std::make_shared<SweepArguments>();
   command->add_option("SPEC", arguments->spec, "the sweep's spec, TOML")->required();
-  command->add_option("-o,--output", arguments->map, "the map to write; default: output.file of the spec");
+  command->add_option("-o,--output", arguments->map,
+                      "the map to write, in a folder made if need be; default: output.file of the spec");
   command
       ->add_option("--set", arguments->overrides,
                    "KEY=VALUE: override a key of the spec, for example --set tolerance=1e-12")
@@ -202,8 +213,10 @@ void add_sweep(CLI::App& app, int& status) {
   command
       ->add_flag(
           "--retry-failed", arguments->retry_failed,
-          "solve the failed designs of an existing map again: by the spec's method if it is not the map's, "
-          "else by the other one")
+          "solve the failed designs of an existing map again: by exact if it was made by a stepper, by "
+          "gsl-rk8pd if it was made by exact, at tolerance 1e-12; or as --set says, if that is another way "
+          "than "
+          "the map's (method, tolerance, max_steps, ...)")
       ->excludes(resume);
   command
       ->add_option("--commit-interval", arguments->commit_interval,
@@ -213,7 +226,15 @@ void add_sweep(CLI::App& app, int& status) {
   command->add_flag("--dry-run", arguments->dry_run,
                     "tell designs, memory, file size and time, and compute nothing else");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
-  command->footer(options_help());
+  command->footer(
+      "Examples:\n"
+      "  leapmap sweep s.toml -o m.h5 --dry-run                  what it would take\n"
+      "  leapmap sweep s.toml -o m.h5                            Ctrl-C stops it and keeps m.h5.part\n"
+      "  leapmap sweep s.toml -o m.h5 --resume                   goes on with m.h5.part\n"
+      "  leapmap sweep s.toml -o m.h5 --retry-failed             solves failed designs again\n"
+      "  leapmap sweep s.toml -o n.h5 --set 'slope={from=0.1,to=0.8,count=99}' --set "
+      "output.precision=f4\n\n" +
+      options_help());
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "map/writer.hpp"
@@ -20,9 +21,10 @@ struct SweepArguments {
   bool resume = false, overwrite = false, retry_failed = false, dry_run = false, quiet = false;
 };
 
-/// --dry-run: prints designs, fields, memory, file size and time; times a sample of designs for half a
-/// second.
-void print_plan(const Spec& spec, const std::string& map, const Tiling& tiling, int threads);
+/// --dry-run: prints what is there, designs, fields, memory, file size and time; times a sample of designs
+/// for half a second.
+void print_plan(const SweepArguments& arguments, const Spec& spec, const std::string& map,
+                const Tiling& tiling);
 
 /// Begins a map, or goes on with what an earlier sweep left of it. opening: the root's attributes of a new
 /// one.
@@ -35,8 +37,11 @@ bool is_done(const SweepArguments& arguments, const std::string& map, const Spec
 /// The file behind a symbolic link, which is to stay one; any other name as it is.
 std::string behind_links(const std::string& map);
 
-/// What the user types to go on with an interrupted sweep.
-std::string resume_command(const SweepArguments& arguments, const std::string& map);
+/// What the user types to sweep into that map again, with `how`: "--resume" or "--retry-failed".
+std::string sweep_command(const SweepArguments& arguments, const std::string& map, std::string_view how);
+
+/// What a map, or the .part of one, holds: designs by how they ended, counted in all of its tiles.
+std::array<std::int64_t, status_count> counted_in(const MapReader& map);
 
 /// --retry-failed: solves an existing map's failed designs again. Returns the exit status.
 int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::string& map);

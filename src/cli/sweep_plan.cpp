@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <numeric>
 
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
@@ -9,12 +11,44 @@
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
 #include "sweep/map_layout.hpp"
+#include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
 
-void print_plan(const Spec& spec, const std::string& map, const Tiling& tiling, int threads) {
+namespace {
+
+/// What lies where the map is to be, and what the sweep would make of it. Returns how many designs need not
+/// be solved again.
+std::size_t print_existing(const SweepArguments& arguments, const std::string& map) {
+  std::error_code ignored;
+  if (std::filesystem::exists(map, ignored) && !arguments.overwrite)
+    fmt::print("there    {} exists already: it is refused without --overwrite\n", map);
+  const std::string part = part_of(map);
+  if (!std::filesystem::exists(part, ignored) || hdf5::File::blank(part)) return 0;
+  const auto counts = counted_in(MapReader(part));
+  const auto designs =
+      static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
+  fmt::print("there    {} holds {} designs: {}\n", part, grouped(designs),
+             arguments.resume      ? "it is gone on with"
+             : arguments.overwrite ? "they are overwritten"
+                                   : "it is refused without --resume or --overwrite");
+  return arguments.resume ? designs : 0;
+}
+
+}  // namespace
+
+void print_plan(const SweepArguments& arguments, const Spec& spec, const std::string& map,
+                const Tiling& tiling) {
   const MapLayout layout = layout_of(spec);
+  const int threads = thread_count(arguments.threads);
   fmt::print("map      {}\n", map.empty() ? "(none: give -o or output.file)" : map);
+  if (arguments.retry_failed) {
+    const auto counts = counted_in(MapReader(map));
+    fmt::print("retry    {} failed designs\n",
+               grouped(static_cast<std::uint64_t>(counts[static_cast<std::size_t>(Status::failed)])));
+    return;
+  }
+  const std::size_t already = map.empty() ? 0 : print_existing(arguments, map);
   if (spec.axes.empty()) fmt::print("list     {} designs {}\n", grouped(spec.list.count), spec.list.path);
   for (const Axis& axis : spec.axes)
     fmt::print("axis     {} from {:.6g} to {:.6g}, {} values\n", axis.key, axis.values.front(),
@@ -36,7 +70,8 @@ void print_plan(const Spec& spec, const std::string& map, const Tiling& tiling, 
   fmt::print("memory   about {}, at most\n", spoken_bytes(memory));
   fmt::print("file     about {}{}\n", spoken_bytes(file),
              layout.compression > 0 ? " before compression" : "");
-  const double seconds = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs()) / threads;
+  const double seconds =
+      seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already) / threads;
   fmt::print("time     about {} on {} threads\n", spoken_duration(seconds), threads);
 }
 

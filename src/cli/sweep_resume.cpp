@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/spoken.hpp"
@@ -20,7 +21,7 @@ bool exists(const std::string& path) {
 /// as numbers depend on it.
 void refuse_other_beginning(const MapReader& part, const std::string& name, const Spec& spec,
                             std::span<const hdf5::Attribute> now) {
-  constexpr std::string_view allowed = "another -o, or --overwrite to start anew";
+  constexpr std::string_view allowed = "another -o, or --overwrite without --resume to start anew";
   if (hdf5::read_integers(part.file(), "version") != std::vector<std::int64_t>{format_major, format_minor})
     throw InputError(fmt::format("{}: has another format version; allowed: {}", name, allowed));
   for (const auto& [key, value] : now)
@@ -46,10 +47,22 @@ std::string behind_links(const std::string& map) {
   return path.string();
 }
 
-std::string resume_command(const SweepArguments& arguments, const std::string& map) {
-  std::string command = fmt::format("leapmap sweep {} -o {} --resume", quoted(arguments.spec), quoted(map));
+std::string sweep_command(const SweepArguments& arguments, const std::string& map, std::string_view how) {
+  std::string command = fmt::format("leapmap sweep {} -o {} {}", quoted(arguments.spec), quoted(map), how);
   for (const std::string& set : arguments.overrides) command += " --set " + quoted(set);
-  return command + (arguments.overwrite ? " --overwrite" : "");
+  if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
+  if (arguments.commit_interval != SweepArguments{}.commit_interval)
+    command += fmt::format(" --commit-interval {}", arguments.commit_interval);
+  if (how == "--resume" && exists(map))
+    command += " --overwrite";  // the older map, once the new one is whole
+  return command;
+}
+
+std::array<std::int64_t, status_count> counted_in(const MapReader& map) {
+  std::array<std::int64_t, status_count> counts{};
+  const std::vector<std::int64_t> read = hdf5::read_integers(map.file(), "status_counts");
+  std::copy_n(read.begin(), std::min(read.size(), counts.size()), counts.begin());
+  return counts;
 }
 
 MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
@@ -63,13 +76,17 @@ MapWriter open_map(const SweepArguments& arguments, const std::string& map, cons
     writer.verify();
     return writer;
   } catch (const BrokenFile& error) {
-    throw IoError(fmt::format("{}; it cannot be gone on with: --overwrite starts anew", error.what()));
+    throw IoError(
+        fmt::format("{}; it cannot be gone on with: --overwrite without --resume starts anew", error.what()));
   }
 }
 
 bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec) {
   if (!arguments.resume || arguments.overwrite || exists(part_of(map)) || !exists(map)) return false;
-  return !first_difference(spec_of(MapReader(map), map), spec);
+  if (const auto difference = first_difference(spec_of(MapReader(map), map), spec))
+    throw InputError(fmt::format(
+        "{}: exists already, of another spec: {}; allowed: another -o, or --overwrite", map, *difference));
+  return true;
 }
 
 }  // namespace leapmap::cli

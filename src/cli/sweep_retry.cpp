@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
@@ -12,6 +14,10 @@ namespace leapmap::cli {
 
 int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::string& map) {
   Spec there;
+  std::error_code ignored;
+  if (!std::filesystem::exists(map, ignored) && std::filesystem::exists(part_of(map), ignored))
+    throw InputError(fmt::format("{}: is not there yet, only {}; allowed: first {}", map, part_of(map),
+                                 sweep_command(arguments, map, "--resume")));
   {
     const MapReader reader(map);
     there = spec_of(reader, map);

@@ -157,6 +157,11 @@ AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int th
     return [&, rolling = std::make_unique<RollingIntegration>(adaptive("gsl-rk8pd", audit_tolerance)),
             exact = std::make_unique<ExactSolver<double>>(audit_tolerance)](std::size_t i) {
       const auto& [number, ours] = samples[i];
+      if (ours.status == Status::failed) {
+        const std::lock_guard lock(reporting);
+        ++report.designs, ++report.failed;
+        return !(stop_requested && stop_requested());
+      }
       const Design design = space.at(number);
       Outcome theirs;
       if (integrates) {

@@ -47,6 +47,7 @@ struct AuditReport {
   double max_abs_height_error =
       0.0;  ///< [hoop diameters], of jump, first lift-off and dip, where the flags agree
   double max_rel_time_error = 0.0;  ///< of the times to lift-off, apex and landing
+  std::size_t failed = 0;  ///< designs the sweep gave up on: their status says so, nothing is compared
   std::size_t flag_mismatches = 0;  ///< designs whose status, spurious flag or number of candidates differ
   /// Designs on which the audit's method gave up, or whose flags one unit in the last place of the inputs
   /// decides.

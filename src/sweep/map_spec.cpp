@@ -71,8 +71,12 @@ std::optional<std::string> first_difference(const Spec& original_there, const Sp
     if (only_designs && option.section != "scene" && option.section != "design") continue;
     const auto a = numbers_of(there, option), b = numbers_of(here, option);
     const auto c = texts_of(there, option), d = texts_of(here, option);
-    if (a != b || c != d)
-      return fmt::format("{}.{} is {} there and {} here", option.section, option.key, told(a, c), told(b, d));
+    if (a == b && c == d) continue;
+    const std::string key = fmt::format("{}.{}", option.section, option.key);
+    if (a.size() != b.size() || a.size() <= 1)
+      return fmt::format("{} is {} there and {} here", key, told(a, c), told(b, d));
+    const auto at = std::ranges::mismatch(a, b);
+    return fmt::format("value {} of {} is {} there and {} here", at.in1 - a.begin(), key, *at.in1, *at.in2);
   }
   return {};
 }

@@ -129,7 +129,7 @@ std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spe
                                         const std::function<bool()>& stop_requested) {
   const std::string copy = part_of(path);
   if (std::error_code ignored; std::filesystem::exists(copy, ignored) && !hdf5::File::blank(copy))
-    throw InputError(copy + ": is what an interrupted sweep left; allowed: --resume first, or its removal");
+    throw InputError(copy + ": is what an interrupted sweep left; allowed: first --resume, or remove it");
   hdf5::File file = hdf5::File::copy(path, copy);
   const auto discard = [&] {
     ::unlink(copy.c_str());  // while it is still ours

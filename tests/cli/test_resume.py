@@ -6,12 +6,13 @@ import resource
 import shutil
 import signal
 import subprocess
+import sys
 import time
 
 import h5py
 import numpy as np
 import pytest
-from support.program import PROGRAM, SMALL, finished, leapmap
+from support.program import PROGRAM, SMALL, TOP, finished, leapmap
 
 # About a second and a half on two cores, in some 800 tiles.
 SPEC = """
@@ -169,6 +170,39 @@ def test_ctrl_c_while_a_resumed_sweep_gathers_its_audit(tmp_path):
     assert tiles_done(tmp_path / "map.h5.part") == tiles
 
 
+def test_an_unfinished_map_tells_what_it_lacks(uninterrupted, tmp_path):
+    sys.path.insert(0, str(TOP / "analysis"))
+    from read_map import read_map
+    (tmp_path / "spec.toml").write_text(SPEC.replace(', "status"', ""))  # without status holes look like no jump
+    assert killed(tmp_path, 0.5 * uninterrupted[1], signal.SIGINT)[0] == 130
+    part = read_map(tmp_path / "map.h5.part")
+    whole = read_map(uninterrupted[0])
+    computed = part.computed()
+    assert not part.whole and whole.whole and whole.computed().all()
+    assert computed.sum() == part.attributes["status_counts"].sum() and 0 < computed.sum() < computed.size
+    expected = np.where(computed, whole.fields["jump_height"], np.nan)
+    assert np.array_equal(part.fields["jump_height"], expected, equal_nan=True)
+    told = leapmap("info", tmp_path / "map.h5.part").stdout
+    assert f"INCOMPLETE: {computed.sum():,} of {computed.size:,} designs" in told
+    plan = finished(*command(tmp_path, "--resume", "--dry-run")).stdout
+    assert f"holds {computed.sum():,} designs: it is gone on with" in plan
+    not_yet = leapmap("info", tmp_path / "map.h5")
+    assert not_yet.returncode == 3 and "map.h5.part" in not_yet.stderr
+
+
+def test_the_chart_of_an_unfinished_map_says_so(tmp_path):
+    (tmp_path / "spec.toml").write_text("""[design]
+slope = { from = 0.1, to = 0.8, count = 200 }
+mass_ratio = { from = 0.5, to = 10, count = 200 }
+[numerics]
+method = "gsl-rk8pd"
+audit = 0
+""")
+    assert killed(tmp_path, 0.7, signal.SIGINT)[0] == 130
+    chart = finished("/usr/bin/python3", TOP / "analysis" / "design_chart.py", tmp_path / "map.h5.part", "-o", tmp_path / "chart")
+    assert chart.returncode == 0 and "INCOMPLETE" in chart.stderr and (tmp_path / "chart_jump_height.png").exists()
+
+
 def test_another_spec_is_refused_by_its_key(uninterrupted, tmp_path):
     (tmp_path / "spec.toml").write_text(SPEC)
     assert killed(tmp_path, 0.4 * uninterrupted[1], signal.SIGINT)[0] == 130
@@ -216,7 +250,7 @@ def test_resume_without_anything_to_go_on_with_begins_anew(tmp_path):
     assert finished(*command(tmp_path, "--resume")).returncode == 0
     assert "whole already" in finished(*command(tmp_path, "--resume")).stdout
     other = finished(*command(tmp_path, "--resume", "--set", "runway=3"))
-    assert other.returncode == 2 and "exists already" in other.stderr
+    assert other.returncode == 2 and "exists already" in other.stderr and "scene.runway" in other.stderr
 
 
 def grown(folder, limit=None):

@@ -111,6 +111,19 @@ TEST(Audit, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.first_mismatch, four.first_mismatch);
 }
 
+TEST(Audit, DoesNotTakeADesignThatFailedForADisagreement) {
+  Spec spec = grid("gsl-rk8pd", "1e-10", "0.3");
+  spec.numerics.max_steps = 40;
+  const auto samples = drawn_from(spec);
+  const auto failed =
+      std::ranges::count(samples, Status::failed, [](const AuditSample& s) { return s.outcome.status; });
+  const AuditReport report = audit(spec, samples, 0);
+  EXPECT_GT(report.failed, 0u);
+  EXPECT_EQ(report.failed, static_cast<std::size_t>(failed));
+  EXPECT_LT(report.failed, report.designs);
+  EXPECT_EQ(report.flag_mismatches + report.beyond_tolerance, 0u);
+}
+
 TEST(Audit, NeverAuditsAMethodByItself) {
   Numerics numerics;
   EXPECT_NE(audit_method(numerics), resolved_method(numerics));
