@@ -82,7 +82,8 @@ def _read(path, filetype):
             result.about[name] = dict(dataset.attrs)
             if h5py.h5ds.is_scale(dataset.id):
                 continue
-            result.fields[name] = dataset[()]
+            texts = h5py.check_string_dtype(dataset.dtype)
+            result.fields[name] = dataset.asstr()[()] if texts else dataset[()]
             result.tile = dataset.chunks or result.tile
             for dimension in dataset.dims:  # the order of dimensions is the fields' own
                 scale = dimension[0]
@@ -98,6 +99,11 @@ def read_map(path):
 def read_trace(path):
     """One design's motion, as `leapmap hop --trace` writes it."""
     return _read(path, "leapmap trace")
+
+
+def read_table(path, filetype):
+    """A study's table, for example "leapmap precision": fields are its columns, numbers or texts."""
+    return _read(path, filetype)
 
 
 def sliced(m, name, keep):

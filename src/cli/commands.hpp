@@ -10,5 +10,6 @@ namespace leapmap::cli {
 void add_sweep(CLI::App& app, int& status);
 void add_hop(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
+void add_precision(CLI::App& app, int& status);
 
 }  // namespace leapmap::cli

@@ -117,7 +117,7 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
              failed > 0
                  ? fmt::format("; solve them again by: leapmap info --spec {0} > spec.toml && leapmap sweep "
                                "spec.toml -o {0} --retry-failed",
-                               quoted(arguments.path))
+                               shell_quoted(arguments.path))
                  : "");
   return 0;
 }
@@ -133,7 +133,7 @@ void print_incomplete(const MapReader& map, const std::string& part) {
       "INCOMPLETE: {} of {} designs, {:.3g} %; the others are holes; go on by: leapmap sweep SPEC.toml -o {} "
       "--resume\n",
       grouped(done), grouped(designs), 100.0 * static_cast<double>(done) / static_cast<double>(designs),
-      quoted(name));
+      shell_quoted(name));
 }
 
 int run(const InfoArguments& arguments) {

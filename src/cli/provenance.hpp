@@ -11,7 +11,10 @@
 
 namespace leapmap::cli {
 
-/// Root attributes: conventions, title, file type and version, program, resolved spec, date, host, method.
+/// Root attributes of any file: conventions, title, file type and version, program, date, host.
+std::vector<hdf5::Attribute> file_provenance(std::string_view filetype, const std::string& title);
+
+/// The same, resolved spec, method and tolerance.
 std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filetype,
                                         const std::string& title);
 

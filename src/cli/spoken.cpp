@@ -33,7 +33,7 @@ std::string spoken_duration(double seconds) {
   return fmt::format("{:.3g} days", seconds / 86400.0);
 }
 
-std::string quoted(const std::string& word) {
+std::string shell_quoted(const std::string& word) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
            std::string_view("_-+=./:,@%").find(c) != std::string_view::npos;

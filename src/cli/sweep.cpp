@@ -138,7 +138,7 @@ int fill(const SweepArguments& arguments, const Spec& spec, const MapLayout& lay
              thread_count(arguments.threads), resolved_method(spec.numerics));
   print_totals(writer.progress().statuses);
   if (writer.progress().statuses[static_cast<std::size_t>(Status::failed)] > 0)
-    fmt::print("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", quoted(map),
+    fmt::print("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", shell_quoted(map),
                sweep_command(arguments, map, "--retry-failed"));
   fmt::print("map      {}\n", map);
   return status;

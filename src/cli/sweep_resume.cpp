@@ -33,7 +33,7 @@ void refuse_other_beginning(const MapReader& part, const std::string& name, cons
   if (const auto difference = first_difference(spec_of(part, name), spec))
     throw InputError(
         fmt::format("{}: was begun with another spec: {}; allowed: that spec (leapmap info --spec {}), {}",
-                    name, *difference, quoted(name), allowed));
+                    name, *difference, shell_quoted(name), allowed));
 }
 
 }  // namespace
@@ -48,8 +48,9 @@ std::string behind_links(const std::string& map) {
 }
 
 std::string sweep_command(const SweepArguments& arguments, const std::string& map, std::string_view how) {
-  std::string command = fmt::format("leapmap sweep {} -o {} {}", quoted(arguments.spec), quoted(map), how);
-  for (const std::string& set : arguments.overrides) command += " --set " + quoted(set);
+  std::string command =
+      fmt::format("leapmap sweep {} -o {} {}", shell_quoted(arguments.spec), shell_quoted(map), how);
+  for (const std::string& set : arguments.overrides) command += " --set " + shell_quoted(set);
   if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
   if (arguments.commit_interval != SweepArguments{}.commit_interval)
     command += fmt::format(" --commit-interval {}", arguments.commit_interval);

@@ -25,7 +25,7 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
   if (const auto difference = first_difference(there, spec, true))
     throw InputError(
         fmt::format("{}: is of other designs: {}; allowed: its own spec (leapmap info --spec {})", map,
-                    *difference, quoted(map)));
+                    *difference, shell_quoted(map)));
   there.numerics = retry_numerics(there.numerics, spec.numerics);
   note_signals();
   const auto report = retry_failed(map, there, arguments.threads, [] { return noted_signal() != 0; });

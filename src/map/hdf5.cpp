@@ -2,6 +2,7 @@
 #include "map/hdf5.hpp"
 
 #include <fmt/format.h>
+#include <hdf5_hl.h>
 
 #include <algorithm>
 
@@ -48,6 +49,18 @@ void write(hid_t object, const std::string& name, hid_t file_type, hid_t memory_
            const void* values) {
   const std::string what = fmt::format("writing attribute {}", name);
   check(H5Awrite(writable_attribute(object, name, file_type, space, what), memory_type, values), what);
+}
+
+Handle write_values(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
+                    hid_t file_type, hid_t memory_type, hsize_t count, const void* values,
+                    const Handle* scale) {
+  Handle dataset = create_dataset(file, {name, file_type, {&count, 1}});
+  check(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "writing " + name);
+  write_attribute(dataset, "long_name", long_name);
+  write_attribute(dataset, "units", unit);
+  check(scale ? H5DSattach_scale(dataset, *scale, 0) : H5DSset_scale(dataset, name.c_str()),
+        "scaling " + name);
+  return dataset;
 }
 
 /// The dataspaces of a block, in memory and in the file.
@@ -97,6 +110,20 @@ Handle create_dataset(hid_t file, const DatasetPlan& plan) {
                      H5Sclose, what);
   return {H5Dcreate2(file, plan.name.c_str(), plan.type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose,
           what};
+}
+
+Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
+                    std::span<const double> values, const Handle* scale) {
+  return write_values(file, name, unit, long_name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.size(),
+                      values.data(), scale);
+}
+
+Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
+                    std::span<const std::string> values, const Handle* scale) {
+  std::vector<const char*> texts;
+  for (const std::string& value : values) texts.push_back(value.c_str());
+  const Handle type = text_type();
+  return write_values(file, name, unit, long_name, type, type, texts.size(), texts.data(), scale);
 }
 
 void write_attribute(hid_t object, const std::string& name, std::string_view text) {

@@ -65,6 +65,13 @@ struct DatasetPlan {
 };
 Handle create_dataset(hid_t file, const DatasetPlan& plan);
 
+/// A one-dimensional dataset with units and long_name. `scale` is its dimension, unset where the dataset is a
+/// dimension scale itself. Texts are UTF-8 of variable length.
+Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
+                    std::span<const double> values, const Handle* scale);
+Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
+                    std::span<const std::string> values, const Handle* scale);
+
 /// Attributes: UTF-8 text of variable length, or numbers of the given file type. An older one of that name
 /// goes.
 void write_attribute(hid_t object, const std::string& name, std::string_view text);

@@ -197,6 +197,20 @@ void File::close() {
   bytes_->commit();  // HDF5 writes its last as it closes
 }
 
+void refuse_other_file(const std::string& path, std::string_view filetype) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) || !std::filesystem::is_regular_file(path, ignored)) return;
+  bool same = false;
+  try {
+    const File file = File::open(path);
+    same = has_attribute(file, "filetype") && read_text(file, "filetype") == filetype;
+  } catch (const IoError&) {
+  }
+  if (!same)
+    throw InputError(fmt::format("{}: exists and is no {}; allowed: a new name, or an older one to replace",
+                                 path, filetype));
+}
+
 void File::finish(const std::string& path, bool replace) {
   close();
   bytes_->rename(path, replace);

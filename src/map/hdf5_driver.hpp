@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "map/hdf5.hpp"
 #include "map/journaled_file.hpp"
@@ -46,5 +47,9 @@ class File {
   std::unique_ptr<JournaledFile> bytes_;
   Handle handle_;  // after bytes_, as closing it writes there
 };
+
+/// What was made before may be made again, but no other file is ours to replace: throws InputError if path is
+/// there and no file of that type.
+void refuse_other_file(const std::string& path, std::string_view filetype);
 
 }  // namespace leapmap::hdf5

@@ -18,20 +18,6 @@ namespace {
 using hdf5::check;
 using hdf5::Handle;
 
-/// A one-dimensional dataset; `scale` is its dimension, unset where the dataset is a dimension scale itself.
-Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
-                    const std::vector<double>& values, const Handle* scale) {
-  const hsize_t count = values.size();
-  Handle dataset = hdf5::create_dataset(file, {name, H5T_IEEE_F64LE, {&count, 1}});
-  check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-        "writing " + name);
-  hdf5::write_attribute(dataset, "long_name", long_name);
-  hdf5::write_attribute(dataset, "units", unit);
-  check(scale ? H5DSattach_scale(dataset, *scale, 0) : H5DSset_scale(dataset, name.c_str()),
-        "scaling " + name);
-  return dataset;
-}
-
 void write_phases(hid_t file, const Story& story, const Handle& time) {
   std::vector<std::uint8_t> codes;
   for (const TracePoint& point : story.points) codes.push_back(static_cast<std::uint8_t>(point.phase));
@@ -45,25 +31,11 @@ void write_phases(hid_t file, const Story& story, const Handle& time) {
   check(H5DSattach_scale(dataset, time, 0), "scaling phase");
 }
 
-/// A trace may be made again, but whatever else has that name is not ours to replace.
-void refuse_other_file(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored) || !std::filesystem::is_regular_file(path, ignored)) return;
-  bool trace = false;
-  try {
-    const hdf5::File file = hdf5::File::open(path);
-    trace = hdf5::has_attribute(file, "filetype") && hdf5::read_text(file, "filetype") == trace_filetype;
-  } catch (const IoError&) {
-  }
-  if (!trace)
-    throw InputError(path + ": exists and is no trace; allowed: a new name, or an older trace to replace");
-}
-
 }  // namespace
 
 void write_trace(const std::string& path, const Story& story, const Scene& scene,
                  std::span<const hdf5::Attribute> attributes) {
-  refuse_other_file(path);
+  hdf5::refuse_other_file(path, trace_filetype);
   const double second = time_unit(scene), metre = scene.radius;
   const std::string part = path + ".part";
   hdf5::File file = hdf5::File::create(part);
@@ -75,18 +47,18 @@ void write_trace(const std::string& path, const Story& story, const Scene& scene
       return values;
     };
     const Handle t =
-        write_series(file, "t", "s", "time since release", points(&TracePoint::t, second), nullptr);
-    write_series(file, "phi", "rad", "angle; 0: mass on the plane", points(&TracePoint::phi, 1.0), &t);
-    write_series(file, "spin", "rad s-1", "spin, positive downhill", points(&TracePoint::spin, 1.0 / second),
-                 &t);
-    write_series(file, "x", "m", "travel of the hoop's centre along the plane", points(&TracePoint::x, metre),
-                 &t);
-    write_series(file, "y", "m", "height of the hoop's lowest point above the plane",
-                 points(&TracePoint::y, metre), &t);
-    write_series(file, "normal_force", "1", "normal force over the weight (11)",
-                 points(&TracePoint::normal_force, 1.0), &t);
-    write_series(file, "friction", "1", "friction force over the weight, positive downhill (12)",
-                 points(&TracePoint::friction, 1.0), &t);
+        hdf5::write_series(file, "t", "s", "time since release", points(&TracePoint::t, second), nullptr);
+    hdf5::write_series(file, "phi", "rad", "angle; 0: mass on the plane", points(&TracePoint::phi, 1.0), &t);
+    hdf5::write_series(file, "spin", "rad s-1", "spin, positive downhill",
+                       points(&TracePoint::spin, 1.0 / second), &t);
+    hdf5::write_series(file, "x", "m", "travel of the hoop's centre along the plane",
+                       points(&TracePoint::x, metre), &t);
+    hdf5::write_series(file, "y", "m", "height of the hoop's lowest point above the plane",
+                       points(&TracePoint::y, metre), &t);
+    hdf5::write_series(file, "normal_force", "1", "normal force over the weight (11)",
+                       points(&TracePoint::normal_force, 1.0), &t);
+    hdf5::write_series(file, "friction", "1", "friction force over the weight, positive downhill (12)",
+                       points(&TracePoint::friction, 1.0), &t);
     write_phases(file, story, t);
 
     std::vector<double> numbers, times, angles, spins, heights;
@@ -98,11 +70,12 @@ void write_trace(const std::string& path, const Story& story, const Scene& scene
       heights.push_back(candidate.flight.height);
     }
     const Handle candidate =
-        write_series(file, "candidate", "1", "lift-offs in order, from 1", numbers, nullptr);
-    write_series(file, "candidate_time", "s", "time since release of the lift-off", times, &candidate);
-    write_series(file, "candidate_angle", "rad", "angle at the lift-off", angles, &candidate);
-    write_series(file, "candidate_spin", "rad s-1", "spin at the lift-off", spins, &candidate);
-    write_series(file, "candidate_height", "1", "apex of its flight, in hoop diameters", heights, &candidate);
+        hdf5::write_series(file, "candidate", "1", "lift-offs in order, from 1", numbers, nullptr);
+    hdf5::write_series(file, "candidate_time", "s", "time since release of the lift-off", times, &candidate);
+    hdf5::write_series(file, "candidate_angle", "rad", "angle at the lift-off", angles, &candidate);
+    hdf5::write_series(file, "candidate_spin", "rad s-1", "spin at the lift-off", spins, &candidate);
+    hdf5::write_series(file, "candidate_height", "1", "apex of its flight, in hoop diameters", heights,
+                       &candidate);
     file.finish(path);
   } catch (...) {
     ::unlink(part.c_str());

@@ -10,17 +10,17 @@ namespace leapmap {
 
 std::span<const GslStepper> gsl_steppers() {
   static const std::array<GslStepper, 11> steppers{{
-      {"gsl-rk2", gsl_odeiv2_step_rk2, false, false},
-      {"gsl-rk4", gsl_odeiv2_step_rk4, false, false},
-      {"gsl-rkf45", gsl_odeiv2_step_rkf45, false, false},
-      {"gsl-rkck", gsl_odeiv2_step_rkck, false, false},
-      {"gsl-rk8pd", gsl_odeiv2_step_rk8pd, false, false},
-      {"gsl-rk1imp", gsl_odeiv2_step_rk1imp, true, false},
-      {"gsl-rk2imp", gsl_odeiv2_step_rk2imp, true, false},
-      {"gsl-rk4imp", gsl_odeiv2_step_rk4imp, true, false},
-      {"gsl-bsimp", gsl_odeiv2_step_bsimp, true, false},
-      {"gsl-msadams", gsl_odeiv2_step_msadams, false, true},
-      {"gsl-msbdf", gsl_odeiv2_step_msbdf, true, true},
+      {"gsl-rk2", gsl_odeiv2_step_rk2, false, false, 2},
+      {"gsl-rk4", gsl_odeiv2_step_rk4, false, false, 4},
+      {"gsl-rkf45", gsl_odeiv2_step_rkf45, false, false, 5},
+      {"gsl-rkck", gsl_odeiv2_step_rkck, false, false, 5},
+      {"gsl-rk8pd", gsl_odeiv2_step_rk8pd, false, false, 8},
+      {"gsl-rk1imp", gsl_odeiv2_step_rk1imp, true, false, 1},
+      {"gsl-rk2imp", gsl_odeiv2_step_rk2imp, true, false, 2},
+      {"gsl-rk4imp", gsl_odeiv2_step_rk4imp, true, false, 4},
+      {"gsl-bsimp", gsl_odeiv2_step_bsimp, true, false, 0},
+      {"gsl-msadams", gsl_odeiv2_step_msadams, false, true, 0},
+      {"gsl-msbdf", gsl_odeiv2_step_msbdf, true, true, 0},
   }};
   return steppers;
 }

@@ -19,14 +19,15 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double most_energy_drift = 0.05;
 
 int rolling_rhs(double, const double y[], double f[], void* params) {
-  const auto& hoop = *static_cast<const Hoop<double>*>(params);
+  auto& system = *static_cast<RollingIntegration::System*>(params);
+  ++system.evaluations;
   f[0] = y[1];
-  f[1] = angular_acceleration(hoop, trig(y[0]), y[1]);
+  f[1] = angular_acceleration(system.hoop, trig(y[0]), y[1]);
   return GSL_SUCCESS;
 }
 
 int rolling_jacobian(double, const double y[], double* dfdy, double dfdt[], void* params) {
-  const auto& hoop = *static_cast<const Hoop<double>*>(params);
+  const Hoop<double>& hoop = static_cast<const RollingIntegration::System*>(params)->hoop;
   const Trig<double> phi = trig(y[0]);
   const auto gradient = acceleration_gradient(hoop, phi, y[1], angular_acceleration(hoop, phi, y[1]));
   dfdy[0] = 0.0, dfdy[1] = 1.0;
@@ -58,13 +59,19 @@ IntegrationOptions adaptive(std::string_view stepper, double tolerance) {
 
 RollingIntegration::RollingIntegration(const IntegrationOptions& options)
     : options_(options),
-      hoop_(derive<double>(Design{})),
-      integrator_(*options.stepper, options.control, {&rolling_rhs, &rolling_jacobian, 2, &hoop_}) {}
+      system_{derive<double>(Design{})},
+      integrator_(*options.stepper, options.control, {&rolling_rhs, &rolling_jacobian, 2, &system_}) {}
 
 Outcome RollingIntegration::solve(const Design& design, const Scene& scene, const RollingObserver& observer) {
-  hoop_ = derive<double>(design);
-  const auto normal_force_at = [&](const RollingState& y) { return normal_force_guard(hoop_, y); };
-  const auto spin_at = [&](const RollingState& y) { return spin_guard(hoop_, y); };
+  const Hoop<double>& hoop = system_.hoop = derive<double>(design);
+  const auto normal_force_at = [&](const RollingState& y) {
+    ++system_.evaluations;
+    return normal_force_guard(hoop, y);
+  };
+  const auto spin_at = [&](const RollingState& y) {
+    ++system_.evaluations;
+    return spin_guard(hoop, y);
+  };
   const auto retake = [&](double tau, RollingState& y) { return integrator_.retake(tau, y); };
 
   Outcome outcome;
@@ -88,11 +95,11 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
     return polish_root(angle_at, 0.0, latest, 0.5 * latest, true, 1e-15 * latest);
   };
 
-  const double energy = rolling_energy(hoop_, release[0], release[1]);
+  const double energy = rolling_energy(hoop, release[0], release[1]);
   const auto believable = [&](const RollingState& y) {
     const Trig<double> phi = trig(y[0]);
-    const double kinetic = kinetic_energy(hoop_, phi, y[1]);
-    const double drift = kinetic + potential_energy(hoop_, y[0], phi) - energy;
+    const double kinetic = kinetic_energy(hoop, phi, y[1]);
+    const double drift = kinetic + potential_energy(hoop, y[0], phi) - energy;
     return std::abs(drift) <= most_energy_drift * (1.0 + kinetic);
   };
 
@@ -121,7 +128,7 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
       if (fall.tau > stall || fall.state[0] > runway_end) break;
       const LiftOff<double> lift_off{step.t0 + fall.tau, fall.state[0], fall.state[1]};
       if (!believable(fall.state) || lift_off.spin < 0.0) return failed_outcome();
-      const Flight<double> flight = fly(hoop_, lift_off);
+      const Flight<double> flight = fly(hoop, lift_off);
       const bool is_jump = consider(outcome, scene, design, lift_off, flight);
       if (observer.step && is_jump) observer.step(integrator_, fall.tau);
       if (observer.lift_off) observer.lift_off(lift_off, flight);

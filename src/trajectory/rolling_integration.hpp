@@ -54,9 +54,18 @@ class RollingIntegration {
   /// the method cannot do has status failed.
   Outcome solve(const Design& design, const Scene& scene, const RollingObserver& observer = {});
 
+  /// How often the acceleration was asked for so far, by the stepper and by the search for events.
+  long evaluations() const { return system_.evaluations; }
+
+  /// What the right-hand side works on.
+  struct System {
+    Hoop<double> hoop;
+    long evaluations = 0;
+  };
+
  private:
   IntegrationOptions options_;
-  Hoop<double> hoop_;
+  System system_;
   GslIntegrator<2> integrator_;
   Falls<2> lift_offs_, stalls_;
 };

@@ -8,8 +8,8 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <random>
 
+#include "study/precision.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
 #include "trajectory/exact.hpp"
@@ -26,19 +26,7 @@ Scene scene() {
 }
 
 const std::vector<Design>& designs() {
-  static const std::vector<Design> designs = [] {
-    std::mt19937_64 random(1);
-    const auto uniform = [&](double low, double high) {
-      return std::uniform_real_distribution<double>(low, high)(random);
-    };
-    std::vector<Design> list(count);
-    for (Design& design : list) {
-      design.slope = uniform(0.1, 0.8);
-      design.mass_ratio = uniform(0.5, 10.0);
-      design.offset_ratio = uniform(0.3, 1.0);
-    }
-    return list;
-  }();
+  static const std::vector<Design> designs = random_designs(count, 1);
   return designs;
 }
 

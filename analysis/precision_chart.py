@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Speed against accuracy, from the table that leapmap precision writes: four charts.
+
+OUTPUT_time and OUTPUT_work: error of the jump's height against time and against work for one design, one line a method;
+better is down and left. Open rings mark settings at which some designs come out wrong without a word, crosses those at
+which some fail, saying so; the error is of the others. OUTPUT_wrong: the share of wrong designs against the tolerance.
+OUTPUT_order: error against fixed step, with the order fitted to the smaller steps beside the theoretical one.
+"""
+import numpy as np
+
+import style
+from read_map import NotAMap, read_table
+from style import plt
+
+FLOOR = 1e-17  # where an error of exactly 0 is drawn
+COLOURS = {
+    "exact": "#000000", "gsl-rk8pd": "#1f77b4", "gsl-rkck": "#17becf", "gsl-rkf45": "#2ca02c", "gsl-rk4": "#bcbd22", "gsl-rk2": "#ff7f0e",
+    "gsl-msadams": "#8c564b", "gsl-msbdf": "#c49c94", "gsl-bsimp": "#9467bd", "gsl-rk4imp": "#e377c2", "gsl-rk2imp": "#f7b6d2",
+    "gsl-rk1imp": "#c5b0d5", "euler": "#7f7f7f", "semi-implicit-euler": "#d62728", "velocity-verlet": "#ff9896"}
+
+
+def series(t, designs, control):
+    """(method, its rows in the table's order), of those designs and that control."""
+    here = (t.fields["designs"] == designs) & (t.fields["control"] == control)
+    for method in dict.fromkeys(t.fields["method"][here]):
+        yield method, np.flatnonzero(here & (t.fields["method"] == method))
+
+
+def draw_methods(axis, t, designs, across):
+    """Error over time or work, tolerances as solid lines, fixed steps as dashed ones."""
+    error = np.maximum(t.fields["max_height_error"], FLOOR)
+    x = 1e6 * t.fields[across] if across == "seconds" else t.fields[across]
+    for control, line, marker in (("tolerance", "-", "o"), ("step", ":", "s")):
+        for method, rows in series(t, designs, control):
+            colour = COLOURS.get(method, "#444444")
+            label = method if control == "tolerance" else f"{method}, fixed steps"
+            axis.plot(x[rows], error[rows], linestyle=line, marker=marker, markersize=3.5, linewidth=1.2, color=colour, label=label)
+            for mark, share, size in (("o", "wrong", 9), ("x", "failed", 8)):
+                bad = rows[(t.fields[share][rows] > 0) & np.isfinite(error[rows])]
+                axis.plot(x[bad], error[bad], mark, markersize=size, markerfacecolor="none", color=style.MARK, markeredgewidth=0.9)
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    axis.grid(alpha=0.25)
+    axis.annotate("better", xy=(0.03, 0.03), xytext=(0.14, 0.14), xycoords="axes fraction", fontsize=8,
+                  arrowprops=dict(arrowstyle="->", color=style.EDGE))
+
+
+def methods_chart(t, across, label):
+    figure, axes = plt.subplots(1, 2, sharey=True, figsize=(12.0, 6.4), layout="constrained")
+    titles = {"random": f"{t.attributes['random_designs']} random designs (seed {t.attributes['seed']})", "paper": "the paper's hoop"}
+    for axis, (designs, title) in zip(axes, titles.items()):
+        draw_methods(axis, t, designs, across)
+        axis.set_title(title)
+        axis.set_xlabel(label)
+    axes[0].set_ylabel("largest error of the jump's height [hoop diameters]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    handles += [plt.Line2D([], [], marker="o", linestyle="", markersize=9, markerfacecolor="none", color=style.MARK),
+                plt.Line2D([], [], marker="x", linestyle="", markersize=8, color=style.MARK)]
+    axes[1].legend(handles, labels + ["some designs wrong, without a word", "some designs failed, saying so"], loc="center left",
+                   bbox_to_anchor=(1.02, 0.5), frameon=False)
+    return figure
+
+
+def wrong_chart(t):
+    figure, axis = plt.subplots(figsize=(7.2, 4.4), layout="constrained")
+    nothing_wrong = []
+    for method, rows in series(t, "random", "tolerance"):
+        wrong, failed = (100 * t.fields[k][rows] for k in ("wrong", "failed"))
+        if not (wrong + failed).any():
+            nothing_wrong.append(method)
+            continue
+        colour = COLOURS.get(method, "#444444")
+        axis.plot(t.fields["setting"][rows], wrong, "-o", markersize=4, color=colour, label=f"{method}, wrong without a word")
+        axis.plot(t.fields["setting"][rows], failed, ":x", markersize=5, color=colour, label=f"{method}, failed")
+    axis.set_xscale("log")
+    axis.set_xlabel("tolerance")
+    axis.set_ylabel("designs [%]")
+    axis.set_title("no design wrong or failed at any tolerance: " + (", ".join(nothing_wrong) or "none"), wrap=True)
+    axis.grid(alpha=0.25)
+    if axis.lines:
+        axis.legend(frameon=False)
+    return figure
+
+
+def fitted_order(steps, errors):
+    """Slope of the log-log line through those of the smaller half of the steps that rounding does not reach; NaN without two."""
+    use = np.isfinite(errors) & (errors > 1e-12) & (steps <= np.median(steps))
+    return np.polyfit(np.log(steps[use]), np.log(errors[use]), 1)[0] if use.sum() > 1 else np.nan
+
+
+def order_chart(t):
+    figure, axis = plt.subplots(figsize=(8.4, 5.2), layout="constrained")
+    for method, rows in series(t, "paper", "step"):
+        steps, errors = t.fields["setting"][rows], t.fields["max_height_error"][rows]
+        order = fitted_order(steps, errors)
+        fitted = "no fit" if np.isnan(order) else f"{order:.1f}"
+        axis.plot(steps, np.maximum(errors, FLOOR), "-o", markersize=4, color=COLOURS.get(method, "#444444"),
+                  label=f"{method}: order {fitted}, in theory {t.fields['order'][rows[0]]:.0f}")
+    axis.set_xscale("log", base=2)
+    axis.set_yscale("log")
+    axis.set_xlabel("step [√(R/g)]; a gap: the method failed there")
+    axis.set_ylabel("error of the jump's height [hoop diameters]")
+    axis.set_title("the paper's hoop, fixed steps")
+    axis.grid(alpha=0.25)
+    axis.legend(frameon=False, loc="lower right")
+    return figure
+
+
+def main():
+    p = style.parser(__doc__, "a table of leapmap precision, for example maps/precision.h5", "maps/precision")
+    arguments = p.parse_args()
+    t = read_table(arguments.source, "leapmap precision")
+    output = style.stem(arguments.output)
+    style.save(methods_chart(t, "seconds", "time for one design on one thread [µs]"), f"{output}_time")
+    style.save(methods_chart(t, "evaluations", "right-hand sides for one design (exact asks for none, and is not here)"), f"{output}_work")
+    style.save(wrong_chart(t), f"{output}_wrong")
+    style.save(order_chart(t), f"{output}_order")
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError)

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap precision: speed against accuracy, all methods in one run.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "cli/commands.hpp"
+#include "cli/progress.hpp"
+#include "cli/provenance.hpp"
+#include "cli/spoken.hpp"
+#include "map/hdf5_driver.hpp"
+#include "map/table_file.hpp"
+#include "study/precision.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+constexpr const char* filetype = "leapmap precision";
+
+struct PrecisionArguments {
+  std::string table = "maps/precision.h5";
+  PrecisionOptions options;
+};
+
+void print_head() {
+  fmt::print("{:<7} {:<20} {:<9} {:>8}  {:>9} {:>9} {:>9}  {:>7} {:>7}  {:>9} {:>10}\n", "designs", "method",
+             "control", "setting", "height", "time", "angle", "wrong", "failed", "rhs", "designs/s");
+}
+
+void print_row(const PrecisionRow& row) {
+  const Measurement& m = row.measurement;
+  fmt::print(
+      "{:<7} {:<20} {:<9} {:>8.1e}  {:>9.1e} {:>9.1e} {:>9.1e}  {:>6.1f}% {:>6.1f}%  {:>9} {:>10.4g}\n",
+      row.designs, row.contestant.method, row.contestant.fixed_step ? "step" : "tolerance",
+      row.contestant.setting, m.max_height_error, m.max_time_error, m.max_angle_error, 100.0 * m.wrong,
+      100.0 * m.failed, std::isnan(m.evaluations) ? "none" : fmt::format("{:.4g}", m.evaluations),
+      1.0 / m.seconds);
+  std::fflush(stdout);
+}
+
+std::vector<TableColumn> columns_of(const std::vector<PrecisionRow>& rows) {
+  std::vector<TableColumn> columns;
+  const auto texts = [&](const char* name, const char* long_name, auto value) {
+    std::vector<std::string> values;
+    for (const PrecisionRow& row : rows) values.push_back(value(row));
+    columns.push_back({name, "1", long_name, values});
+  };
+  const auto numbers = [&](const char* name, const char* unit, const char* long_name, auto value) {
+    std::vector<double> values;
+    for (const PrecisionRow& row : rows) values.push_back(value(row));
+    columns.push_back({name, unit, long_name, values});
+  };
+  const auto measured = [&](const char* name, const char* unit, const char* long_name,
+                            double Measurement::*member) {
+    numbers(name, unit, long_name, [member](const PrecisionRow& row) { return row.measurement.*member; });
+  };
+  texts("designs", "which designs: random, or the paper's hoop alone",
+        [](const auto& r) { return r.designs; });
+  texts("method", "exact, a stepper of GSL, or a step as game engines take it",
+        [](const auto& r) { return r.contestant.method; });
+  texts("control", "what the setting is: tolerance or step",
+        [](const auto& r) { return std::string(r.contestant.fixed_step ? "step" : "tolerance"); });
+  numbers("setting", "1", "tolerance, or step in sqrt(R/g)",
+          [](const auto& r) { return r.contestant.setting; });
+  numbers("order", "1", "theoretical order of the error at fixed steps; 0: varies or does not apply",
+          [](const auto& r) { return static_cast<double>(r.contestant.order); });
+  measured("seconds", "s", "for one design on one thread, least of some repeats", &Measurement::seconds);
+  measured("evaluations", "1", "of the acceleration for one design; NaN: none", &Measurement::evaluations);
+  measured("max_height_error", "1", "of the jump's height, in hoop diameters, where flags are right",
+           &Measurement::max_height_error);
+  measured("median_height_error", "1", "the same, median", &Measurement::median_height_error);
+  measured("max_time_error", "1", "of jump_time, relative, where flags are right",
+           &Measurement::max_time_error);
+  measured("median_time_error", "1", "the same, median", &Measurement::median_time_error);
+  measured("max_angle_error", "rad", "of jump_angle, where flags are right", &Measurement::max_angle_error);
+  measured("median_angle_error", "rad", "the same, median", &Measurement::median_angle_error);
+  measured("wrong", "1", "share of designs whose status, flag or candidates are wrong without a word",
+           &Measurement::wrong);
+  measured("failed", "1", "share of designs the method gave up on, saying so", &Measurement::failed);
+  return columns;
+}
+
+int run(PrecisionArguments arguments, bool designs_given) {
+  PrecisionOptions& options = arguments.options;
+  if (options.quick && !designs_given) options.designs = 40;
+  if (options.quick) options.budget = 0.3;
+  const Scene scene{.runway = 4.0};
+  hdf5::refuse_other_file(arguments.table, filetype);  // not after minutes of work
+  note_signals();
+  const auto begin = std::chrono::steady_clock::now();
+  print_head();
+  const std::vector<PrecisionRow> rows =
+      study_precision(options, scene, print_row, [] { return noted_signal() != 0; });
+  if (noted_signal() != 0) {
+    tell(fmt::format("interrupted after {} of the table's rows; nothing is written", rows.size()));
+    return 128 + noted_signal();
+  }
+  std::vector<hdf5::Attribute> attributes =
+      file_provenance(filetype, "Speed against accuracy of methods for passive hoops");
+  attributes.emplace_back("random_designs", static_cast<std::int64_t>(options.designs));
+  attributes.emplace_back("seed", static_cast<std::int64_t>(options.seed));
+  attributes.emplace_back("budget", options.budget);
+  attributes.emplace_back("wall_time",
+                          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  write_table(arguments.table, filetype, columns_of(rows), attributes);
+  fmt::print("table    {} rows in {}\nchart    /usr/bin/python3 analysis/precision_chart.py {}\n",
+             rows.size(), arguments.table, shell_quoted(arguments.table));
+  return 0;
+}
+
+}  // namespace
+
+void add_precision(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "precision",
+      "measure speed against accuracy: every method at every setting on the same designs, in one run");
+  auto arguments = std::make_shared<PrecisionArguments>();
+  command->add_option("-o,--output", arguments->table,
+                      "the table to write, HDF5; default: maps/precision.h5");
+  auto* designs =
+      command
+          ->add_option("--designs", arguments->options.designs, "random designs; default: 200, 40 if quick")
+          ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--seed", arguments->options.seed, "of the random designs; default: 1");
+  command->add_flag("--quick", arguments->options.quick,
+                    "fewer designs and settings, less time for each: within 30 s");
+  command->footer(
+      "Errors are the largest over the designs whose status, flag and number of lift-offs are right, against "
+      "exact in\n"
+      "long double; wrong: the share of the others. rhs: how often a design asked for the acceleration. One "
+      "thread.\n"
+      "A method's settings that would take longer than a few seconds are left out.");
+  command->callback([arguments, designs, &status] { status = run(*arguments, designs->count() > 0); });
+}
+
+}  // namespace leapmap::cli

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/precision.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "trajectory/exact.hpp"
+
+namespace leapmap {
+namespace {
+
+const Scene scene{.runway = 4.0};
+
+std::vector<Outcome> truth_of(const std::vector<Design>& designs) {
+  std::vector<Outcome> truth(designs.size());
+  ExactSolver<long double>(1e-18).solve(designs, scene, truth);
+  return truth;
+}
+
+TEST(Precision, RandomDesignsAreThoseOfTheirSeedOnEveryMachine) {
+  const auto designs = random_designs(3, 1);
+  EXPECT_EQ(designs[0].slope, random_designs(1, 1)[0].slope);
+  EXPECT_NE(designs[0].slope, random_designs(1, 2)[0].slope);
+  for (const Design& design : random_designs(1000, 7)) {
+    EXPECT_TRUE(design.slope >= 0.1 && design.slope < 0.8);
+    EXPECT_TRUE(design.mass_ratio >= 0.5 && design.mass_ratio < 10.0);
+    EXPECT_TRUE(design.offset_ratio >= 0.3 && design.offset_ratio < 1.0);
+  }
+}
+
+TEST(Precision, ASeriesStandsTogetherWithTheCheapestSettingFirst) {
+  for (const bool quick : {false, true}) {
+    const auto contestants = precision_contestants(quick);
+    std::set<std::pair<std::string, bool>> ended;
+    for (std::size_t i = 1; i < contestants.size(); ++i) {
+      const Contestant &before = contestants[i - 1], &here = contestants[i];
+      if (here.same_series(before)) {
+        EXPECT_LT(here.setting, before.setting) << here.method;
+      } else {
+        EXPECT_TRUE(ended.insert({before.method, before.fixed_step}).second) << before.method;
+      }
+    }
+    EXPECT_EQ(ended.size() + 1, 1u + 11u + 8u + 3u) << "exact, adaptive, fixed steps of GSL, of games";
+  }
+}
+
+TEST(Precision, MeasuresSmallerErrorsAndMoreWorkAtSmallerTolerances) {
+  const auto designs = random_designs(30, 3);
+  const auto truth = truth_of(designs);
+  const auto at = [&](const char* method, double tolerance) {
+    return measure({method, false, tolerance, 0}, designs, scene, truth, 0.1);
+  };
+  const Measurement coarse = at("gsl-rk8pd", 1e-6), fine = at("gsl-rk8pd", 1e-11), exact = at("exact", 1e-12);
+  EXPECT_LT(fine.max_height_error, 1e-3 * coarse.max_height_error);
+  EXPECT_LT(fine.max_time_error, 1e-3 * coarse.max_time_error);
+  EXPECT_LE(fine.median_height_error, fine.max_height_error);
+  EXPECT_GT(fine.evaluations, coarse.evaluations);
+  EXPECT_EQ(fine.evaluations, at("gsl-rk8pd", 1e-11).evaluations)
+      << "work does not depend on the machine's mood";
+  EXPECT_EQ(fine.wrong + fine.failed + exact.wrong + exact.failed, 0.0);
+  EXPECT_LT(exact.max_height_error, 1e-14);
+  EXPECT_TRUE(std::isnan(exact.evaluations));
+  EXPECT_GT(exact.seconds, 0.0);
+  EXPECT_LT(exact.seconds, fine.seconds);
+}
+
+TEST(Precision, WrongFlagsAndFailuresAreSharesAndNoErrors) {
+  const auto designs = random_designs(20, 3);
+  auto truth = truth_of(designs);
+  ASSERT_EQ(truth[4].status, Status::jumped);
+  truth[4].candidates += 1;
+  truth[5].spurious_first_jump ^= 1;
+  const Measurement wrong = measure({"exact", false, 1e-12, 0}, designs, scene, truth, 0.1);
+  EXPECT_EQ(wrong.wrong, 0.1);
+  EXPECT_LT(wrong.max_height_error, 1e-14) << "errors are of the others";
+  const Measurement failed = measure({"euler", true, 0.5, 1}, designs, scene, truth, 0.1);
+  EXPECT_EQ(failed.failed + failed.wrong, 1.0);
+  EXPECT_GT(failed.failed, 0.8) << "steps this long lose energy or gain it, and say so";
+  EXPECT_TRUE(std::isnan(failed.max_height_error));
+}
+
+TEST(Precision, LeavesOutTheSettingsThatTakeTooLong) {
+  PrecisionOptions options;
+  options.designs = 10;
+  options.quick = true;
+  options.budget = 0.01;
+  std::size_t told = 0;
+  const auto rows = study_precision(options, scene, [&](const PrecisionRow&) { ++told; });
+  EXPECT_EQ(told, rows.size());
+  const auto is = [](const char* method) {
+    return [method](const PrecisionRow& row) {
+      return row.contestant.method == method && row.designs == "random" && !row.contestant.fixed_step;
+    };
+  };
+  EXPECT_EQ(std::ranges::count_if(rows, is("exact")), 5);
+  EXPECT_GE(std::ranges::count_if(rows, is("gsl-rk1imp")), 1) << "one is always tried";
+  EXPECT_LT(std::ranges::count_if(rows, is("gsl-rk1imp")), 4);
+}
+
+}  // namespace
+}  // namespace leapmap
