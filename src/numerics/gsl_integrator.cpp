@@ -10,7 +10,7 @@ namespace leapmap {
 
 std::span<const GslStepper> gsl_steppers() {
   static const std::array<GslStepper, 11> steppers{{
-      {"gsl-rk2", gsl_odeiv2_step_rk2, false, false, 2},
+      {"gsl-rk2", gsl_odeiv2_step_rk2, false, false, 3},
       {"gsl-rk4", gsl_odeiv2_step_rk4, false, false, 4},
       {"gsl-rkf45", gsl_odeiv2_step_rkf45, false, false, 5},
       {"gsl-rkck", gsl_odeiv2_step_rkck, false, false, 5},

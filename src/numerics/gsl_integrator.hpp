@@ -22,7 +22,8 @@ struct GslStepper {
   const gsl_odeiv2_step_type* type;
   bool implicit;   ///< uses the Jacobian
   bool multistep;  ///< carries history, so that a step cannot be retaken in part by the same stepper
-  int order;       ///< of its error at fixed steps; 0: it varies
+  int order;  ///< of its error at fixed steps (rk2 goes on with the third-order result of its pair); 0: it
+              ///< varies
 };
 
 /// Every stepper of gsl_odeiv2, in the order of GSL's manual.
