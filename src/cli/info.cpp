@@ -12,6 +12,7 @@
 #include "cli/spoken.hpp"
 #include "map/reader.hpp"
 #include "map/schema.hpp"
+#include "map/writer.hpp"
 #include "support/errors.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/map_spec.hpp"
@@ -100,7 +101,7 @@ void print_counts(const Code& code, const Summary& summary, std::size_t designs)
 
 /// Lists failed designs, each with the command that shows what happens.
 int list_failed(const MapReader& map, const InfoArguments& arguments) {
-  if (std::ranges::find(map.fields(), "status") == map.fields().end())
+  if (!map.has("status"))
     throw InputError(arguments.path + ": holds no status; allowed: a map with that field");
   const Spec spec = spec_of(map, arguments.path);
   const DesignSpace space(spec);
@@ -124,10 +125,7 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
 
 /// How much of a stopped sweep's map is there, and how to go on.
 void print_incomplete(const MapReader& map, const std::string& part) {
-  std::size_t designs = 1, done = 0;
-  for (const std::size_t extent : map.shape()) designs *= extent;
-  for (const std::int64_t count : hdf5::read_integers(map.file(), "status_counts"))
-    done += static_cast<std::size_t>(count);
+  const std::size_t designs = Tiling(map.shape()).designs(), done = designs_in(map.status_counts());
   const std::string name = part.ends_with(".part") ? part.substr(0, part.size() - 5) : part;
   fmt::print(
       "INCOMPLETE: {} of {} designs, {:.3g} %; the others are holes; go on by: leapmap sweep SPEC.toml -o {} "
@@ -138,7 +136,7 @@ void print_incomplete(const MapReader& map, const std::string& part) {
 
 int run(const InfoArguments& arguments) {
   std::error_code ignored;
-  if (const std::string part = arguments.path + ".part";
+  if (const std::string part = part_of(arguments.path);
       !std::filesystem::exists(arguments.path, ignored) && std::filesystem::exists(part, ignored))
     throw IoError(
         fmt::format("{}: is not there yet, only {}: ask for that, or end it by leapmap sweep --resume",
@@ -180,12 +178,10 @@ int run(const InfoArguments& arguments) {
     designs *= dimension.values.size();
   }
   fmt::print("\nfields, {} designs\n", designs);
-  if (std::ranges::find(map.fields(), "status") == map.fields().end() &&
-      hdf5::has_attribute(map.file(), "status_counts")) {
+  if (!map.has("status") && hdf5::has_attribute(map.file(), "status_counts")) {
     fmt::print("status, not stored but counted\n");
     Summary counted;
-    const std::vector<std::int64_t> counts = hdf5::read_integers(map.file(), "status_counts");
-    std::ranges::copy(counts, counted.counts.begin());
+    std::ranges::copy(map.status_counts(), counted.counts.begin());
     print_counts(std::get<Code>(find_field("status")->source), counted, designs);
   }
   for (const std::string& name : map.fields()) {

@@ -186,7 +186,7 @@ int run(const SweepArguments& arguments) {
 
 }  // namespace
 
-void print_totals(const std::array<std::int64_t, status_count>& totals) {
+void print_totals(const StatusCounts& totals) {
   for (std::size_t i = 0; i < totals.size(); ++i)
     if (totals[i] > 0)
       fmt::print("         {:>12} {}\n", grouped(static_cast<std::uint64_t>(totals[i])),

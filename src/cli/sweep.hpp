@@ -2,7 +2,6 @@
 /// The parts of leapmap sweep.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,13 +39,10 @@ std::string behind_links(const std::string& map);
 /// What the user types to sweep into that map again, with `how`: "--resume" or "--retry-failed".
 std::string sweep_command(const SweepArguments& arguments, const std::string& map, std::string_view how);
 
-/// What a map, or the .part of one, holds: designs by how they ended, counted in all of its tiles.
-std::array<std::int64_t, status_count> counted_in(const MapReader& map);
-
 /// --retry-failed: solves an existing map's failed designs again. Returns the exit status.
 int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::string& map);
 
 /// Designs by how they ended.
-void print_totals(const std::array<std::int64_t, status_count>& totals);
+void print_totals(const StatusCounts& totals);
 
 }  // namespace leapmap::cli

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
@@ -14,7 +13,6 @@
 #include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
-
 namespace {
 
 /// What lies where the map is to be, and what the sweep would make of it. Returns how many designs need not
@@ -23,11 +21,9 @@ std::size_t print_existing(const SweepArguments& arguments, const std::string& m
   std::error_code ignored;
   if (std::filesystem::exists(map, ignored) && !arguments.overwrite)
     fmt::print("there    {} exists already: it is refused without --overwrite\n", map);
+  if (!has_part(map)) return 0;
   const std::string part = part_of(map);
-  if (!std::filesystem::exists(part, ignored) || hdf5::File::blank(part)) return 0;
-  const auto counts = counted_in(MapReader(part));
-  const auto designs =
-      static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
+  const std::size_t designs = designs_in(MapReader(part).status_counts());
   fmt::print("there    {} holds {} designs: {}\n", part, grouped(designs),
              arguments.resume      ? "it is gone on with"
              : arguments.overwrite ? "they are overwritten"
@@ -43,7 +39,7 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   const int threads = thread_count(arguments.threads);
   fmt::print("map      {}\n", map.empty() ? "(none: give -o or output.file)" : map);
   if (arguments.retry_failed) {
-    const auto counts = counted_in(MapReader(map));
+    const StatusCounts counts = MapReader(map).status_counts();
     fmt::print("retry    {} failed designs\n",
                grouped(static_cast<std::uint64_t>(counts[static_cast<std::size_t>(Status::failed)])));
     return;

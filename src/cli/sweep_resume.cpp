@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "cli/spoken.hpp"
@@ -59,17 +58,10 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
   return command;
 }
 
-std::array<std::int64_t, status_count> counted_in(const MapReader& map) {
-  std::array<std::int64_t, status_count> counts{};
-  const std::vector<std::int64_t> read = hdf5::read_integers(map.file(), "status_counts");
-  std::copy_n(read.begin(), std::min(read.size(), counts.size()), counts.begin());
-  return counts;
-}
-
 MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
                    const MapLayout& layout, const Tiling& tiling, std::span<const hdf5::Attribute> opening) {
   const std::string part = part_of(map);
-  if (!arguments.resume || !exists(part) || hdf5::File::blank(part))
+  if (!arguments.resume || !has_part(map))
     return MapWriter::begin(map, layout, tiling, opening, arguments.overwrite);
   try {
     MapWriter writer = MapWriter::resume(map, layout, tiling, arguments.overwrite);

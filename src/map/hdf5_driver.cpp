@@ -2,6 +2,7 @@
 #include "map/hdf5_driver.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <exception>
@@ -215,6 +216,11 @@ void File::finish(const std::string& path, bool replace) {
   close();
   bytes_->rename(path, replace);
   bytes_.reset();
+}
+
+void File::discard() {
+  ::unlink(bytes_->path().c_str());  // while it is still ours
+  abandon();
 }
 
 void File::abandon() {

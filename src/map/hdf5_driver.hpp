@@ -39,6 +39,8 @@ class File {
   void finish(const std::string& path, bool replace = true);
   /// Drops what was not flushed and closes the file.
   void abandon();
+  /// Abandons and removes the file.
+  void discard();
   /// True if nothing was ever flushed: whoever created it was killed before that.
   static bool blank(const std::string& path);
 

@@ -16,6 +16,8 @@ namespace {
 using hdf5::check;
 using hdf5::Handle;
 
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
 constexpr const char* design_long_name = "number of the design in its list, from 0";
 
 void describe(hid_t dataset, std::string_view unit, std::string_view long_name) {
@@ -23,32 +25,23 @@ void describe(hid_t dataset, std::string_view unit, std::string_view long_name) 
   hdf5::write_attribute(dataset, "units", unit);
 }
 
-/// One parameter's values, as a dataset of its own.
-Handle write_values(hid_t file, const MapAxis& axis) {
-  const hsize_t count = axis.values.size();
-  Handle dataset = hdf5::create_dataset(file, {axis.name, H5T_IEEE_F64LE, {&count, 1}});
-  check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, axis.values.data()),
-        "writing " + axis.name);
-  describe(dataset, axis.unit, axis.long_name);
-  return dataset;
+Handle write_axis(hid_t file, const MapAxis& axis, const Handle* scale) {
+  return hdf5::write_series(file, axis.name, axis.unit, axis.long_name, axis.values, scale);
 }
 
 /// The dimensions of a map as dimension scales: its axes, or `design` counting a list's designs from 0.
 std::vector<Handle> write_scales(hid_t file, const MapLayout& layout, std::size_t designs) {
   std::vector<Handle> scales;
-  for (const MapAxis& axis : layout.axes) scales.push_back(write_values(file, axis));
-  if (layout.axes.empty()) {
-    std::vector<std::int64_t> numbers(designs);
-    for (std::size_t i = 0; i < designs; ++i) numbers[i] = static_cast<std::int64_t>(i);
-    const hsize_t count = designs;
-    scales.push_back(hdf5::create_dataset(file, {"design", H5T_STD_I64LE, {&count, 1}}));
-    check(H5Dwrite(scales[0], H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
-          "writing design");
-    describe(scales[0], "1", design_long_name);
-  }
-  for (std::size_t i = 0; i < scales.size(); ++i)
-    check(H5DSset_scale(scales[i], layout.axes.empty() ? "design" : layout.axes[i].name.c_str()),
-          "making a dimension scale");
+  for (const MapAxis& axis : layout.axes) scales.push_back(write_axis(file, axis, nullptr));
+  if (!layout.axes.empty()) return scales;
+  std::vector<std::int64_t> numbers(designs);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  const hsize_t count = designs;
+  scales.push_back(hdf5::create_dataset(file, {"design", H5T_STD_I64LE, {&count, 1}}));
+  check(H5Dwrite(scales[0], H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
+        "writing design");
+  describe(scales[0], "1", design_long_name);
+  check(H5DSset_scale(scales[0], "design"), "making a dimension scale");
   return scales;
 }
 
@@ -64,12 +57,9 @@ std::vector<hsize_t> to_hsize(const std::vector<std::size_t>& extents) {
 Handle create_field(hid_t file, const Field& field, const MapLayout& layout, const Tiling& tiling) {
   const std::vector<hsize_t> shape = to_hsize(tiling.shape()), chunk = to_hsize(tiling.tile_shape());
   const auto* code = std::get_if<Code>(&field.source);
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
-  hdf5::DatasetPlan plan{std::string(field.name), H5T_IEEE_F64LE, shape, chunk, &nan, layout.compression};
-  if (code) plan.type = H5T_STD_U8LE, plan.fill = &code->fill;
-  if (!code && layout.single) plan.type = H5T_IEEE_F32LE, plan.fill = &nanf;
-  Handle dataset = hdf5::create_dataset(file, plan);
+  const hid_t type = code ? H5T_STD_U8LE : layout.single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
+  Handle dataset = hdf5::create_dataset(
+      file, {std::string(field.name), type, shape, chunk, fill_value(layout, field), layout.compression});
   describe(dataset, field.unit, field.long_name);
   if (!code) {
     // netCDF wants the fill value in the dataset's own type
@@ -116,6 +106,11 @@ void write_nexus(hid_t file, const MapLayout& layout) {
 
 }  // namespace
 
+const void* fill_value(const MapLayout& layout, const Field& field) {
+  if (const auto* code = std::get_if<Code>(&field.source)) return &code->fill;
+  return layout.single ? static_cast<const void*>(&nanf) : &nan;
+}
+
 std::size_t value_bytes(const MapLayout& layout, const Field& field) {
   return std::holds_alternative<Code>(field.source) ? 1 : layout.single ? 4 : 8;
 }
@@ -128,7 +123,7 @@ std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
 
 void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling) {
   const std::vector<Handle> scales = write_scales(file, layout, tiling.designs());
-  for (const MapAxis& column : layout.columns) attach(write_values(file, column), scales);
+  for (const MapAxis& column : layout.columns) write_axis(file, column, &scales[0]);
   for (const Field* field : layout.fields) attach(create_field(file, *field, layout, tiling), scales);
   write_nexus(file, layout);
 }

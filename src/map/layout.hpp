@@ -33,6 +33,9 @@ struct MapLayout {
 /// Bytes of one value of a field as stored: 1, 4 or 8.
 std::size_t value_bytes(const MapLayout& layout, const Field& field);
 
+/// What a field holds where nothing was computed, in the type stored.
+const void* fill_value(const MapLayout& layout, const Field& field);
+
 /// How many bytes the map's values take before compression.
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling);
 

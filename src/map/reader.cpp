@@ -77,6 +77,13 @@ std::string MapReader::unit(const std::string& field) const { return hdf5::read_
 
 bool MapReader::is_whole() const { return !hdf5::has_attribute(file_, "tiles_done"); }
 
+StatusCounts MapReader::status_counts() const {
+  StatusCounts counts{};
+  const std::vector<std::int64_t> read = hdf5::read_integers(file_, "status_counts");
+  std::copy_n(read.begin(), std::min(read.size(), counts.size()), counts.begin());
+  return counts;
+}
+
 std::string MapReader::attribute(const std::string& name) const {
   if (!hdf5::has_attribute(file_, name)) return "";
   const Handle attribute(H5Aopen(file_, name.c_str(), H5P_DEFAULT), H5Aclose, name);

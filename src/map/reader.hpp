@@ -2,11 +2,13 @@
 /// Reads a map, or the .part of one: its axes, attributes and fields, a block at a time.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "map/hdf5_driver.hpp"
+#include "map/schema.hpp"
 #include "map/tile.hpp"
 
 namespace leapmap {
@@ -29,10 +31,15 @@ class MapReader {
 
   /// The datasets that lie along all dimensions, in file order: the fields and, in a list, its parameters.
   const std::vector<std::string>& fields() const { return fields_; }
+  bool has(const std::string& field) const { return std::ranges::find(fields_, field) != fields_.end(); }
   std::string unit(const std::string& field) const;
 
   /// False for what a sweep left that was stopped: designs not computed are holes.
   bool is_whole() const;
+
+  /// Designs by how they ended, counted as they were written, whether status is stored or not. Throws IoError
+  /// if the map is older than that.
+  StatusCounts status_counts() const;
 
   /// A root attribute as text, numbers in their shortest form; empty if it is not there.
   std::string attribute(const std::string& name) const;

@@ -2,7 +2,9 @@
 /// Each dataset of a map, declared once: name, type, unit, meaning, and where its value comes from.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -20,7 +22,16 @@ inline constexpr int format_minor = 2;  ///< 1: f4; 2: compression, status_count
 struct Quantity {
   double Outcome::*member;
   bool is_time = false;  ///< stored in seconds: multiplied by time_unit(scene)
+
+  /// What its values are multiplied by to be stored.
+  double unit(double time_unit) const { return is_time ? time_unit : 1.0; }
 };
+
+/// Designs by how they ended.
+using StatusCounts = std::array<std::int64_t, status_count>;
+inline std::size_t designs_in(const StatusCounts& counts) {
+  return static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
+}
 
 /// A small code, stored as u1.
 struct Code {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/table_file.hpp"
 
-#include <unistd.h>
-
 #include <numeric>
 
 #include "map/hdf5_driver.hpp"
@@ -29,7 +27,7 @@ void write_table(const std::string& path, const std::string& filetype, std::span
           column.values);
     file.finish(path);
   } catch (...) {
-    ::unlink(part.c_str());
+    file.discard();
     throw;
   }
 }

@@ -8,7 +8,6 @@
 #include <cassert>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <new>
 #include <numeric>
 
@@ -24,17 +23,6 @@ void gather_as(std::span<const Outcome> outcomes, std::byte* to, const Value& va
     std::memcpy(to, &stored, sizeof stored);
     to += sizeof stored;
   }
-}
-
-/// `count` times the fill value of a field.
-void fill(std::span<std::byte> bytes, const Field& field, std::size_t size) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
-  const auto* code = std::get_if<Code>(&field.source);
-  const void* value = code        ? static_cast<const void*>(&code->fill)
-                      : size == 4 ? static_cast<const void*>(&nanf)
-                                  : &nan;
-  for (std::size_t i = 0; i < bytes.size(); i += size) std::memcpy(bytes.data() + i, value, size);
 }
 
 }  // namespace
@@ -76,7 +64,7 @@ void TileEncoder::gather(std::span<const Outcome> outcomes) {
         continue;
       }
       const auto& quantity = std::get<Quantity>(field.source);
-      const double unit = quantity.is_time ? layout_->time_unit : 1.0;
+      const double unit = quantity.unit(layout_->time_unit);
       const auto value = [&](const Outcome& outcome) { return outcome.*quantity.member * unit; };
       layout_->single
           ? gather_as<float>(some, to, [&](const Outcome& o) { return static_cast<float>(value(o)); })
@@ -92,7 +80,8 @@ std::span<const std::byte> TileEncoder::spread(const Tile& tile, std::size_t fie
   const std::size_t size = value_bytes(*layout_, *layout_->fields[field]);
   const std::size_t row = tile.extent.back() * size;
   chunk_.resize(std::accumulate(shape.begin(), shape.end(), size, std::multiplies<>()));
-  fill(chunk_, *layout_->fields[field], size);
+  const void* fill = fill_value(*layout_, *layout_->fields[field]);
+  for (std::size_t i = 0; i < chunk_.size(); i += size) std::memcpy(chunk_.data() + i, fill, size);
   std::vector<std::size_t> position;
   for (std::size_t first = 0; first < tile.count; first += tile.extent.back()) {
     unravel(first, tile.extent, position);

@@ -25,8 +25,8 @@ struct EncodedChunk {
 
 struct EncodedTile {
   std::size_t number = 0;
-  std::vector<EncodedChunk> chunks;                    ///< in the layout's order of fields
-  std::array<std::uint64_t, status_count> statuses{};  ///< how many designs ended in each way
+  std::vector<EncodedChunk> chunks;  ///< in the layout's order of fields
+  StatusCounts statuses{};           ///< how many designs ended in each way
 
   std::size_t bytes() const {
     std::size_t sum = 0;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <hdf5_hl.h>
-#include <unistd.h>
 
 #include <array>
 #include <filesystem>
@@ -78,7 +77,7 @@ void write_trace(const std::string& path, const Story& story, const Scene& scene
                        &candidate);
     file.finish(path);
   } catch (...) {
-    ::unlink(part.c_str());
+    file.discard();
     throw;
   }
 }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <libdeflate.h>
-#include <unistd.h>
 
 #include <cassert>
 #include <filesystem>
@@ -37,6 +36,11 @@ std::vector<hsize_t> place_of(const Tile& tile) { return {tile.start.begin(), ti
 
 }  // namespace
 
+bool has_part(const std::string& path) {
+  std::error_code ignored;  // of a folder that may not be entered: creating the file there tells
+  return fs::exists(part_of(path), ignored) && !hdf5::File::blank(part_of(path));
+}
+
 MapWriter::MapWriter(const std::string& path, const MapLayout& layout, const Tiling& tiling)
     : path_(path), part_(part_of(path)), layout_(&layout), tiling_(&tiling) {}
 
@@ -44,8 +48,7 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
                            std::span<const hdf5::Attribute> attributes, bool overwrite) {
   refuse_existing_map(path, overwrite);
   MapWriter writer(path, layout, tiling);
-  std::error_code ignored;
-  if (!overwrite && fs::exists(writer.part_, ignored) && !hdf5::File::blank(writer.part_))
+  if (!overwrite && has_part(path))
     throw InputError(fmt::format(
         "{}: is what an interrupted sweep left; allowed: --resume to go on with it, another -o, or "
         "--overwrite to start anew",
@@ -74,8 +77,7 @@ MapWriter MapWriter::resume(const std::string& path, const MapLayout& layout, co
 MapWriter::~MapWriter() {
   if (!file_.is_open()) return;
   datasets_.clear();
-  if (committed_ == 0 && begun_) ::unlink(part_.c_str());  // while it is still ours
-  file_.abandon();
+  committed_ == 0 && begun_ ? file_.discard() : file_.abandon();
 }
 
 void MapWriter::verify() {
@@ -125,8 +127,7 @@ void MapWriter::write(const EncodedTile& tile) {
     checksum_ = checksum_of(checksum_, bytes, skipped_filters);
   }
   ++progress_.tiles;
-  for (std::size_t s = 0; s < status_count; ++s)
-    progress_.statuses[s] += static_cast<std::int64_t>(tile.statuses[s]);
+  for (std::size_t s = 0; s < status_count; ++s) progress_.statuses[s] += tile.statuses[s];
 }
 
 void MapWriter::write_progress() {

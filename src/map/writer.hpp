@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,13 +18,11 @@ namespace leapmap {
 
 /// What a map holds so far.
 struct MapProgress {
-  std::size_t tiles = 0;                              ///< the first so many, in the order of their numbers
-  std::array<std::int64_t, status_count> statuses{};  ///< designs in them, by how they ended
-  double seconds = 0.0;                               ///< of work, over all sessions
+  std::size_t tiles = 0;    ///< the first so many, in the order of their numbers
+  StatusCounts statuses{};  ///< designs in them, by how they ended
+  double seconds = 0.0;     ///< of work, over all sessions
 
-  std::size_t designs() const {
-    return static_cast<std::size_t>(std::accumulate(statuses.begin(), statuses.end(), std::int64_t{0}));
-  }
+  std::size_t designs() const { return designs_in(statuses); }
 };
 
 class MapWriter {
@@ -81,5 +78,9 @@ class MapWriter {
 
 /// The name of a map while it is not whole.
 inline std::string part_of(const std::string& path) { return path + ".part"; }
+
+/// Whether FILE.part is there with something in it: what an interrupted sweep left. Throws InputError while a
+/// sweep is writing it.
+bool has_part(const std::string& path);
 
 }  // namespace leapmap

@@ -105,7 +105,7 @@ std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, c
       const auto* quantity = std::get_if<Quantity>(&field.source);
       if (!quantity) continue;
       double& value = samples.back().outcome.*quantity->member;
-      const double unit = quantity->is_time ? time_unit(spec.scene) : 1.0, stored = value * unit;
+      const double unit = quantity->unit(time_unit(spec.scene)), stored = value * unit;
       value = (spec.output.precision == "f4" ? static_cast<float>(stored) : stored) / unit;
     }
   }
@@ -132,7 +132,7 @@ void take_quantities(const MapReader& map, const Spec& spec, const Tiling& tilin
     const auto* quantity = std::get_if<Quantity>(&field.source);
     if (!quantity || !stores(spec.output, field.name)) continue;
     const std::vector<double> values = map.read(std::string(field.name), tile);
-    const double unit = quantity->is_time ? time_unit(spec.scene) : 1.0;
+    const double unit = quantity->unit(time_unit(spec.scene));
     for (std::size_t i = 0; i < samples.size(); ++i)
       samples[i].outcome.*quantity->member = values[drawn[i]] / unit;
   }

@@ -46,8 +46,7 @@ Spec spec_of(const MapReader& map, const std::string& origin) {
   const Tile all{{0}, {spec.list.count}, spec.list.count};
   for (const Option* parameter : design_parameters()) {
     const std::string name(parameter->key);
-    if (std::ranges::find(map.fields(), name) != map.fields().end())
-      spec.list.columns.push_back({name, map.read(name, all)});
+    if (map.has(name)) spec.list.columns.push_back({name, map.read(name, all)});
   }
   return spec;
 }

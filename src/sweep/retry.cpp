@@ -2,10 +2,8 @@
 #include "sweep/retry.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <vector>
 
 #include "map/reader.hpp"
@@ -50,7 +48,7 @@ void solve(const Spec& spec, const Tiling& tiling, std::vector<Failed>& designs,
 double stored_value(const Field& field, const Outcome& outcome, double time_unit) {
   if (const auto* code = std::get_if<Code>(&field.source)) return code->value(outcome);
   const auto& quantity = std::get<Quantity>(field.source);
-  return outcome.*quantity.member * (quantity.is_time ? time_unit : 1.0);
+  return outcome.*quantity.member * quantity.unit(time_unit);
 }
 
 /// Puts the outcomes of one tile's designs in their places in every field.
@@ -128,19 +126,15 @@ Numerics retry_numerics(const Numerics& there, const Numerics& here) {
 std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spec, int threads,
                                         const std::function<bool()>& stop_requested) {
   const std::string copy = part_of(path);
-  if (std::error_code ignored; std::filesystem::exists(copy, ignored) && !hdf5::File::blank(copy))
+  if (has_part(path))
     throw InputError(copy + ": is what an interrupted sweep left; allowed: first --resume, or remove it");
   hdf5::File file = hdf5::File::copy(path, copy);
-  const auto discard = [&] {
-    ::unlink(copy.c_str());  // while it is still ours
-    file.abandon();
-  };
   try {
     const auto report = settle_all(file, path, spec, threads, stop_requested);
-    report && report->retried > 0 ? file.finish(path) : discard();
+    report && report->retried > 0 ? file.finish(path) : file.discard();
     return report;
   } catch (...) {
-    discard();
+    file.discard();
     throw;
   }
 }

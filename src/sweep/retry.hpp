@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "map/schema.hpp"
 #include "sweep/spec.hpp"
 #include "trajectory/outcome.hpp"
 
@@ -16,7 +17,7 @@ namespace leapmap {
 
 struct RetryReport {
   std::size_t retried = 0, still_failed = 0;
-  std::array<std::int64_t, status_count> statuses{};  ///< of the whole map, after
+  StatusCounts statuses{};  ///< of the whole map, after
 };
 
 /// How failed designs of a map made by `there` are solved again: as `here` says if that is another way, else

@@ -7,7 +7,6 @@
 /// file's bytes: HDF5 1.10.8 itself crashes on some broken ones (four of 1,500 files with one to five random
 /// bytes, all in H5HG_read, which reads texts), and what falls over there is no finding about our reader.
 #include <hdf5_hl.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdint>
@@ -18,6 +17,7 @@
 #include "map/writer.hpp"
 #include "support/errors.hpp"
 #include "support/small_map.hpp"
+#include "support/temporary_folder.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
@@ -33,11 +33,8 @@ const std::array names{
     "title",          "CLASS",      "DIMENSION_LIST"};
 
 std::string path(const std::string& name) {
-  static const std::string folder = [] {
-    std::string made = std::filesystem::temp_directory_path() / "leapmap-fuzz-XXXXXX";
-    return std::string(::mkdtemp(made.data()));
-  }();
-  return folder + "/" + name;
+  static const leapmap::testing::TemporaryFolder folder;
+  return folder / name;
 }
 
 Spec fuzz_spec() {
