@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Speed against accuracy, from the table that leapmap precision writes: four charts.
+"""Speed against accuracy, from the table that leapmap precision writes: five charts.
 
 OUTPUT_time and OUTPUT_work: error of the jump's height against time and against work for one design, one line a method;
 better is down and left. Open rings mark settings at which some designs come out wrong without a word, crosses those at
 which some fail, saying so; the error is of the others. OUTPUT_wrong: the share of wrong designs against the tolerance.
 OUTPUT_order: error of the time against fixed step, with the order fitted to the three smallest steps above rounding beside
-the theoretical one.
+the theoretical one. OUTPUT_model: what modelling more than rolling needs costs, and how far its constraints drift.
 """
 import numpy as np
 
@@ -21,9 +21,12 @@ COLOURS = {
     "gsl-rk1imp": "#c5b0d5", "euler": "#7f7f7f", "semi-implicit-euler": "#d62728", "velocity-verlet": "#ff9896"}
 
 
+LEAST = ("energy integral", "one coordinate")  # models no larger than rolling needs
+
+
 def series(t, designs, control):
-    """(method, its rows in the table's order), of those designs and that control."""
-    here = (t.fields["designs"] == designs) & (t.fields["control"] == control)
+    """(method, its rows in the table's order), of those designs and that control, on the least models."""
+    here = (t.fields["designs"] == designs) & (t.fields["control"] == control) & np.isin(t.fields["model"], LEAST)
     for method in dict.fromkeys(t.fields["method"][here]):
         yield method, np.flatnonzero(here & (t.fields["method"] == method))
 
@@ -108,6 +111,38 @@ def order_chart(t):
     return figure
 
 
+MODELS = {  # colour, and what it is
+    "energy integral": ("#000000", "exact: energy integral, no slip"),
+    "one coordinate": ("#1f77b4", "φ integrated by (10)"),
+    "multipliers": ("#2ca02c", "x, y, φ of (7)-(9), two multipliers"),
+    "multipliers, projected": ("#98df8a", "the same, projected after every step"),
+    "centre of mass": ("#d62728", "centre of mass and φ, two multipliers"),
+    "centre of mass, projected": ("#ff9896", "the same, projected after every step")}
+
+
+def model_chart(t):
+    figure, (errors, drifts) = plt.subplots(1, 2, figsize=(12.0, 5.0), layout="constrained")
+    best = np.isin(t.fields["method"], ("exact", "gsl-rk8pd")) & (t.fields["control"] == "tolerance") & (t.fields["designs"] == "random")
+    for model, (colour, label) in MODELS.items():
+        rows = np.flatnonzero(best & (t.fields["model"] == model))
+        errors.plot(1e6 * t.fields["seconds"][rows], np.maximum(t.fields["max_height_error"][rows], FLOOR), "-o", markersize=4, color=colour,
+                    label=label)
+        if np.isfinite(t.fields["drift"][rows]).any():
+            drifts.plot(t.fields["setting"][rows], np.maximum(t.fields["drift"][rows], FLOOR), "-o", markersize=4, color=colour, label=label)
+    for axis in (errors, drifts):
+        axis.set_xscale("log")
+        axis.set_yscale("log")
+        axis.grid(alpha=0.25)
+        axis.legend(frameon=False, loc="best")
+    errors.set_xlabel("time for one design on one thread [µs]; better: left and down")
+    errors.set_ylabel("largest error of the jump's height [hoop diameters]")
+    errors.set_title("by model: exact, and gsl-rk8pd at tolerances 1e-3 to 1e-13, on random designs")
+    drifts.set_xlabel("tolerance")
+    drifts.set_ylabel("largest violation of a constraint [R, √(gR)]")
+    drifts.set_title("the paper's constraints are linear and drift by rounding only; curved ones drift")
+    return figure
+
+
 def main():
     p = style.parser(__doc__, "a table of leapmap precision, for example maps/precision.h5", "maps/precision")
     arguments = p.parse_args()
@@ -115,6 +150,7 @@ def main():
     output = style.stem(arguments.output)
     style.save(methods_chart(t, "seconds", "time for one design on one thread [µs]"), f"{output}_time")
     style.save(methods_chart(t, "evaluations", "right-hand sides for one design (exact asks for none, and is not here)"), f"{output}_work")
+    style.save(model_chart(t), f"{output}_model")
     style.save(wrong_chart(t), f"{output}_wrong")
     style.save(order_chart(t), f"{output}_order")
 

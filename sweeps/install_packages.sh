@@ -5,10 +5,10 @@
 #   install_packages.sh tests   for the tests and benchmarks as well
 set -eu
 packages="g++ cmake ninja-build git libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev libcli11-dev libxsimd-dev
-  libdeflate-dev
+  libdeflate-dev libeigen3-dev
   python3 python3-numpy python3-h5py python3-matplotlib"
 if [ "${1:-main}" = tests ]; then
-  packages="$packages libgtest-dev libeigen3-dev libbenchmark-dev clang-format clang libclang-rt-14-dev hdf5-tools netcdf-bin
+  packages="$packages libgtest-dev libbenchmark-dev clang-format clang libclang-rt-14-dev hdf5-tools netcdf-bin
     python3-pytest python3-xarray python3-netcdf4 python3-h5netcdf"
 fi
 missing=""

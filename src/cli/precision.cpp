@@ -24,18 +24,19 @@ struct PrecisionArguments {
 };
 
 void print_head() {
-  fmt::print("{:<7} {:<20} {:<9} {:>8}  {:>9} {:>9} {:>9}  {:>7} {:>7}  {:>9} {:>10}\n", "designs", "method",
-             "control", "setting", "height", "time", "angle", "wrong", "failed", "rhs", "designs/s");
+  fmt::print("{:<7} {:<20} {:<9} {:>8}  {:>9} {:>9} {:>9}  {:>7} {:>7}  {:>9} {:>10}  {}\n", "designs",
+             "method", "control", "setting", "height", "time", "angle", "wrong", "failed", "rhs", "designs/s",
+             "model");
 }
 
 void print_row(const PrecisionRow& row) {
   const Measurement& m = row.measurement;
   fmt::print(
-      "{:<7} {:<20} {:<9} {:>8.1e}  {:>9.1e} {:>9.1e} {:>9.1e}  {:>6.1f}% {:>6.1f}%  {:>9} {:>10.4g}\n",
+      "{:<7} {:<20} {:<9} {:>8.1e}  {:>9.1e} {:>9.1e} {:>9.1e}  {:>6.1f}% {:>6.1f}%  {:>9} {:>10.4g}  {}\n",
       row.designs, row.contestant.method, row.contestant.fixed_step ? "step" : "tolerance",
       row.contestant.setting, m.max_height_error, m.max_time_error, m.max_angle_error, 100.0 * m.wrong,
       100.0 * m.failed, std::isnan(m.evaluations) ? "none" : fmt::format("{:.4g}", m.evaluations),
-      1.0 / m.seconds);
+      1.0 / m.seconds, name_of(row.contestant.model));
   std::fflush(stdout);
 }
 
@@ -59,6 +60,8 @@ std::vector<TableColumn> columns_of(const std::vector<PrecisionRow>& rows) {
         [](const auto& r) { return r.designs; });
   texts("method", "exact, a stepper of GSL, or a step as game engines take it",
         [](const auto& r) { return r.contestant.method; });
+  texts("model", "energy integral (exact), one coordinate by (10), or three with multipliers by (7) to (9)",
+        [](const auto& r) { return std::string(name_of(r.contestant.model)); });
   texts("control", "what the setting is: tolerance or step",
         [](const auto& r) { return std::string(r.contestant.fixed_step ? "step" : "tolerance"); });
   numbers("setting", "1", "tolerance, or step in sqrt(R/g)",
@@ -78,6 +81,9 @@ std::vector<TableColumn> columns_of(const std::vector<PrecisionRow>& rows) {
   measured("wrong", "1", "share of designs whose status, flag or candidates are wrong without a word",
            &Measurement::wrong);
   measured("failed", "1", "share of designs the method gave up on, saying so", &Measurement::failed);
+  measured("drift", "1",
+           "largest violation of a constraint, lengths in R, times in sqrt(R/g); NaN: none there",
+           &Measurement::drift);
   return columns;
 }
 

@@ -93,6 +93,12 @@ class GslIntegrator {
     return derivative(time_, step_.y1, step_.f1);
   }
 
+  /// Goes on from another state than the one the step last taken came to, which is then y. False: GSL failed.
+  bool replace(const State<D>& y) {
+    step_.y1 = y;
+    return gsl_odeiv2_driver_reset(driver_.get()) == GSL_SUCCESS && derivative(time_, y, step_.f1);
+  }
+
   /// The step last taken.
   const Step<D>& step() const { return step_; }
 

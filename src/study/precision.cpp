@@ -5,45 +5,17 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <random>
 
 #include "numerics/game_steppers.hpp"
+#include "numerics/gsl_integrator.hpp"
 #include "trajectory/exact.hpp"
-#include "trajectory/rolling_integration.hpp"
 
 namespace leapmap {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// A method's workspace: solves designs, and counts what it asks of the acceleration.
-struct Solving {
-  std::function<void(std::span<const Design>, std::span<Outcome>)> solve;
-  std::function<long()> evaluations;  // unset: it integrates nothing
-};
-
-Solving make_solving(const Contestant& contestant, const Scene& scene) {
-  if (contestant.method == "exact") {
-    const auto exact = std::make_shared<ExactSolver<Batch>>(contestant.setting);
-    return {[exact, scene](auto designs, auto outcomes) { exact->solve(designs, scene, outcomes); }, {}};
-  }
-  IntegrationOptions options;
-  options.stepper = find_gsl_stepper(contestant.method);
-  for (const GslStepper& stepper : game_steppers())
-    if (stepper.name == contestant.method) options.stepper = &stepper;
-  if (contestant.fixed_step) {
-    options.control.fixed_step = contestant.setting;
-  } else {
-    options.control.relative = options.control.absolute = contestant.setting;
-  }
-  options.max_steps = 200'000;
-  const auto rolling = std::make_shared<RollingIntegration>(options);
-  return {[rolling, scene](auto designs, auto outcomes) {
-            for (std::size_t i = 0; i < designs.size(); ++i) outcomes[i] = rolling->solve(designs[i], scene);
-          },
-          [rolling] { return rolling->evaluations(); }};
-}
+constexpr long max_steps = 200'000;
 
 struct Spread {
   double max = nan, median = nan;
@@ -85,18 +57,23 @@ void compare(std::span<const Outcome> outcomes, std::span<const Outcome> truth, 
 std::vector<Contestant> precision_contestants(bool quick) {
   std::vector<Contestant> contestants;
   const auto add = [&](std::string_view method, bool fixed_step, const std::vector<double>& settings,
-                       int order) {
+                       int order, RollingModel model = RollingModel::one_coordinate) {
     for (std::size_t i = 0; i < settings.size(); ++i)
-      if (!quick || i % 3 == 0) contestants.push_back({std::string(method), fixed_step, settings[i], order});
+      if (!quick || i % 3 == 0)
+        contestants.push_back({std::string(method), fixed_step, settings[i], order, model});
   };
   std::vector<double> tolerances, steps;
   for (int digits = 3; digits <= 13; ++digits) tolerances.push_back(std::pow(10.0, -digits));
   for (int halvings = 1; halvings <= 8; ++halvings) steps.push_back(std::ldexp(1.0, -halvings));
-  add("exact", false, {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13}, 0);
+  add("exact", false, {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13}, 0,
+      RollingModel::energy_integral);
   for (const GslStepper& stepper : gsl_steppers()) add(stepper.name, false, tolerances, 0);
   for (const GslStepper& stepper : gsl_steppers())
     if (stepper.order > 0) add(stepper.name, true, steps, stepper.order);
   for (const GslStepper& stepper : game_steppers()) add(stepper.name, true, steps, stepper.order);
+  for (const RollingModel model : {RollingModel::multipliers, RollingModel::multipliers_projected,
+                                   RollingModel::centre_of_mass, RollingModel::centre_of_mass_projected})
+    add("gsl-rk8pd", false, tolerances, 0, model);
   return contestants;
 }
 
@@ -119,7 +96,7 @@ Measurement measure(const Contestant& contestant, std::span<const Design> design
                     std::span<const Outcome> truth, double budget) {
   using Clock = std::chrono::steady_clock;
   constexpr int most_repeats = 20;
-  const Solving solving = make_solving(contestant, scene);
+  const Solving solving = make_solving(contestant, scene, max_steps);
   std::vector<Outcome> outcomes(designs.size());
   Measurement measurement;
   double least = std::numeric_limits<double>::infinity(), spent = 0.0;
@@ -138,6 +115,10 @@ Measurement measure(const Contestant& contestant, std::span<const Design> design
   }
   measurement.seconds = least / static_cast<double>(designs.size());
   compare(outcomes, truth, measurement);
+  measurement.drift = solving.drift ? 0.0 : nan;
+  if (solving.drift)
+    for (const Design& design : designs)
+      measurement.drift = std::max(measurement.drift, solving.drift(design));
   return measurement;
 }
 

@@ -8,22 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "trajectory/outcome.hpp"
+#include "study/contestant.hpp"
 
 namespace leapmap {
-
-/// One method at one setting.
-struct Contestant {
-  std::string method;       ///< "exact", "gsl-rk8pd", "semi-implicit-euler", ...
-  bool fixed_step = false;  ///< setting is the step [sqrt(R/g)]; else the tolerance
-  double setting = 0.0;
-  int order = 0;  ///< theoretical, of the error at fixed steps; 0: it varies or does not apply
-
-  /// Of one series, of which only the setting differs.
-  bool same_series(const Contestant& other) const {
-    return method == other.method && fixed_step == other.fixed_step;
-  }
-};
 
 /// What a contestant is worth on some designs. Errors are over the designs whose status, flag and number of
 /// candidates are right; NaN if there is none.
@@ -35,6 +22,7 @@ struct Measurement {
   double max_angle_error = 0.0, median_angle_error = 0.0;    ///< of jump_angle [rad]
   double wrong = 0.0;   ///< share of designs whose status, flag or candidates are wrong, without a word
   double failed = 0.0;  ///< share of designs the method gave up on, saying so
+  double drift = 0.0;   ///< largest violation of the constraints; NaN where the model has none
 };
 
 struct PrecisionRow {

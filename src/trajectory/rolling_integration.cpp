@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "physics/flight_search.hpp"
-#include "physics/rolling.hpp"
 
 namespace leapmap {
 namespace {
@@ -18,34 +17,23 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 /// looser than any tolerance worth having, it catches fixed steps and tolerances that are too long.
 constexpr double most_energy_drift = 0.05;
 
-int rolling_rhs(double, const double y[], double f[], void* params) {
-  auto& system = *static_cast<RollingIntegration::System*>(params);
+template <class Model>
+int right_hand_side(double, const double y[], double f[], void* params) {
+  auto& system = *static_cast<typename Integration<Model>::System*>(params);
   ++system.evaluations;
-  f[0] = y[1];
-  f[1] = angular_acceleration(system.hoop, trig(y[0]), y[1]);
+  system.model.derivative(y, f);
   return GSL_SUCCESS;
 }
 
-int rolling_jacobian(double, const double y[], double* dfdy, double dfdt[], void* params) {
-  const Hoop<double>& hoop = static_cast<const RollingIntegration::System*>(params)->hoop;
-  const Trig<double> phi = trig(y[0]);
-  const auto gradient = acceleration_gradient(hoop, phi, y[1], angular_acceleration(hoop, phi, y[1]));
-  dfdy[0] = 0.0, dfdy[1] = 1.0;
-  dfdy[2] = gradient.by_angle, dfdy[3] = gradient.by_spin;
-  dfdt[0] = dfdt[1] = 0.0;
-  return GSL_SUCCESS;
-}
-
-/// The normal force and its rate: a lift-off is where this falls through zero.
-Sample<double> normal_force_guard(const Hoop<double>& hoop, const RollingState& y) {
-  const Trig<double> phi = trig(y[0]);
-  const double acceleration = angular_acceleration(hoop, phi, y[1]);
-  return {normal_force(hoop, phi, y[1], acceleration), normal_force_rate(hoop, phi, y[1], acceleration)};
-}
-
-/// The spin and its rate: the hoop stalls where this falls through zero.
-Sample<double> spin_guard(const Hoop<double>& hoop, const RollingState& y) {
-  return {y[1], angular_acceleration(hoop, trig(y[0]), y[1])};
+template <class Model>
+int jacobian(double, const double y[], double* dfdy, double dfdt[], void* params) {
+  if constexpr (Model::has_jacobian) {
+    static_cast<const typename Integration<Model>::System*>(params)->model.jacobian(y, dfdy);
+    std::fill_n(dfdt, Model::dimension, 0.0);
+    return GSL_SUCCESS;
+  } else {
+    return GSL_EUNIMPL;
+  }
 }
 
 }  // namespace
@@ -57,25 +45,34 @@ IntegrationOptions adaptive(std::string_view stepper, double tolerance) {
   return options;
 }
 
-RollingIntegration::RollingIntegration(const IntegrationOptions& options)
+template <class Model>
+Integration<Model>::Integration(const IntegrationOptions& options)
     : options_(options),
-      system_{derive<double>(Design{})},
-      integrator_(*options.stepper, options.control, {&rolling_rhs, &rolling_jacobian, 2, &system_}) {}
+      integrator_(*options.stepper, options.control,
+                  {&right_hand_side<Model>, &jacobian<Model>, D, &system_}) {}
 
-Outcome RollingIntegration::solve(const Design& design, const Scene& scene, const RollingObserver& observer) {
-  const Hoop<double>& hoop = system_.hoop = derive<double>(design);
-  const auto normal_force_at = [&](const RollingState& y) {
+template <class Model>
+Outcome Integration<Model>::solve(const Design& design, const Scene& scene, const Observer& observer) {
+  const Model& model = system_.model;
+  system_.model.set(derive<double>(design));
+  const Hoop<double>& hoop = model.hoop;
+  // A lift-off is where the normal force falls through zero, a stall where the spin does.
+  const auto normal_force_at = [&](const State<D>& y) {
     ++system_.evaluations;
-    return normal_force_guard(hoop, y);
+    return model.normal_force(y);
   };
-  const auto spin_at = [&](const RollingState& y) {
+  const auto spin_at = [&](const State<D>& y) {
     ++system_.evaluations;
-    return spin_guard(hoop, y);
+    return Sample<double>{model.spin(y), angular_acceleration(hoop, trig(model.angle(y)), model.spin(y))};
   };
-  const auto retake = [&](double tau, RollingState& y) { return integrator_.retake(tau, y); };
+  const auto retake = [&](double tau, State<D>& y) {
+    if (!integrator_.retake(tau, y)) return false;
+    if constexpr (Model::projects) model.project(y);
+    return true;
+  };
 
   Outcome outcome;
-  const RollingState release{design.release_angle, design.release_spin};
+  const State<D> release = model.rolling(design.release_angle, design.release_spin);
   Sample<double> force = normal_force_at(release), spin = spin_at(release);
   if (force.value <= 0.0) {
     outcome.status = Status::airborne_at_release;
@@ -89,17 +86,18 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
   // How long after the start of the step the hoop, rolling forwards, comes to an angle.
   const auto time_at = [&](double angle, double latest) {
     const auto angle_at = [&](double tau) {
-      RollingState y;
-      return retake(tau, y) ? Sample<double>{y[0] - angle, y[1]} : Sample<double>{NAN, 0.0};
+      State<D> y;
+      return retake(tau, y) ? Sample<double>{model.angle(y) - angle, model.spin(y)}
+                            : Sample<double>{NAN, 0.0};
     };
     return polish_root(angle_at, 0.0, latest, 0.5 * latest, true, 1e-15 * latest);
   };
 
-  const double energy = rolling_energy(hoop, release[0], release[1]);
-  const auto believable = [&](const RollingState& y) {
-    const Trig<double> phi = trig(y[0]);
-    const double kinetic = kinetic_energy(hoop, phi, y[1]);
-    const double drift = kinetic + potential_energy(hoop, y[0], phi) - energy;
+  const double energy = rolling_energy(hoop, design.release_angle, design.release_spin);
+  const auto believable = [&](const State<D>& y) {
+    const Trig<double> phi = trig(model.angle(y));
+    const double kinetic = kinetic_energy(hoop, phi, model.spin(y));
+    const double drift = kinetic + potential_energy(hoop, model.angle(y), phi) - energy;
     return std::abs(drift) <= most_energy_drift * (1.0 + kinetic);
   };
 
@@ -107,26 +105,32 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
   if (!integrator_.start(release, 0.01 / (1.0 + spin.value))) return failed_outcome();
   for (long taken = 0; taken < options_.max_steps; ++taken) {
     if (!integrator_.advance()) return failed_outcome();
-    const Step<2>& step = integrator_.step();
+    if constexpr (Model::projects) {
+      State<D> y = integrator_.step().y1;
+      model.project(y);
+      if (!integrator_.replace(y)) return failed_outcome();
+    }
+    const Step<D>& step = integrator_.step();
+    const double turned_to = model.angle(step.y1);
     // A look every 22.5 degrees: the normal force swings once or twice a revolution.
     const int looks =
-        1 + static_cast<int>(std::min(std::abs(step.y1[0] - step.y0[0]) * (16.0 / two_pi), 1000.0));
+        1 + static_cast<int>(std::min(std::abs(turned_to - model.angle(step.y0)) * (16.0 / two_pi), 1000.0));
     force = find_falls(step, looks, force, normal_force_at, retake, lift_offs_);
     spin = find_falls(step, looks, spin, spin_at, retake, stalls_);
     if (lift_offs_.failed || stalls_.failed) return failed_outcome();
 
     const double stall = stalls_.falls.empty() ? step.h : stalls_.falls.front().tau;
-    const double stall_angle = stalls_.falls.empty() ? step.y1[0] : stalls_.falls.front().state[0];
+    const double stall_angle = stalls_.falls.empty() ? turned_to : model.angle(stalls_.falls.front().state);
     const auto tell_grazes = [&](double end) {
       if (!observer.graze) return;
       for (const NearMiss& miss : lift_offs_.near_misses)
-        if (RollingState y; miss.tau <= end && retake(miss.tau, y) && y[0] <= runway_end)
-          observer.graze({step.t0 + miss.tau, y[0], miss.value, miss.minimum});
+        if (State<D> y; miss.tau <= end && retake(miss.tau, y) && model.angle(y) <= runway_end)
+          observer.graze({step.t0 + miss.tau, model.angle(y), miss.value, miss.minimum});
     };
 
-    for (const Fall<2>& fall : lift_offs_.falls) {
-      if (fall.tau > stall || fall.state[0] > runway_end) break;
-      const LiftOff<double> lift_off{step.t0 + fall.tau, fall.state[0], fall.state[1]};
+    for (const Fall<D>& fall : lift_offs_.falls) {
+      const LiftOff<double> lift_off{step.t0 + fall.tau, model.angle(fall.state), model.spin(fall.state)};
+      if (fall.tau > stall || lift_off.angle > runway_end) break;
       if (!believable(fall.state) || lift_off.spin < 0.0) return failed_outcome();
       const Flight<double> flight = fly(hoop, lift_off);
       const bool is_jump = consider(outcome, scene, design, lift_off, flight);
@@ -156,5 +160,11 @@ Outcome RollingIntegration::solve(const Design& design, const Scene& scene, cons
   }
   return failed_outcome();
 }
+
+template class Integration<OneCoordinate>;
+template class Integration<Multipliers<false, false>>;
+template class Integration<Multipliers<false, true>>;
+template class Integration<Multipliers<true, false>>;
+template class Integration<Multipliers<true, true>>;
 
 }  // namespace leapmap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One design by integrating (10) in time with one of GSL's steppers.
+/// One design by integrating its equations of motion in time with one of GSL's steppers.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,9 @@
 
 #include "numerics/gsl_integrator.hpp"
 #include "trajectory/outcome.hpp"
+#include "trajectory/rolling_models.hpp"
 
 namespace leapmap {
-
-/// (phi, w), the state of a rolling hoop.
-using RollingState = State<2>;
 
 struct IntegrationOptions {
   const GslStepper* stepper = nullptr;  ///< never null when used
@@ -35,39 +33,49 @@ struct Graze {
 };
 
 /// Looks on while a design is solved; unset functions cost nothing.
-struct RollingObserver {
+template <std::size_t D>
+struct IntegrationObserver {
   /// Every step, in order; retake gives the method's own state inside it; only [0, end] of the step was
   /// rolled.
-  std::function<void(const GslIntegrator<2>& integrator, double end)> step;
+  std::function<void(const GslIntegrator<D>& integrator, double end)> step;
   std::function<void(const LiftOff<double>&, const Flight<double>&)> lift_off;
   std::function<void(const Graze&)> graze;
 };
 
-/// A thread's own workspace: GSL's memory is allocated here once, and every design restarts it.
-class RollingIntegration {
+/// A thread's own workspace for one model of rolling: GSL's memory is allocated here once, and every design
+/// restarts it.
+template <class Model>
+class Integration {
  public:
-  explicit RollingIntegration(const IntegrationOptions& options);
-  RollingIntegration(const RollingIntegration&) = delete;
-  RollingIntegration& operator=(const RollingIntegration&) = delete;
+  static constexpr std::size_t D = Model::dimension;
+  using Observer = IntegrationObserver<D>;
+
+  explicit Integration(const IntegrationOptions& options);
+  Integration(const Integration&) = delete;
+  Integration& operator=(const Integration&) = delete;
 
   /// Rolls the design until its jump, its stall or the end of the runway. Never throws for a bad design: what
   /// the method cannot do has status failed.
-  Outcome solve(const Design& design, const Scene& scene, const RollingObserver& observer = {});
+  Outcome solve(const Design& design, const Scene& scene, const Observer& observer = {});
 
   /// How often the acceleration was asked for so far, by the stepper and by the search for events.
   long evaluations() const { return system_.evaluations; }
 
   /// What the right-hand side works on.
   struct System {
-    Hoop<double> hoop;
+    Model model{};
     long evaluations = 0;
   };
 
  private:
   IntegrationOptions options_;
   System system_;
-  GslIntegrator<2> integrator_;
-  Falls<2> lift_offs_, stalls_;
+  GslIntegrator<D> integrator_;
+  Falls<D> lift_offs_, stalls_;
 };
+
+/// The least model that rolls, and what looks on.
+using RollingIntegration = Integration<OneCoordinate>;
+using RollingObserver = RollingIntegration::Observer;
 
 }  // namespace leapmap

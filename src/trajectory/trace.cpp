@@ -16,7 +16,8 @@ namespace {
 constexpr double most_points = 1e7;
 constexpr double check_tolerance = 1e-12;
 
-TracePoint rolling_point(const Hoop<double>& hoop, const Design& design, double t, const RollingState& y) {
+TracePoint rolling_point(const Hoop<double>& hoop, const Design& design, double t,
+                         const OneCoordinate::Y& y) {
   const Trig<double> phi = trig(y[0]);
   const double acceleration = angular_acceleration(hoop, phi, y[1]);
   return {t,
@@ -66,7 +67,7 @@ Story integrated(const Design& design, const Scene& scene, const IntegrationOpti
     observer.step = [&](const GslIntegrator<2>& integrator, double end) {
       const double t0 = integrator.step().t0;
       sample_until(t0 + end, [&](double t) {
-        RollingState y = integrator.step().y0;
+        OneCoordinate::Y y = integrator.step().y0;
         if (!integrator.retake(t - t0, y)) y.fill(NAN);
         return rolling_point(hoop, design, t, y);
       });

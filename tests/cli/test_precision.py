@@ -39,9 +39,10 @@ def test_what_the_study_is_for_holds_in_it(table):
 def test_charts_show_every_method(table, tmp_path):
     done = finished("/usr/bin/python3", TOP / "analysis" / "precision_chart.py", table[0], "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
-    drawn = {kind: (tmp_path / f"chart_{kind}.svg").read_text() for kind in ("time", "work", "wrong", "order")}
+    drawn = {kind: (tmp_path / f"chart_{kind}.svg").read_text() for kind in ("time", "work", "wrong", "order", "model")}
     for method in ("exact", "gsl-rk8pd", "gsl-bsimp", "velocity-verlet, fixed steps"):
         assert method in drawn["time"], method
+    assert "two multipliers" in drawn["model"] and "projected" in drawn["model"]
     for kind in ("time", "work"):
         assert "better" in drawn[kind] and "wrong, without a word" in drawn[kind]
     assert "in theory 8" in drawn["order"] and re.search(r"tolerance", drawn["wrong"])

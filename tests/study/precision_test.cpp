@@ -34,16 +34,17 @@ TEST(Precision, RandomDesignsAreThoseOfTheirSeedOnEveryMachine) {
 TEST(Precision, ASeriesStandsTogetherWithTheCheapestSettingFirst) {
   for (const bool quick : {false, true}) {
     const auto contestants = precision_contestants(quick);
-    std::set<std::pair<std::string, bool>> ended;
+    std::set<std::tuple<std::string, bool, RollingModel>> ended;
     for (std::size_t i = 1; i < contestants.size(); ++i) {
       const Contestant &before = contestants[i - 1], &here = contestants[i];
       if (here.same_series(before)) {
         EXPECT_LT(here.setting, before.setting) << here.method;
       } else {
-        EXPECT_TRUE(ended.insert({before.method, before.fixed_step}).second) << before.method;
+        EXPECT_TRUE(ended.insert({before.method, before.fixed_step, before.model}).second) << before.method;
       }
     }
-    EXPECT_EQ(ended.size() + 1, 1u + 11u + 8u + 3u) << "exact, adaptive, fixed steps of GSL, of games";
+    EXPECT_EQ(ended.size() + 1, 1u + 11u + 8u + 3u + 4u)
+        << "exact, adaptive, fixed steps of GSL, of games, models";
   }
 }
 
@@ -51,7 +52,9 @@ TEST(Precision, MeasuresSmallerErrorsAndMoreWorkAtSmallerTolerances) {
   const auto designs = random_designs(30, 3);
   const auto truth = truth_of(designs);
   const auto at = [&](const char* method, double tolerance) {
-    return measure({method, false, tolerance, 0}, designs, scene, truth, 0.1);
+    const auto model =
+        std::string_view(method) == "exact" ? RollingModel::energy_integral : RollingModel::one_coordinate;
+    return measure({method, false, tolerance, 0, model}, designs, scene, truth, 0.1);
   };
   const Measurement coarse = at("gsl-rk8pd", 1e-6), fine = at("gsl-rk8pd", 1e-11), exact = at("exact", 1e-12);
   EXPECT_LT(fine.max_height_error, 1e-3 * coarse.max_height_error);
@@ -67,13 +70,34 @@ TEST(Precision, MeasuresSmallerErrorsAndMoreWorkAtSmallerTolerances) {
   EXPECT_LT(exact.max_height_error, fine.max_height_error);
 }
 
+TEST(Precision, MoreModelThanRollingNeedsCostsTimeAndItsCurvedConstraintsDriftUnlessProjected) {
+  const auto designs = random_designs(20, 3);
+  const auto truth = truth_of(designs);
+  const auto by = [&](RollingModel model) {
+    return measure({"gsl-rk8pd", false, 1e-8, 0, model}, designs, scene, truth, 0.1);
+  };
+  const Measurement one = by(RollingModel::one_coordinate), paper = by(RollingModel::multipliers),
+                    curved = by(RollingModel::centre_of_mass),
+                    projected = by(RollingModel::centre_of_mass_projected);
+  EXPECT_TRUE(std::isnan(one.drift)) << "nothing to violate";
+  // The paper's constraints are linear, and every Runge-Kutta step keeps them but for rounding.
+  EXPECT_LT(paper.drift, 1e-13);
+  EXPECT_GT(curved.drift, 1e-9) << "of the size of the tolerance";
+  EXPECT_LT(projected.drift, 1e-13);
+  for (const Measurement* m : {&one, &paper, &curved, &projected}) {
+    EXPECT_EQ(m->wrong + m->failed, 0.0);
+    EXPECT_LT(m->max_height_error, 1e-6) << "a hundred times the tolerance";
+  }
+}
+
 TEST(Precision, WrongFlagsAndFailuresAreSharesAndNoErrors) {
   const auto designs = random_designs(20, 3);
   auto truth = truth_of(designs);
   ASSERT_EQ(truth[4].status, Status::jumped);
   truth[4].candidates += 1;
   truth[5].spurious_first_jump ^= 1;
-  const Measurement wrong = measure({"exact", false, 1e-12, 0}, designs, scene, truth, 0.1);
+  const Measurement wrong =
+      measure({"exact", false, 1e-12, 0, RollingModel::energy_integral}, designs, scene, truth, 0.1);
   EXPECT_EQ(wrong.wrong, 0.1);
   EXPECT_LT(wrong.max_height_error, 1e-14) << "errors are of the others";
   const Measurement failed = measure({"euler", true, 0.5, 1}, designs, scene, truth, 0.1);
