@@ -11,5 +11,6 @@ void add_sweep(CLI::App& app, int& status);
 void add_hop(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
 void add_precision(CLI::App& app, int& status);
+void add_stability(CLI::App& app, int& status);
 
 }  // namespace leapmap::cli

@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
   leapmap::cli::add_hop(app, status);
   leapmap::cli::add_info(app, status);
   leapmap::cli::add_precision(app, status);
+  leapmap::cli::add_stability(app, status);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0) throw leapmap::IoError("standard output: cannot be written");

@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where methods fail, from the table that leapmap stability writes: a chart a case, and an overview.
+
+OUTPUT_CASE: left the error along the case's walk, one line a method with its verdict (the median where a place has many
+designs); rings are answers wrong without a word, crosses failures that say so, grey what an ulp of the inputs does to the
+answer. Right what the case is about besides: work, energy drift, or shares. OUTPUT: every method's verdict in every case.
+"""
+import numpy as np
+
+import style
+from precision_chart import COLOURS, FLOOR
+from read_map import NotAMap, read_table
+from style import plt
+
+TITLES = {
+    "needle": "a mass on the rim of an ever lighter hoop: the spin has a needle at φ = 0",
+    "release": "released ever closer to the unstable equilibrium",
+    "graze": "across the fold where a pair of lift-off and return is born",
+    "long": "ever longer runs to the jump",
+    "step": "fixed steps, ever longer (read from the right)",
+    "tolerance": "tolerances no double can reach",
+    "landing": "flights that start on the plane and dip below it",
+}
+BESIDE = {"needle": "evaluations", "release": "condition", "graze": "condition", "long": "energy_drift", "step": "share", "tolerance": "evaluations"}
+LABELS = {"evaluations": "right-hand sides of a design", "condition": "condition: relative change of the answer over that of the inputs",
+          "energy_drift": "energy drift at the jump, over 1 + kinetic energy", "share": "designs wrong (solid) or failed (dotted) [%]"}
+VERDICTS = {  # from best to worst
+    "fine": "#2ca02c", "loses digits": "#bcbd22", "gives up honestly": "#9ecae1", "breaks down": "#7f7f7f", "wrong without a word": "#d62728"}
+EPSILON = np.finfo(float).eps
+
+
+def series(t, study):
+    """(name of the method, its rows, its verdict) in the table's order."""
+    names = [m if c != "step" or study == "step" else f"{m}, fixed" for m, c in zip(t.fields["method"], t.fields["control"])]
+    here = np.flatnonzero(t.fields["study"] == study)
+    for name in dict.fromkeys(names[i] for i in here):
+        rows = np.array([i for i in here if names[i] == name])
+        yield name, rows, t.fields["verdict"][rows[0]]
+
+
+def look(name):
+    method, _, fixed = name.partition(",")
+    return dict(color=COLOURS.get(method, "#444444"), linestyle=":" if fixed else "-", linewidth=2.2 if method == "exact" else 1.1)
+
+
+def along(x, values, summary):
+    """Each place's summary of its values, in order of place."""
+    places = np.unique(x)
+    return places, np.array([summary(values[x == place]) for place in places])
+
+
+def middle(values):
+    values = values[np.isfinite(values)]
+    return np.median(values) if len(values) else np.nan
+
+
+def scale(axis, t, rows):
+    """The walk on a log scale; on both sides of a fold a linear stretch without any place joins them."""
+    x = t.fields["x"][rows]
+    if (x < 0).any():
+        axis.set_xscale("symlog", linthresh=np.abs(x).min())
+        axis.axvline(0.0, color=style.EDGE, linewidth=0.6)
+        ends = 10.0 ** np.arange(-13, 0, 4)
+        axis.set_xticks([*-ends, *ends])
+    else:
+        axis.set_xscale("log")
+    if t.fields["study"][rows[0]] in ("release", "tolerance"):
+        axis.invert_xaxis()  # into trouble is to the right
+    axis.set_xlabel(t.fields["abscissa"][rows[0]])
+    axis.grid(alpha=0.25)
+
+
+def case_chart(t, study):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(14.0, 5.6), layout="constrained")
+    beside = BESIDE[study]
+    everything = []
+    for name, rows, verdict in series(t, study):
+        everything.extend(rows)
+        x, finding = t.fields["x"][rows], t.fields["finding"][rows]
+        places, error = along(x, np.maximum(t.fields["error"][rows], FLOOR), middle)
+        left.plot(places, error, label=f"{name}: {verdict}", marker=".", markersize=4, **look(name))
+        wrong = finding == "wrong"
+        if wrong.any():
+            at = np.where(np.isfinite(t.fields["error"][rows]), t.fields["error"][rows], 1.0)  # flags wrong: no error to draw
+            left.plot(x[wrong], np.clip(at[wrong], FLOOR, 1.0), "o", markersize=8, markerfacecolor="none", color=style.MARK, markeredgewidth=0.9)
+        failed = np.unique(x[finding == "failed"])
+        left.plot(failed, np.full(len(failed), 3.0), "x", markersize=6, color=look(name)["color"], markeredgewidth=0.9)
+        if beside == "share":
+            for which, line in (("wrong", "-"), ("failed", ":")):
+                right.plot(*along(x, 100.0 * (finding == which), np.mean), line, marker=".", markersize=4, color=look(name)["color"])
+        elif beside != "condition":
+            places, value = along(x, t.fields[beside][rows], middle)
+            right.plot(places, np.maximum(value, FLOOR), marker=".", markersize=4, **look(name))
+    everything = np.array(everything)
+    places, condition = along(t.fields["x"][everything], t.fields["condition"][everything], middle)
+    left.plot(places, EPSILON * (1.0 + condition), color="#bbbbbb", linewidth=5, zorder=0, label="what an ulp of the inputs does")
+    if beside == "condition":
+        right.plot(places, np.maximum(condition, 1e-1), "-o", color=style.EDGE, markersize=4)
+        right.set_title("how ill-conditioned the question itself is, whatever the method; 0.1: not at all" if study == "graze" else
+                        "how ill-conditioned the question itself is, whatever the method")
+    left.set_yscale("log")
+    right.set_yscale("linear" if beside == "share" else "log")
+    left.set_ylim(top=10.0)
+    left.set_ylabel("error of height [diameters] or time [relative]")
+    left.set_title("rings: wrong without a word; crosses on top: failed, saying so")
+    right.set_ylabel(LABELS[beside])
+    for axis in (left, right):
+        scale(axis, t, everything)
+    figure.suptitle(f"{study}: {TITLES[study]}", fontsize=11)
+    figure.legend(*left.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    return figure
+
+
+def landing_chart(t):
+    figure, axis = plt.subplots(figsize=(9.0, 4.8), layout="constrained")
+    for (name, rows, verdict), marker in zip(series(t, "landing"), "o^vs"):
+        x, error = np.maximum(t.fields["x"][rows], 1e-9), np.maximum(t.fields["error"][rows], FLOOR)
+        axis.plot(x, error, marker, markersize=5, markerfacecolor="none", label=f"{name}: {verdict}")
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    axis.axhline(0.05, color=style.MARK, linewidth=0.8)
+    axis.set_xlabel(t.fields["abscissa"][t.fields["study"] == "landing"][0] + "; 1e-9: none, lift-offs out of sliding, a triple root")
+    axis.set_ylabel("error of height [diameters] or duration [relative]")
+    axis.set_title(f"landing: {TITLES['landing']}; above the red line the jump is lost or invented")
+    axis.grid(alpha=0.25)
+    figure.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    return figure
+
+
+def overview(t):
+    studies = [s for s in TITLES if (t.fields["study"] == s).any()]
+    names, verdicts = [], {}
+    for study in studies:
+        for name, _, verdict in series(t, study):
+            if name not in names:
+                names.append(name)
+            verdicts[name, study] = verdict
+    figure, axis = plt.subplots(figsize=(8.6, 0.27 * len(names) + 1.6), layout="constrained")
+    for row, name in enumerate(names):
+        for column, study in enumerate(studies):
+            verdict = verdicts.get((name, study))
+            if verdict:
+                axis.barh(row, 0.96, left=column - 0.48, height=0.9, color=VERDICTS[verdict])
+                short = {"wrong without a word": "wrong, silent", "gives up honestly": "gives up"}.get(verdict, verdict)
+                axis.text(column, row, short, ha="center", va="center", fontsize=7)
+    axis.set_yticks(range(len(names)), names)
+    axis.set_xticks(range(len(studies)), studies)
+    axis.xaxis.tick_top()
+    axis.set_xlim(-0.52, len(studies) - 0.48)
+    axis.set_ylim(len(names) - 0.45, -0.55)
+    axis.tick_params(length=0)
+    for side in axis.spines.values():
+        side.set_visible(False)
+    return figure
+
+
+def main():
+    p = style.parser(__doc__, "a table of leapmap stability, for example maps/stability.h5", "maps/stability")
+    arguments = p.parse_args()
+    t = read_table(arguments.source, "leapmap stability")
+    output = style.stem(arguments.output)
+    style.save(overview(t), output)
+    for study in BESIDE:
+        style.save(case_chart(t, study), f"{output}_{study}")
+    style.save(landing_chart(t), f"{output}_landing")
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError)

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap stability: where methods fail, and how.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "cli/commands.hpp"
+#include "cli/progress.hpp"
+#include "cli/provenance.hpp"
+#include "cli/spoken.hpp"
+#include "map/hdf5_driver.hpp"
+#include "map/table_file.hpp"
+#include "study/stability.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+constexpr const char* filetype = "leapmap stability";
+
+struct StabilityArguments {
+  std::string table = "maps/stability.h5";
+  StabilityOptions options;
+};
+
+/// The rows of one method in one case, which stand together, and their verdict.
+struct Series {
+  std::span<const StabilityRow> rows;
+  std::string_view verdict;
+};
+
+bool same_series(const StabilityRow& a, const StabilityRow& b) {
+  return a.study == b.study && a.method == b.method && a.control == b.control;
+}
+
+std::vector<Series> series_of(std::span<const StabilityRow> rows) {
+  std::vector<Series> series;
+  for (auto begin = rows.begin(); begin != rows.end();) {
+    const auto end =
+        std::find_if_not(begin, rows.end(), [&](const auto& r) { return same_series(r, *begin); });
+    std::vector<Finding> findings;
+    for (auto row = begin; row != end; ++row) findings.push_back(row->finding);
+    series.push_back({{begin, end}, verdict_of(findings)});
+    begin = end;
+  }
+  return series;
+}
+
+void print_verdicts(std::span<const StabilityRow> rows) {
+  for (const Series& series : series_of(rows)) {
+    const StabilityRow& first = series.rows.front();
+    const auto count = [&](Finding finding) {
+      return std::ranges::count(series.rows, finding, &StabilityRow::finding);
+    };
+    double worst = 0.0, evaluations = 0.0;
+    for (const StabilityRow& row : series.rows) {
+      if (row.error > worst && row.finding != Finding::undecided) worst = row.error;
+      if (row.evaluations > evaluations) evaluations = row.evaluations;
+    }
+    fmt::print("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9.1e}  {:>9}\n", first.study,
+               first.method, first.control, series.verdict, count(Finding::fine), count(Finding::lossy),
+               count(Finding::failed), count(Finding::wrong), count(Finding::undecided), worst,
+               evaluations > 0.0 ? fmt::format("{:.3g}", evaluations) : "none");
+  }
+  std::fflush(stdout);
+}
+
+std::vector<TableColumn> columns_of(std::span<const StabilityRow> rows) {
+  std::vector<TableColumn> columns;
+  const auto texts = [&](const char* name, const char* long_name, auto value) {
+    std::vector<std::string> values;
+    for (const StabilityRow& row : rows) values.emplace_back(value(row));
+    columns.push_back({name, "1", long_name, values});
+  };
+  const auto numbers = [&](const char* name, const char* unit, const char* long_name,
+                           double StabilityRow::*member) {
+    std::vector<double> values;
+    for (const StabilityRow& row : rows) values.push_back(row.*member);
+    columns.push_back({name, unit, long_name, values});
+  };
+  texts("study", "the case", [](const auto& r) { return r.study; });
+  texts("abscissa", "what x is", [](const auto& r) { return r.abscissa; });
+  texts("method", "exact, a stepper, or how a landing event is armed",
+        [](const auto& r) { return r.method; });
+  texts("control", "what the setting is: tolerance, step, or rule for a landing event",
+        [](const auto& r) { return r.control; });
+  numbers("setting", "1", "tolerance, or step in sqrt(R/g); NaN: a rule", &StabilityRow::setting);
+  numbers("x", "1", "how far the case has been walked along its abscissa", &StabilityRow::x);
+  numbers("error", "1",
+          "largest of the jump's height's error in hoop diameters and of the relative errors of both times; "
+          "NaN: none to "
+          "compare",
+          &StabilityRow::error);
+  numbers("energy_drift", "1", "at the jump, over 1 + its kinetic energy; NaN: no jump",
+          &StabilityRow::energy_drift);
+  numbers("condition", "1", "times that a relative change of the inputs comes back in the answer",
+          &StabilityRow::condition);
+  numbers("evaluations", "1", "of the acceleration; NaN: none", &StabilityRow::evaluations);
+  numbers("seconds", "s", "for this one design on one thread, once", &StabilityRow::seconds);
+  texts("finding", "fine, undecided, lossy, failed or wrong",
+        [](const auto& r) { return name_of(r.finding); });
+  std::vector<std::string> verdicts;
+  for (const Series& series : series_of(rows))
+    verdicts.insert(verdicts.end(), series.rows.size(), std::string(series.verdict));
+  columns.push_back({"verdict", "1", "of the method in this case", verdicts});
+  return columns;
+}
+
+int run(const StabilityArguments& arguments) {
+  hdf5::refuse_other_file(arguments.table, filetype);  // not after minutes of work
+  note_signals();
+  const auto begin = std::chrono::steady_clock::now();
+  fmt::print("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", "case", "method",
+             "control", "verdict", "fine", "lossy", "failed", "wrong", "undecided", "worst", "most rhs");
+  std::vector<StabilityRow> rows = run_landing_case(arguments.options);
+  print_verdicts(rows);
+  const auto stop_requested = [] { return noted_signal() != 0; };
+  for (const StabilityCase& stability_case : stability_cases(arguments.options)) {
+    const std::vector<StabilityRow> more = run_case(stability_case, stop_requested);
+    if (stop_requested()) {
+      tell(fmt::format("interrupted in the case \"{}\"; nothing is written", stability_case.name));
+      return 128 + noted_signal();
+    }
+    print_verdicts(more);
+    rows.insert(rows.end(), more.begin(), more.end());
+  }
+  std::vector<hdf5::Attribute> attributes = file_provenance(filetype, "Where methods for passive hoops fail");
+  attributes.emplace_back("wall_time",
+                          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  write_table(arguments.table, filetype, columns_of(rows), attributes);
+  fmt::print("table    {} rows in {}\ncharts   /usr/bin/python3 analysis/stability_chart.py {}\n",
+             rows.size(), arguments.table, shell_quoted(arguments.table));
+  return 0;
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "stability", "find where methods fail: seven walks into trouble, every method's verdict in each");
+  auto arguments = std::make_shared<StabilityArguments>();
+  command->add_option("-o,--output", arguments->table,
+                      "the table to write, HDF5; default: maps/stability.h5");
+  command->add_flag("--quick", arguments->options.quick, "fewer places on each walk: within 30 s");
+  command->footer(
+      "Answers are compared with long double's, and with what the problem itself allows: how far an ulp of "
+      "an input\n"
+      "moves the answer. fine: within 1000 times the tolerance (of fixed steps 1e-3); lossy: within 5 %; "
+      "failed: the\n"
+      "method says so; wrong: anything else; undecided: an ulp of an input decides. One thread.");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Where methods fail: designs and settings chosen to be hard, and what every method makes of them.
+///
+/// A case is a walk along one number, its abscissa, into trouble. Every answer is compared with long
+/// double's, and with what the problem itself allows: how much the answer moves when the inputs move by an
+/// ulp.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/contestant.hpp"
+
+namespace leapmap {
+
+/// What one answer is worth. From bad to worse.
+enum class Finding {
+  fine,  ///< error within a thousand times the tolerance (of steps: 1e-3), and what the inputs' last bits
+         ///< decide
+  undecided,  ///< one ulp of an input changes status, flag or candidates: no method in double can be asked
+  lossy,      ///< digits are lost beyond that, but not beyond 5 %
+  failed,     ///< the method says that it failed
+  wrong       ///< status, flag or candidates are wrong, or the error is beyond 5 %, and nothing says so
+};
+std::string_view name_of(Finding finding);
+
+/// What a method is worth in one case: "wrong without a word" if any answer is wrong; else "breaks down" if
+/// every one failed, "gives up honestly" if any did; else "loses digits" if any is lossy; else "fine".
+std::string_view verdict_of(std::span<const Finding> findings);
+
+/// One design to be solved in its scene, at one place of its case's walk.
+struct StabilitySubject {
+  double x = 0.0;  ///< abscissa; of a case that walks along the settings it is not used
+  Design design;
+  Scene scene;
+};
+
+struct StabilityCase {
+  std::string name;      ///< "needle", "release", ...
+  std::string abscissa;  ///< what x is, with its unit
+  std::vector<StabilitySubject> subjects;
+  std::vector<Contestant> contestants;
+  bool walks_settings = false;  ///< x is the contestant's step or tolerance
+  long max_steps = 200'000;
+};
+
+struct StabilityRow {
+  std::string study;     ///< the case's name
+  std::string abscissa;  ///< the case's
+  std::string method;
+  std::string control;   ///< "tolerance", "step" or "rule" (landing)
+  double setting = 0.0;  ///< tolerance or step; NaN for a rule
+  double x = 0.0;
+  double error = 0.0;  ///< largest of jump_height's, absolute [diameters], jump_time's and first_jump_time's,
+                       ///< relative; NaN where the finding is failed or flags are wrong
+  double energy_drift = 0.0;  ///< at the jump, over 1 + its kinetic energy; NaN without a jump
+  double condition = 0.0;     ///< times that a relative change of the inputs comes back in the answer
+  double evaluations = 0.0;   ///< of the acceleration; NaN: none
+  double seconds = 0.0;
+  Finding finding = Finding::fine;
+};
+
+struct StabilityOptions {
+  bool quick = false;  ///< fewer places and fewer steps before a method gives up
+};
+
+/// The cases whose subjects are designs: needle, release, graze, long, step, tolerance.
+std::vector<StabilityCase> stability_cases(const StabilityOptions& options);
+
+/// Every contestant on every subject, one contestant after another. One thread. stop_requested is asked
+/// often; the rows are then those there are.
+std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
+                                   const std::function<bool()>& stop_requested = {});
+
+/// The case "landing": flights from lift-offs out of rolling, whose height dips below the plane, and out of
+/// sliding, where y, y' and y'' vanish at once; by our closed form and by landing events armed in three ways.
+std::vector<StabilityRow> run_landing_case(const StabilityOptions& options);
+
+}  // namespace leapmap

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The walks into trouble, as data.
+#include <cmath>
+#include <numbers>
+
+#include "numerics/game_steppers.hpp"
+#include "numerics/gsl_integrator.hpp"
+#include "study/precision.hpp"
+#include "study/stability.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double usual_tolerance = 1e-10, usual_step = 0x1p-6;
+
+Contestant by_exact(double tolerance) {
+  return {"exact", false, tolerance, 0, RollingModel::energy_integral};
+}
+
+/// exact, all of GSL's at the default tolerance, and at a fixed step those that games use, the classical
+/// fourth order and the implicit midpoint rule (symplectic, for Hamiltonian coordinates), which GSL calls
+/// rk2imp.
+std::vector<Contestant> usual_contestants() {
+  std::vector<Contestant> contestants{by_exact(usual_tolerance)};
+  for (const GslStepper& stepper : gsl_steppers())
+    contestants.push_back({std::string(stepper.name), false, usual_tolerance});
+  for (const GslStepper& stepper : game_steppers())
+    contestants.push_back({std::string(stepper.name), true, usual_step});
+  for (const char* stepper : {"gsl-rk4", "gsl-rk2imp"}) contestants.push_back({stepper, true, usual_step});
+  return contestants;
+}
+
+/// A mass on the rim of an ever lighter hoop rolls through phi = 0, where the inertia about the contact is 2
+/// m R^2: the spin has a needle there, of width about 1 / sqrt(mass ratio).
+StabilityCase needle(bool quick) {
+  StabilityCase needle{"needle", "mass ratio", {}, usual_contestants()};
+  for (int decade = 0; decade <= 9; decade += quick ? 3 : 1) {
+    StabilitySubject subject{std::pow(10.0, decade), {}, {.runway = 2.0, .hop_height = 0.02}};
+    subject.design.mass_ratio = subject.x;
+    subject.design.release_angle = -1.45;  // from where it comes down to phi = 0 and gets past it
+    needle.subjects.push_back(subject);
+  }
+  return needle;
+}
+
+/// The unstable equilibrium has the centre of mass straight above the contact: sin(theta) = rho sin(theta +
+/// phi).
+StabilityCase release(bool quick) {
+  StabilityCase release{"release", "distance from the unstable equilibrium [rad]", {}, usual_contestants()};
+  for (int decade = 1; decade <= 12; decade += quick ? 4 : 1) {
+    StabilitySubject subject{std::pow(10.0, -decade), {}, {}};
+    const Hoop<long double> hoop = derive<long double>(subject.design);
+    const long double equilibrium =
+        std::numbers::pi_v<long double> - hoop.slope - std::asin(hoop.sin_slope / hoop.rho);
+    subject.design.release_angle = static_cast<double>(equilibrium + subject.x);
+    release.subjects.push_back(subject);
+  }
+  return release;
+}
+
+/// Flat plane, a thin hoop with its mass on the rim and on top, pushed with spin w: where w^2 = sqrt(27 (1 -
+/// rho) / (1 + rho)) - 1 the normal force touches zero, and beyond it a pair of lift-off and return is born.
+/// From rest (w = 0) that is at mass ratio 13, at cos = -5/13 from the top.
+StabilityCase graze(bool quick) {
+  StabilityCase graze{"graze", "mass ratio beyond the fold, relative", {}, usual_contestants()};
+  constexpr double spin = 0.01;
+  constexpr double q = (1.0 + spin * spin) * (1.0 + spin * spin);
+  constexpr double fold = (27.0 - q) / (2.0 * q);
+  for (int decade = 1; decade <= 15; decade += quick ? 4 : 1)
+    for (const double side : {-1.0, 1.0}) {
+      StabilitySubject subject{side * std::pow(10.0, -decade), {}, {.runway = 0.9}};
+      subject.design.slope = 0.0;
+      subject.design.mass_ratio = fold * (1.0 + subject.x);
+      subject.design.release_spin = spin;
+      graze.subjects.push_back(subject);
+    }
+  return graze;
+}
+
+/// So slight a slope that the hoop is fast enough to jump only after about that many turns.
+StabilityCase long_run(bool quick) {
+  StabilityCase long_run{"long", "revolutions rolled to the jump, about", {}, usual_contestants()};
+  long_run.max_steps = quick ? 20'000 : 1'000'000;
+  for (const double turns : {1.0, 10.0, 100.0, 1000.0, 10000.0}) {
+    if (quick && turns > 100.0) break;
+    StabilitySubject subject{turns, {}, {.runway = 3.0 * turns + 2.0}};
+    subject.design.slope = 0.5 / turns;
+    subject.design.mass_ratio = 3.0;
+    subject.design.release_spin = 0.5;
+    long_run.subjects.push_back(subject);
+  }
+  return long_run;
+}
+
+std::vector<StabilitySubject> random_subjects(std::size_t count) {
+  std::vector<StabilitySubject> subjects;
+  for (const Design& design : random_designs(count, 5)) subjects.push_back({0.0, design, {.runway = 4.0}});
+  subjects.push_back({0.0, {}, {}});  // the paper's hoop
+  return subjects;
+}
+
+/// Fixed steps from a sixteenth to two sqrt(R/g), in which the hoops turn by a quarter revolution and more.
+StabilityCase long_steps(bool quick) {
+  StabilityCase steps{"step", "step [sqrt(R/g)]", random_subjects(quick ? 4 : 20), {}, true};
+  for (const auto& steppers : {gsl_steppers(), game_steppers()})
+    for (const GslStepper& stepper : steppers)
+      for (int half_octave = -8; half_octave <= 2; half_octave += quick ? 4 : 1)
+        if (stepper.order > 0)
+          steps.contestants.push_back(
+              {std::string(stepper.name), true, std::pow(2.0, 0.5 * half_octave), stepper.order});
+  return steps;
+}
+
+StabilityCase unreachable_tolerances(bool quick) {
+  StabilityCase tolerances{"tolerance", "tolerance", random_subjects(quick ? 1 : 5), {}, true};
+  if (quick) tolerances.max_steps = 20'000;
+  for (const double tolerance : {1e-12, 1e-13, 1e-14, 1e-15, 1e-16, 1e-18, 1e-30})
+    tolerances.contestants.push_back(by_exact(tolerance));
+  for (const GslStepper& stepper : gsl_steppers())
+    for (const double tolerance : {1e-12, 1e-13, 1e-14, 1e-15, 1e-16, 1e-18, 1e-30})
+      tolerances.contestants.push_back({std::string(stepper.name), false, tolerance});
+  return tolerances;
+}
+
+}  // namespace
+
+std::vector<StabilityCase> stability_cases(const StabilityOptions& options) {
+  std::vector<StabilityCase> cases{needle(options.quick),     release(options.quick),
+                                   graze(options.quick),      long_run(options.quick),
+                                   long_steps(options.quick), unreachable_tolerances(options.quick)};
+  if (options.quick)
+    for (StabilityCase& stability_case : cases)
+      stability_case.max_steps = std::min(stability_case.max_steps, 20'000l);
+  return cases;
+}
+
+}  // namespace leapmap
