@@ -18,7 +18,7 @@ TITLES = {
     "release": "released ever closer to the unstable equilibrium",
     "graze": "across the fold where a pair of lift-off and return is born",
     "long": "ever longer runs to the jump",
-    "step": "fixed steps, ever longer (read from the right)",
+    "step": "fixed steps, ever longer",
     "tolerance": "tolerances no double can reach",
     "landing": "flights that start on the plane and dip below it",
 }
@@ -32,7 +32,7 @@ EPSILON = np.finfo(float).eps
 
 def series(t, study):
     """(name of the method, its rows, its verdict) in the table's order."""
-    names = [m if c != "step" or study == "step" else f"{m}, fixed" for m, c in zip(t.fields["method"], t.fields["control"])]
+    names = [f"{m}, fixed" if c == "step" else m for m, c in zip(t.fields["method"], t.fields["control"])]
     here = np.flatnonzero(t.fields["study"] == study)
     for name in dict.fromkeys(names[i] for i in here):
         rows = np.array([i for i in here if names[i] == name])
@@ -72,7 +72,7 @@ def scale(axis, t, rows):
 
 
 def case_chart(t, study):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(14.0, 5.6), layout="constrained")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(16.0, 5.6), layout="constrained")
     beside = BESIDE[study]
     everything = []
     for name, rows, verdict in series(t, study):
@@ -108,12 +108,12 @@ def case_chart(t, study):
     for axis in (left, right):
         scale(axis, t, everything)
     figure.suptitle(f"{study}: {TITLES[study]}", fontsize=11)
-    figure.legend(*left.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    right.legend(*left.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(1.02, 0.5), frameon=False)
     return figure
 
 
 def landing_chart(t):
-    figure, axis = plt.subplots(figsize=(9.0, 4.8), layout="constrained")
+    figure, axis = plt.subplots(figsize=(11.0, 4.8), layout="constrained")
     for (name, rows, verdict), marker in zip(series(t, "landing"), "o^vs"):
         x, error = np.maximum(t.fields["x"][rows], 1e-9), np.maximum(t.fields["error"][rows], FLOOR)
         axis.plot(x, error, marker, markersize=5, markerfacecolor="none", label=f"{name}: {verdict}")
@@ -124,7 +124,7 @@ def landing_chart(t):
     axis.set_ylabel("error of height [diameters] or duration [relative]")
     axis.set_title(f"landing: {TITLES['landing']}; above the red line the jump is lost or invented")
     axis.grid(alpha=0.25)
-    figure.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    axis.legend(loc="center left", bbox_to_anchor=(1.02, 0.5), frameon=False)
     return figure
 
 

@@ -2,6 +2,7 @@
 /// leapmap precision: speed against accuracy, all methods in one run.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -12,6 +13,8 @@
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
 #include "study/precision.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/point_list.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -19,7 +22,7 @@ namespace {
 constexpr const char* filetype = "leapmap precision";
 
 struct PrecisionArguments {
-  std::string table = "maps/precision.h5";
+  std::string table = "maps/precision.h5", points;
   PrecisionOptions options;
 };
 
@@ -56,7 +59,7 @@ std::vector<TableColumn> columns_of(const std::vector<PrecisionRow>& rows) {
                             double Measurement::*member) {
     numbers(name, unit, long_name, [member](const PrecisionRow& row) { return row.measurement.*member; });
   };
-  texts("designs", "which designs: random, or the paper's hoop alone",
+  texts("designs", "which designs: random, the paper's hoop alone, or given as a list",
         [](const auto& r) { return r.designs; });
   texts("method", "exact, a stepper of GSL, or a step as game engines take it",
         [](const auto& r) { return r.contestant.method; });
@@ -87,10 +90,20 @@ std::vector<TableColumn> columns_of(const std::vector<PrecisionRow>& rows) {
   return columns;
 }
 
+/// The designs of a CSV list, as sweeps read it.
+std::vector<Design> read_designs(const std::string& path) {
+  Spec spec;
+  spec.list = read_points(path, "leapmap precision");
+  std::vector<Design> designs;
+  for (std::size_t i = 0; i < spec.list.count; ++i) designs.push_back(DesignSpace(spec).at(i));
+  return designs;
+}
+
 int run(PrecisionArguments arguments, bool designs_given) {
   PrecisionOptions& options = arguments.options;
   if (options.quick && !designs_given) options.designs = 40;
   if (options.quick) options.budget = 0.3;
+  if (!arguments.points.empty()) options.points = read_designs(arguments.points);
   const Scene scene{.runway = 4.0};
   hdf5::refuse_other_file(arguments.table, filetype);  // not after minutes of work
   note_signals();
@@ -104,7 +117,8 @@ int run(PrecisionArguments arguments, bool designs_given) {
   }
   std::vector<hdf5::Attribute> attributes =
       file_provenance(filetype, "Speed against accuracy of methods for passive hoops");
-  attributes.emplace_back("random_designs", static_cast<std::int64_t>(options.designs));
+  attributes.emplace_back("random_designs",
+                          static_cast<std::int64_t>(options.points.empty() ? options.designs : 0));
   attributes.emplace_back("seed", static_cast<std::int64_t>(options.seed));
   attributes.emplace_back("budget", options.budget);
   attributes.emplace_back("wall_time",
@@ -129,6 +143,15 @@ void add_precision(CLI::App& app, int& status) {
           ->add_option("--designs", arguments->options.designs, "random designs; default: 200, 40 if quick")
           ->check(CLI::Range(1, 1'000'000));
   command->add_option("--seed", arguments->options.seed, "of the random designs; default: 1");
+  command->add_option("--points", arguments->points,
+                      "a CSV list of designs, as for sweeps, in place of random ones and the paper's hoop");
+  std::vector<std::string> methods;
+  for (const Contestant& contestant : precision_contestants(true))
+    if (std::ranges::find(methods, contestant.method) == methods.end()) methods.push_back(contestant.method);
+  command
+      ->add_option("--methods", arguments->options.methods, "only these, with commas between; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(methods));
   command->add_flag("--quick", arguments->options.quick,
                     "fewer designs and settings, less time for each: within 30 s");
   command->footer(

@@ -125,19 +125,30 @@ Measurement measure(const Contestant& contestant, std::span<const Design> design
 std::vector<PrecisionRow> study_precision(const PrecisionOptions& options, const Scene& scene,
                                           const std::function<void(const PrecisionRow&)>& told,
                                           const std::function<bool()>& stop_requested) {
-  const std::vector<Design> random = random_designs(options.designs, options.seed), paper(1);
+  std::vector<std::pair<std::string, std::vector<Design>>> sets;
+  if (options.points.empty()) {
+    sets.emplace_back("random", random_designs(options.designs, options.seed));
+    sets.emplace_back("paper", std::vector<Design>(1));
+  } else {
+    sets.emplace_back("given", options.points);
+  }
+  std::vector<Contestant> contestants = precision_contestants(options.quick);
+  if (!options.methods.empty())
+    std::erase_if(contestants, [&](const Contestant& contestant) {
+      return contestant.model > RollingModel::one_coordinate ||
+             std::ranges::find(options.methods, contestant.method) == options.methods.end();
+    });
   std::vector<PrecisionRow> rows;
-  for (const auto& [name, designs] : {std::pair{"random", &random}, {"paper", &paper}}) {
-    std::vector<Outcome> truth(designs->size());
-    ExactSolver<long double>(1e-18).solve(*designs, scene, truth);
+  for (const auto& [name, designs] : sets) {
+    std::vector<Outcome> truth(designs.size());
+    ExactSolver<long double>(1e-18).solve(designs, scene, truth);
     const Contestant* too_dear = nullptr;
-    const std::vector<Contestant> contestants = precision_contestants(options.quick);
     for (const Contestant& contestant : contestants) {
       if (stop_requested && stop_requested()) return rows;
       if (too_dear && contestant.same_series(*too_dear)) continue;
-      rows.push_back({name, contestant, measure(contestant, *designs, scene, truth, options.budget)});
+      rows.push_back({name, contestant, measure(contestant, designs, scene, truth, options.budget)});
       if (told) told(rows.back());
-      if (rows.back().measurement.seconds * static_cast<double>(designs->size()) > options.budget)
+      if (rows.back().measurement.seconds * static_cast<double>(designs.size()) > options.budget)
         too_dear = &contestant;
     }
   }

@@ -26,7 +26,7 @@ struct Measurement {
 };
 
 struct PrecisionRow {
-  std::string designs;  ///< "random", "paper"
+  std::string designs;  ///< "random", "paper"; "given": points
   Contestant contestant;
   Measurement measurement;
 };
@@ -36,7 +36,9 @@ struct PrecisionOptions {
   std::uint64_t seed = 1;
   double budget =
       4.0;  ///< seconds a contestant may take; those of its series that would take longer are left out
-  bool quick = false;  ///< every third setting only
+  bool quick = false;                ///< every third setting only
+  std::vector<Design> points;        ///< in place of the random ones and the paper's hoop, if any
+  std::vector<std::string> methods;  ///< only these, on the least model; empty: all
 };
 
 /// All contestants, those of a series one after another, the cheapest first.

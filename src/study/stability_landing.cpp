@@ -117,7 +117,7 @@ std::vector<StabilityRow> run_landing_case(const StabilityOptions& options) {
   };
   // A sample is a thousandth; near the plane a flight takes some of them.
   fly_all(
-      "closed form", [](const Subject& s) { return fly(s.hoop, s.lift_off); }, 1e-11);
+      "closed form (leapmap)", [](const Subject& s) { return fly(s.hoop, s.lift_off); }, 1e-11);
   for (const Rule& rule : rules)
     fly_all(
         rule.name, [&](const Subject& s) { return simulate(s, rule); }, 0.01);

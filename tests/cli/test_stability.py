@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""leapmap stability --quick: its table and charts, and the comparison with programs that are not ours."""
+import h5py
+import numpy as np
+import pytest
+import xarray
+from support.program import TOP, finished, leapmap
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("stability")
+    done = leapmap("stability", "--quick", "-o", folder / "table.h5")
+    assert done.returncode == 0, done.stderr
+    return folder / "table.h5", done.stdout
+
+
+CASES = ("landing", "needle", "release", "graze", "long", "step", "tolerance")
+
+
+def test_every_method_has_a_verdict_in_every_case_and_no_default_is_wrong_without_a_word(table):
+    path, printed = table
+    lines = [line for line in printed.splitlines() if line.startswith(CASES)]
+    with xarray.open_dataset(path) as t:
+        said = set(zip(t.study.values, t.method.values, t.control.values, t.verdict.values))
+        assert len(said) == len(lines)
+        for study, method, control, verdict in said:
+            assert any(line.startswith(study) and method in line and control in line and verdict in line for line in lines)
+        defaults = [v for s, m, c, v in said if m in ("exact", "closed form (leapmap)")]
+        assert len(defaults) == 6 and set(defaults) == {"fine"}
+        assert {s for s, *_ in said} == set(CASES)
+        wrong = t.finding == "wrong"
+        assert ((t.verdict == "wrong without a word") | ~wrong).all() and wrong.any(), "a study in which nothing fails shows nothing"
+
+
+def test_charts_of_all_cases_show_the_verdicts(table, tmp_path):
+    done = finished("/usr/bin/python3", TOP / "analysis" / "stability_chart.py", table[0], "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    assert "wrong, silent" in (tmp_path / "chart.svg").read_text()
+    for case in CASES:
+        drawn = (tmp_path / f"chart_{case}.svg").read_text()
+        assert case in drawn and ("closed form" in drawn if case == "landing" else "gsl-rk8pd" in drawn), case
+
+
+def test_scipy_and_boost_solve_the_same_designs_and_stand_on_the_same_chart(tmp_path):
+    done = finished("/usr/bin/python3", TOP / "analysis" / "rivals.py", "--quick", "--designs", 4, "-o", tmp_path / "rivals")
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "rivals.h5") as t:
+        method, setting = t["method"].asstr()[()], t["setting"][()]
+        for rival in ("Boost.odeint, dopri5", "scipy, DOP853", "leapmap, gsl-rk8pd"):
+            rows = np.flatnonzero(method == rival)
+            tightest = rows[np.argmin(setting[rows])]
+            # Three programs that share no code agree: within some hundred times the tightest tolerance, 1e-11 or less.
+            assert t["max_height_error"][tightest] < 1e-8 and t["wrong"][tightest] == 0, rival
+    drawn = (tmp_path / "rivals_time.svg").read_text()
+    assert "scipy" in drawn and "Boost" in drawn and "leapmap, exact" in drawn

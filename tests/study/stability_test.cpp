@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/stability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace leapmap {
+namespace {
+
+std::vector<Finding> findings_of(const std::vector<StabilityRow>& rows, const std::string& method) {
+  std::vector<Finding> findings;
+  for (const StabilityRow& row : rows)
+    if (row.method == method) findings.push_back(row.finding);
+  return findings;
+}
+
+/// A case with one contestant only; all its settings, if it walks along them.
+StabilityCase only(StabilityCase stability_case, const std::string& method, bool fixed_step = false) {
+  std::erase_if(stability_case.contestants,
+                [&](const Contestant& c) { return c.method != method || c.fixed_step != fixed_step; });
+  return stability_case;
+}
+
+StabilityCase find_case(const std::string& name, bool quick) {
+  for (StabilityCase& stability_case : stability_cases({quick}))
+    if (stability_case.name == name) return stability_case;
+  ADD_FAILURE() << name;
+  return {};
+}
+
+TEST(Stability, AVerdictIsTheWorstThatIsNotSaid) {
+  using enum Finding;
+  const auto verdict = [](std::vector<Finding> findings) { return verdict_of(findings); };
+  EXPECT_EQ(verdict({fine, undecided, fine}), "fine");
+  EXPECT_EQ(verdict({fine, lossy, fine}), "loses digits");
+  EXPECT_EQ(verdict({fine, lossy, failed}), "gives up honestly");
+  EXPECT_EQ(verdict({failed, failed, undecided}), "breaks down");
+  EXPECT_EQ(verdict({fine, lossy, failed, wrong}), "wrong without a word");
+}
+
+class StabilityOfTheDefault : public ::testing::TestWithParam<const char*> {};
+
+// exact is the default of sweep and of hop. Every place of the walk but those that an ulp decides: right
+// status, flag and candidates, times within a thousand times the tolerance and a hundred times what an ulp of
+// the inputs does.
+TEST_P(StabilityOfTheDefault, IsFineOnTheWholeWalk) {
+  StabilityCase walk = only(find_case(GetParam(), false), "exact");
+  // The longest run's 13 truths in long double would take a minute; leapmap stability has it.
+  std::erase_if(walk.subjects,
+                [&](const StabilitySubject& s) { return walk.name == "long" && s.x > 1000.0; });
+  ASSERT_FALSE(walk.contestants.empty());
+  const auto rows = run_case(walk);
+  ASSERT_EQ(rows.size(), walk.contestants.size() * walk.subjects.size());
+  for (const StabilityRow& row : rows)
+    EXPECT_TRUE(row.finding == Finding::fine || row.finding == Finding::undecided)
+        << row.study << " at " << row.x << ": " << name_of(row.finding) << ", error " << row.error;
+  EXPECT_LE(std::ranges::count(rows, Finding::undecided, &StabilityRow::finding), 1)
+      << "1e-15 beyond the fold, some ulps of the mass ratio";
+}
+INSTANTIATE_TEST_SUITE_P(Walks, StabilityOfTheDefault,
+                         ::testing::Values("needle", "release", "graze", "long", "tolerance"),
+                         [](const auto& walk) { return std::string(walk.param); });
+
+TEST(Stability, TheDefaultFlightIsFineWhereLandingEventsArmedTooEarlyLoseTheJump) {
+  const auto rows = run_landing_case({});
+  EXPECT_EQ(verdict_of(findings_of(rows, "closed form (leapmap)")), "fine");
+  EXPECT_EQ(verdict_of(findings_of(rows, "armed at once")), "wrong without a word");
+  EXPECT_EQ(verdict_of(findings_of(rows, "armed after 0.05 sqrt(R/g)")), "wrong without a word");
+  EXPECT_EQ(verdict_of(findings_of(rows, "armed once above the plane")), "fine");
+  const auto dipping = std::ranges::count_if(rows, [](const StabilityRow& row) { return row.x > 1e-6; });
+  EXPECT_GT(dipping, 0);
+  EXPECT_LT(dipping, std::ssize(rows)) << "triple roots, which do not dip";
+}
+
+TEST(Stability, TheConditionOfAReleaseGrowsAsItsDistanceFromTheEquilibriumShrinks) {
+  StabilityCase walk = only(find_case("release", false), "exact");
+  const auto rows = run_case(walk);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double growth = rows[i].condition / rows[i - 1].condition;
+    // t is about ln(1 / x): dt / dx goes as 1 / x, over a t that grows slowly.
+    EXPECT_GT(growth, 5.0) << rows[i].x;
+    EXPECT_LT(growth, 10.5) << rows[i].x;
+  }
+}
+
+TEST(Stability, WhatAnUlpDecidesIsAskedOfNoMethod) {
+  StabilityCase walk = only(find_case("graze", false), "gsl-rk4");
+  walk.subjects = {walk.subjects.back()};  // mass ratio 1e-15 beyond the fold
+  for (const StabilityRow& row : run_case(walk)) EXPECT_EQ(row.finding, Finding::undecided);
+}
+
+TEST(Stability, NoMethodIsSilentlyWrongAtTolerancesNoDoubleCanReach) {
+  const auto rows = run_case(find_case("tolerance", true));  // that it ends is half of the test
+  for (const StabilityRow& row : rows) {
+    EXPECT_NE(row.finding, Finding::wrong) << row.method << " at " << row.x;
+    if (row.x <= 1e-18 && row.method != "exact" && row.finding != Finding::failed) {
+      EXPECT_LT(row.error, 1e-8) << row.method << " at " << row.x;
+    }
+  }
+}
+
+TEST(Stability, StepsTooLongAreFoundOutByTheirEnergy) {
+  StabilityCase walk = only(find_case("step", true), "euler", true);
+  const auto rows = run_case(walk);
+  ASSERT_FALSE(rows.empty());
+  const auto failed = std::ranges::count(rows, Finding::failed, &StabilityRow::finding);
+  EXPECT_GT(failed, std::ssize(rows) / 2);
+}
+
+}  // namespace
+}  // namespace leapmap
