@@ -33,13 +33,13 @@ double normal_force(const Hoop& h, const State& y) {
   return h.cos_slope + h.rho * (std::sin(y[0]) * acceleration(h, y) + std::cos(y[0]) * y[1] * y[1]);
 }
 
-/// Apex of the first interval with y > 0 [diameters]: sampled, then refined by golden sections.
+/// Apex of the first interval with y > 0 [diameters]: sampled, then Newton's iteration on y'.
 double jump_height(const Hoop& h, const State& at) {
   const double phi = at[0], w = at[1], speed = h.rho * std::sin(phi) * w;
   const auto y = [&](double t) {
     return -h.rho * std::cos(phi) + speed * t - 0.5 * h.cos_slope * t * t + h.rho * std::cos(phi + w * t);
   };
-  const double step = 0.02 / (1 + std::abs(w)),
+  const double step = 0.1 / (1 + std::abs(w)),
                last = (speed + std::sqrt(speed * speed + 4 * h.cos_slope * h.rho)) / h.cos_slope;
   double best = 0, when = 0;
   bool above = false;
@@ -50,13 +50,14 @@ double jump_height(const Hoop& h, const State& at) {
     if (above && now > best) best = now, when = t;
   }
   if (!above) return 0;
-  double a = when - step, b = when + step;
-  const double golden = 0.5 * (std::sqrt(5.0) - 1);
-  while (b - a > 1e-9) {
-    const double left = b - golden * (b - a), right = a + golden * (b - a);
-    y(left) > y(right) ? b = right : a = left;
+  for (int i = 0; i < 8; ++i) {
+    const double climb = speed - h.cos_slope * when - h.rho * w * std::sin(phi + w * when);
+    const double move = climb / (h.cos_slope + h.rho * w * w * std::cos(phi + w * when));
+    if (!(std::abs(move) < step)) break;
+    when += move;
+    if (std::abs(move) < 1e-14 * when) break;
   }
-  return 0.5 * std::max(best, y(0.5 * (a + b)));
+  return 0.5 * std::max(best, y(when));
 }
 
 struct Answer {

@@ -8,6 +8,8 @@ which some fail, saying so; the error is of the others. OUTPUT_wrong: the share 
 OUTPUT_order: error of the time against fixed step, with the order fitted to the three smallest steps above rounding beside
 the theoretical one. OUTPUT_model: what modelling more than rolling needs costs, and how far its constraints drift.
 """
+import textwrap
+
 import numpy as np
 
 import style
@@ -18,7 +20,7 @@ FLOOR = 1e-17  # where an error of exactly 0 is drawn
 COLOURS = {
     "exact": "#000000", "gsl-rk8pd": "#1f77b4", "gsl-rkck": "#17becf", "gsl-rkf45": "#2ca02c", "gsl-rk4": "#bcbd22", "gsl-rk2": "#ff7f0e",
     "gsl-msadams": "#8c564b", "gsl-msbdf": "#c49c94", "gsl-bsimp": "#9467bd", "gsl-rk4imp": "#e377c2", "gsl-rk2imp": "#f7b6d2",
-    "gsl-rk1imp": "#c5b0d5", "euler": "#7f7f7f", "semi-implicit-euler": "#d62728", "velocity-verlet": "#ff9896"}
+    "gsl-rk1imp": "#c5b0d5", "euler": "#7f7f7f", "semi-implicit-euler": "#556b2f", "velocity-verlet": "#b8860b"}
 
 
 LEAST = ("energy integral", "one coordinate")  # models no larger than rolling needs
@@ -51,17 +53,20 @@ def draw_methods(axis, t, designs, across):
 
 
 def methods_chart(t, across, label):
-    figure, axes = plt.subplots(1, 2, sharey=True, figsize=(12.0, 6.4), layout="constrained")
-    titles = {"random": f"{t.attributes['random_designs']} random designs (seed {t.attributes['seed']})", "paper": "the paper's hoop"}
-    for axis, (designs, title) in zip(axes, titles.items()):
+    titles = {"random": f"{t.attributes['random_designs']} random designs (seed {t.attributes['seed']})", "paper": "the paper's hoop",
+              "given": "the designs given"}
+    sets = list(dict.fromkeys(t.fields["designs"]))
+    figure, axes = plt.subplots(1, len(sets), sharey=True, squeeze=False, figsize=(3.0 + 4.8 * len(sets), 6.4), layout="constrained")
+    axes = axes[0]
+    for axis, designs in zip(axes, sets):
         draw_methods(axis, t, designs, across)
-        axis.set_title(title)
-        axis.set_xlabel(label)
+        axis.set_title(titles[designs])
+    figure.supxlabel(label, fontsize=9)
     axes[0].set_ylabel("largest error of the jump's height [hoop diameters]")
     handles, labels = axes[0].get_legend_handles_labels()
     handles += [plt.Line2D([], [], marker="o", linestyle="", markersize=9, markerfacecolor="none", color=style.MARK),
                 plt.Line2D([], [], marker="x", linestyle="", markersize=8, color=style.MARK)]
-    axes[1].legend(handles, labels + ["some designs wrong, without a word", "some designs failed, saying so"], loc="center left",
+    axes[-1].legend(handles, labels + ["some designs wrong, without a word", "some designs failed, saying so"], loc="center left",
                    bbox_to_anchor=(1.02, 0.5), frameon=False)
     return figure
 
@@ -69,7 +74,7 @@ def methods_chart(t, across, label):
 def wrong_chart(t):
     figure, axis = plt.subplots(figsize=(7.2, 4.4), layout="constrained")
     nothing_wrong = []
-    for method, rows in series(t, "random", "tolerance"):
+    for method, rows in series(t, t.fields["designs"][0], "tolerance"):
         wrong, failed = (100 * t.fields[k][rows] for k in ("wrong", "failed"))
         if not (wrong + failed).any():
             nothing_wrong.append(method)
@@ -80,7 +85,7 @@ def wrong_chart(t):
     axis.set_xscale("log")
     axis.set_xlabel("tolerance")
     axis.set_ylabel("designs [%]")
-    axis.set_title("no design wrong or failed at any tolerance: " + (", ".join(nothing_wrong) or "none"), wrap=True)
+    axis.set_title(textwrap.fill("no design wrong or failed at any tolerance: " + (", ".join(nothing_wrong) or "none"), 90))
     axis.grid(alpha=0.25)
     if axis.lines:
         axis.legend(frameon=False)
@@ -95,7 +100,7 @@ def fitted_order(steps, errors):
 
 def order_chart(t):
     figure, axis = plt.subplots(figsize=(8.4, 5.2), layout="constrained")
-    for method, rows in series(t, "paper", "step"):
+    for method, rows in series(t, t.fields["designs"][-1], "step"):
         steps, errors = t.fields["setting"][rows], t.fields["max_time_error"][rows]
         order = fitted_order(steps, errors)
         fitted = "no fit" if np.isnan(order) else f"{order:.1f}"
@@ -105,7 +110,7 @@ def order_chart(t):
     axis.set_yscale("log")
     axis.set_xlabel("step [√(R/g)]; a gap: the method failed there")
     axis.set_ylabel("relative error of the jump's time")
-    axis.set_title("the paper's hoop, fixed steps")
+    axis.set_title(f"designs: {t.fields['designs'][-1]}; fixed steps, orders fitted to the three smallest above rounding")
     axis.grid(alpha=0.25)
     axis.legend(frameon=False, loc="lower right")
     return figure
@@ -122,7 +127,8 @@ MODELS = {  # colour, and what it is
 
 def model_chart(t):
     figure, (errors, drifts) = plt.subplots(1, 2, figsize=(12.0, 5.0), layout="constrained")
-    best = np.isin(t.fields["method"], ("exact", "gsl-rk8pd")) & (t.fields["control"] == "tolerance") & (t.fields["designs"] == "random")
+    best = np.isin(t.fields["method"], ("exact", "gsl-rk8pd")) & (t.fields["control"] == "tolerance") & (
+        t.fields["designs"] == t.fields["designs"][0])
     for model, (colour, label) in MODELS.items():
         rows = np.flatnonzero(best & (t.fields["model"] == model))
         errors.plot(1e6 * t.fields["seconds"][rows], np.maximum(t.fields["max_height_error"][rows], FLOOR), "-o", markersize=4, color=colour,
@@ -136,7 +142,7 @@ def model_chart(t):
         axis.legend(frameon=False, loc="best")
     errors.set_xlabel("time for one design on one thread [µs]; better: left and down")
     errors.set_ylabel("largest error of the jump's height [hoop diameters]")
-    errors.set_title("by model: exact, and gsl-rk8pd at tolerances 1e-3 to 1e-13, on random designs")
+    errors.set_title("by model: exact, and gsl-rk8pd at tolerances from 1e-3 on")
     drifts.set_xlabel("tolerance")
     drifts.set_ylabel("largest violation of a constraint [R, √(gR)]")
     drifts.set_title("the paper's constraints are linear and drift by rounding only; curved ones drift")
@@ -149,10 +155,13 @@ def main():
     t = read_table(arguments.source, "leapmap precision")
     output = style.stem(arguments.output)
     style.save(methods_chart(t, "seconds", "time for one design on one thread [µs]"), f"{output}_time")
-    style.save(methods_chart(t, "evaluations", "right-hand sides for one design (exact asks for none, and is not here)"), f"{output}_work")
-    style.save(model_chart(t), f"{output}_model")
+    if np.isfinite(t.fields["evaluations"]).any():
+        style.save(methods_chart(t, "evaluations", "right-hand sides for one design (exact asks for none, and is not here)"), f"{output}_work")
+    if not np.isin(t.fields["model"], LEAST).all():
+        style.save(model_chart(t), f"{output}_model")
     style.save(wrong_chart(t), f"{output}_wrong")
-    style.save(order_chart(t), f"{output}_order")
+    if (t.fields["control"] == "step").any():
+        style.save(order_chart(t), f"{output}_order")
 
 
 if __name__ == "__main__":

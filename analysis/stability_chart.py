@@ -74,7 +74,7 @@ def scale(axis, t, rows):
 def case_chart(t, study):
     figure, (left, right) = plt.subplots(1, 2, figsize=(16.0, 5.6), layout="constrained")
     beside = BESIDE[study]
-    everything = []
+    everything, crosses = [], 4.0
     for name, rows, verdict in series(t, study):
         everything.extend(rows)
         x, finding = t.fields["x"][rows], t.fields["finding"][rows]
@@ -83,9 +83,12 @@ def case_chart(t, study):
         wrong = finding == "wrong"
         if wrong.any():
             at = np.where(np.isfinite(t.fields["error"][rows]), t.fields["error"][rows], 1.0)  # flags wrong: no error to draw
-            left.plot(x[wrong], np.clip(at[wrong], FLOOR, 1.0), "o", markersize=8, markerfacecolor="none", color=style.MARK, markeredgewidth=0.9)
+            left.plot(x[wrong], np.clip(at[wrong], FLOOR, 1.0), "o", markersize=9, markerfacecolor=look(name)["color"], alpha=0.9,
+                      markeredgecolor=style.MARK, markeredgewidth=1.2)
         failed = np.unique(x[finding == "failed"])
-        left.plot(failed, np.full(len(failed), 3.0), "x", markersize=6, color=look(name)["color"], markeredgewidth=0.9)
+        if len(failed):
+            left.plot(failed, np.full(len(failed), crosses), "x", markersize=5, color=look(name)["color"], markeredgewidth=1.1)
+            crosses *= 2.5
         if beside == "share":
             for which, line in (("wrong", "-"), ("failed", ":")):
                 right.plot(*along(x, 100.0 * (finding == which), np.mean), line, marker=".", markersize=4, color=look(name)["color"])
@@ -101,9 +104,9 @@ def case_chart(t, study):
                         "how ill-conditioned the question itself is, whatever the method")
     left.set_yscale("log")
     right.set_yscale("linear" if beside == "share" else "log")
-    left.set_ylim(top=10.0)
+    left.set_ylim(top=2.0 * crosses)
     left.set_ylabel("error of height [diameters] or time [relative]")
-    left.set_title("rings: wrong without a word; crosses on top: failed, saying so")
+    left.set_title("red rings: wrong without a word (on top: flags wrong); crosses: failed, saying so, a row each method")
     right.set_ylabel(LABELS[beside])
     for axis in (left, right):
         scale(axis, t, everything)
@@ -150,6 +153,8 @@ def overview(t):
     axis.set_xlim(-0.52, len(studies) - 0.48)
     axis.set_ylim(len(names) - 0.45, -0.55)
     axis.tick_params(length=0)
+    figure.suptitle("each method's worst in each case" + ("; a quick run, which leaves out places" if t.attributes["quick"] else "") +
+                    "; empty: not asked", fontsize=9)
     for side in axis.spines.values():
         side.set_visible(False)
     return figure

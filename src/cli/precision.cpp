@@ -142,9 +142,13 @@ void add_precision(CLI::App& app, int& status) {
       command
           ->add_option("--designs", arguments->options.designs, "random designs; default: 200, 40 if quick")
           ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--seed", arguments->options.seed, "of the random designs; default: 1");
-  command->add_option("--points", arguments->points,
-                      "a CSV list of designs, as for sweeps, in place of random ones and the paper's hoop");
+  auto* seed = command->add_option("--seed", arguments->options.seed, "of the random designs; default: 1");
+  command
+      ->add_option("--points", arguments->points,
+                   "a CSV list of designs, as for sweeps, in place of random ones and the paper's hoop")
+      ->check(CLI::ExistingFile)
+      ->excludes(designs)
+      ->excludes(seed);
   std::vector<std::string> methods;
   for (const Contestant& contestant : precision_contestants(true))
     if (std::ranges::find(methods, contestant.method) == methods.end()) methods.push_back(contestant.method);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "cli/commands.hpp"
 #include "cli/progress.hpp"
@@ -52,15 +53,16 @@ void print_verdicts(std::span<const StabilityRow> rows) {
     const auto count = [&](Finding finding) {
       return std::ranges::count(series.rows, finding, &StabilityRow::finding);
     };
-    double worst = 0.0, evaluations = 0.0;
+    double worst = NAN, evaluations = NAN;
     for (const StabilityRow& row : series.rows) {
-      if (row.error > worst && row.finding != Finding::undecided) worst = row.error;
-      if (row.evaluations > evaluations) evaluations = row.evaluations;
+      if (row.finding != Finding::undecided) worst = std::fmax(worst, row.error);
+      evaluations = std::fmax(evaluations, row.evaluations);
     }
-    fmt::print("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9.1e}  {:>9}\n", first.study,
+    const auto shown = [](double value) { return std::isnan(value) ? "none" : fmt::format("{:.1e}", value); };
+    fmt::print("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", first.study,
                first.method, first.control, series.verdict, count(Finding::fine), count(Finding::lossy),
-               count(Finding::failed), count(Finding::wrong), count(Finding::undecided), worst,
-               evaluations > 0.0 ? fmt::format("{:.3g}", evaluations) : "none");
+               count(Finding::failed), count(Finding::wrong), count(Finding::undecided), shown(worst),
+               shown(evaluations));
   }
   std::fflush(stdout);
 }
@@ -97,6 +99,8 @@ std::vector<TableColumn> columns_of(std::span<const StabilityRow> rows) {
           &StabilityRow::condition);
   numbers("evaluations", "1", "of the acceleration; NaN: none", &StabilityRow::evaluations);
   numbers("seconds", "s", "for this one design on one thread, once", &StabilityRow::seconds);
+  texts("failure", "why the method says that it failed; empty: it does not",
+        [](const auto& r) { return r.failure; });
   texts("finding", "fine, undecided, lossy, failed or wrong",
         [](const auto& r) { return name_of(r.finding); });
   std::vector<std::string> verdicts;
@@ -112,8 +116,7 @@ int run(const StabilityArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   fmt::print("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", "case", "method",
              "control", "verdict", "fine", "lossy", "failed", "wrong", "undecided", "worst", "most rhs");
-  std::vector<StabilityRow> rows = run_landing_case(arguments.options);
-  print_verdicts(rows);
+  std::vector<StabilityRow> rows;
   const auto stop_requested = [] { return noted_signal() != 0; };
   for (const StabilityCase& stability_case : stability_cases(arguments.options)) {
     const std::vector<StabilityRow> more = run_case(stability_case, stop_requested);
@@ -124,7 +127,11 @@ int run(const StabilityArguments& arguments) {
     print_verdicts(more);
     rows.insert(rows.end(), more.begin(), more.end());
   }
+  const std::vector<StabilityRow> landings = run_landing_case(arguments.options);
+  print_verdicts(landings);
+  rows.insert(rows.end(), landings.begin(), landings.end());
   std::vector<hdf5::Attribute> attributes = file_provenance(filetype, "Where methods for passive hoops fail");
+  attributes.emplace_back("quick", std::int64_t{arguments.options.quick});
   attributes.emplace_back("wall_time",
                           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   write_table(arguments.table, filetype, columns_of(rows), attributes);
@@ -143,11 +150,26 @@ void add_stability(CLI::App& app, int& status) {
                       "the table to write, HDF5; default: maps/stability.h5");
   command->add_flag("--quick", arguments->options.quick, "fewer places on each walk: within 30 s");
   command->footer(
-      "Answers are compared with long double's, and with what the problem itself allows: how far an ulp of "
-      "an input\n"
-      "moves the answer. fine: within 1000 times the tolerance (of fixed steps 1e-3); lossy: within 5 %; "
-      "failed: the\n"
-      "method says so; wrong: anything else; undecided: an ulp of an input decides. One thread.");
+      "The cases: needle (a mass on the rim of an ever lighter hoop), release (ever closer to the unstable "
+      "equilibrium),\n"
+      "graze (across the fold where a pair of lift-offs is born), long (up to 10,000 turns to the jump), "
+      "step (fixed steps\n"
+      "ever longer), tolerance (down to 1e-30), landing (flights that dip below the plane, or start with a "
+      "triple root).\n"
+      "\n"
+      "Each answer is compared with long double's, and with what four ulps of the inputs do to it. It is "
+      "fine if height\n"
+      "and times are right to 1e-6, or to 100 roundings times the question's condition; lossy: to 5 %; "
+      "failed: the method\n"
+      "says so; wrong: anything else; undecided: four ulps of an input change the flags, which is held "
+      "against nobody.\n"
+      "\n"
+      "A method's verdict in a case: wrong without a word, if any answer is wrong; breaks down, if all "
+      "failed; gives up\n"
+      "honestly, if some failed; loses digits, if some are lossy; fine. worst: the largest error; most rhs: "
+      "the most\n"
+      "right-hand sides that a design took. --quick leaves out places, and so may find a better verdict. One "
+      "thread.");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -53,8 +53,8 @@ Residuals velocity_residuals(const ThreeCoordinates& model, const ThreeState& y)
   return {y[3] - (1.0 - a * std::cos(y[2])) * y[5], y[4] - a * std::sin(y[2]) * y[5]};
 }
 
-/// Takes the residuals off three components of the state, from `first` on.
-void take_off(const ThreeCoordinates& model, const Residuals& residuals, ThreeState& y, std::size_t first) {
+/// Corrects three components of the state, from `first` on, by their residuals.
+void correct(const ThreeCoordinates& model, const Residuals& residuals, ThreeState& y, std::size_t first) {
   const Vector off{0.0, 0.0, 0.0, -residuals.x, -residuals.y};
   const Vector step = saddle_point(model, std::sin(y[2]), std::cos(y[2])).partialPivLu().solve(off);
   for (std::size_t i = 0; i < 3; ++i) y[first + i] += step[static_cast<Eigen::Index>(i)];
@@ -89,8 +89,8 @@ std::array<double, 3> ThreeCoordinates::acceleration(const ThreeState& y) const 
 }
 
 void ThreeCoordinates::project(ThreeState& y) const {
-  take_off(*this, position_residuals(*this, y), y, 0);
-  take_off(*this, velocity_residuals(*this, y), y, 3);
+  correct(*this, position_residuals(*this, y), y, 0);
+  correct(*this, velocity_residuals(*this, y), y, 3);
 }
 
 double ThreeCoordinates::drift(const ThreeState& y) const {

@@ -30,7 +30,7 @@ struct ThreeCoordinates {
   Hoop<double> hoop;
   double reference = 0.0;  ///< in R, 0 to rho
 
-  /// At rest on the constraints, rolled to that angle, turning with that spin.
+  /// On the constraints, rolled to that angle, rolling with that spin.
   ThreeState rolling(double angle, double spin) const;
   /// Solves (7) to (9) with the constraints differentiated twice, one linear system of five.
   ConstrainedMotion motion(const ThreeState& y) const;

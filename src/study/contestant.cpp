@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include "numerics/game_steppers.hpp"
@@ -18,7 +19,12 @@ IntegrationOptions options_of(const Contestant& contestant, long max_steps) {
   for (const GslStepper& stepper : game_steppers())
     if (stepper.name == contestant.method) options.stepper = &stepper;
   if (contestant.fixed_step) {
+    // The tolerances are then those of implicit steppers' Newton iterations: a thousandth of the step's own
+    // error, which goes with the step's power order + 1. GSL's Newton does not converge to less at long
+    // steps.
+    const double newton = 1e-3 * std::pow(contestant.setting, contestant.order + 1);
     options.control.fixed_step = contestant.setting;
+    options.control.relative = options.control.absolute = std::clamp(newton, 1e-13, 1e-3);
   } else {
     options.control.relative = options.control.absolute = contestant.setting;
   }

@@ -77,13 +77,11 @@ double energy_drift(const Design& design, const Outcome& outcome) {
   return std::abs(drift) / (1.0 + kinetic);
 }
 
-Finding finding_of(const Contestant& contestant, const Outcome& ours, const Truth& truth, double error) {
-  if (ours.status == Status::failed) return Finding::failed;
+Finding finding_of(const Outcome& ours, const Truth& truth, double error) {
   if (!truth.decided) return Finding::undecided;
+  if (ours.status == Status::failed) return Finding::failed;
   if (!same_flags(ours, truth.outcome)) return Finding::wrong;
-  const double allowed = (contestant.fixed_step ? 1e-3 : 1000.0 * contestant.setting) +
-                         100.0 * epsilon * (1.0 + truth.condition);
-  if (error <= allowed) return Finding::fine;
+  if (error <= std::max(1e-6, 100.0 * epsilon * (1.0 + truth.condition))) return Finding::fine;
   return error <= most_error ? Finding::lossy : Finding::wrong;
 }
 
@@ -99,14 +97,18 @@ std::string_view verdict_of(std::span<const Finding> findings) {
   if (any(Finding::wrong)) return "wrong without a word";
   if (any(Finding::failed))
     return any(Finding::fine) || any(Finding::lossy) ? "gives up honestly" : "breaks down";
-  return any(Finding::lossy) ? "loses digits" : "fine";
+  if (any(Finding::lossy)) return "loses digits";
+  return any(Finding::fine) ? "fine" : "undecided";
 }
 
 std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
                                    const std::function<bool()>& stop_requested) {
   using Clock = std::chrono::steady_clock;
   std::vector<Truth> truths;
-  for (const StabilitySubject& subject : stability_case.subjects) truths.push_back(truth_of(subject));
+  for (const StabilitySubject& subject : stability_case.subjects) {
+    if (stop_requested && stop_requested()) return {};
+    truths.push_back(truth_of(subject));
+  }
 
   std::vector<StabilityRow> rows;
   for (const Contestant& contestant : stability_case.contestants) {
@@ -125,7 +127,7 @@ std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
                       stability_case.walks_settings ? contestant.setting : subject.x, error,
                       energy_drift(subject.design, outcome), truths[i].condition,
                       solving.evaluations ? static_cast<double>(solving.evaluations()) : nan, seconds,
-                      finding_of(contestant, outcome, truths[i], error)});
+                      outcome.failure ? outcome.failure : "", finding_of(outcome, truths[i], error)});
     }
   }
   return rows;

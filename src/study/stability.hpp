@@ -16,11 +16,10 @@
 
 namespace leapmap {
 
-/// What one answer is worth. From bad to worse.
+/// What one answer is worth.
 enum class Finding {
-  fine,  ///< error within a thousand times the tolerance (of steps: 1e-3), and what the inputs' last bits
-         ///< decide
-  undecided,  ///< one ulp of an input changes status, flag or candidates: no method in double can be asked
+  fine,       ///< error within 1e-6, or within 100 roundings times the condition
+  undecided,  ///< four ulps of an input change status, flag or candidates: no method in double can be asked
   lossy,      ///< digits are lost beyond that, but not beyond 5 %
   failed,     ///< the method says that it failed
   wrong       ///< status, flag or candidates are wrong, or the error is beyond 5 %, and nothing says so
@@ -28,7 +27,8 @@ enum class Finding {
 std::string_view name_of(Finding finding);
 
 /// What a method is worth in one case: "wrong without a word" if any answer is wrong; else "breaks down" if
-/// every one failed, "gives up honestly" if any did; else "loses digits" if any is lossy; else "fine".
+/// it failed wherever the answer is decided, "gives up honestly" if it failed somewhere; else "loses digits"
+/// if any answer is lossy; else "fine", or "undecided" if nothing was decided.
 std::string_view verdict_of(std::span<const Finding> findings);
 
 /// One design to be solved in its scene, at one place of its case's walk.
@@ -60,6 +60,7 @@ struct StabilityRow {
   double condition = 0.0;     ///< times that a relative change of the inputs comes back in the answer
   double evaluations = 0.0;   ///< of the acceleration; NaN: none
   double seconds = 0.0;
+  std::string failure;  ///< why the method says that it failed; empty: it does not
   Finding finding = Finding::fine;
 };
 
@@ -71,7 +72,7 @@ struct StabilityOptions {
 std::vector<StabilityCase> stability_cases(const StabilityOptions& options);
 
 /// Every contestant on every subject, one contestant after another. One thread. stop_requested is asked
-/// often; the rows are then those there are.
+/// before each design; the rows are then those there are.
 std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
                                    const std::function<bool()>& stop_requested = {});
 

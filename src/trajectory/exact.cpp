@@ -277,7 +277,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
       Search& search = searches_[index[i]];
       Outcome& outcome = outcomes[index[i]];
       if (!std::isfinite(angles[i]) || !std::isfinite(spins[i]) || !std::isfinite(heights[i])) {
-        outcome = failed_outcome();
+        outcome = failed_outcome("a lift-off could not be solved");
         continue;
       }
       if (outcome.candidates == 0) search.first_angle = angles[i];

@@ -13,7 +13,7 @@ void note_time(Outcome& outcome, double Outcome::*time, const S& taken) {
   if (std::isfinite(taken)) {
     outcome.*time = static_cast<double>(taken);
   } else {
-    outcome = failed_outcome();
+    outcome = failed_outcome("a time could not be told: too near a stall");
   }
 }
 

@@ -52,6 +52,7 @@ struct Outcome {
   double dip = none;            ///< how far the flight first enters the plane, <= 0
   double first_jump_height = none;
   double first_jump_time = none;
+  const char* failure = nullptr;  ///< why the status is failed, if that is known
 };
 
 /// Counts a lift-off and its flight, in order of time. True if it is the jump, which ends the search: the
@@ -65,10 +66,11 @@ inline bool same_flags(const Outcome& a, const Outcome& b) {
          a.candidates == b.candidates;
 }
 
-/// The outcome of a design that a method gave up on.
-inline Outcome failed_outcome() {
+/// The outcome of a design that a method gave up on; why: a text that lives as long as the program.
+inline Outcome failed_outcome(const char* why) {
   Outcome outcome;
   outcome.status = Status::failed;
+  outcome.failure = why;
   return outcome;
 }
 

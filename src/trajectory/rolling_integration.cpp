@@ -17,6 +17,11 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 /// looser than any tolerance worth having, it catches fixed steps and tolerances that are too long.
 constexpr double most_energy_drift = 0.05;
 
+constexpr const char* no_step = "the stepper found no step";
+constexpr const char* no_event = "an event could not be located";
+constexpr const char* energy_lost = "the energy is off by more than 5 %";
+constexpr const char* out_of_steps = "more steps than max_steps";
+
 template <class Model>
 int right_hand_side(double, const double y[], double f[], void* params) {
   auto& system = *static_cast<typename Integration<Model>::System*>(params);
@@ -102,13 +107,13 @@ Outcome Integration<Model>::solve(const Design& design, const Scene& scene, cons
   };
 
   const double runway_end = design.release_angle + two_pi * scene.runway;
-  if (!integrator_.start(release, 0.01 / (1.0 + spin.value))) return failed_outcome();
+  if (!integrator_.start(release, 0.01 / (1.0 + spin.value))) return failed_outcome(no_step);
   for (long taken = 0; taken < options_.max_steps; ++taken) {
-    if (!integrator_.advance()) return failed_outcome();
+    if (!integrator_.advance()) return failed_outcome(no_step);
     if constexpr (Model::projects) {
       State<D> y = integrator_.step().y1;
       model.project(y);
-      if (!integrator_.replace(y)) return failed_outcome();
+      if (!integrator_.replace(y)) return failed_outcome(no_step);
     }
     const Step<D>& step = integrator_.step();
     const double turned_to = model.angle(step.y1);
@@ -117,7 +122,7 @@ Outcome Integration<Model>::solve(const Design& design, const Scene& scene, cons
         1 + static_cast<int>(std::min(std::abs(turned_to - model.angle(step.y0)) * (16.0 / two_pi), 1000.0));
     force = find_falls(step, looks, force, normal_force_at, retake, lift_offs_);
     spin = find_falls(step, looks, spin, spin_at, retake, stalls_);
-    if (lift_offs_.failed || stalls_.failed) return failed_outcome();
+    if (lift_offs_.failed || stalls_.failed) return failed_outcome(no_event);
 
     const double stall = stalls_.falls.empty() ? step.h : stalls_.falls.front().tau;
     const double stall_angle = stalls_.falls.empty() ? turned_to : model.angle(stalls_.falls.front().state);
@@ -131,7 +136,7 @@ Outcome Integration<Model>::solve(const Design& design, const Scene& scene, cons
     for (const Fall<D>& fall : lift_offs_.falls) {
       const LiftOff<double> lift_off{step.t0 + fall.tau, model.angle(fall.state), model.spin(fall.state)};
       if (fall.tau > stall || lift_off.angle > runway_end) break;
-      if (!believable(fall.state) || lift_off.spin < 0.0) return failed_outcome();
+      if (!believable(fall.state) || lift_off.spin < 0.0) return failed_outcome(energy_lost);
       const Flight<double> flight = fly(hoop, lift_off);
       const bool is_jump = consider(outcome, scene, design, lift_off, flight);
       if (observer.step && is_jump) observer.step(integrator_, fall.tau);
@@ -145,7 +150,7 @@ Outcome Integration<Model>::solve(const Design& design, const Scene& scene, cons
         return outcome;
       }
     }
-    if (!believable(step.y1)) return failed_outcome();
+    if (!believable(step.y1)) return failed_outcome(energy_lost);
     tell_grazes(stall);
     if (observer.step)
       observer.step(integrator_, stall_angle > runway_end ? time_at(runway_end, stall) : stall);
@@ -158,7 +163,7 @@ Outcome Integration<Model>::solve(const Design& design, const Scene& scene, cons
       return outcome;
     }
   }
-  return failed_outcome();
+  return failed_outcome(out_of_steps);
 }
 
 template class Integration<OneCoordinate>;

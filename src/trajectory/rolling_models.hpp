@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Rolling without slip as a first-order system, by two models: what an integrator, its events and its
-/// Jacobian need.
+/// Rolling without slip as a first-order system, by one coordinate or by three: what an integrator, its
+/// events and its Jacobian need.
 ///
 /// A model has a dimension, a hoop, whether it knows its Jacobian and whether steps are projected; the state
 /// at an angle and a spin and back; the state's derivative; and the normal force with its rate. A new hoop is
