@@ -39,10 +39,13 @@ std::string verdict(const Story& story, const Scene& scene) {
       return "It stalls: the spin falls to zero, or the hoop does not start downhill.";
     case Status::airborne_at_release:
       return "The plane would have to pull at release: it is airborne from the start.";
+    case Status::indeterminate:
+      return "Sliding comes to where the rigid-body equations have no answer or two (Painleve).";
     default:
-      return "The method gave up: its steps became too small, too many, or no longer finite. Try another "
-             "tolerance, "
-             "more max_steps, a shorter fixed_step or another method.";
+      return fmt::format(
+          "The method gave up: {}. Try another tolerance, more max_steps, a shorter fixed_step or another "
+          "method.",
+          story.outcome.failure ? story.outcome.failure : "for no reason it knows of");
   }
 }
 
@@ -58,9 +61,49 @@ std::string check_line(const Spec& spec, const Story& story) {
                      std::abs(a.jump_height - b.jump_height), std::abs(a.jump_time / b.jump_time - 1.0));
 }
 
+void print_jump(const Spec& spec, const Story& story) {
+  const Outcome& jump = story.outcome;
+  const double second = time_unit(spec.scene);
+  if (jump.status == Status::jumped) {
+    fmt::print("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off",
+               jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time * second,
+               jump.flight_time * second);
+    if (story.phases.empty()) {
+      fmt::print("; the flight first dips {:.4g} diameters.\n", jump.dip);
+    } else {
+      fmt::print(
+          ".\nSlid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
+          "rad/s.\n",
+          jump.slip_distance, jump.energy_lost, jump.landing_spin / second);
+    }
+  }
+  fmt::print("{}\n", check_line(spec, story));
+}
+
+/// Every phase with Coulomb friction, flights with how they go.
+void print_phases(const Story& story, double second) {
+  std::size_t flight = 0;
+  for (const auto& [phase, at] : story.phases) {
+    if (phase != Phase::flight) {
+      const char* name = phase == Phase::rolling ? "R  rolls"
+                         : at.slip > 0.0         ? "S  slides forwards"
+                                                 : "S  slides";
+      fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f}\n",
+                 at.slip < 0.0 && phase == Phase::sliding ? "S  slides backwards" : name, at.time * second,
+                 degrees(at.angle), at.spin / second);
+      continue;
+    }
+    const Flight<double>& flown = story.candidates[flight].flight;
+    const bool jump = story.outcome.status == Status::jumped && ++flight == story.candidates.size();
+    fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f} {:>12.6f} {:>12.6f}\n",
+               jump ? "F  jumps" : "F  hops, too low", at.time * second, degrees(at.angle), at.spin / second,
+               flown.height, (at.time + flown.flight_time) * second);
+  }
+}
+
 void print_table(const Spec& spec, const Story& story) {
   const double second = time_unit(spec.scene);
-  for (const Option* parameter : design_parameters()) {
+  for (const Option* parameter : design_parameters(spec)) {
     const double value = value_of(*parameter, spec.design);
     fmt::print("{:<15} {:<12.8g} {}\n", parameter->key, value,
                parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", degrees(value))
@@ -74,6 +117,12 @@ void print_table(const Spec& spec, const Story& story) {
 
   fmt::print("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]",
              "spin [rad/s]", "height [2R]", "landing [s]");
+  if (!story.phases.empty()) {
+    print_phases(story, second);
+    fmt::print("\n{}  {}\n", phase_letters(story.outcome.phase_sequence), verdict(story, spec.scene));
+    print_jump(spec, story);
+    return;
+  }
   fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f}\n", "R  rolls from release", 0.0,
              degrees(spec.design.release_angle), spec.design.release_spin / second);
   const auto& candidates = story.candidates;
@@ -88,13 +137,7 @@ void print_table(const Spec& spec, const Story& story) {
       fmt::print("{:<22} it sinks at once: no-slip rolling asks the plane to pull here\n", "");
   }
   fmt::print("\n{}\n", verdict(story, spec.scene));
-  if (story.outcome.status == Status::jumped)
-    fmt::print(
-        "Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off; the flight "
-        "first dips {:.4g} diameters.\n",
-        story.outcome.jump_height, 2.0 * spec.scene.radius * story.outcome.jump_height,
-        story.outcome.apex_time * second, story.outcome.flight_time * second, story.outcome.dip);
-  fmt::print("{}\n", check_line(spec, story));
+  print_jump(spec, story);
   for (const Graze& graze : story.grazes)
     fmt::print("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",
                graze.time * second, graze.minimum ? "minimum" : "maximum", graze.normal_force,
@@ -107,13 +150,16 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 std::string json_text(const Spec& spec, const Story& story) {
   const double second = time_unit(spec.scene);
   std::vector<std::string> design, outcome, candidates, grazes;
-  for (const Option* parameter : design_parameters())
+  for (const Option* parameter : design_parameters(spec))
     design.push_back(
         fmt::format("\"{}\": {}", parameter->key, json_number(value_of(*parameter, spec.design))));
   for (const Field& field : map_fields()) {
+    if (field.of_coulomb && story.phases.empty()) continue;
     std::string value;
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
       value = json_number(story.outcome.*quantity->member * (quantity->is_time ? second : 1.0));
+    } else if (std::holds_alternative<Word>(field.source)) {
+      value = fmt::format("\"{}\"", phase_letters(story.outcome.phase_sequence));
     } else if (field.name == "status") {
       value = fmt::format("\"{}\"", name_of(story.outcome.status));
     } else {
@@ -163,9 +209,14 @@ int run(const HopArguments& arguments) {
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval / time_unit(spec.scene);
   if (!arguments.trace.empty() && !(interval > 0.0))
     throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
-  const Story story = resolved_method(spec.numerics) == "exact"
-                          ? tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
-                          : tell(spec.design, spec.scene, integration_options(spec.numerics), interval);
+  const bool exact = resolved_method(spec.numerics) == "exact";
+  const Story story =
+      spec.scene.friction == Friction::coulomb
+          ? tell_with_friction(spec.design, spec.scene,
+                               exact ? IntegrationOptions{} : integration_options(spec.numerics),
+                               spec.numerics.tolerance, interval)
+      : exact ? tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
+              : tell(spec.design, spec.scene, integration_options(spec.numerics), interval);
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
     attributes.emplace_back("status", std::string(name_of(story.outcome.status)));

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <map>
 
 #include "cli/commands.hpp"
 #include "cli/spoken.hpp"
@@ -37,6 +39,7 @@ struct Summary {
   Extreme least{std::numeric_limits<double>::infinity(), 0},
       most{-std::numeric_limits<double>::infinity(), 0};
   std::array<std::size_t, 256> counts{};
+  std::map<double, std::size_t> words;
 };
 
 /// Calls visit(first design's number, values) on a field block by block, so that no map is too large.
@@ -58,11 +61,13 @@ void for_each_block(const MapReader& map, const std::string& field, const Visit&
 Summary summarise(const MapReader& map, const std::string& name) {
   const Field* field = find_field(name);
   const bool code = field && std::holds_alternative<Code>(field->source);
+  const bool word = field && std::holds_alternative<Word>(field->source);
   Summary summary;
   for_each_block(map, name, [&](std::size_t first, const std::vector<double>& values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double value = values[i];
       if (code) ++summary.counts[value >= 0.0 && value < 256.0 ? static_cast<std::uint8_t>(value) : 255];
+      if (word) ++summary.words[value];
       if (std::isnan(value)) ++summary.missing;
       if (value < summary.least.value) summary.least = {value, first + i};
       if (value > summary.most.value) summary.most = {value, first + i};
@@ -97,6 +102,20 @@ void print_counts(const Code& code, const Summary& summary, std::size_t designs)
     fmt::print("  {:>12} {:5.1f} %  {}\n", summary.counts[i],
                100.0 * static_cast<double>(summary.counts[i]) / static_cast<double>(designs), meaning);
   }
+}
+
+/// The commonest phase sequences. Doubles hold those of up to 26 phases.
+void print_sequences(const Summary& summary, std::size_t designs) {
+  constexpr std::size_t most_told = 12;
+  std::vector<std::pair<std::size_t, std::string>> counted;
+  for (const auto& [word, count] : summary.words)
+    counted.emplace_back(count, word < 0x1p53 ? phase_letters(static_cast<std::uint64_t>(word)) : "(longer)");
+  std::ranges::stable_sort(counted, std::greater<>(), [](const auto& entry) { return entry.first; });
+  for (std::size_t i = 0; i < std::min(counted.size(), most_told); ++i)
+    fmt::print("  {:>12} {:5.1f} %  {}\n", counted[i].first,
+               100.0 * static_cast<double>(counted[i].first) / static_cast<double>(designs),
+               counted[i].second);
+  if (counted.size() > most_told) fmt::print("  and {} other sequences\n", counted.size() - most_told);
 }
 
 /// Lists failed designs, each with the command that shows what happens.
@@ -190,6 +209,8 @@ int run(const InfoArguments& arguments) {
     fmt::print("{}\n", name);
     if (field && std::holds_alternative<Code>(field->source)) {
       print_counts(std::get<Code>(field->source), summary, designs);
+    } else if (field && std::holds_alternative<Word>(field->source)) {
+      print_sequences(summary, designs);
     } else if (summary.missing == designs) {
       fmt::print("  none\n");
     } else {

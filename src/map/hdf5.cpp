@@ -229,6 +229,20 @@ void write_block(hid_t dataset, const std::vector<std::size_t>& start, const std
   check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, file, H5P_DEFAULT, values.data()), what);
 }
 
+std::vector<std::uint64_t> read_words(hid_t dataset, const std::vector<std::size_t>& start,
+                                      const std::vector<std::size_t>& extent, const std::string& what) {
+  const auto [memory, file] = select(dataset, start, extent, what);
+  std::vector<std::uint64_t> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(memory)));
+  check(H5Dread(dataset, H5T_NATIVE_UINT64, memory, file, H5P_DEFAULT, values.data()), what);
+  return values;
+}
+
+void write_words(hid_t dataset, const std::vector<std::size_t>& start, const std::vector<std::size_t>& extent,
+                 std::span<const std::uint64_t> values, const std::string& what) {
+  const auto [memory, file] = select(dataset, start, extent, what);
+  check(H5Dwrite(dataset, H5T_NATIVE_UINT64, memory, file, H5P_DEFAULT, values.data()), what);
+}
+
 std::vector<hsize_t> shape_of(hid_t dataset) {
   const Handle space(H5Dget_space(dataset), H5Sclose, "reading a shape");
   const int rank = H5Sget_simple_extent_ndims(space);

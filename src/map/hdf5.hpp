@@ -104,6 +104,12 @@ std::vector<double> read_block(hid_t dataset, const std::vector<std::size_t>& st
 void write_block(hid_t dataset, const std::vector<std::size_t>& start, const std::vector<std::size_t>& extent,
                  std::span<const double> values, const std::string& what);
 
+/// The same for words of 64 bits.
+std::vector<std::uint64_t> read_words(hid_t dataset, const std::vector<std::size_t>& start,
+                                      const std::vector<std::size_t>& extent, const std::string& what);
+void write_words(hid_t dataset, const std::vector<std::size_t>& start, const std::vector<std::size_t>& extent,
+                 std::span<const std::uint64_t> values, const std::string& what);
+
 /// A dataset's number of values along each dimension.
 std::vector<hsize_t> shape_of(hid_t dataset);
 

@@ -17,6 +17,7 @@ using hdf5::check;
 using hdf5::Handle;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t no_word = 0;
 constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
 constexpr const char* design_long_name = "number of the design in its list, from 0";
 
@@ -57,10 +58,15 @@ std::vector<hsize_t> to_hsize(const std::vector<std::size_t>& extents) {
 Handle create_field(hid_t file, const Field& field, const MapLayout& layout, const Tiling& tiling) {
   const std::vector<hsize_t> shape = to_hsize(tiling.shape()), chunk = to_hsize(tiling.tile_shape());
   const auto* code = std::get_if<Code>(&field.source);
-  const hid_t type = code ? H5T_STD_U8LE : layout.single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
+  const bool word = std::holds_alternative<Word>(field.source);
+  const hid_t type = code            ? H5T_STD_U8LE
+                     : word          ? H5T_STD_U64LE
+                     : layout.single ? H5T_IEEE_F32LE
+                                     : H5T_IEEE_F64LE;
   Handle dataset = hdf5::create_dataset(
       file, {std::string(field.name), type, shape, chunk, fill_value(layout, field), layout.compression});
   describe(dataset, field.unit, field.long_name);
+  if (word) return dataset;
   if (!code) {
     // netCDF wants the fill value in the dataset's own type
     layout.single ? hdf5::write_attribute(dataset, "_FillValue", std::array{nanf})
@@ -108,10 +114,12 @@ void write_nexus(hid_t file, const MapLayout& layout) {
 
 const void* fill_value(const MapLayout& layout, const Field& field) {
   if (const auto* code = std::get_if<Code>(&field.source)) return &code->fill;
+  if (std::holds_alternative<Word>(field.source)) return &no_word;
   return layout.single ? static_cast<const void*>(&nanf) : &nan;
 }
 
 std::size_t value_bytes(const MapLayout& layout, const Field& field) {
+  if (std::holds_alternative<Word>(field.source)) return 8;
   return std::holds_alternative<Code>(field.source) ? 1 : layout.single ? 4 : 8;
 }
 

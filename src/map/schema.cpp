@@ -42,6 +42,14 @@ const std::array fields{
           "how far the flight of the jump first enters the plane, in hoop diameters, <= 0"},
     Field{"candidates", Code{[](const Outcome& o) { return o.candidates; }, 255, {}}, "1",
           "lift-offs looked at, the jump included; 254: that many or more"},
+    Field{"phase_sequence", Word{&Outcome::phase_sequence}, "1",
+          "two bits a phase, the first lowest, up to 32: 1 rolling, 2 sliding, 3 flight; 0: none", true},
+    Field{"slip_distance", Quantity{&Outcome::slip_distance}, "1",
+          "distance slid, either way, from release to the end, in R", true},
+    Field{"landing_spin", Quantity{&Outcome::landing_spin}, "1",
+          "spin after the landing of the jump, in sqrt(g/R)", true},
+    Field{"energy_lost", Quantity{&Outcome::energy_lost}, "1",
+          "energy lost from release to the lift-off of the jump, over (m + m_p) g R", true},
 };
 
 }  // namespace

@@ -16,7 +16,8 @@ namespace leapmap {
 inline constexpr std::string_view map_filetype = "leapmap map";
 inline constexpr std::string_view trace_filetype = "leapmap trace";
 inline constexpr int format_major = 1;  ///< readers refuse a newer one
-inline constexpr int format_minor = 2;  ///< 1: f4; 2: compression, status_counts, the NeXus group
+inline constexpr int format_minor =
+    3;  ///< 1: f4; 2: compression, status_counts, the NeXus group; 3: Coulomb friction's fields
 
 /// A measured quantity, stored as f8, NaN where it does not apply.
 struct Quantity {
@@ -40,11 +41,17 @@ struct Code {
   std::span<const std::string_view> names;  ///< flag_meanings of 0, 1, 2, ...; empty: a count
 };
 
+/// A word of bits, stored as u8 of HDF5's (64 bits).
+struct Word {
+  std::uint64_t Outcome::*member;
+};
+
 struct Field {
   std::string_view name;
-  std::variant<Quantity, Code> source;
+  std::variant<Quantity, Code, Word> source;
   std::string_view unit;  ///< as UDUNITS reads it; "1": a pure number
   std::string_view long_name;
+  bool of_coulomb = false;  ///< says nothing where the contact never slips
 };
 
 /// Every field of a map, in the order of the file.

@@ -63,6 +63,10 @@ void TileEncoder::gather(std::span<const Outcome> outcomes) {
         gather_as<std::uint8_t>(some, to, code->value);
         continue;
       }
+      if (const auto* word = std::get_if<Word>(&field.source)) {
+        gather_as<std::uint64_t>(some, to, [&](const Outcome& o) { return o.*word->member; });
+        continue;
+      }
       const auto& quantity = std::get<Quantity>(field.source);
       const double unit = quantity.unit(layout_->time_unit);
       const auto value = [&](const Outcome& outcome) { return outcome.*quantity.member * unit; };

@@ -106,13 +106,18 @@ Sample<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, const T& s
   return {hoop.rho * y.value, hoop.rho * spin * y.rate};
 }
 
-/// How far the hoop's centre has travelled along the plane since lift-off: the centre of mass at x - rho
-/// sin(phi) flies on with its speed at lift-off and falls with sin(theta).
+/// How far the hoop's centre has travelled along the plane since lift-off, and how fast it travels: the
+/// centre of mass at x - rho sin(phi) flies on with its speed at lift-off and falls with sin(theta). slip: v
+/// at lift-off, x' = v + w.
 template <class T>
-T travel_in_flight(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& t) {
+Sample<T> travel_in_flight(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& slip,
+                           const T& t) {
   const Trig<T> turned = trig(spin * t);
-  const T sine_gained = phi.cos * turned.sin - phi.sin * turned.versine;  // sin(phi + w t) - sin(phi)
-  return spin * (T(1) - hoop.rho * phi.cos) * t + hoop.sin_slope * t * t * T(0.5) + hoop.rho * sine_gained;
+  const T sine_gained = phi.cos * turned.sin - phi.sin * turned.versine;     // sin(phi + w t) - sin(phi)
+  const T cosine_gained = -phi.sin * turned.sin - phi.cos * turned.versine;  // cos(phi + w t) - cos(phi)
+  return {(slip + spin * (T(1) - hoop.rho * phi.cos)) * t + hoop.sin_slope * t * t * T(0.5) +
+              hoop.rho * sine_gained,
+          slip + spin + hoop.sin_slope * t + hoop.rho * spin * cosine_gained};
 }
 
 }  // namespace leapmap

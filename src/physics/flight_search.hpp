@@ -16,14 +16,23 @@ namespace leapmap {
 /// Height, apex, landing and dip of a toss: psi in place of times, heights of rho in place of diameters.
 ///
 /// For one toss that rises and sinks many times. The walk goes from zero of y'' to zero of y''; of a fast
-/// spin's thousands of turns it leaps over those that can hold neither apex nor landing.
+/// spin's thousands of turns it leaps over those that can hold neither apex nor landing. launch: y' / rho at
+/// the start, v_n / (rho w) of a rebound.
 template <class S>
-Flight<S> walk_toss(const Toss<S>& toss) {
+Flight<S> walk_toss(const Toss<S>& toss, const S& launch = S(0)) {
   using std::floor, std::sqrt;
   const S pi = std::numbers::pi_v<S>, two_pi = S(2) * pi;
-  const S last = toss_end(toss), resolution = S(2) * std::numeric_limits<S>::epsilon();
-  const auto height_at = [&](const S& psi) { return toss_height(toss, psi); };
-  const auto climb_at = [&](const S& psi) { return toss_climb(toss, psi); };
+  const S resolution = S(2) * std::numeric_limits<S>::epsilon();
+  const auto height_at = [&](const S& psi) {
+    CurvedSample<S> y = toss_height(toss, psi);
+    y.value += launch * psi, y.rate += launch;
+    return y;
+  };
+  const auto climb_at = [&](const S& psi) {
+    CurvedSample<S> climb = toss_climb(toss, psi);
+    climb.value += launch;
+    return climb;
+  };
 
   Flight<S> flight;
   bool above = false;
@@ -41,10 +50,12 @@ Flight<S> walk_toss(const Toss<S>& toss) {
   // With y between L(psi) = psi sin(phi) - gamma psi^2 / 2 - (1 + cos phi) and L + 2, no landing is possible
   // while L > 0. And y less its parabola repeats every turn, so that the highest apex is at most half a turn
   // from the vertex.
-  const S s = toss.phi.sin, vertex = s / toss.gravity, around = two_pi;
+  const S s = toss.phi.sin + launch, vertex = s / toss.gravity, around = two_pi;
   const S clearance = s * s - S(2) * toss.gravity * (S(1) + toss.phi.cos);
   const S half_width =
       clearance > S(0) ? sqrt(clearance) / toss.gravity : S(0);  // of L > 0, about the vertex
+  // Beyond this y is below zero: L + 2 is.
+  const S last = (s + sqrt(s * s + S(2) * toss.gravity * toss.phi.versine)) / toss.gravity;
   const auto next_of_interest = [&](const S& psi) {
     if (!above || !(psi > vertex - half_width) || !(psi < vertex + half_width)) return psi;
     if (psi < vertex - around) return vertex - around;
@@ -55,7 +66,7 @@ Flight<S> walk_toss(const Toss<S>& toss) {
   const auto knot_at = [&](long knot) {
     return toss.top + two_pi * S(knot / 2) - (knot % 2 == 0 ? S(2) * (pi - toss.opening) : S(0));
   };
-  S start(0), climb_start(0);
+  S start(0), climb_start = launch;
   for (long knot = 0; start <= last; ++knot) {
     const S end = knot_at(knot);
     if (end <= start) continue;
@@ -228,6 +239,41 @@ Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
   const Ascent<T> ascent = ascend(toss, true);
   if (!(ascent.height > T(0))) return {};
   return scaled(descend(toss, ascent, true), hoop, lift_off.spin);
+}
+
+/// The whole flight of a rebound, which leaves with normal velocity v_n > 0. Where gravity wins over the
+/// mass's swing (gamma >= 1, any spin that small) y is concave: one apex, one landing.
+template <class S>
+Flight<S> fly_off(const Hoop<S>& hoop, const LiftOff<S>& lift_off, const S& normal_velocity) {
+  using std::abs, std::sqrt;
+  const S spin = abs(lift_off.spin), swing = hoop.rho * spin * spin;
+  const Trig<S> phi = trig(lift_off.spin < S(0) ? -lift_off.angle : lift_off.angle);
+  if (swing < hoop.cos_slope) {
+    const auto climb_at = [&](const S& t) {
+      const Trig<S> turned = trig(spin * t);
+      return Sample<S>{normal_velocity - hoop.cos_slope * t +
+                           hoop.rho * spin * (phi.sin * turned.versine - phi.cos * turned.sin),
+                       -hoop.cos_slope + swing * (phi.sin * turned.sin - phi.cos * turned.cos)};
+    };
+    const auto height_at = [&](const S& t) {
+      const Trig<S> turned = trig(spin * t);
+      return Sample<S>{hoop.rho * (phi.sin * x_minus_sin(spin * t, turned.sin) - phi.cos * turned.versine) +
+                           t * (normal_velocity - S(0.5) * hoop.cos_slope * t),
+                       climb_at(t).value};
+    };
+    // y'' lies between -(cos theta + swing) and -(cos theta - swing), so that these bracket apex and landing.
+    const S steepest = hoop.cos_slope + swing, resolution = S(2) * std::numeric_limits<S>::epsilon();
+    const S first = normal_velocity / steepest;
+    S last = S(2) * first;
+    while (climb_at(last).value > S(0)) last += last;
+    const S apex = polish_root(climb_at, first * S(0.999), last, first, false, resolution * last);
+    S end = S(2) * apex;
+    while (height_at(end).value > S(0)) end += end;
+    const S landing = polish_root(height_at, apex, end, S(2) * apex, false, resolution * end);
+    return {S(0.5) * height_at(apex).value, apex, landing, S(0)};
+  }
+  const Toss<S> toss = toss_of(hoop, lift_off.spin < S(0) ? -lift_off.angle : lift_off.angle, phi, spin);
+  return scaled(walk_toss(toss, normal_velocity / (hoop.rho * spin)), hoop, spin);
 }
 
 }  // namespace leapmap

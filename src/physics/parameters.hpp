@@ -5,6 +5,7 @@
 /// gravity only rescale an answer, so they appear in no equation of motion; see Scene for them.
 #pragma once
 
+#include <limits>
 #include <numbers>
 
 #include "numerics/lanes.hpp"
@@ -20,6 +21,10 @@ struct Design {
   double inertia_factor = 1.0;              ///< kappa = I / (m R^2), >= 0: thin hoop 1, disc 1/2
   double release_angle = std::numbers::pi;  ///< phi at t = 0 [rad]; 0: mass on the plane, pi: mass on top
   double release_spin = 0.0;                ///< w at t = 0 [sqrt(g/R)], positive downhill
+  // Of the contact; no effect where it never slips.
+  double mu_static = 0.5;                                        ///< >= 0
+  double mu_kinetic = std::numeric_limits<double>::quiet_NaN();  ///< >= 0; NaN: as mu_static
+  double restitution = 0.0;                                      ///< Poisson's, in [0, 1]
 };
 
 /// The dimensionless groups of a Design, on any scalar: double, a SIMD batch, long double.

@@ -5,14 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <mutex>
 
 #include "map/schema.hpp"
 #include "sweep/designs.hpp"
+#include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
-#include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {
@@ -60,9 +59,9 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
 }
 
 /// What one unit in the last place of each parameter changes.
-Difference sensitivity(ExactSolver<double>& exact, const Design& design, const Scene& scene) {
+Difference sensitivity(const Solver& exact, const Design& design, const Spec& spec) {
   std::vector<Design> designs{design};
-  for (const Option* parameter : design_parameters()) {
+  for (const Option* parameter : design_parameters(spec)) {
     const auto member = std::get<ParameterSlot>(parameter->slot).member;
     if (design.*member == 0.0) continue;  // as written, and the number beside it is no rounding of it
     for (const double towards : {-1e300, 1e300}) {
@@ -72,7 +71,7 @@ Difference sensitivity(ExactSolver<double>& exact, const Design& design, const S
     }
   }
   std::vector<Outcome> outcomes(designs.size());
-  exact.solve(designs, scene, outcomes);
+  exact(designs, outcomes);
   Difference most;
   for (const Outcome& outcome : outcomes) {
     const Difference d = difference(outcomes[0], outcome);
@@ -130,7 +129,7 @@ void take_quantities(const MapReader& map, const Spec& spec, const Tiling& tilin
   const std::vector<std::size_t> drawn = audit_draw(spec.numerics.audit, tiling, tile);
   for (const Field& field : map_fields()) {
     const auto* quantity = std::get_if<Quantity>(&field.source);
-    if (!quantity || !stores(spec.output, field.name)) continue;
+    if (!quantity || !stores(spec, field)) continue;
     const std::vector<double> values = map.read(std::string(field.name), tile);
     const double unit = quantity->unit(time_unit(spec.scene));
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -154,8 +153,8 @@ AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int th
   report.allowed_error = allowed;
   std::mutex reporting;
   parallel_for_each(samples.size(), threads, [&] {
-    return [&, rolling = std::make_unique<RollingIntegration>(adaptive("gsl-rk8pd", audit_tolerance)),
-            exact = std::make_unique<ExactSolver<double>>(audit_tolerance)](std::size_t i) {
+    return [&, second = make_solver(spec, report.method, audit_tolerance),
+            exact = make_solver(spec, "exact", audit_tolerance)](std::size_t i) {
       const auto& [number, ours] = samples[i];
       if (ours.status == Status::failed) {
         const std::lock_guard lock(reporting);
@@ -164,17 +163,13 @@ AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int th
       }
       const Design design = space.at(number);
       Outcome theirs;
-      if (integrates) {
-        theirs = rolling->solve(design, spec.scene);
-      } else {
-        exact->solve({&design, 1}, spec.scene, {&theirs, 1});
-      }
+      second({&design, 1}, {&theirs, 1});
       const Difference d = difference(ours, theirs, spec.output);
       const double height_allowed = allowed * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
       bool inaccurate = !d.flags && (d.height > height_allowed || d.time > allowed);
       bool undecided = theirs.status == Status::failed && ours.status != Status::failed;
       if ((d.flags || inaccurate) && !undecided) {
-        const Difference ulp = sensitivity(*exact, design, spec.scene);
+        const Difference ulp = sensitivity(exact, design, spec);
         undecided = ulp.flags;
         inaccurate = inaccurate && (d.height > std::max(height_allowed, 10.0 * ulp.height) ||
                                     d.time > std::max(allowed, 10.0 * ulp.time));

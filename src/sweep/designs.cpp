@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cmath>
 
 #include "sweep/options.hpp"
 
@@ -18,7 +19,7 @@ std::vector<std::size_t> shape_of(const Spec& spec) {
 
 DesignSpace::DesignSpace(const Spec& spec) : spec_(spec) {
   for (const Axis& axis : spec.axes.empty() ? spec.list.columns : spec.axes)
-    members_.push_back(std::get<ParameterSlot>(find_option("design", axis.key)->slot).member);
+    members_.push_back(std::get<ParameterSlot>(find_option("", axis.key)->slot).member);
 }
 
 Design DesignSpace::at_position(const std::vector<std::size_t>& position) const {
@@ -57,9 +58,11 @@ void DesignSpace::fill(const Tile& tile, std::span<Design> designs) const {
 
 std::string hop_command(const Spec& spec, const Design& design) {
   std::string command = "leapmap hop";
-  for (const Option* parameter : design_parameters()) {
-    command += fmt::format(" {} {}", flag_of(*parameter), value_of(*parameter, design));
-  }
+  for (const Option* parameter : design_parameters(spec))
+    if (const double value = value_of(*parameter, design); !std::isnan(value))
+      command += fmt::format(" {} {}", flag_of(*parameter), value);
+  if (spec.scene.friction == Friction::coulomb)
+    command += fmt::format(" --set friction=coulomb --set rest_speed={}", spec.scene.rest_speed);
   command += fmt::format(" --set runway={} --set hop_height={} --set radius={} --set gravity={}",
                          spec.scene.runway, spec.scene.hop_height, spec.scene.radius, spec.scene.gravity);
   command += fmt::format(" --set method={} --set tolerance={}", resolved_method(spec.numerics),

@@ -16,15 +16,19 @@ MapAxis describe(const Option& option, std::vector<double> values) {
 
 }  // namespace
 
+bool stores(const Spec& spec, const Field& field) {
+  const bool silent = field.of_coulomb && spec.scene.friction != Friction::coulomb;
+  return stores(spec.output, field.name) && !(spec.output.fields.empty() && silent);
+}
+
 MapLayout layout_of(const Spec& spec) {
   MapLayout layout;
-  for (const Axis& axis : spec.axes)
-    layout.axes.push_back(describe(*find_option("design", axis.key), axis.values));
+  for (const Axis& axis : spec.axes) layout.axes.push_back(describe(*find_option("", axis.key), axis.values));
   if (spec.axes.empty())
-    for (const Option* parameter : design_parameters())
+    for (const Option* parameter : design_parameters(spec))
       layout.columns.push_back(describe(*parameter, list_values(spec, *parameter)));
   for (const Field& field : map_fields())
-    if (stores(spec.output, field.name)) layout.fields.push_back(&field);
+    if (stores(spec, field)) layout.fields.push_back(&field);
   layout.time_unit = time_unit(spec.scene);
   layout.single = spec.output.precision == "f4";
   layout.compression = static_cast<int>(spec.output.compression);

@@ -11,6 +11,9 @@ namespace leapmap {
 
 MapLayout layout_of(const Spec& spec);
 
+/// Whether the spec's map has that field: those asked for; by default all that say something.
+bool stores(const Spec& spec, const Field& field);
+
 /// The map's title, for example "Jumps of passive hoops over slope x mass_ratio".
 std::string title_of(const Spec& spec);
 

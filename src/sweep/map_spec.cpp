@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sweep/designs.hpp"
 #include "sweep/options.hpp"
@@ -17,7 +18,8 @@ std::vector<double> numbers_of(Spec& spec, const Option& option) {
   if (axis != spec.axes.end()) return axis->values;
   if (const auto* slot = std::get_if<ParameterSlot>(&option.slot)) {
     if (spec.axes.empty()) return list_values(spec, option);
-    return {spec.design.*slot->member};
+    const double value = spec.design.*slot->member;
+    return std::isnan(value) ? std::vector<double>{} : std::vector{value};  // NaN: follows another
   }
   if (const auto* slot = std::get_if<NumberSlot>(&option.slot)) return {(*slot)(spec)};
   if (const auto* slot = std::get_if<IntegerSlot>(&option.slot)) return {static_cast<double>((*slot)(spec))};

@@ -24,7 +24,7 @@ constexpr Range positive{1e-9, 1e9};  // a length or an acceleration
 constexpr Range ratio{0.0, 1e12};
 constexpr Range fraction{0.0, 1.0};
 
-std::vector<std::string_view> frictions() { return {"sticking"}; }
+std::vector<std::string_view> frictions() { return {"sticking", "coulomb"}; }
 
 std::vector<std::string_view> methods() {
   std::vector<std::string_view> names{"auto", "exact"};
@@ -45,16 +45,16 @@ const std::array options{
            "friction",
            TextSlot{[](Spec& s) -> std::string& { return s.friction; }},
            "",
-           "\"sticking\": never slips (the paper's model)",
+           "\"sticking\": never slips (the paper's model); \"coulomb\": slips, lands and hops on",
            {},
            frictions},
-    Option{"scene", "mu_static", NumberSlot{[](Spec& s) -> double& { return s.coulomb.mu_static; }}, "1",
+    Option{"scene", "mu_static", ParameterSlot{&Design::mu_static}, "1",
            "static friction coefficient; no effect when sticking", non_negative},
-    Option{"scene", "mu_kinetic", NumberSlot{[](Spec& s) -> double& { return s.coulomb.mu_kinetic; }}, "1",
+    Option{"scene", "mu_kinetic", ParameterSlot{&Design::mu_kinetic}, "1",
            "kinetic friction coefficient, mu_static unless given; no effect when sticking", non_negative},
-    Option{"scene", "restitution", NumberSlot{[](Spec& s) -> double& { return s.coulomb.restitution; }}, "1",
+    Option{"scene", "restitution", ParameterSlot{&Design::restitution}, "1",
            "Poisson restitution; no effect when sticking", fraction},
-    Option{"scene", "rest_speed", NumberSlot{[](Spec& s) -> double& { return s.coulomb.rest_speed; }},
+    Option{"scene", "rest_speed", NumberSlot{[](Spec& s) -> double& { return s.scene.rest_speed; }},
            "sqrt(g R)", "slower rebounds count as none; no effect when sticking", non_negative},
     Option{"scene",
            "runway",
@@ -164,6 +164,7 @@ std::string default_of(const Option& option) {
         using Slot = std::decay_t<decltype(slot)>;
         if constexpr (std::is_same_v<Slot, ParameterSlot>) {
           const double value = spec.design.*slot.member;
+          if (std::isnan(value)) return "that of mu_static";
           return option.key == "release_angle" ? "180 deg" : fmt::format("{:.6g}", value);
         } else if constexpr (std::is_same_v<Slot, TextSlot>) {
           return fmt::format("\"{}\"", slot(spec));
@@ -187,8 +188,19 @@ std::vector<const Option*> design_parameters() {
   return parameters;
 }
 
+std::vector<const Option*> design_parameters(const Spec& spec) {
+  std::vector<const Option*> parameters = design_parameters();
+  std::erase_if(parameters, [&](const Option* parameter) {
+    return parameter->section == "scene" && spec.friction == "sticking" &&
+           std::ranges::find(spec.list.columns, parameter->key, &Axis::key) == spec.list.columns.end();
+  });
+  return parameters;
+}
+
 std::vector<double> list_values(const Spec& spec, const Option& parameter) {
   const auto column = std::ranges::find(spec.list.columns, parameter.key, &Axis::key);
+  const bool follows = column == spec.list.columns.end() && std::isnan(value_of(parameter, spec.design));
+  if (follows) return list_values(spec, *find_option("scene", "mu_static"));
   return column != spec.list.columns.end() ? column->values
                                            : std::vector(spec.list.count, value_of(parameter, spec.design));
 }
@@ -200,8 +212,11 @@ std::string flag_of(const Option& parameter) {
 }
 
 const Option* find_option(std::string_view section, std::string_view key) {
-  const auto found = std::ranges::find_if(
-      options, [&](const Option& o) { return o.key == key && (section.empty() || o.section == section); });
+  const auto found = std::ranges::find_if(options, [&](const Option& o) {
+    const bool there =
+        o.section == section || (section == "design" && std::holds_alternative<ParameterSlot>(o.slot));
+    return o.key == key && (section.empty() || there);
+  });
   return found == options.end() ? nullptr : &*found;
 }
 

@@ -40,8 +40,12 @@ struct Option {
 /// All keys, in the order of the documentation.
 std::span<const Option> spec_options();
 
-/// The parameters of a design, those of spec_options that take an axis.
+/// The parameters of a design, those of spec_options that take an axis: of the hoop and its release, and of
+/// its contact.
 std::vector<const Option*> design_parameters();
+
+/// Those of them that matter to a spec, or that its list names.
+std::vector<const Option*> design_parameters(const Spec& spec);
 
 /// A design's value of one of these parameters.
 inline double value_of(const Option& parameter, const Design& design) {
@@ -54,7 +58,8 @@ std::vector<double> list_values(const Spec& spec, const Option& parameter);
 /// The command line's name for a parameter, for example "--mass-ratio".
 std::string flag_of(const Option& parameter);
 
-/// The option of that section and key, or nullptr; an empty section means any.
+/// The option of that section and key, or nullptr; an empty section means any. What takes an axis may also
+/// stand in [design], where the axes of a resolved spec do, in their order.
 const Option* find_option(std::string_view section, std::string_view key);
 
 /// "slope must be in [0, 90 deg)" and the like: what values the option takes.

@@ -12,6 +12,7 @@
 #include "support/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
+#include "sweep/map_layout.hpp"
 #include "sweep/parallel.hpp"
 #include "sweep/solver.hpp"
 
@@ -45,6 +46,14 @@ void solve(const Spec& spec, const Tiling& tiling, std::vector<Failed>& designs,
   });
 }
 
+/// The same for a field of words, of which a double would not hold every bit.
+void store_words(hid_t dataset, const Word& word, const Tile& tile, std::span<const Failed> designs,
+                 const std::string& what) {
+  std::vector<std::uint64_t> values = hdf5::read_words(dataset, tile.start, tile.extent, what);
+  for (const Failed& design : designs) values[design.index] = design.outcome.*word.member;
+  hdf5::write_words(dataset, tile.start, tile.extent, values, what);
+}
+
 double stored_value(const Field& field, const Outcome& outcome, double time_unit) {
   if (const auto* code = std::get_if<Code>(&field.source)) return code->value(outcome);
   const auto& quantity = std::get<Quantity>(field.source);
@@ -54,9 +63,13 @@ double stored_value(const Field& field, const Outcome& outcome, double time_unit
 /// Puts the outcomes of one tile's designs in their places in every field.
 void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Failed> designs) {
   for (const Field& field : map_fields()) {
-    if (!stores(spec.output, field.name)) continue;
+    if (!stores(spec, field)) continue;
     const std::string name(field.name), what = "retrying failed designs in " + name;
     const hdf5::Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, what);
+    if (const auto* word = std::get_if<Word>(&field.source)) {
+      store_words(dataset, *word, tile, designs, what);
+      continue;
+    }
     std::vector<double> values = hdf5::read_block(dataset, tile.start, tile.extent, what);
     for (const Failed& design : designs)
       values[design.index] = stored_value(field, design.outcome, time_unit(spec.scene));

@@ -17,4 +17,7 @@ using Solver = std::function<void(std::span<const Design> designs, std::span<Out
 /// NaN.
 Solver make_solver(const Spec& spec);
 
+/// The solver of a method other than the spec's: exact at that tolerance, or one of GSL's steppers.
+Solver make_solver(const Spec& spec, std::string_view method, double tolerance);
+
 }  // namespace leapmap

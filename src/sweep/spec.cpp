@@ -286,7 +286,11 @@ Spec parse_spec(std::string_view text, const std::string& origin, const std::vec
     return std::ranges::any_of(entries, [&](const Entry& e) { return e.option->key == key; });
   };
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
-  if (!given("mu_kinetic")) spec.coulomb.mu_kinetic = spec.coulomb.mu_static;
+  spec.scene.friction = spec.friction == "coulomb" ? Friction::coulomb : Friction::sticking;
+  // Where mu_static varies, mu_kinetic follows it from design to design.
+  const bool varies =
+      std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() || !spec.points.empty();
+  if (!given("mu_kinetic") && !varies) spec.design.mu_kinetic = spec.design.mu_static;
 
   for (const Entry& entry : entries) {
     const std::string_view key = entry.option->key;

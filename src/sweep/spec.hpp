@@ -15,15 +15,6 @@
 
 namespace leapmap {
 
-/// Coulomb friction's parameters. Read and checked so that a spec can carry them; with friction = "sticking",
-/// the only model so far, they have no effect.
-struct Coulomb {
-  double mu_static = 0.5;    ///< >= 0
-  double mu_kinetic = 0.5;   ///< >= 0
-  double restitution = 0.0;  ///< Poisson's, in [0, 1]
-  double rest_speed = 1e-3;  ///< a rebound slower than this counts as none [sqrt(g R)]
-};
-
 struct Numerics {
   std::string method = "auto";    ///< "auto", "exact" or a stepper's name
   double tolerance = 1e-10;       ///< exact: relative error allowed in times; a stepper: per step
@@ -54,10 +45,9 @@ struct PointList {
 };
 
 struct Spec {
-  std::string origin;  ///< the file it was read from, for messages
-  std::string friction = "sticking";
+  std::string origin;                 ///< the file it was read from, for messages
+  std::string friction = "sticking";  ///< scene.friction follows it
   Scene scene;
-  Coulomb coulomb;
   Design design;  ///< what axes and points leave out
   Numerics numerics;
   Output output;
@@ -80,14 +70,14 @@ std::string origin_of(const Spec& spec);
 /// The spec as resolved: TOML that read_spec turns into the same Spec again, every key and value written out.
 std::string resolved_text(const Spec& spec);
 
-/// Whether a map has that field.
+/// Whether output.fields names that field, or is left out.
 bool stores(const Output& output, std::string_view field);
 
 /// The stepper and its controls that numerics asks for, where the method is one of GSL's.
 IntegrationOptions integration_options(const Numerics& numerics);
 
-/// The name of the method that numerics.method stands for: "auto" is settled here. Rolling without slip
-/// conserves energy, so that it is exact; integration is for models that slide.
+/// The name of the method that numerics.method stands for: "auto" is settled here. Rolling conserves energy
+/// and sliding reduces to quadratures, so that it is exact.
 std::string resolved_method(const Numerics& numerics);
 
 }  // namespace leapmap

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "sweep/options.hpp"
@@ -16,10 +17,12 @@ std::string resolved_text(const Spec& original) {
   spec.numerics.method = resolved_method(spec.numerics);
   std::string text;
   std::string_view section;
+  const auto line_below = [&](std::string_view header, std::string_view key, const std::string& value) {
+    if (header != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section = header);
+    text += fmt::format("{} = {}\n", key, value);
+  };
   const auto line = [&](const Option& option, const std::string& value) {
-    if (option.section != section)
-      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section = option.section);
-    text += fmt::format("{} = {}\n", option.key, value);
+    line_below(option.section, option.key, value);
   };
   // A number that TOML reads back as the same float: fmt's shortest form, which may look like an integer.
   const auto number = [](double value) {
@@ -35,18 +38,20 @@ std::string resolved_text(const Spec& original) {
     for (const Axis& axis : spec.axes) {
       std::vector<std::string> values;
       for (const double value : axis.values) values.push_back(number(value));
-      line(*find_option("design", axis.key), fmt::format("{{ values = [{}] }}", fmt::join(values, ", ")));
+      line_below("design", axis.key, fmt::format("{{ values = [{}] }}", fmt::join(values, ", ")));
     }
   };
   for (const Option& option : spec_options()) {
     if (option.key == "points") axes();  // after all numbers of the section
     const auto is_axis = [&](const Axis& axis) { return axis.key == option.key; };
-    if (option.section == "design" && std::ranges::any_of(spec.axes, is_axis)) continue;
+    if (std::ranges::any_of(spec.axes, is_axis)) continue;
     std::visit(
         [&](const auto& slot) {
           using Slot = std::decay_t<decltype(slot)>;
           if constexpr (std::is_same_v<Slot, ParameterSlot>) {
-            line(option, number(spec.design.*slot.member));
+            // NaN: follows another parameter, and is left out.
+            if (const double value = spec.design.*slot.member; !std::isnan(value))
+              line(option, number(value));
           } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
             line(option, number(slot(spec)));
           } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {

@@ -3,6 +3,12 @@
 
 namespace leapmap {
 
+std::string phase_letters(std::uint64_t sequence) {
+  std::string letters;
+  for (; sequence != 0; sequence >>= 2) letters += "-RSF"[sequence & 3];
+  return letters.empty() ? "-" : letters;
+}
+
 bool consider(Outcome& outcome, const Scene& scene, const Design& design, const LiftOff<double>& lift_off,
               const Flight<double>& flight) {
   const bool is_jump = flight.height >= scene.hop_height;

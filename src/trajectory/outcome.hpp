@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 
 #include "physics/flight.hpp"
@@ -33,6 +34,12 @@ constexpr std::string_view name_of(Status status) {
   return names[static_cast<std::size_t>(status)];
 }
 
+/// Stored in traces and phase_sequence: numbers are never reused or changed.
+enum class Phase : std::uint8_t { rolling = 1, sliding = 2, flight = 3 };
+
+/// A phase_sequence as letters, for example "RSRSF"; "-": none.
+std::string phase_letters(std::uint64_t sequence);
+
 /// Dimensionless: lengths in R, times in sqrt(R/g), heights and dip in hoop diameters. NaN: does not apply.
 struct Outcome {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -52,7 +59,12 @@ struct Outcome {
   double dip = none;            ///< how far the flight first enters the plane, <= 0
   double first_jump_height = none;
   double first_jump_time = none;
-  const char* failure = nullptr;  ///< why the status is failed, if that is known
+  // With Coulomb friction.
+  std::uint64_t phase_sequence = 0;  ///< two bits a phase, the first lowest, up to 32; see Phase
+  double slip_distance = none;       ///< slid, either way, from release to the end [R]
+  double landing_spin = none;        ///< w after the landing of the jump
+  double energy_lost = none;         ///< from release to the lift-off of the jump, over (m + m_p) g R
+  const char* failure = nullptr;     ///< why the status is failed, if that is known
 };
 
 /// Counts a lift-off and its flight, in order of time. True if it is the jump, which ends the search: the
@@ -60,10 +72,10 @@ struct Outcome {
 bool consider(Outcome& outcome, const Scene& scene, const Design& design, const LiftOff<double>& lift_off,
               const Flight<double>& flight);
 
-/// Whether two methods see the same: status, spurious flag and number of candidates.
+/// Whether two methods see the same: status, spurious flag, number of candidates and phases.
 inline bool same_flags(const Outcome& a, const Outcome& b) {
   return a.status == b.status && a.spurious_first_jump == b.spurious_first_jump &&
-         a.candidates == b.candidates;
+         a.candidates == b.candidates && a.phase_sequence == b.phase_sequence;
 }
 
 /// The outcome of a design that a method gave up on; why: a text that lives as long as the program.

@@ -35,7 +35,8 @@ TracePoint flight_point(const Hoop<double>& hoop, const Design& design, const Li
   return {from.time + flown,
           from.angle + from.spin * flown,
           from.spin,
-          from.angle - design.release_angle + travel_in_flight(hoop, trig(from.angle), from.spin, flown),
+          from.angle - design.release_angle +
+              travel_in_flight(hoop, trig(from.angle), from.spin, 0.0, flown).value,
           height_above_plane(hoop, trig(from.angle), from.spin, flown).value,
           0.0,
           0.0,

@@ -5,13 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "trajectory/contact_phases.hpp"
 #include "trajectory/outcome.hpp"
 #include "trajectory/rolling_integration.hpp"
 
 namespace leapmap {
-
-/// Stored in traces: numbers are never reused or changed.
-enum class Phase : std::uint8_t { rolling = 1, sliding = 2, flight = 3 };
 
 /// The motion at one time. Lengths in R, times in sqrt(R/g), forces in weights.
 struct TracePoint {
@@ -25,6 +23,12 @@ struct TracePoint {
   Phase phase;
 };
 
+/// A phase as it begins.
+struct PhaseStart {
+  Phase phase;
+  ContactState<double> state;
+};
+
 /// A lift-off that was looked at, and the flight it would begin.
 struct Candidate {
   LiftOff<double> lift_off;
@@ -35,7 +39,8 @@ struct Story {
   Outcome outcome;
   Outcome checked;  ///< by a second method: integration if `outcome` is exact, and the other way round
   std::vector<Candidate> candidates;
-  std::vector<Graze> grazes;  ///< zeros of the normal force decided by a hair, see Graze
+  std::vector<PhaseStart> phases;  ///< with Coulomb friction; else empty
+  std::vector<Graze> grazes;       ///< zeros of the normal force decided by a hair, see Graze
   std::vector<TracePoint>
       points;  ///< from release to the end: the jump's landing, the stall, the runway's end
 };
@@ -45,6 +50,11 @@ struct Story {
 /// Throws InputError if that would be more than 10^7 samples.
 Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval = 0.0,
            double graze_limit = 1e-6);
+
+/// The same with Coulomb friction: by the exact solver at that tolerance if options.stepper is null, else by
+/// integration.
+Story tell_with_friction(const Design& design, const Scene& scene, const IntegrationOptions& options,
+                         double tolerance, double interval = 0.0);
 
 /// The same by the exact solver: outcome and candidates are its own. Motion and grazes are gsl-rk8pd's, at
 /// 1e-12, whose outcome is told as `checked`.

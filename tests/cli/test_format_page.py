@@ -35,11 +35,13 @@ def maps(tmp_path_factory):
     grid = sweep(folder, f"[design]\n{axes}[numerics]\nmethod = \"gsl-rk8pd\"\nmax_steps = 60\naudit = 0\n", name="grid.h5")
     retried = leapmap("sweep", folder / "spec.toml", "-o", grid, "--retry-failed")
     assert retried.returncode == 0, retried.stderr
-    return [grid, sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5")]
+    slipping = '[scene]\nfriction = "coulomb"\n[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n'
+    return [grid, sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
+            sweep(folder, slipping, name="slipping.h5")]
 
 
 def kind(dtype):
-    return {np.dtype("<f8"): "f8", np.dtype("<f4"): "f4", np.dtype("u1"): "u1", np.dtype("<i8"): "i8", np.dtype("<i4"): "i4"}.get(dtype, "text")
+    return {np.dtype("<f8"): "f8", np.dtype("<f4"): "f4", np.dtype("u1"): "u1", np.dtype("<i8"): "i8", np.dtype("<u8"): "u8", np.dtype("<i4"): "i4"}.get(dtype, "text")
 
 
 def test_the_version_is_the_files(maps):

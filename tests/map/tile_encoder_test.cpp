@@ -24,6 +24,7 @@ std::vector<Outcome> wild(std::size_t count, bool compressible) {
     o.candidates = static_cast<std::uint8_t>(random());
     for (const Field& field : map_fields())
       if (const auto* quantity = std::get_if<Quantity>(&field.source)) o.*quantity->member = number();
+    o.phase_sequence = compressible ? 0 : random();
   }
   return outcomes;
 }
@@ -58,7 +59,11 @@ void expect_round_trip(int compression, bool single, bool compressible) {
     EXPECT_LT(bytes, map_bytes(layout, tiling) / 2);
   }
   const MapReader map(folder / "map.h5");
+  const hdf5::Handle words(H5Dopen2(map.file(), "phase_sequence", H5P_DEFAULT), H5Dclose, "phase_sequence");
+  const std::vector<std::uint64_t> sequences = hdf5::read_words(words, {0, 0, 0}, shape, "phase_sequence");
+  for (std::size_t i = 0; i < outcomes.size(); ++i) ASSERT_EQ(sequences[i], outcomes[i].phase_sequence);
   for (const Field& field : map_fields()) {
+    if (std::holds_alternative<Word>(field.source)) continue;
     const std::vector<double> stored =
         map.read(std::string(field.name), Tile{{0, 0, 0}, shape, tiling.designs()});
     for (std::size_t i = 0; i < outcomes.size(); ++i) {

@@ -87,7 +87,7 @@ TEST(Flight, ClosedFormEqualsIntegrationOfThePapersEquations) {
         const double flown = step.t0 + tau;
         // 1e-10: the integration's own error over some hundred steps
         EXPECT_NEAR(height_above_plane(hoop, trig(angle), spin, flown).value, y[1], 1e-10);
-        EXPECT_NEAR(travel_in_flight(hoop, trig(angle), spin, flown), y[0] - angle, 1e-10);
+        EXPECT_NEAR(travel_in_flight(hoop, trig(angle), spin, 0.0, flown).value, y[0] - angle, 1e-10);
         EXPECT_NEAR(spin, y[5], 1e-11);
         highest = std::max(highest, y[1] / 2);
         if (landing == 0.0 && highest > 0.0 && y[1] <= 0.0) landing = flown;

@@ -41,7 +41,7 @@ TEST(MapSpec, OfAListHoldsItsDesignsWithoutTheFile) {
   const Spec back = through_a_map(folder, spec);
   EXPECT_EQ(first_difference(back, spec), std::nullopt);
   for (std::size_t i = 0; i < 3; ++i)
-    for (const Option* parameter : design_parameters())
+    for (const Option* parameter : design_parameters(spec))
       EXPECT_EQ(value_of(*parameter, DesignSpace(back).at(i)), value_of(*parameter, DesignSpace(spec).at(i)));
   spec.list.columns[1].values[2] = 0.3;
   const auto difference = first_difference(back, spec);

@@ -146,8 +146,8 @@ TEST(Spec, ResolvedTextKeepsAnAxisOverAnyParameterAndOverAllOfThem) {
 }
 
 TEST(Spec, MuKineticIsMuStaticUnlessGiven) {
-  EXPECT_EQ(parse("[scene]\nmu_static = 0.3\n").coulomb.mu_kinetic, 0.3);
-  EXPECT_EQ(parse("[scene]\nmu_static = 0.3\nmu_kinetic = 0.2\n").coulomb.mu_kinetic, 0.2);
+  EXPECT_EQ(parse("[scene]\nmu_static = 0.3\n").design.mu_kinetic, 0.3);
+  EXPECT_EQ(parse("[scene]\nmu_static = 0.3\nmu_kinetic = 0.2\n").design.mu_kinetic, 0.2);
 }
 
 TEST(Spec, AListOfDesignsIsReadFromBesideTheSpec) {

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Sliding with Coulomb friction, beyond the paper: (7) to (9) with (2) kept and lambda_f = -mu sign(v)
+/// lambda_n.
+///
+/// v = x' - w is the contact point's velocity. With n0 = cos(theta) + rho c w^2, which is minus the y'' of
+/// free flight, and q = rho s - m (1 - rho c), m = mu sign(v), the forces and accelerations are
+///   N = n0 Ic / (Ic + rho s q),   F = -m N,   phi'' = -n0 q / (Ic + rho s q).
+/// Both are linear in w^2: as a function of the angle u = w^2 obeys du/dphi = 2 phi'', a linear equation of
+/// first order. Where Ic + rho s q <= 0 the rigid-body equations have no answer or two (Painleve).
+#pragma once
+
+#include "physics/rolling.hpp"
+
+namespace leapmap {
+
+/// What sliding says at one angle; everything else follows from w^2.
+template <class T>
+struct SlidingCoefficients {
+  T pivot;  ///< Ic + rho s q; not above zero: indeterminate
+  T turn;   ///< phi'' = turn n0
+  T push;   ///< N = push n0
+};
+
+/// friction: m = mu_kinetic sign(v).
+template <class T>
+SlidingCoefficients<T> sliding_coefficients(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction) {
+  const T arm = hoop.clearance + hoop.rho * phi.versine;  // 1 - rho c
+  const T q = hoop.rho * phi.sin - friction * arm;
+  const T pivot = hoop.Ic + hoop.rho * phi.sin * q;
+  return {pivot, -q / pivot, hoop.Ic / pivot};
+}
+
+/// n0: the hoop leaves the plane where this falls through zero.
+template <class T>
+T free_normal_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared) {
+  return hoop.cos_slope + hoop.rho * phi.cos * spin_squared;
+}
+
+/// Accelerations while sliding.
+template <class T>
+struct SlidingMotion {
+  T normal_force;  ///< [weights]
+  T friction;      ///< lambda_f over the weight
+  T angular;       ///< phi''
+  T slip;          ///< v' = x'' - phi''
+};
+
+template <class T>
+SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared,
+                                const T& friction) {
+  const SlidingCoefficients<T> at = sliding_coefficients(hoop, phi, friction);
+  const T n0 = free_normal_force(hoop, phi, spin_squared);
+  const T N = at.push * n0, F = -friction * N, angular = at.turn * n0;
+  const T arm = hoop.clearance + hoop.rho * phi.versine;
+  return {N, F, angular, F + hoop.sin_slope - arm * angular - hoop.rho * phi.sin * spin_squared};
+}
+
+}  // namespace leapmap

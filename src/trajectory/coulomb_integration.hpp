@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One design with Coulomb friction by integrating rolling and sliding in time with one of GSL's steppers:
+/// the audit of CoulombSolver, with which it shares equations, flights and landings, but neither energy
+/// integral nor quadratures.
+#pragma once
+
+#include <functional>
+
+#include "numerics/gsl_integrator.hpp"
+#include "trajectory/contact_phases.hpp"
+#include "trajectory/coulomb.hpp"
+#include "trajectory/rolling_integration.hpp"
+
+namespace leapmap {
+
+/// The motion inside a step of a phase in contact: the state tau after the step's start; false if the method
+/// fails there.
+using ContactMotion = std::function<bool(double tau, ContactState<double>&)>;
+
+/// A thread's own workspace.
+class CoulombIntegration {
+ public:
+  explicit CoulombIntegration(const IntegrationOptions& options);
+  CoulombIntegration(const CoulombIntegration&) = delete;
+  CoulombIntegration& operator=(const CoulombIntegration&) = delete;
+
+  /// step, if set, is told of every step in contact, in order: its phase, the state at its start, how much of
+  /// it was gone through, and the motion in it.
+  Outcome solve(
+      const Design& design, const Scene& scene, const CoulombObserver& observer = {},
+      const std::function<void(Phase, const ContactState<double>&, double, const ContactMotion&)>& step = {});
+
+  /// What the right-hand sides work on.
+  struct System {
+    Hoop<double> hoop;
+    double friction;  ///< mu_kinetic sign(v), while sliding
+  };
+
+ private:
+  IntegrationOptions options_;
+  System system_{};
+  GslIntegrator<4> integrator_;
+  std::array<Falls<4>, 4> falls_;
+  long steps_ = 0;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/rolling_leg.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "numerics/events.hpp"
+
+namespace leapmap {
+namespace {
+
+/// A smooth function on an interval: where it first falls from above to below zero. Its ends' values and
+/// rates tell; where they leave a minimum near zero in doubt, it is asked. NaN: it does not fall.
+template <class S, class F>
+S first_fall(const F& f, const S& a, const S& b, const Sample<S>& at_a, const Sample<S>& at_b) {
+  const S none = std::numeric_limits<S>::quiet_NaN(), h = b - a;
+  const S resolution = S(2) * std::numeric_limits<S>::epsilon() * (std::abs(a) + std::abs(b));
+  const auto fallen = [](const Sample<S>& s) { return s.value < S(0) || (s.value == S(0) && s.rate < S(0)); };
+  if (fallen(at_a)) return a;
+  if (fallen(at_b)) return polish_root(f, a, b, a + h * S(0.5), false, resolution);
+  if (!(at_a.rate < S(0) && at_b.rate > S(0))) return none;
+  // A minimum, by the cubic's slope; the interval is short, so that it is near there. It is beyond doubt
+  // where the tangents at both ends meet above zero.
+  const S meet = (at_b.value - at_a.value - at_b.rate * h) / (at_a.rate - at_b.rate);
+  if (at_a.value + at_a.rate * meet > S(0)) return none;
+  S left = a, right = b, left_rate = at_a.rate, right_rate = at_b.rate;
+  for (int i = 0; i < 60 && right - left > resolution; ++i) {
+    S x = i % 3 == 2 ? left + (right - left) * S(0.5)
+                     : left + (right - left) * left_rate / (left_rate - right_rate);
+    if (!(x > left && x < right)) x = left + (right - left) * S(0.5);
+    const Sample<S> at = f(x);
+    if (at.value < S(0)) return polish_root(f, a, x, a + (x - a) * S(0.5), false, resolution);
+    // No fall if even the tangents here stay above zero.
+    if (at.value + at.rate * (at.rate > S(0) ? left - x : right - x) > S(0)) return none;
+    at.rate < S(0) ? (left = x, left_rate = at.rate) : (right = x, right_rate = at.rate);
+  }
+  return none;
+}
+
+}  // namespace
+
+template <class S>
+RollingLeg<S>::RollingLeg(double tolerance)
+    : tolerance_(std::max(S(tolerance) * S(1e-4), S(8) * std::numeric_limits<S>::epsilon())) {
+  for (std::size_t k = 0; k < nodes_a_turn; ++k)
+    grid_[k] = trig(S(2) * std::numbers::pi_v<S> * S(k) / S(nodes_a_turn));
+}
+
+template <class S>
+PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at,
+                            const S& runway) const {
+  const Roll<S> roll = begin_roll(hoop, at.angle, at.spin);
+  const S start = at.angle, last = at.angle + (runway - at.travel);
+  const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
+
+  struct Look {
+    S angle;
+    Sample<S> vis_viva;
+    StickGuards<S> guards;
+  };
+  const auto look_at = [&](const S& angle, const Trig<S>& phi) {
+    const S E = vis_viva(roll, angle, phi);
+    return Look{angle, {E, S(2) * torque(hoop, phi)}, stick_guards(hoop, phi, E, mu_static)};
+  };
+  const auto guards_at = [&](const S& angle) {
+    const Trig<S> phi = trig(angle);
+    return stick_guards(hoop, phi, vis_viva(roll, angle, phi), mu_static);
+  };
+  const auto end_at = [&](const S& angle, PhaseEnd end) {
+    const S x = angle - start;
+    at.travel += x;
+    at.angle = angle;
+    at.spin = S(0);
+    if (end == PhaseEnd::stalls) return end;  // when nobody asks, and the integral is hard
+    const S taken = x > S(0) ? duration(roll, x) : S(0);
+    at.time += taken;
+    at.spin = std::sqrt(std::max(vis_viva_past_release(roll, x), S(0)) / contact_inertia(hoop, trig(angle)));
+    return taken >= S(0) ? end : PhaseEnd::failed;
+  };
+
+  // From rest E's first zero is the release itself, known by its push.
+  if (at.spin < S(0) || (at.spin == S(0) && !(roll.push > S(0)))) return PhaseEnd::stalls;
+  Look left = look_at(start, trig(start));
+  left.vis_viva = {roll.released, S(2) * roll.push};
+  long node = static_cast<long>(std::floor(start / step)) + 1;
+  for (;; ++node) {
+    const S angle = std::min(S(node) * step, last);
+    if (angle <= left.angle && angle < last) continue;
+    const auto index =
+        static_cast<std::size_t>(((node % long{nodes_a_turn}) + long{nodes_a_turn}) % long{nodes_a_turn});
+    const Look right = look_at(angle, angle < last ? grid_[index] : trig(angle));
+    const S back = first_fall([&](const S& x) { return guards_at(x).downhill; }, left.angle, right.angle,
+                              left.guards.downhill, right.guards.downhill);
+    const S forth = first_fall([&](const S& x) { return guards_at(x).uphill; }, left.angle, right.angle,
+                               left.guards.uphill, right.guards.uphill);
+    const S stall = first_fall(
+        [&](const S& x) {
+          return Sample<S>{vis_viva_past_release(roll, S(x - start)), S(2) * torque(hoop, trig(x))};
+        },
+        left.angle, right.angle, left.vis_viva, right.vis_viva);
+    // A stall at angle a is passed by whatever comes before it; NaN never does.
+    if (!std::isnan(stall) && !(back <= stall) && !(forth <= stall)) return end_at(stall, PhaseEnd::stalls);
+    if (!std::isnan(back) && !(forth < back)) return end_at(back, PhaseEnd::slips_backwards);
+    if (!std::isnan(forth)) return end_at(forth, PhaseEnd::slips_forwards);
+    if (!(angle < last)) return end_at(last, PhaseEnd::runway_ends);
+    left = right;
+  }
+}
+
+template <class S>
+S RollingLeg<S>::duration(const Roll<S>& roll, const S& length) const {
+  // x = shift + q^2 takes out the nearer zero of E's tangent at the start, where the spin is small and grows.
+  const S tangent_zero = roll.push > S(0) ? -roll.released / (S(2) * roll.push) : -S(1);
+  const S shift = std::max(tangent_zero, -length);
+  const S begin = std::sqrt(-shift);
+  S sum(0), from = begin;
+  const S end = std::sqrt(length - shift);
+  // Panels of some two thirds of a radian.
+  while (from < end) {
+    S to = std::sqrt(from * from + S(0.7));
+    if (to > end || S(1.15) * to > end) to = end;
+    sum += duration(roll, shift, from, to, 0);
+    from = to;
+  }
+  return sum;
+}
+
+template <class S>
+S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, const S& to,
+                          int halvings) const {
+  constexpr int most_halvings = 50;
+  typename SpectralPanel<S, nodes>::Values f;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const S q = from + (to - from) * panel_.node[i], x = shift + q * q;
+    const Trig<S> turned = trig(x);
+    const S E = vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned.sin));
+    // 1 - cos(release + x), without cancellation near multiples of 2 pi
+    const S half = (roll.release + x) * S(0.5), sine = std::sin(half);
+    const S J = roll.hoop.J_min + S(4) * roll.hoop.rho * sine * sine;
+    f[i] = S(2) * q * std::sqrt(J / E);
+  }
+  const S whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);
+  if (tail * tail <= tolerance_ * whole * whole) return whole;
+  if (halvings == most_halvings || !(whole > S(0))) return std::numeric_limits<S>::quiet_NaN();
+  const S middle = from + (to - from) * S(0.5);
+  return duration(roll, shift, from, middle, halvings + 1) + duration(roll, shift, middle, to, halvings + 1);
+}
+
+template class RollingLeg<double>;
+template class RollingLeg<long double>;
+
+}  // namespace leapmap

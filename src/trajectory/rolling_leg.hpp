@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One rolling phase by its energy integral: where friction is used up, the spin is, or the runway is.
+#pragma once
+
+#include <array>
+
+#include "numerics/spectral.hpp"
+#include "physics/stick.hpp"
+#include "trajectory/contact_phases.hpp"
+
+namespace leapmap {
+
+template <class S>
+class RollingLeg {
+ public:
+  /// Times will be good to the tolerance, relative, or to some roundings.
+  explicit RollingLeg(double tolerance);
+
+  /// Rolls on from a state without slip, its spin not below zero, to the phase's end.
+  PhaseEnd run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at, const S& runway) const;
+
+ private:
+  static constexpr std::size_t nodes_a_turn = 48;
+  static constexpr std::size_t nodes = 12;
+
+  S duration(const Roll<S>& roll, const S& length) const;
+  S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, int halvings) const;
+
+  S tolerance_;
+  SpectralPanel<S, nodes> panel_;
+  std::array<Trig<S>, nodes_a_turn> grid_;
+};
+
+}  // namespace leapmap
