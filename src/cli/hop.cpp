@@ -68,7 +68,7 @@ void print_jump(const Spec& spec, const Story& story) {
     fmt::print("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off",
                jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time * second,
                jump.flight_time * second);
-    if (story.phases.empty()) {
+    if (spec.scene.friction == Friction::sticking) {
       fmt::print("; the flight first dips {:.4g} diameters.\n", jump.dip);
     } else {
       fmt::print(
@@ -82,22 +82,20 @@ void print_jump(const Spec& spec, const Story& story) {
 
 /// Every phase with Coulomb friction, flights with how they go.
 void print_phases(const Story& story, double second) {
-  std::size_t flight = 0;
-  for (const auto& [phase, at] : story.phases) {
-    if (phase != Phase::flight) {
-      const char* name = phase == Phase::rolling ? "R  rolls"
-                         : at.slip > 0.0         ? "S  slides forwards"
-                                                 : "S  slides";
-      fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f}\n",
-                 at.slip < 0.0 && phase == Phase::sliding ? "S  slides backwards" : name, at.time * second,
-                 degrees(at.angle), at.spin / second);
-      continue;
+  std::size_t flights = 0;
+  for (const auto& [phase, at, direction] : story.phases) {
+    const std::string begins =
+        fmt::format("{:>12.6f} {:>12.4f} {:>14.6f}", at.time * second, degrees(at.angle), at.spin / second);
+    if (phase == Phase::rolling) {
+      fmt::print("{:<22} {}\n", "R  rolls", begins);
+    } else if (phase == Phase::sliding) {
+      fmt::print("{:<22} {}\n", direction > 0 ? "S  slides forwards" : "S  slides backwards", begins);
+    } else {
+      const Flight<double>& flown = story.candidates[flights++].flight;
+      const bool jumps = story.outcome.status == Status::jumped && flights == story.candidates.size();
+      fmt::print("{:<22} {} {:>12.6f} {:>12.6f}\n", jumps ? "F  jumps" : "F  hops, too low", begins,
+                 flown.height, (at.time + flown.flight_time) * second);
     }
-    const Flight<double>& flown = story.candidates[flight].flight;
-    const bool jump = story.outcome.status == Status::jumped && ++flight == story.candidates.size();
-    fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f} {:>12.6f} {:>12.6f}\n",
-               jump ? "F  jumps" : "F  hops, too low", at.time * second, degrees(at.angle), at.spin / second,
-               flown.height, (at.time + flown.flight_time) * second);
   }
 }
 
@@ -117,7 +115,7 @@ void print_table(const Spec& spec, const Story& story) {
 
   fmt::print("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]",
              "spin [rad/s]", "height [2R]", "landing [s]");
-  if (!story.phases.empty()) {
+  if (spec.scene.friction == Friction::coulomb) {
     print_phases(story, second);
     fmt::print("\n{}  {}\n", phase_letters(story.outcome.phase_sequence), verdict(story, spec.scene));
     print_jump(spec, story);
@@ -149,12 +147,13 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 /// The outcome under the map's names and units, so that a script finds the same words in both.
 std::string json_text(const Spec& spec, const Story& story) {
   const double second = time_unit(spec.scene);
-  std::vector<std::string> design, outcome, candidates, grazes;
+  const bool slips = spec.scene.friction == Friction::coulomb;
+  std::vector<std::string> design, outcome, candidates, grazes, phases;
   for (const Option* parameter : design_parameters(spec))
     design.push_back(
         fmt::format("\"{}\": {}", parameter->key, json_number(value_of(*parameter, spec.design))));
   for (const Field& field : map_fields()) {
-    if (field.of_coulomb && story.phases.empty()) continue;
+    if (field.of_coulomb && !slips) continue;
     std::string value;
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
       value = json_number(story.outcome.*quantity->member * (quantity->is_time ? second : 1.0));
@@ -179,6 +178,13 @@ std::string json_text(const Spec& spec, const Story& story) {
         R"({{"time": {}, "angle": {}, "normal_force": {}, "extremum": "{}", "makes_lift_off": {}}})",
         json_number(graze.time * second), json_number(graze.angle), json_number(graze.normal_force),
         graze.minimum ? "minimum" : "maximum", graze.makes_lift_off()));
+  for (const auto& [phase, at, direction] : story.phases)
+    phases.push_back(fmt::format(
+        R"({{"phase": "{}", "direction": {}, "time": {}, "angle": {}, "spin": {}, "x": {}}})",
+        phase_letters(static_cast<std::uint64_t>(phase)), direction, json_number(at.time * second),
+        json_number(at.angle), json_number(at.spin), json_number(at.travel)));
+  const std::string slipping =
+      slips ? fmt::format(",\n  \"phases\": [{}]", fmt::join(phases, ", ")) : std::string();
   const std::string check = fmt::format(
       R"({{"method": "{}", "tolerance": 1e-12, "status": "{}", "candidates": {}, "jump_height": {}, "jump_time": {}}})",
       audit_method(spec.numerics), name_of(story.checked.status), story.checked.candidates,
@@ -186,11 +192,12 @@ std::string json_text(const Spec& spec, const Story& story) {
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
       "\"radius\": {}, "
-      "\"gravity\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  \"lift_offs\": [{}],\n  "
-      "\"grazes\": [{}],\n  \"check\": {}\n}}\n",
+      "\"gravity\": {}, \"rest_speed\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  "
+      "\"lift_offs\": [{}],\n  "
+      "\"grazes\": [{}],\n  \"check\": {}{}\n}}\n",
       fmt::join(design, ", "), spec.friction, spec.scene.runway, spec.scene.hop_height, spec.scene.radius,
-      spec.scene.gravity, resolved_method(spec.numerics), spec.numerics.tolerance,
-      fmt::join(outcome, ",\n  "), fmt::join(candidates, ", "), fmt::join(grazes, ", "), check);
+      spec.scene.gravity, spec.scene.rest_speed, resolved_method(spec.numerics), spec.numerics.tolerance,
+      fmt::join(outcome, ",\n  "), fmt::join(candidates, ", "), fmt::join(grazes, ", "), check, slipping);
 }
 
 int run(const HopArguments& arguments) {

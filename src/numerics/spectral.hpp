@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
+#include "numerics/lanes.hpp"
 #include "numerics/quadrature.hpp"
 
 namespace leapmap {
@@ -16,6 +18,9 @@ namespace leapmap {
 template <class S, std::size_t n>
 struct SpectralPanel {
   using Values = std::array<S, n>;
+  using T = std::conditional_t<std::is_same_v<S, double>, Batch, S>;  ///< nodes in lanes
+  static constexpr std::size_t width = Lanes<T>::count;
+  static_assert(n % width == 0);
   Values node, weight;
   std::array<Values, n>
       running;  ///< integral of the j-th cardinal polynomial from 0 to node i is running[j][i]
@@ -53,34 +58,50 @@ struct SpectralPanel {
 
   /// Integrals of f from 0 to each node.
   Values integrals(const Values& f) const {
-    Values sums{};
+    std::array<T, n / width> sums;
+    sums.fill(T(S(0)));
     for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = 0; i < n; ++i) sums[i] += running[j][i] * f[j];
-    return sums;
+      for (std::size_t i = 0; i < n / width; ++i)
+        sums[i] += Lanes<T>::load(running[j].data() + i * width) * T(f[j]);
+    Values values;
+    for (std::size_t i = 0; i < n / width; ++i) Lanes<T>::store(sums[i], values.data() + i * width);
+    return values;
   }
   /// Integral of f over the panel.
-  S integral(const Values& f) const {
-    S sum(0);
-    for (std::size_t i = 0; i < n; ++i) sum += weight[i] * f[i];
-    return sum;
-  }
+  S integral(const Values& f) const { return dot(weight, f); }
   /// f at x in [0, 1], by the barycentric formula.
   S value(const Values& f, const S& x) const {
-    S above(0), below(0);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (x == node[i]) return f[i];
-      const S share = barycentric[i] / (x - node[i]);
-      above += share * f[i], below += share;
+    T above(S(0)), below(S(0));
+    for (std::size_t i = 0; i < n; i += width) {
+      const T away = T(x) - Lanes<T>::load(node.data() + i);
+      if (any(away == T(S(0)))) {
+        for (std::size_t k = i;; ++k)
+          if (node[k] == x) return f[k];
+      }
+      const T share = Lanes<T>::load(barycentric.data() + i) / away;
+      above += share * Lanes<T>::load(f.data() + i), below += share;
     }
-    return above / below;
+    return sum(above) / sum(below);
   }
   /// The larger of f's last two Legendre coefficients: about the error of values between the nodes, and the
   /// square root of that of the integral, both where f is of size 1.
   S tail(const Values& f) const {
     using std::abs, std::max;
-    S a(0), b(0);
-    for (std::size_t i = 0; i < n; ++i) a += last[0][i] * f[i], b += last[1][i] * f[i];
-    return max(abs(a), abs(b));
+    return max(abs(dot(last[0], f)), abs(dot(last[1], f)));
+  }
+
+ private:
+  static S sum(const T& value) {
+    const LaneArray<T> lanes = lanes_of(value);
+    S total(0);
+    for (const S& lane : lanes) total += lane;
+    return total;
+  }
+  static S dot(const Values& a, const Values& b) {
+    T products(S(0));
+    for (std::size_t i = 0; i < n; i += width)
+      products += Lanes<T>::load(a.data() + i) * Lanes<T>::load(b.data() + i);
+    return sum(products);
   }
 };
 

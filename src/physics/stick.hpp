@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Whether friction holds a rolling hoop, as functions of the angle alone: with the vis viva E = w^2 J both
-/// forces times J^2 are trigonometric polynomials without needle, linear in E,
-///   N J^2 = P J + rho K E,   F J^2 = (q tau - sin(theta) J) J + rho s (J - q) E,   tau = dE/dphi / 2, q = 1
-///   - rho c.
+/// Whether friction holds a rolling hoop, as functions of the angle alone.
+///
+/// With the vis viva E = w^2 J both forces times J^2 are trigonometric polynomials without needle, linear in
+/// E:
+///   N J^2 = P J + rho K E,
+///   F J^2 = (q tau - sin(theta) J) J + rho s (J - q) E,   tau = dE/dphi / 2, q = 1 - rho c.
 #pragma once
+
+#include <limits>
 
 #include "physics/rolling_by_angle.hpp"
 
@@ -20,6 +24,7 @@ struct StickGuards {
 /// E: the vis viva at that angle.
 template <class T>
 StickGuards<T> stick_guards(const Hoop<T>& h, const Trig<T>& phi, const T& E, const T& mu) {
+  using S = ScalarOf<T>;
   const T s = phi.sin, c = phi.cos, sin_above = sin_from_vertical(h, phi);
   const T J = contact_inertia(h, phi), J1 = T(2) * h.rho * s;
   const T q = h.clearance + h.rho * phi.versine, q1 = h.rho * s;
@@ -33,7 +38,11 @@ StickGuards<T> stick_guards(const Hoop<T>& h, const Trig<T>& phi, const T& E, co
   const T pull = q * tau - h.sin_slope * J, pull1 = q1 * tau + q * tau1 - h.sin_slope * J1;
   const T swing = s * (J - q), swing1 = c * (J - q) + s * (J1 - q1);
   const T F = pull * J + h.rho * swing * E, F1 = pull1 * J + pull * J1 + h.rho * (swing1 * E + swing * E1);
-  return {{mu * N - F, mu * N1 - F1}, {mu * N + F, mu * N1 + F1}};
+  using std::abs;
+  const T terms =
+      mu * (P * J + h.rho * abs(K) * E) + (abs(q * tau) + h.sin_slope * J) * J + h.rho * abs(swing) * E;
+  const T slack = T(S(32) * std::numeric_limits<S>::epsilon()) * terms;
+  return {{mu * N - F + slack, mu * N1 - F1}, {mu * N + F + slack, mu * N1 + F1}};
 }
 
 }  // namespace leapmap

@@ -196,6 +196,10 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
       const Option* option = find_option(section.str(), key.str());
       const auto position = value.source().begin;
       if (!option) refuse_key(fmt::format("{}:{}", origin, position.line), section.str(), key.str());
+      const auto twice = std::ranges::find(entries, option, &Entry::option);
+      if (twice != entries.end())
+        throw InputError(fmt::format("{}:{}: {} is there twice, also at {}; allowed: once", origin,
+                                     position.line, key.str(), twice->place));
       entries.push_back({option, fmt::format("{}:{}", origin, position.line), position, &value});
     }
   }

@@ -1,29 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Rolling, sliding, flying and landing with Coulomb friction, as a machine of phases.
 ///
-///   phase        | ends when                          | and then
-///   -------------+------------------------------------+------------------------------------------------------
-///   R  rolling   | |F| - mu_s N rises through zero    | S, the way that F held back: v gets the sign of -F;
-///   F if
-///                |                                    | n0 <= 0 there, when only sticking pressed it down
-///      v = 0     | the spin is not above zero         | stalled
-///   S  sliding   | n0 falls through zero              | F, lift-off
-///      v > 0 or  | v comes back to zero               | R if |F| <= mu_s N there, else S the other way
-///      v < 0     | Ic + rho s q falls to zero         | indeterminate (Painleve)
-///   F  flight    | its apex reaches hop_height        | jumped
-///                | y comes back to zero               | landing: impulses at once; then F if it rebounds or
-///                n0 <= 0, |                                    | else S if v is not zero, else as where v
-///                comes back to zero
-///   R, S, F      | the centre has travelled the runway| no_jump
-///   release      |                                    | airborne_at_release if n0 <= 0, stalled if the spin
-///   is below
-///                |                                    | zero, else as where v comes back to zero
+// clang-format off
+///   phase       | ends when                           | and then
+///   ------------+-------------------------------------+----------------------------------------------
+///   R rolling   | |F| - mu_s N rises through zero     | S, the way that F held back (v gets the sign
+///     v = 0     |                                     |   of -F); F if n0 <= 0 there
+///               | the spin is not above zero          | stalled
+///   S sliding   | n0 falls through zero               | F, lift-off
+///     v > 0 or  | v comes back to zero                | R if |F| <= mu_s N, else S the other way
+///     v < 0     | Ic + rho s q falls to zero          | indeterminate (Painleve)
+///   F flight    | its apex reaches hop_height         | jumped
+///               | y comes back to zero                | landing, impulses at once; then F if it
+///               |                                     |   rebounds or n0 <= 0, S if v is not zero,
+///               |                                     |   else as where v comes back to zero
+///   R, S, F     | the centre has travelled the runway | no_jump
+///   at release  |                                     | airborne_at_release if n0 <= 0, stalled if
+///               |                                     |   the spin is below zero, else as v = 0
+// clang-format on
 ///
-/// |F| <= mu_s N ends before N = 0. A hoop that slides may turn backwards for a
-/// while. At v = 0 the forces decide, never a sign of a rounded v. A design that goes through more than
-/// most_phases phases is failed.
+/// A hoop that slides may turn backwards for a while. At v = 0 the forces decide, never the sign of a rounded
+/// v, and what friction holds but for rounding it holds. Painleve's region is where the rigid-body equations
+/// have no answer or two; a slide that runs into its edge is followed until doubles cannot tell the edge from
+/// where it is. A design that goes through more than most_phases phases is failed.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -42,6 +45,7 @@ enum class PhaseEnd {
   stalls,
   runway_ends,
   indeterminate,
+  too_long,
   failed
 };
 
@@ -55,15 +59,16 @@ struct ContactState {
   S normal = S(0);  ///< v_n with which a flight begins: of a rebound above zero
 };
 
-/// What a design's friction and landing look like, its defaults settled.
+/// What a design's friction and landing look like, its defaults settled. Static friction is never below
+/// kinetic: between the two neither sticking nor sliding would be consistent.
 template <class S>
 struct Contact {
   S mu_static, mu_kinetic, restitution, rest_speed;
 };
 template <class S>
 Contact<S> contact_of(const Design& design, const Scene& scene) {
-  return {S(design.mu_static), S(std::isnan(design.mu_kinetic) ? design.mu_static : design.mu_kinetic),
-          S(design.restitution), S(scene.rest_speed)};
+  const double kinetic = std::isnan(design.mu_kinetic) ? design.mu_static : design.mu_kinetic;
+  return {S(std::max(design.mu_static, kinetic)), S(kinetic), S(design.restitution), S(scene.rest_speed)};
 }
 
 /// Mechanical energy over (m + m_p) g R, but for a constant: (3) and (4) with the constraint (1) released;
@@ -77,7 +82,7 @@ S contact_energy(const Hoop<S>& hoop, const ContactState<S>& at) {
          at.travel * hoop.sin_slope - hoop.rho * cos_from_vertical(hoop, phi);
 }
 
-inline constexpr int most_phases = 10'000;
+inline constexpr int most_phases = 2'000;
 
 /// phase_sequence: two bits a phase, the first lowest, up to 32.
 class PhaseSequence {

@@ -15,7 +15,8 @@ namespace leapmap {
 
 /// Told of every phase as it begins, and of flights how they go.
 struct CoulombObserver {
-  std::function<void(Phase, const ContactState<double>&)> phase;
+  std::function<void(Phase, const ContactState<double>&, int direction)>
+      phase;  ///< direction of sliding: 1, -1; else 0
   std::function<void(const LiftOff<double>&, const Flight<double>&)> lift_off;
 };
 

@@ -7,6 +7,7 @@
 #include "physics/flight_search.hpp"
 #include "physics/landing.hpp"
 #include "physics/sliding.hpp"
+#include "physics/stick.hpp"
 #include "trajectory/coulomb.hpp"
 
 namespace leapmap {
@@ -18,15 +19,14 @@ enum class ContactPhase { rolls, slides_forwards, slides_backwards, leaves };
 template <class S>
 ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const ContactState<S>& at,
                            bool may_leave = true) {
-  using std::abs;
   const Trig<S> phi = trig(at.angle);
   if (may_leave && free_normal_force(hoop, phi, at.spin * at.spin) <= S(0)) return ContactPhase::leaves;
   if (at.slip != S(0)) return at.slip > S(0) ? ContactPhase::slides_forwards : ContactPhase::slides_backwards;
-  const S acceleration = angular_acceleration(hoop, phi, at.spin);
-  const S N = normal_force(hoop, phi, at.spin, acceleration),
-          F = friction_force(hoop, phi, at.spin, acceleration);
-  if (abs(F) <= contact.mu_static * N) return ContactPhase::rolls;
-  return F > S(0) ? ContactPhase::slides_backwards : ContactPhase::slides_forwards;
+  const auto guards =
+      stick_guards(hoop, phi, S(at.spin * at.spin * contact_inertia(hoop, phi)), contact.mu_static);
+  if (guards.downhill.value >= S(0) && guards.uphill.value >= S(0)) return ContactPhase::rolls;
+  return guards.uphill.value > guards.downhill.value ? ContactPhase::slides_backwards  // F points downhill
+                                                     : ContactPhase::slides_forwards;
 }
 
 /// Goes through the phases until the design ends. roll(hoop, contact, state, runway) and slide(...,
@@ -58,12 +58,14 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
     }
     return outcome;
   };
-  const auto begin = [&](Phase phase) {
+  const auto begin = [&](Phase phase, int direction) {
     sequence.append(phase);
     if (observer.phase)
-      observer.phase(phase, {static_cast<double>(at.time), static_cast<double>(at.travel),
-                             static_cast<double>(at.angle), static_cast<double>(at.spin),
-                             static_cast<double>(at.slip), static_cast<double>(at.normal)});
+      observer.phase(
+          phase,
+          {static_cast<double>(at.time), static_cast<double>(at.travel), static_cast<double>(at.angle),
+           static_cast<double>(at.spin), static_cast<double>(at.slip), static_cast<double>(at.normal)},
+          direction);
   };
 
   ContactPhase next = contact_phase(hoop, contact, at);
@@ -75,12 +77,13 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
     if (next == ContactPhase::leaves) {
       ended = PhaseEnd::lifts_off;
     } else if (next == ContactPhase::rolls) {
-      begin(Phase::rolling);
+      begin(Phase::rolling, 0);
       ended = roll(hoop, contact, at, runway);
     } else {
-      begin(Phase::sliding);
+      const int direction = next == ContactPhase::slides_forwards ? 1 : -1;
+      begin(Phase::sliding, direction);
       const ContactState<S> from = at;
-      ended = slide(hoop, contact, at, runway, next == ContactPhase::slides_forwards ? 1 : -1);
+      ended = slide(hoop, contact, at, runway, direction);
       slipped += abs((at.travel - from.travel) - (at.angle - from.angle));
     }
     switch (ended) {
@@ -99,13 +102,15 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
         return end(Status::no_jump);
       case PhaseEnd::indeterminate:
         return end(Status::indeterminate);
+      case PhaseEnd::too_long:
+        return end(Status::failed, "it slides on for longer than is followed");
       case PhaseEnd::failed:
         return end(Status::failed, "a phase could not be solved to the tolerance");
       case PhaseEnd::lifts_off:
         break;
     }
 
-    begin(Phase::flight);
+    begin(Phase::flight, 0);
     const LiftOff<S> lift_off{at.time, at.angle, at.spin};
     const Flight<S> flight = at.normal > S(0) ? fly_off(hoop, lift_off, at.normal) : fly(hoop, lift_off);
     const LiftOff<double> told{static_cast<double>(at.time), static_cast<double>(at.angle),

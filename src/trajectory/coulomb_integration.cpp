@@ -58,8 +58,11 @@ Sample<double> hold(const Hoop<double>& hoop, double mu, double sign, const Y& y
   const double jerk = gradient.by_angle * w + gradient.by_spin * a;
   const double F_rate =
       (1.0 - hoop.rho * phi.cos) * jerk + hoop.rho * (3.0 * phi.sin * w * a + phi.cos * w * w * w);
-  return {mu * normal_force(hoop, phi, w, a) - sign * friction_force(hoop, phi, w, a),
-          mu * normal_force_rate(hoop, phi, w, a) - sign * F_rate};
+  const double N = normal_force(hoop, phi, w, a), F = friction_force(hoop, phi, w, a);
+  // raised by some roundings, as stick_guards are
+  const double slack =
+      32.0 * std::numeric_limits<double>::epsilon() * (mu * std::abs(N) + std::abs(F) + hoop.sin_slope);
+  return {mu * N - sign * F + slack, mu * normal_force_rate(hoop, phi, w, a) - sign * F_rate};
 }
 
 /// n0 of a sliding hoop and its rate.
@@ -86,13 +89,12 @@ CoulombIntegration::CoulombIntegration(const IntegrationOptions& options)
     : options_(options),
       integrator_(*options.stepper, options.control, {&right_hand_side, &jacobian, 4, &system_}) {}
 
-Outcome CoulombIntegration::solve(
-    const Design& design, const Scene& scene, const CoulombObserver& observer,
-    const std::function<void(Phase, const ContactState<double>&, double, const ContactMotion&)>& step_told) {
+Outcome CoulombIntegration::solve(const Design& design, const Scene& scene, const CoulombObserver& observer,
+                                  const StepObserver& step_told) {
   steps_ = 0;
   using Guard = std::function<Sample<double>(const Y&)>;
   // Steps until one of the guards falls; the first of them wins.
-  const auto follow = [&](Phase phase, ContactState<double>& at, std::span<const Guard> guards,
+  const auto follow = [&](Phase phase, int direction, ContactState<double>& at, std::span<const Guard> guards,
                           std::span<const PhaseEnd> ends) {
     const Y start{at.angle, at.spin, at.slip, at.travel};
     const double began = at.time;
@@ -114,7 +116,7 @@ Outcome CoulombIntegration::solve(
           first = &falls_[g].falls.front(), end = ends[g];
       }
       if (step_told)
-        step_told(phase, state_of(began + step.t0, step.y0), first ? first->tau : step.h,
+        step_told(phase, direction, state_of(began + step.t0, step.y0), first ? first->tau : step.h,
                   [&](double tau, ContactState<double>& state) {
                     Y y;
                     const bool taken = retake(tau, y);
@@ -146,7 +148,7 @@ Outcome CoulombIntegration::solve(
                                   PhaseEnd::runway_ends};
         for (const std::size_t g : {0u, 1u})  // what has fallen at the start is no fall of a step
           if (has_fallen(guards[g](Y{at.angle, at.spin, at.slip, at.travel}))) return ends[g];
-        const PhaseEnd end = follow(Phase::rolling, at, guards, ends);
+        const PhaseEnd end = follow(Phase::rolling, 0, at, guards, ends);
         if (end == PhaseEnd::stalls) at.spin = 0.0;
         return end;
       },
@@ -170,7 +172,7 @@ Outcome CoulombIntegration::solve(
                              [&](const Y& y) { return pivot(system_, y); }};
         constexpr PhaseEnd ends[]{PhaseEnd::lifts_off, PhaseEnd::slip_ends, PhaseEnd::runway_ends,
                                   PhaseEnd::indeterminate};
-        const PhaseEnd end = follow(Phase::sliding, at, guards, ends);
+        const PhaseEnd end = follow(Phase::sliding, direction, at, guards, ends);
         if (end == PhaseEnd::slip_ends) at.slip = 0.0;
         return end;
       });

@@ -17,6 +17,11 @@ namespace leapmap {
 /// fails there.
 using ContactMotion = std::function<bool(double tau, ContactState<double>&)>;
 
+/// A step in contact: its phase and direction of sliding, the state at its start, how much of it was gone
+/// through, and the motion in it.
+using StepObserver =
+    std::function<void(Phase, int direction, const ContactState<double>&, double end, const ContactMotion&)>;
+
 /// A thread's own workspace.
 class CoulombIntegration {
  public:
@@ -24,11 +29,9 @@ class CoulombIntegration {
   CoulombIntegration(const CoulombIntegration&) = delete;
   CoulombIntegration& operator=(const CoulombIntegration&) = delete;
 
-  /// step, if set, is told of every step in contact, in order: its phase, the state at its start, how much of
-  /// it was gone through, and the motion in it.
-  Outcome solve(
-      const Design& design, const Scene& scene, const CoulombObserver& observer = {},
-      const std::function<void(Phase, const ContactState<double>&, double, const ContactMotion&)>& step = {});
+  /// step, if set, is told of every step in contact, in order.
+  Outcome solve(const Design& design, const Scene& scene, const CoulombObserver& observer = {},
+                const StepObserver& step = {});
 
   /// What the right-hand sides work on.
   struct System {

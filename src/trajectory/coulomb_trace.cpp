@@ -14,7 +14,8 @@ namespace {
 constexpr double most_points = 1e7;
 constexpr double check_tolerance = 1e-12;
 
-TracePoint contact_point(const Hoop<double>& hoop, double mu_kinetic, Phase phase,
+/// slide_friction: mu_kinetic, with the sign of the sliding.
+TracePoint contact_point(const Hoop<double>& hoop, double slide_friction, Phase phase,
                          const ContactState<double>& at) {
   const Trig<double> phi = trig(at.angle);
   double normal = 0.0, friction = 0.0;
@@ -23,7 +24,7 @@ TracePoint contact_point(const Hoop<double>& hoop, double mu_kinetic, Phase phas
     normal = normal_force(hoop, phi, at.spin, acceleration);
     friction = friction_force(hoop, phi, at.spin, acceleration);
   } else {
-    const auto motion = sliding_motion(hoop, phi, at.spin * at.spin, std::copysign(mu_kinetic, at.slip));
+    const auto motion = sliding_motion(hoop, phi, at.spin * at.spin, slide_friction);
     normal = motion.normal_force, friction = motion.friction;
   }
   return {at.time, at.angle, at.spin, at.travel, 0.0, normal, friction, phase};
@@ -59,7 +60,7 @@ std::vector<TracePoint> sample(const Design& design, const Scene& scene, double 
   };
   ContactState<double> now;
   CoulombObserver observer;
-  observer.phase = [&](Phase, const ContactState<double>& state) { now = state; };
+  observer.phase = [&](Phase, const ContactState<double>& state, int) { now = state; };
   observer.lift_off = [&](const LiftOff<double>&, const Flight<double>& flight) {
     points.push_back(flight_point(hoop, now, 0.0));
     sample_until(now.time + flight.flight_time,
@@ -68,11 +69,12 @@ std::vector<TracePoint> sample(const Design& design, const Scene& scene, double 
   };
   CoulombIntegration(adaptive("gsl-rk8pd", check_tolerance))
       .solve(design, scene, observer,
-             [&](Phase phase, const ContactState<double>& at, double end, const ContactMotion& motion) {
+             [&](Phase phase, int direction, const ContactState<double>& at, double end,
+                 const ContactMotion& motion) {
                sample_until(at.time + end, [&](double t) {
                  ContactState<double> state = at;
                  if (t > at.time && !motion(t - at.time, state)) state.angle = NAN;
-                 return contact_point(hoop, mu, phase, state);
+                 return contact_point(hoop, direction * mu, phase, state);
                });
              });
   return points;
@@ -84,8 +86,8 @@ Story tell_with_friction(const Design& design, const Scene& scene, const Integra
                          double tolerance, double interval) {
   Story story;
   CoulombObserver observer;
-  observer.phase = [&](Phase phase, const ContactState<double>& state) {
-    story.phases.push_back({phase, state});
+  observer.phase = [&](Phase phase, const ContactState<double>& state, int direction) {
+    story.phases.push_back({phase, state, direction});
   };
   observer.lift_off = [&](const LiftOff<double>& lift_off, const Flight<double>& flight) {
     story.candidates.push_back({lift_off, flight});

@@ -131,15 +131,23 @@ template <class S>
 S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, const S& to,
                           int halvings) const {
   constexpr int most_halvings = 50;
+  // The nodes in lanes.
+  using T = typename SpectralPanel<S, nodes>::T;
+  using std::sin, std::sqrt;
+  const Hoop<S>& h = roll.hoop;
+  const Trig<S>& release = roll.release_trig;
+  const T released(roll.released), push(roll.push), rho(h.rho), J_min(h.J_min);
+  const T sine(sin_from_vertical(h, release)), cosine(cos_from_vertical(h, release));
   typename SpectralPanel<S, nodes>::Values f;
-  for (std::size_t i = 0; i < nodes; ++i) {
-    const S q = from + (to - from) * panel_.node[i], x = shift + q * q;
-    const Trig<S> turned = trig(x);
-    const S E = vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned.sin));
-    // 1 - cos(release + x), without cancellation near multiples of 2 pi
-    const S half = (roll.release + x) * S(0.5), sine = std::sin(half);
-    const S J = roll.hoop.J_min + S(4) * roll.hoop.rho * sine * sine;
-    f[i] = S(2) * q * std::sqrt(J / E);
+  for (std::size_t i = 0; i < nodes; i += Lanes<T>::count) {
+    const T q = T(from) + T(to - from) * Lanes<T>::load(panel_.node.data() + i), x = T(shift) + q * q;
+    const Trig<T> turned = trig(x);
+    // E as vis_viva_past_release has it; 1 - cos(release + x) by the half angle, accurate near multiples of 2
+    // pi
+    const T E =
+        released + T(2) * (push * x + rho * (sine * x_minus_sin(x, turned.sin) - cosine * turned.versine));
+    const T half = sin((T(roll.release) + x) * T(0.5)), J = J_min + T(4) * rho * half * half;
+    Lanes<T>::store(T(2) * q * sqrt(J / E), f.data() + i);
   }
   const S whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);
   if (tail * tail <= tolerance_ * whole * whole) return whole;

@@ -20,12 +20,13 @@ class SlidingLeg {
   /// State at a panel's end good to a hundredth of the tolerance, relative, or to some roundings.
   explicit SlidingLeg(double tolerance);
 
-  /// Slides on from a state with n0 > 0, towards `direction` (1 or -1), to the phase's end.
+  /// Slides on from a state with n0 > 0 (or zero but for rounding), towards `direction` (1 or -1), to the
+  /// phase's end.
   PhaseEnd run(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& runway,
                int direction) const;
 
  private:
-  static constexpr std::size_t nodes = sizeof(S) > 8 ? 24 : 16;
+  static constexpr std::size_t nodes = 24;
   using Values = typename SpectralPanel<S, nodes>::Values;
 
   /// What the nodes of a panel hold, in order of time, and its end.
@@ -33,20 +34,20 @@ class SlidingLeg {
     Values slip, travel, free_force;
     ContactState<S> end;
     S end_force;
-    bool resolved, indeterminate;
+    S excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    bool indeterminate, spin_vanishes;
   };
-  /// A way to take panels: by the angle, or by time. Its panel's nodes lie on q from begin to begin + span.
+  /// A panel by angle: phi = from + shift + q^2, q from begin to begin + span.
   struct Stretch {
-    S shift, begin, span;  ///< by angle: phi = from + shift + q^2; by time: t = q
+    S shift, begin, span;
   };
-  Stretch stretch_of(const Hoop<S>& hoop, const S& friction, const ContactState<S>& from,
-                     const S& length) const;
+  static Stretch stretch_of(const S& spin, const S& rise, const S& length);
   void solve_by_angle(const Hoop<S>& hoop, const S& friction, const ContactState<S>& from,
                       const Stretch& stretch, Panel& panel) const;
   void solve_by_time(const Hoop<S>& hoop, const S& friction, const ContactState<S>& from, const S& duration,
                      Panel& panel) const;
   /// The first place in (0, 1] of the panel where a guard has fallen, and which; above 1: none has.
-  S first_event(const Hoop<S>& hoop, const ContactState<S>& at, const S& runway, int direction,
+  S first_event(const S& free_force, const ContactState<S>& at, const S& runway, int direction,
                 const Panel& panel, PhaseEnd& end) const;
 
   S tolerance_;

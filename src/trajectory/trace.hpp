@@ -27,6 +27,7 @@ struct TracePoint {
 struct PhaseStart {
   Phase phase;
   ContactState<double> state;
+  int direction;  ///< of sliding: 1 forwards, -1 backwards; else 0
 };
 
 /// A lift-off that was looked at, and the flight it would begin.

@@ -94,3 +94,26 @@ def test_a_map_without_the_axes_of_a_chart_is_refused_with_one_line(tmp_path):
     path = sweep(tmp_path, '[design]\nslope = { values = [0.3, 0.4] }\n')
     done = draw("design_chart.py", path, "-o", tmp_path / "x")
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and "mass_ratio" in done.stderr
+
+
+def test_adequacy_compares_two_maps_panel_by_panel_and_refuses_others(tmp_path):
+    axes = 'slope = { from = "5 deg", to = "45 deg", count = 12 }\nmass_ratio = { from = 0.2, to = 10, count = 11, scale = "log" }\n'
+    rigid = sweep(tmp_path, f"[design]\n{axes}[numerics]\naudit = 0\n", name="rigid.h5")
+    slipping = sweep(tmp_path, f'[scene]\nfriction = "coulomb"\nmu_static = {{ values = [0.2, 1.5] }}\n[design]\n{axes}[numerics]\naudit = 0\n',
+                     name="slipping.h5")
+    done = draw("adequacy_chart.py", rigid, slipping, "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    found = " ".join(texts(tmp_path / "chart.svg"))
+    assert "μ = 0.2" in found and "μ = 1.5" in found and "the paper's model is enough" in found and "mass ratio" in found
+    other = sweep(tmp_path, f"[design]\n{axes.replace('45 deg', '40 deg')}[numerics]\naudit = 0\n", name="other.h5")
+    refused = draw("adequacy_chart.py", other, slipping, "-o", tmp_path / "no")
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "slope" in refused.stderr
+
+
+def test_the_experiment_chart_marks_what_was_measured(tmp_path):
+    path = sweep(tmp_path, '[scene]\nfriction = "coulomb"\nmu_static = { from = 0.3, to = 0.5, count = 21 }\n'
+                           '[design]\nrelease_angle = { from = "178 deg", to = "210 deg", count = 33 }\n[numerics]\naudit = 0\n')
+    done = draw("experiment_chart.py", path, "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    found = " ".join(texts(tmp_path / "chart.svg"))
+    assert "apex 0.129 s" in found and "release angle" in found and "small hops" in found

@@ -155,7 +155,7 @@ TEST(Coulomb, EnergyIsKeptByRollingAndFlightAndNeverRises) {
     double energy = HUGE_VAL;
     Phase before = Phase::sliding;
     CoulombObserver observer;
-    observer.phase = [&](Phase phase, const ContactState<double>& at) {
+    observer.phase = [&](Phase phase, const ContactState<double>& at, int) {
       const double now = contact_energy(hoop, at);
       const double scale = 1.0 + std::abs(at.travel * hoop.sin_slope) + at.spin * at.spin + at.slip * at.slip;
       EXPECT_LE(now, energy + 1e-10 * scale + 2e-7 * std::abs(at.spin)) << i;
@@ -200,7 +200,7 @@ TEST(Coulomb, AFrictionlessFlatPlaneKeepsEnergyAndTheCentreOfMassFallsStraight) 
   const Hoop<double> hoop = derive<double>(design);
   double energy = NAN;
   CoulombObserver observer;
-  observer.phase = [&](Phase, const ContactState<double>& at) {
+  observer.phase = [&](Phase, const ContactState<double>& at, int) {
     const double now = contact_energy(hoop, at);
     if (!std::isnan(energy)) {
       EXPECT_NEAR(now, energy, 1e-9);
@@ -257,6 +257,52 @@ TEST(Coulomb, AThinHoopWithItsMassOnTheRimNeverGetsThereBelowACertainFriction) {
   };
   EXPECT_GT(least_pivot(0.999 * limit), 0.0);
   EXPECT_LT(least_pivot(1.001 * limit), 0.0);
+}
+
+TEST(Coulomb, FrictionThatJustHoldsHoldsAndDoesNotChatter) {
+  // A hoop without a point mass rolls down a slope while mu >= tan(theta) / 2; there |F| = mu N at every
+  // angle.
+  CoulombSolver<double> solver(1e-9);
+  for (double slope = 0.1; slope < 1.15; slope += 0.05)
+    for (const double ulp : {-1.0, 0.0, 1.0})
+      for (const double kinetic : {0.5, 1.0}) {
+        Design design;
+        design.slope = slope, design.mass_ratio = 0.0, design.release_angle = 1.0;
+        design.mu_static = std::tan(slope) / 2.0 * (1.0 + ulp * 2.2e-16);
+        design.mu_kinetic = kinetic * design.mu_static;
+        const Outcome outcome = solver.solve(design, coulomb);
+        EXPECT_EQ(outcome.status, Status::no_jump) << slope;
+        EXPECT_EQ(phase_letters(outcome.phase_sequence), "R") << slope;
+      }
+}
+
+TEST(Coulomb, KineticFrictionAboveStaticCountsAsStatic) {
+  CoulombSolver<double> solver(1e-9);
+  Design more = with_friction({}, 0.4), same = with_friction({}, 0.5);
+  more.mu_kinetic = 0.5;
+  const Outcome a = solver.solve(more, coulomb), b = solver.solve(same, coulomb);
+  EXPECT_EQ(a.phase_sequence, b.phase_sequence);
+  EXPECT_EQ(a.jump_height, b.jump_height);
+}
+
+TEST(Coulomb, ALongBalancedSlideIsFollowedToTheRunwaysEnd) {
+  Design design;
+  design.slope = 0.31179491284058136, design.mass_ratio = 4.2305622156523883,
+  design.release_angle = 0.11429256174306346;
+  design.inertia_factor = 0.18001840152094253, design.mu_static = 0.32221189184326232;
+  design.restitution = 0.85769056099645502;
+  EXPECT_EQ(CoulombSolver<double>(1e-9).solve(design, coulomb).status, Status::no_jump);
+}
+
+TEST(Coulomb, ASlideThatEndsAHairBeforePainlevesRegionGoesOn) {
+  Design design;
+  design.slope = 1.1787971921297944, design.mass_ratio = 18.666708851563484,
+  design.inertia_factor = 0.50489150459153576;
+  design.release_angle = -6.1648121420937398, design.release_spin = 3.6892544015187401;
+  design.mu_static = 0.79783787860239441, design.mu_kinetic = 0.74248626480248214;
+  const Outcome outcome = CoulombSolver<double>(1e-9).solve(design, coulomb);
+  EXPECT_EQ(phase_letters(outcome.phase_sequence), "RSRF") << name_of(outcome.status);
+  EXPECT_NEAR(outcome.jump_height, 0.846759, 1e-6);
 }
 
 TEST(Coulomb, AnyDesignEndsWithAStatusAndJumpsWithNumbers) {

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the paper's model is enough: a map of hoops that never slip beside one of the same hoops with Coulomb friction.
+
+One panel for each friction coefficient, over slope and mass ratio: green where heights agree within 5 %, yellow where both jump
+but heights do not agree, orange where they disagree on whether it jumps, purple where sliding is indeterminate (Painleve);
+hatched where only one of them sees a spurious first lift-off. A star at the paper's hoop.
+"""
+import numpy as np
+from matplotlib.colors import ListedColormap
+from matplotlib.patches import Patch
+
+import style
+from read_map import NotAMap, read_map, sliced
+from style import plt
+
+ENOUGH = 0.05  # of the height
+KINDS = [("#d9d9d9", "neither jumps"), ("#2ca02c", "height within 5 %: the paper's model is enough"), ("#ffdd57", "both jump, heights differ by more"),
+         ("#ff7f0e", "only one of them jumps"), ("#9467bd", "indeterminate or failed")]
+KEEP = ("mass_ratio", "slope")
+
+
+def kinds(sticking, coulomb, jumps_sticking, jumps_coulomb, unknown):
+    """A number of KINDS for each design."""
+    kind = np.zeros(sticking.shape, int)
+    both = jumps_sticking & jumps_coulomb
+    with np.errstate(invalid="ignore"):
+        close = np.abs(sticking - coulomb) <= ENOUGH * coulomb
+    kind[both & close] = 1
+    kind[both & ~close] = 2
+    kind[jumps_sticking != jumps_coulomb] = 3
+    kind[unknown] = 4
+    return kind
+
+
+def plane_of(m, values):
+    """An array along m's axes with KEEP's two last."""
+    names = list(m.dims)
+    return np.moveaxis(values, [names.index(k) for k in KEEP], [-2, -1])
+
+
+def chart(rigid, slipping):
+    for k in KEEP:
+        if k not in rigid.dims or k not in slipping.dims or not np.array_equal(rigid.dims[k], slipping.dims[k]):
+            raise NotAMap(f"{rigid.path} and {slipping.path}: are not over the same {k}")
+    others = [n for n in slipping.dims if n not in KEEP]
+    if others not in (["mu_static"], []):
+        raise NotAMap(f"{slipping.path}: has the axes {', '.join(slipping.dims)}; wanted: slope, mass_ratio and mu_static")
+    mus = slipping.dims.get("mu_static", [slipping.numbers().get("mu_static")])
+    height, jumps, flag = (plane_of(rigid, v) for v in (rigid.fields["jump_height"], rigid.code("status", "jumped"),
+                                                        rigid.fields["spurious_first_jump"]))
+    panels = len(mus)
+    shape = (2, 2) if panels == 4 else (1, panels)
+    figure, axes = plt.subplots(*shape, sharex=True, sharey=True, squeeze=False, figsize=(5.4 * shape[1], 4.2 * shape[0] + 0.8),
+                                layout="constrained")
+    degrees, ratios = np.degrees(rigid.dims["slope"]), rigid.dims["mass_ratio"]
+    unknown = plane_of(slipping, slipping.code("status", "indeterminate") | slipping.code("status", "failed"))
+    heights, jump, flags = (plane_of(slipping, v) for v in (slipping.fields["jump_height"], slipping.code("status", "jumped"),
+                                                           slipping.fields["spurious_first_jump"]))
+    for i, (axis, mu) in enumerate(zip(axes.flat, mus)):
+        here = (i,) if "mu_static" in slipping.dims else ()
+        kind = kinds(height, heights[here], jumps, jump[here], unknown[here])
+        axis.pcolormesh(ratios, degrees, kind.T, cmap=ListedColormap([c for c, _ in KINDS]), vmin=-0.5, vmax=len(KINDS) - 0.5,
+                        shading="nearest", rasterized=True)
+        differs = (flag != flags[here]) & jumps & jump[here]
+        if differs.any():
+            axis.contourf(ratios, degrees, differs.T, levels=[0.5, 1.5], colors="none", hatches=["////"])
+        axis.plot(20 / 8.2, np.degrees(0.40), "*", markersize=10, color=style.MARK, markeredgecolor="white")
+        both = jumps & jump[here]
+        share = 100 * (kind == 1).sum() / max(both.sum(), 1)
+        axis.set_title(f"μ = {mu:g}: enough for {share:.0f} % of what jumps in both")
+        axis.set_xscale("log")
+    for axis in axes[-1]:
+        axis.set_xlabel("mass ratio")
+    for axis in axes[:, 0]:
+        axis.set_ylabel("slope [°]")
+    handles = [Patch(color=c, label=text) for c, text in KINDS]
+    handles += [Patch(facecolor="none", edgecolor=style.EDGE, hatch="////", label="only one sees a spurious first lift-off"),
+                plt.Line2D([], [], marker="*", linestyle="", markersize=10, color=style.MARK, label="the paper's hoop")]
+    axes[0, -1].legend(handles=handles, loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False)
+    return figure
+
+
+def main():
+    p = style.parser(__doc__, "the map without slip, for example maps/adequacy_sticking.h5", "maps/adequacy")
+    p.add_argument("coulomb", help="the map with Coulomb friction, for example maps/adequacy_coulomb.h5")
+    arguments = p.parse_args()
+    style.save(chart(read_map(arguments.source), read_map(arguments.coulomb)), arguments.output)
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError, KeyError)
