@@ -92,10 +92,11 @@ struct SpectralPanel {
 
  private:
   static S sum(const T& value) {
-    const LaneArray<T> lanes = lanes_of(value);
-    S total(0);
-    for (const S& lane : lanes) total += lane;
-    return total;
+    if constexpr (width > 1) {
+      return hadd(value);
+    } else {
+      return value;
+    }
   }
   static S dot(const Values& a, const Values& b) {
     T products(S(0));

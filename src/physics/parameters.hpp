@@ -63,4 +63,11 @@ Hoop<T> derive(const Design& design) {
   return derive(T(design.slope), T(design.mass_ratio), T(design.offset_ratio), T(design.inertia_factor));
 }
 
+/// The same hoop in every lane.
+template <class T>
+Hoop<T> widened(const Hoop<ScalarOf<T>>& hoop) {
+  return {T(hoop.slope),     T(hoop.sin_slope), T(hoop.cos_slope), T(hoop.rho),
+          T(hoop.clearance), T(hoop.Ic),        T(hoop.J_min)};
+}
+
 }  // namespace leapmap

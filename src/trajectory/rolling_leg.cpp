@@ -43,9 +43,11 @@ S first_fall(const F& f, const S& a, const S& b, const Sample<S>& at_a, const Sa
 
 template <class S>
 RollingLeg<S>::RollingLeg(double tolerance)
-    : tolerance_(std::max(S(tolerance) * S(1e-4), S(8) * std::numeric_limits<S>::epsilon())) {
-  for (std::size_t k = 0; k < nodes_a_turn; ++k)
-    grid_[k] = trig(S(2) * std::numbers::pi_v<S> * S(k) / S(nodes_a_turn));
+    : tolerance_(std::max(S(tolerance) * S(1e-3), S(8) * std::numeric_limits<S>::epsilon())) {
+  for (std::size_t k = 0; k < grid_.sin.size(); ++k) {
+    const Trig<S> phi = trig(S(2) * std::numbers::pi_v<S> * S(k % nodes_a_turn) / S(nodes_a_turn));
+    grid_.sin[k] = phi.sin, grid_.cos[k] = phi.cos, grid_.versine[k] = phi.versine;
+  }
 }
 
 template <class S>
@@ -60,13 +62,14 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
     Sample<S> vis_viva;
     StickGuards<S> guards;
   };
-  const auto look_at = [&](const S& angle, const Trig<S>& phi) {
-    const S E = vis_viva(roll, angle, phi);
-    return Look{angle, {E, S(2) * torque(hoop, phi)}, stick_guards(hoop, phi, E, mu_static)};
-  };
   const auto guards_at = [&](const S& angle) {
     const Trig<S> phi = trig(angle);
     return stick_guards(hoop, phi, vis_viva(roll, angle, phi), mu_static);
+  };
+  const auto look_at = [&](const S& angle) {
+    const Trig<S> phi = trig(angle);
+    const S E = vis_viva(roll, angle, phi);
+    return Look{angle, {E, S(2) * torque(hoop, phi)}, stick_guards(hoop, phi, E, mu_static)};
   };
   const auto end_at = [&](const S& angle, PhaseEnd end) {
     const S x = angle - start;
@@ -82,30 +85,51 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
 
   // From rest E's first zero is the release itself, known by its push.
   if (at.spin < S(0) || (at.spin == S(0) && !(roll.push > S(0)))) return PhaseEnd::stalls;
-  Look left = look_at(start, trig(start));
+  Look left = look_at(start);
   left.vis_viva = {roll.released, S(2) * roll.push};
-  long node = static_cast<long>(std::floor(start / step)) + 1;
-  for (;; ++node) {
-    const S angle = std::min(S(node) * step, last);
-    if (angle <= left.angle && angle < last) continue;
-    const auto index =
+
+  // The grid in lanes, so many nodes at once; the end of the runway comes as a node of its own.
+  using T = typename SpectralPanel<S, nodes>::T;
+  constexpr std::size_t width = Lanes<T>::count;
+  const Hoop<T> hoops = widened<T>(hoop);
+  for (long node = static_cast<long>(std::floor(start / step)) + 1;; node += long{width}) {
+    const auto first =
         static_cast<std::size_t>(((node % long{nodes_a_turn}) + long{nodes_a_turn}) % long{nodes_a_turn});
-    const Look right = look_at(angle, angle < last ? grid_[index] : trig(angle));
-    const S back = first_fall([&](const S& x) { return guards_at(x).downhill; }, left.angle, right.angle,
-                              left.guards.downhill, right.guards.downhill);
-    const S forth = first_fall([&](const S& x) { return guards_at(x).uphill; }, left.angle, right.angle,
-                               left.guards.uphill, right.guards.uphill);
-    const S stall = first_fall(
-        [&](const S& x) {
-          return Sample<S>{vis_viva_past_release(roll, S(x - start)), S(2) * torque(hoop, trig(x))};
-        },
-        left.angle, right.angle, left.vis_viva, right.vis_viva);
-    // A stall at angle a is passed by whatever comes before it; NaN never does.
-    if (!std::isnan(stall) && !(back <= stall) && !(forth <= stall)) return end_at(stall, PhaseEnd::stalls);
-    if (!std::isnan(back) && !(forth < back)) return end_at(back, PhaseEnd::slips_backwards);
-    if (!std::isnan(forth)) return end_at(forth, PhaseEnd::slips_forwards);
-    if (!(angle < last)) return end_at(last, PhaseEnd::runway_ends);
-    left = right;
+    const Trig<T> phi{Lanes<T>::load(grid_.sin.data() + first), Lanes<T>::load(grid_.cos.data() + first),
+                      Lanes<T>::load(grid_.versine.data() + first)};
+    LaneArray<T> angles;
+    for (std::size_t k = 0; k < width; ++k) angles[k] = S(node + static_cast<long>(k)) * step;
+    const T E = T(roll.level) + T(S(2)) * (Lanes<T>::load(angles.data()) * hoops.sin_slope +
+                                           hoops.rho * cos_from_vertical(hoops, phi));
+    const StickGuards<T> guards = stick_guards(hoops, phi, E, T(mu_static));
+    const auto Es = lanes_of(E), pushes = lanes_of(torque(hoops, phi)),
+               back = lanes_of(guards.downhill.value), back_rate = lanes_of(guards.downhill.rate),
+               forth = lanes_of(guards.uphill.value), forth_rate = lanes_of(guards.uphill.rate);
+    for (std::size_t k = 0; k < width; ++k) {
+      const bool ends = !(angles[k] < last);
+      if (!ends && angles[k] <= left.angle) continue;
+      const Look right = ends ? look_at(last)
+                              : Look{angles[k],
+                                     {Es[k], S(2) * pushes[k]},
+                                     {{back[k], back_rate[k]}, {forth[k], forth_rate[k]}}};
+      const S backwards = first_fall([&](const S& x) { return guards_at(x).downhill; }, left.angle,
+                                     right.angle, left.guards.downhill, right.guards.downhill);
+      const S forwards = first_fall([&](const S& x) { return guards_at(x).uphill; }, left.angle, right.angle,
+                                    left.guards.uphill, right.guards.uphill);
+      const S stall = first_fall(
+          [&](const S& x) {
+            return Sample<S>{vis_viva_past_release(roll, S(x - start)), S(2) * torque(hoop, trig(x))};
+          },
+          left.angle, right.angle, left.vis_viva, right.vis_viva);
+      // Whichever comes first; NaN never does.
+      if (!std::isnan(stall) && !(backwards <= stall) && !(forwards <= stall))
+        return end_at(stall, PhaseEnd::stalls);
+      if (!std::isnan(backwards) && !(forwards < backwards))
+        return end_at(backwards, PhaseEnd::slips_backwards);
+      if (!std::isnan(forwards)) return end_at(forwards, PhaseEnd::slips_forwards);
+      if (ends) return end_at(last, PhaseEnd::runway_ends);
+      left = right;
+    }
   }
 }
 

@@ -28,7 +28,10 @@ class RollingLeg {
 
   S tolerance_;
   SpectralPanel<S, nodes> panel_;
-  std::array<Trig<S>, nodes_a_turn> grid_;
+  /// One turn, and as many nodes more as there may be lanes.
+  struct Grid {
+    std::array<S, nodes_a_turn + 16> sin, cos, versine;
+  } grid_;
 };
 
 }  // namespace leapmap

@@ -8,19 +8,12 @@
 namespace leapmap {
 namespace {
 
-constexpr double longest_angle = 2.0, first_angle = 0.8;  // of a panel by angle [rad]
+constexpr double longest_angle = 2.0, first_angle = 1.2;  // of a panel by angle [rad]
 constexpr double shortest_angle = 1e-12;                  // of 1 + |angle|
 constexpr double vanishing_angle = 0.05;  // where the spin vanishes within less than this, panels are by time
 constexpr double longest_time = 1.0, first_time = 0.25,
                  shortest_time = 1e-12;  // of a panel by time [sqrt(R/g)]
 constexpr int most_panels = 10'000, most_iterations = 60;
-
-/// The same hoop in every lane.
-template <class T, class S>
-Hoop<T> widened(const Hoop<S>& hoop) {
-  return {T(hoop.slope),     T(hoop.sin_slope), T(hoop.cos_slope), T(hoop.rho),
-          T(hoop.clearance), T(hoop.Ic),        T(hoop.J_min)};
-}
 
 /// Relative rounding of the accelerations: Ic + rho s q comes of terms that may cancel.
 template <class S>
@@ -41,7 +34,7 @@ bool at_edge(const Hoop<S>& hoop, const S& friction, const Trig<S>& phi) {
 
 template <class S>
 SlidingLeg<S>::SlidingLeg(double tolerance)
-    : tolerance_(std::max(S(tolerance) * S(0.05), S(100) * std::numeric_limits<S>::epsilon())) {}
+    : tolerance_(std::max(S(tolerance) * S(0.5), S(100) * std::numeric_limits<S>::epsilon())) {}
 
 template <class S>
 auto SlidingLeg<S>::stretch_of(const S& spin, const S& rise, const S& length) -> Stretch {

@@ -17,7 +17,7 @@ namespace leapmap {
 template <class S>
 class SlidingLeg {
  public:
-  /// State at a panel's end good to a hundredth of the tolerance, relative, or to some roundings.
+  /// The nodes of a panel resolve what they hold to half the tolerance, relative, or to some roundings.
   explicit SlidingLeg(double tolerance);
 
   /// Slides on from a state with n0 > 0 (or zero but for rounding), towards `direction` (1 or -1), to the

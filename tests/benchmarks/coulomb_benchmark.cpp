@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Coulomb friction by quadratures and by integration, on the same designs in one run, one thread.
+///
+/// Designs: those of method_benchmark, with mu 0.1 to 1. items_per_second are designs a second; the errors
+/// are against long double at 1e-15; wrong counts designs whose flags or phases differ from it. Phases tells
+/// where the time goes, in percent, and how many phases a design goes through; looking on costs it some of
+/// its speed.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "study/precision.hpp"
+#include "trajectory/coulomb_integration.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t count = 3'000;
+const Scene scene{.friction = Friction::coulomb};
+
+const std::vector<Design>& designs() {
+  static const std::vector<Design> designs = [] {
+    std::vector<Design> random = random_designs(count, 1);
+    for (std::size_t i = 0; i < count; ++i)
+      random[i].mu_static = 0.1 + 0.9 * std::fmod(static_cast<double>(i) * std::numbers::phi, 1.0);
+    return random;
+  }();
+  return designs;
+}
+
+template <class Method>
+void solve_all(benchmark::State& state, Method& method) {
+  static const std::vector<Outcome> truths = [] {
+    std::vector<Outcome> outcomes;
+    CoulombSolver<long double> wide(1e-15);
+    for (const Design& design : designs()) outcomes.push_back(wide.solve(design, scene));
+    return outcomes;
+  }();
+  std::vector<Outcome> outcomes(count);
+  for (auto _ : state)
+    for (std::size_t i = 0; i < count; ++i) outcomes[i] = method.solve(designs()[i], scene);
+  double height = 0.0, time = 0.0;
+  int wrong = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Outcome &a = outcomes[i], &b = truths[i];
+    if (!same_flags(a, b)) {
+      ++wrong;
+    } else if (a.status == Status::jumped) {
+      height = std::max(height, std::abs(a.jump_height - b.jump_height));
+      time = std::max(time, std::abs(a.jump_time / b.jump_time - 1.0));
+    }
+  }
+  state.counters["height_error"] = height;
+  state.counters["time_error"] = time;
+  state.counters["wrong"] = wrong;
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
+}
+
+double tolerance(const benchmark::State& state) {
+  return std::pow(10.0, -static_cast<double>(state.range(0)));
+}
+
+void Quadratures(benchmark::State& state) {
+  CoulombSolver<double> exact(tolerance(state));
+  solve_all(state, exact);
+}
+
+void GslRk8pd(benchmark::State& state) {
+  CoulombIntegration integration(adaptive("gsl-rk8pd", tolerance(state)));
+  solve_all(state, integration);
+}
+
+void Phases(benchmark::State& state) {
+  using Clock = std::chrono::steady_clock;
+  CoulombSolver<double> exact(tolerance(state));
+  std::array<double, 4> spent{}, met{};
+  for (auto _ : state) {
+    for (const Design& design : designs()) {
+      std::size_t phase = 0;  // before the first one
+      auto since = Clock::now();
+      const auto note = [&](std::size_t next) {
+        const auto now = Clock::now();
+        spent[phase] += std::chrono::duration<double>(now - since).count();
+        since = now, phase = next;
+      };
+      CoulombObserver observer;
+      observer.phase = [&](Phase next, const ContactState<double>&, int) {
+        note(static_cast<std::size_t>(next));
+        ++met[static_cast<std::size_t>(next)];
+      };
+      exact.solve(design, scene, observer);
+      note(0);
+    }
+  }
+  const double all = spent[0] + spent[1] + spent[2] + spent[3];
+  const double solved = static_cast<double>(state.iterations()) * static_cast<double>(count);
+  for (const auto& [name, phase] : {std::pair{"rolling", 1u}, {"sliding", 2u}, {"flight", 3u}}) {
+    state.counters[std::string(name) + "_percent"] = 100.0 * spent[phase] / all;
+    state.counters[std::string(name) + "_phases"] = met[phase] / solved;
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
+}
+
+BENCHMARK(Quadratures)->Arg(9)->Arg(12)->Unit(benchmark::kMillisecond);
+BENCHMARK(GslRk8pd)->Arg(9)->Arg(12)->Unit(benchmark::kMillisecond);
+BENCHMARK(Phases)->Arg(9)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace leapmap
+
+BENCHMARK_MAIN();
