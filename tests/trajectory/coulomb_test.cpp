@@ -149,7 +149,7 @@ TEST(Coulomb, EnergyIsKeptByRollingAndFlightAndNeverRises) {
   Scene scene = coulomb;
   scene.rest_speed =
       1e-7;  // dropping a rebound's normal velocity may add rest_speed times rho |s| w, no more
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 10000; ++i) {
     const Design design = any_design(random);
     const Hoop<double> hoop = derive<double>(design);
     double energy = HUGE_VAL;
