@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the paper's model is enough: a map of hoops that never slip beside one of the same hoops with Coulomb friction.
 
-One panel for each friction coefficient, over slope and mass ratio: green where heights agree within 5 %, yellow where both jump
+One panel for each friction coefficient, over slope and mass ratio: green where heights agree within 5 % (which may be chance), yellow where both jump
 but heights do not agree, orange where they disagree on whether it jumps, purple where sliding is indeterminate (Painleve);
 hatched where only one of them sees a spurious first lift-off. A star at the paper's hoop.
 """
@@ -15,7 +15,7 @@ from read_map import NotAMap, read_map, sliced
 from style import plt
 
 ENOUGH = 0.05  # of the height
-KINDS = [("#d9d9d9", "neither jumps"), ("#2ca02c", "height within 5 %: the paper's model is enough"), ("#ffdd57", "both jump, heights differ by more"),
+KINDS = [("#d9d9d9", "neither jumps"), ("#2ca02c", "height within 5 %"), ("#ffdd57", "both jump, heights differ by more"),
          ("#ff7f0e", "only one of them jumps"), ("#9467bd", "indeterminate or failed")]
 KEEP = ("mass_ratio", "slope")
 
@@ -43,6 +43,8 @@ def chart(rigid, slipping):
     for k in KEEP:
         if k not in rigid.dims or k not in slipping.dims or not np.array_equal(rigid.dims[k], slipping.dims[k]):
             raise NotAMap(f"{rigid.path} and {slipping.path}: are not over the same {k}")
+    if len(rigid.dims) != 2 or rigid.slips:
+        raise NotAMap(f"{rigid.path}: is not a map of hoops that never slip over slope and mass_ratio; it comes first")
     others = [n for n in slipping.dims if n not in KEEP]
     if others not in (["mu_static"], []):
         raise NotAMap(f"{slipping.path}: has the axes {', '.join(slipping.dims)}; wanted: slope, mass_ratio and mu_static")
@@ -68,7 +70,7 @@ def chart(rigid, slipping):
         axis.plot(20 / 8.2, np.degrees(0.40), "*", markersize=10, color=style.MARK, markeredgecolor="white")
         both = jumps & jump[here]
         share = 100 * (kind == 1).sum() / max(both.sum(), 1)
-        axis.set_title(f"μ = {mu:g}: enough for {share:.0f} % of what jumps in both")
+        axis.set_title(f"μ = {mu:g}: height agrees for {share:.0f} % of what jumps in both")
         axis.set_xscale("log")
     for axis in axes[-1]:
         axis.set_xlabel("mass ratio")

@@ -70,6 +70,8 @@ def caption(fixed, columns):
     """What the axes do not tell: the parameters and the scene all panels share; on two lines below a single panel."""
     words = [titled(k, fixed[k]) for k in SYMBOLS if k in fixed]
     words += [f"runway {fixed['runway']:g} turns", f"jump from {fixed['hop_height']:g} diameters", f"R = {1e3 * fixed['radius']:g} mm"]
+    if fixed["slips"]:
+        words += [f"μ = {fixed['mu_static']:g}" if "mu_static" in fixed else "μ varies", f"restitution {fixed.get('restitution', 0):g}"]
     half = len(words) if columns > 1 else (len(words) + 1) // 2
     return "\n".join(",  ".join(part) for part in (words[:half], words[half:]) if part)
 
@@ -127,7 +129,7 @@ def chart(m, name):
         m.fields["computed"] = m.computed()
         told = [{c: np.isnan(plane) & ((done & (c == "no_jump")) | (~done & (c == "not_computed"))) for c in STATUSES}
                 for (_, plane), (_, done) in zip(panels, planes("computed"))]
-    fixed = m.numbers()
+    fixed = {**m.numbers(), "slips": m.slips}
 
     columns = min(4, len(panels))
     rows = math.ceil(len(panels) / columns)

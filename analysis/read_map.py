@@ -33,6 +33,11 @@ class Map:
         """False for the .part that a stopped sweep left: designs not computed are holes, status not_computed."""
         return "tiles_done" not in self.attributes
 
+    @property
+    def slips(self):
+        """Whether its contact slips by Coulomb's law."""
+        return any(line.startswith("friction") and "coulomb" in line for line in self.attributes["spec"].splitlines())
+
     def computed(self):
         """Where designs are computed, as a boolean array; in a whole map, everywhere. Fields without status hold the same
         values where a design does not jump and where it was not computed yet."""
@@ -99,6 +104,11 @@ def read_map(path):
 def read_trace(path):
     """One design's motion, as `leapmap hop --trace` writes it."""
     return _read(path, "leapmap trace")
+
+
+def phases(sequence):
+    """A phase_sequence as letters, for example "RSRSF": rolling, sliding, flight; the first 32."""
+    return "".join("-RSF"[int(sequence) >> 2 * i & 3] for i in range(32) if int(sequence) >> 2 * i & 3)
 
 
 def read_table(path, filetype):

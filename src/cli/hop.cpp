@@ -36,7 +36,9 @@ std::string verdict(const Story& story, const Scene& scene) {
     case Status::no_jump:
       return fmt::format("No jump within {} revolutions.", scene.runway);
     case Status::stalled:
-      return "It stalls: the spin falls to zero, or the hoop does not start downhill.";
+      return scene.friction == Friction::coulomb
+                 ? "It stalls: it rolls with its spin fallen to zero or below, or is released turning uphill."
+                 : "It stalls: the spin falls to zero, or the hoop does not start downhill.";
     case Status::airborne_at_release:
       return "The plane would have to pull at release: it is airborne from the start.";
     case Status::indeterminate:

@@ -94,14 +94,17 @@ std::string place(const MapReader& map, std::size_t design) {
 }
 
 void print_counts(const Code& code, const Summary& summary, std::size_t designs) {
+  constexpr std::size_t most_told = 12;
+  std::size_t told = 0;
   for (std::size_t i = 0; i < summary.counts.size(); ++i) {
-    if (summary.counts[i] == 0) continue;
+    if (summary.counts[i] == 0 || ++told > most_told) continue;
     std::string meaning = i < code.names.size() ? std::string(code.names[i])
                           : i == code.fill      ? "(no lift-off, or not computed)"
                                                 : fmt::format("{}", i);
     fmt::print("  {:>12} {:5.1f} %  {}\n", summary.counts[i],
                100.0 * static_cast<double>(summary.counts[i]) / static_cast<double>(designs), meaning);
   }
+  if (told > most_told) fmt::print("  and {} larger values\n", told - most_told);
 }
 
 /// The commonest phase sequences. Doubles hold those of up to 26 phases.

@@ -51,7 +51,9 @@ const std::array options{
     Option{"scene", "mu_static", ParameterSlot{&Design::mu_static}, "1",
            "static friction coefficient; no effect when sticking", non_negative},
     Option{"scene", "mu_kinetic", ParameterSlot{&Design::mu_kinetic}, "1",
-           "kinetic friction coefficient, mu_static unless given; no effect when sticking", non_negative},
+           "kinetic friction coefficient, mu_static unless given; a lower mu_static counts as much; no "
+           "effect when sticking",
+           non_negative},
     Option{"scene", "restitution", ParameterSlot{&Design::restitution}, "1",
            "Poisson restitution; no effect when sticking", fraction},
     Option{"scene", "rest_speed", NumberSlot{[](Spec& s) -> double& { return s.scene.rest_speed; }},

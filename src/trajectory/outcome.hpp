@@ -37,7 +37,7 @@ constexpr std::string_view name_of(Status status) {
 /// Stored in traces and phase_sequence: numbers are never reused or changed.
 enum class Phase : std::uint8_t { rolling = 1, sliding = 2, flight = 3 };
 
-/// A phase_sequence as letters, for example "RSRSF"; "-": none.
+/// A phase_sequence as letters, for example "RSRSF"; "-": none; with "..." where there are 32 phases or more.
 std::string phase_letters(std::uint64_t sequence);
 
 /// Dimensionless: lengths in R, times in sqrt(R/g), heights and dip in hoop diameters. NaN: does not apply.

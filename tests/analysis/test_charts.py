@@ -104,7 +104,9 @@ def test_adequacy_compares_two_maps_panel_by_panel_and_refuses_others(tmp_path):
     done = draw("adequacy_chart.py", rigid, slipping, "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     found = " ".join(texts(tmp_path / "chart.svg"))
-    assert "μ = 0.2" in found and "μ = 1.5" in found and "the paper's model is enough" in found and "mass ratio" in found
+    assert "μ = 0.2" in found and "μ = 1.5" in found and "height within 5 %" in found and "mass ratio" in found
+    swapped = draw("adequacy_chart.py", slipping, rigid, "-o", tmp_path / "no")
+    assert swapped.returncode == 2 and swapped.stderr.count("\n") == 1 and "comes first" in swapped.stderr
     other = sweep(tmp_path, f"[design]\n{axes.replace('45 deg', '40 deg')}[numerics]\naudit = 0\n", name="other.h5")
     refused = draw("adequacy_chart.py", other, slipping, "-o", tmp_path / "no")
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "slope" in refused.stderr
