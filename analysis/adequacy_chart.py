@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the paper's model is enough: a map of hoops that never slip beside one of the same hoops with Coulomb friction.
 
-One panel for each friction coefficient, over slope and mass ratio: green where heights agree within 5 % (which may be chance), yellow where both jump
-but heights do not agree, orange where they disagree on whether it jumps, purple where sliding is indeterminate (Painleve);
-hatched where only one of them sees a spurious first lift-off. A star at the paper's hoop.
+One panel for each friction coefficient, over slope and mass ratio: green where heights agree within 5 % (which may be chance),
+yellow where both jump but heights do not agree, orange where they disagree on whether it jumps, purple where sliding is
+indeterminate (Painleve); hatched where only one of them sees a spurious first lift-off. A star at the paper's hoop.
 """
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 import style
-from read_map import NotAMap, read_map, sliced
+from read_map import NotAMap, read_map
 from style import plt
 
 ENOUGH = 0.05  # of the height

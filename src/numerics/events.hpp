@@ -47,8 +47,9 @@ State<D> interpolate(const Step<D>& step, double tau) {
 }
 
 /// True on the falling side of a guard; see the rule above.
-inline bool has_fallen(const Sample<double>& guard) {
-  return guard.value < 0.0 || (guard.value == 0.0 && guard.rate < 0.0);
+template <class S>
+bool has_fallen(const Sample<S>& guard) {
+  return guard.value < S(0) || (guard.value == S(0) && guard.rate < S(0));
 }
 
 /// A fall, or an extremum of the guard near zero: how long after the step's start, and the state or value

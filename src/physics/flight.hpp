@@ -70,11 +70,12 @@ CurvedSample<T> toss_climb(const Toss<T>& toss, const T& psi) {
           c * turned.cos - s * turned.sin};
 }
 
-/// Beyond this psi the hoop stays below the plane: where (psi sin(phi) + 1 - cos(phi)) = gamma psi^2 / 2.
+/// Beyond this psi the hoop stays below the plane: where (psi (sin(phi) + launch) + 1 - cos(phi)) = gamma
+/// psi^2 / 2.
 template <class T>
-T toss_end(const Toss<T>& toss) {
+T toss_end(const Toss<T>& toss, const T& launch = T(0)) {
   using std::sqrt;
-  const T s = toss.phi.sin;
+  const T s = toss.phi.sin + launch;
   return (s + sqrt(s * s + T(2) * toss.gravity * toss.phi.versine)) / toss.gravity;
 }
 
@@ -96,14 +97,21 @@ Toss<T> toss_of(const Hoop<T>& hoop, const T& angle, const Trig<T>& phi, const T
   return toss;
 }
 
-/// y(t) and dy/dt, t after a lift-off at phi with that spin.
+/// y(t), dy/dt and y'', t after a lift-off at phi with any spin and with normal velocity v_n, zero but for a
+/// rebound.
 template <class T>
-Sample<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& t) {
-  Toss<T> toss;
-  toss.phi = phi;
-  toss.gravity = hoop.cos_slope / (hoop.rho * spin * spin);
-  const CurvedSample<T> y = toss_height(toss, spin * t);
-  return {hoop.rho * y.value, hoop.rho * spin * y.rate};
+struct HeightAbovePlane {
+  T value, rate, acceleration;
+};
+template <class T>
+HeightAbovePlane<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& t,
+                                       const T& normal_velocity = T(0)) {
+  const Trig<T> turned = trig(spin * t);
+  const T s = phi.sin, c = phi.cos;
+  return {hoop.rho * (s * x_minus_sin(spin * t, turned.sin) - c * turned.versine) +
+              t * (normal_velocity - T(0.5) * hoop.cos_slope * t),
+          normal_velocity - hoop.cos_slope * t + hoop.rho * spin * (s * turned.versine - c * turned.sin),
+          hoop.rho * spin * spin * (s * turned.sin - c * turned.cos) - hoop.cos_slope};
 }
 
 /// How far the hoop's centre has travelled along the plane since lift-off, and how fast it travels: the

@@ -54,8 +54,7 @@ Flight<S> walk_toss(const Toss<S>& toss, const S& launch = S(0)) {
   const S clearance = s * s - S(2) * toss.gravity * (S(1) + toss.phi.cos);
   const S half_width =
       clearance > S(0) ? sqrt(clearance) / toss.gravity : S(0);  // of L > 0, about the vertex
-  // Beyond this y is below zero: L + 2 is.
-  const S last = (s + sqrt(s * s + S(2) * toss.gravity * toss.phi.versine)) / toss.gravity;
+  const S last = toss_end(toss, launch);
   const auto next_of_interest = [&](const S& psi) {
     if (!above || !(psi > vertex - half_width) || !(psi < vertex + half_width)) return psi;
     if (psi < vertex - around) return vertex - around;
@@ -249,17 +248,16 @@ Flight<S> fly_off(const Hoop<S>& hoop, const LiftOff<S>& lift_off, const S& norm
   const S spin = abs(lift_off.spin), swing = hoop.rho * spin * spin;
   const Trig<S> phi = trig(lift_off.spin < S(0) ? -lift_off.angle : lift_off.angle);
   if (swing < hoop.cos_slope) {
-    const auto climb_at = [&](const S& t) {
-      const Trig<S> turned = trig(spin * t);
-      return Sample<S>{normal_velocity - hoop.cos_slope * t +
-                           hoop.rho * spin * (phi.sin * turned.versine - phi.cos * turned.sin),
-                       -hoop.cos_slope + swing * (phi.sin * turned.sin - phi.cos * turned.cos)};
+    const auto motion_at = [&](const S& t) {
+      return height_above_plane(hoop, phi, spin, t, normal_velocity);
     };
     const auto height_at = [&](const S& t) {
-      const Trig<S> turned = trig(spin * t);
-      return Sample<S>{hoop.rho * (phi.sin * x_minus_sin(spin * t, turned.sin) - phi.cos * turned.versine) +
-                           t * (normal_velocity - S(0.5) * hoop.cos_slope * t),
-                       climb_at(t).value};
+      const auto y = motion_at(t);
+      return Sample<S>{y.value, y.rate};
+    };
+    const auto climb_at = [&](const S& t) {
+      const auto y = motion_at(t);
+      return Sample<S>{y.rate, y.acceleration};
     };
     // y'' lies between -(cos theta + swing) and -(cos theta - swing), so that these bracket apex and landing.
     const S steepest = hoop.cos_slope + swing, resolution = S(2) * std::numeric_limits<S>::epsilon();

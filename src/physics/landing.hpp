@@ -70,7 +70,6 @@ Landing<S> land(const Hoop<S>& hoop, const Trig<S>& phi, const ContactVelocity<S
     }
   };
   Point at{before.slip, before.normal, S(0), S(0), before.slip == S(0) && holds};
-  if (at.sticks) at.slip = S(0);
   advance(at, S(0), true);
   at.normal = S(0);
   advance(at, (S(1) + restitution) * at.normal_impulse, false);

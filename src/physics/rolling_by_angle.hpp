@@ -44,6 +44,17 @@ Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
           .push = torque(hoop, phi)};
 }
 
+/// The same roll in every lane.
+template <class T>
+Roll<T> widened(const Roll<ScalarOf<T>>& roll) {
+  return {.hoop = widened<T>(roll.hoop),
+          .release = T(roll.release),
+          .release_trig = {T(roll.release_trig.sin), T(roll.release_trig.cos), T(roll.release_trig.versine)},
+          .released = T(roll.released),
+          .level = T(roll.level),
+          .push = T(roll.push)};
+}
+
 /// E at an angle, accurate to a few roundings of its largest term.
 template <class T>
 T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {

@@ -125,9 +125,7 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
     }
     const Trig<S> phi = trig(at.angle);
     const Sample<S> travel = travel_in_flight(hoop, phi, at.spin, at.slip, flight.flight_time);
-    const Trig<S> turned = trig(at.spin * flight.flight_time);
-    const S climb = at.normal - hoop.cos_slope * flight.flight_time +
-                    hoop.rho * at.spin * (phi.sin * turned.versine - phi.cos * turned.sin);
+    const S climb = height_above_plane(hoop, phi, at.spin, flight.flight_time, at.normal).rate;
     at.time += flight.flight_time;
     at.travel += travel.value;
     at.angle += at.spin * flight.flight_time;

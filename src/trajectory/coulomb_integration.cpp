@@ -78,7 +78,8 @@ Sample<double> pivot(const CoulombIntegration::System& system, const Y& y) {
   const Trig<double> phi = trig(y[0]);
   const double q = hoop.rho * phi.sin - system.friction * (1.0 - hoop.rho * phi.cos);
   const double q_rate = hoop.rho * (phi.cos - system.friction * phi.sin);
-  return {hoop.Ic + hoop.rho * phi.sin * q, hoop.rho * y[1] * (phi.cos * q + phi.sin * q_rate)};
+  return {sliding_coefficients(hoop, phi, system.friction).pivot,
+          hoop.rho * y[1] * (phi.cos * q + phi.sin * q_rate)};
 }
 
 ContactState<double> state_of(double time, const Y& y) { return {time, y[3], y[0], y[1], y[2]}; }

@@ -17,9 +17,8 @@ template <class S, class F>
 S first_fall(const F& f, const S& a, const S& b, const Sample<S>& at_a, const Sample<S>& at_b) {
   const S none = std::numeric_limits<S>::quiet_NaN(), h = b - a;
   const S resolution = S(2) * std::numeric_limits<S>::epsilon() * (std::abs(a) + std::abs(b));
-  const auto fallen = [](const Sample<S>& s) { return s.value < S(0) || (s.value == S(0) && s.rate < S(0)); };
-  if (fallen(at_a)) return a;
-  if (fallen(at_b)) return polish_root(f, a, b, a + h * S(0.5), false, resolution);
+  if (has_fallen(at_a)) return a;
+  if (has_fallen(at_b)) return polish_root(f, a, b, a + h * S(0.5), false, resolution);
   if (!(at_a.rate < S(0) && at_b.rate > S(0))) return none;
   // A minimum, by the cubic's slope; the interval is short, so that it is near there. It is beyond doubt
   // where the tangents at both ends meet above zero.
@@ -91,7 +90,7 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
   // The grid in lanes, so many nodes at once; the end of the runway comes as a node of its own.
   using T = typename SpectralPanel<S, nodes>::T;
   constexpr std::size_t width = Lanes<T>::count;
-  const Hoop<T> hoops = widened<T>(hoop);
+  const Roll<T> rolls = widened<T>(roll);
   for (long node = static_cast<long>(std::floor(start / step)) + 1;; node += long{width}) {
     const auto first =
         static_cast<std::size_t>(((node % long{nodes_a_turn}) + long{nodes_a_turn}) % long{nodes_a_turn});
@@ -99,10 +98,9 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
                       Lanes<T>::load(grid_.versine.data() + first)};
     LaneArray<T> angles;
     for (std::size_t k = 0; k < width; ++k) angles[k] = S(node + static_cast<long>(k)) * step;
-    const T E = T(roll.level) + T(S(2)) * (Lanes<T>::load(angles.data()) * hoops.sin_slope +
-                                           hoops.rho * cos_from_vertical(hoops, phi));
-    const StickGuards<T> guards = stick_guards(hoops, phi, E, T(mu_static));
-    const auto Es = lanes_of(E), pushes = lanes_of(torque(hoops, phi)),
+    const T E = vis_viva(rolls, Lanes<T>::load(angles.data()), phi);
+    const StickGuards<T> guards = stick_guards(rolls.hoop, phi, E, T(mu_static));
+    const auto Es = lanes_of(E), pushes = lanes_of(torque(rolls.hoop, phi)),
                back = lanes_of(guards.downhill.value), back_rate = lanes_of(guards.downhill.rate),
                forth = lanes_of(guards.uphill.value), forth_rate = lanes_of(guards.uphill.rate);
     for (std::size_t k = 0; k < width; ++k) {
@@ -158,19 +156,15 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
   // The nodes in lanes.
   using T = typename SpectralPanel<S, nodes>::T;
   using std::sin, std::sqrt;
-  const Hoop<S>& h = roll.hoop;
-  const Trig<S>& release = roll.release_trig;
-  const T released(roll.released), push(roll.push), rho(h.rho), J_min(h.J_min);
-  const T sine(sin_from_vertical(h, release)), cosine(cos_from_vertical(h, release));
+  const Roll<T> rolls = widened<T>(roll);
   typename SpectralPanel<S, nodes>::Values f;
   for (std::size_t i = 0; i < nodes; i += Lanes<T>::count) {
     const T q = T(from) + T(to - from) * Lanes<T>::load(panel_.node.data() + i), x = T(shift) + q * q;
     const Trig<T> turned = trig(x);
-    // E as vis_viva_past_release has it; 1 - cos(release + x) by the half angle, accurate near multiples of 2
-    // pi
-    const T E =
-        released + T(2) * (push * x + rho * (sine * x_minus_sin(x, turned.sin) - cosine * turned.versine));
-    const T half = sin((T(roll.release) + x) * T(0.5)), J = J_min + T(4) * rho * half * half;
+    const T E = vis_viva_past_release(rolls, x, turned, x_minus_sin(x, turned.sin));
+    // 1 - cos(release + x) by the half angle, accurate near multiples of 2 pi
+    const T half = sin((rolls.release + x) * T(0.5)),
+            J = rolls.hoop.J_min + T(4) * rolls.hoop.rho * half * half;
     Lanes<T>::store(T(2) * q * sqrt(J / E), f.data() + i);
   }
   const S whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);

@@ -1,60 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trajectory/trace.hpp"
-
-#include <fmt/format.h>
+#include "trajectory/trace_points.hpp"
 
 #include <cmath>
 
 #include "physics/flight_search.hpp"
 #include "physics/rolling.hpp"
-#include "support/errors.hpp"
 #include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {
-
-constexpr double most_points = 1e7;
-constexpr double check_tolerance = 1e-12;
-
-TracePoint rolling_point(const Hoop<double>& hoop, const Design& design, double t,
-                         const OneCoordinate::Y& y) {
-  const Trig<double> phi = trig(y[0]);
-  const double acceleration = angular_acceleration(hoop, phi, y[1]);
-  return {t,
-          y[0],
-          y[1],
-          y[0] - design.release_angle,
-          0.0,
-          normal_force(hoop, phi, y[1], acceleration),
-          friction_force(hoop, phi, y[1], acceleration),
-          Phase::rolling};
-}
-
-TracePoint flight_point(const Hoop<double>& hoop, const Design& design, const LiftOff<double>& from,
-                        double flown) {
-  return {from.time + flown,
-          from.angle + from.spin * flown,
-          from.spin,
-          from.angle - design.release_angle +
-              travel_in_flight(hoop, trig(from.angle), from.spin, 0.0, flown).value,
-          height_above_plane(hoop, trig(from.angle), from.spin, flown).value,
-          0.0,
-          0.0,
-          Phase::flight};
-}
 
 /// The story as the integration tells it, unchecked.
 Story integrated(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval,
                  double graze_limit) {
   const Hoop<double> hoop = derive<double>(design);
   Story story;
-  double next_sample = 0.0;
-  const auto sample_until = [&](double end, const auto& point_at) {
-    if (!(end / interval < most_points))
-      throw InputError(
-          fmt::format("a trace of more than {} points; allowed: a longer interval", most_points));
-    for (; next_sample <= end; next_sample = interval * std::round(next_sample / interval + 1.0))
-      story.points.push_back(point_at(next_sample));
+  TraceSampler sampler{interval, story.points};
+  const auto rolled = [&](double t, const OneCoordinate::Y& y) {
+    return ContactState<double>{
+        .time = t, .travel = y[0] - design.release_angle, .angle = y[0], .spin = y[1]};
   };
 
   RollingObserver observer;
@@ -67,10 +31,10 @@ Story integrated(const Design& design, const Scene& scene, const IntegrationOpti
   if (interval > 0.0) {
     observer.step = [&](const GslIntegrator<2>& integrator, double end) {
       const double t0 = integrator.step().t0;
-      sample_until(t0 + end, [&](double t) {
+      sampler.until(t0 + end, [&](double t) {
         OneCoordinate::Y y = integrator.step().y0;
         if (!integrator.retake(t - t0, y)) y.fill(NAN);
-        return rolling_point(hoop, design, t, y);
+        return rolling_point(hoop, rolled(t, y));
       });
     };
   }
@@ -79,10 +43,10 @@ Story integrated(const Design& design, const Scene& scene, const IntegrationOpti
   if (interval > 0.0 && story.outcome.status == Status::jumped) {
     const Candidate& jump = story.candidates.back();
     const double start = jump.lift_off.time, flown = jump.flight.flight_time;
-    story.points.push_back(rolling_point(hoop, design, start, {jump.lift_off.angle, jump.lift_off.spin}));
-    sample_until(start + flown,
-                 [&](double t) { return flight_point(hoop, design, jump.lift_off, t - start); });
-    story.points.push_back(flight_point(hoop, design, jump.lift_off, flown));
+    const ContactState<double> lift_off = rolled(start, {jump.lift_off.angle, jump.lift_off.spin});
+    story.points.push_back(rolling_point(hoop, lift_off));
+    sampler.until(start + flown, [&](double t) { return flight_point(hoop, lift_off, t - start); });
+    story.points.push_back(flight_point(hoop, lift_off, flown));
   }
   return story;
 }

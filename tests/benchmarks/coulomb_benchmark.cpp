@@ -5,11 +5,10 @@
 /// are against long double at 1e-15; wrong counts designs whose flags or phases differ from it. Phases tells
 /// where the time goes, in percent, and how many phases a design goes through; looking on costs it some of
 /// its speed.
-#include <benchmark/benchmark.h>
-
 #include <chrono>
 #include <cmath>
 
+#include "benchmarks/tell_errors.hpp"
 #include "study/precision.hpp"
 #include "trajectory/coulomb_integration.hpp"
 
@@ -40,25 +39,7 @@ void solve_all(benchmark::State& state, Method& method) {
   std::vector<Outcome> outcomes(count);
   for (auto _ : state)
     for (std::size_t i = 0; i < count; ++i) outcomes[i] = method.solve(designs()[i], scene);
-  double height = 0.0, time = 0.0;
-  int wrong = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Outcome &a = outcomes[i], &b = truths[i];
-    if (!same_flags(a, b)) {
-      ++wrong;
-    } else if (a.status == Status::jumped) {
-      height = std::max(height, std::abs(a.jump_height - b.jump_height));
-      time = std::max(time, std::abs(a.jump_time / b.jump_time - 1.0));
-    }
-  }
-  state.counters["height_error"] = height;
-  state.counters["time_error"] = time;
-  state.counters["wrong"] = wrong;
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
-}
-
-double tolerance(const benchmark::State& state) {
-  return std::pow(10.0, -static_cast<double>(state.range(0)));
+  tell_errors(state, outcomes, truths);
 }
 
 void Quadratures(benchmark::State& state) {

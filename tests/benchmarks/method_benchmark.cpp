@@ -5,10 +5,7 @@
 /// items_per_second are designs a second; the errors are against long double at 1e-18; wrong counts designs
 /// whose status, flag or number of candidates differs from it. Engine is run_sweep on one thread: designs
 /// from axes, everything but the file.
-#include <benchmark/benchmark.h>
-
-#include <cmath>
-
+#include "benchmarks/tell_errors.hpp"
 #include "study/precision.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
@@ -39,34 +36,12 @@ const std::vector<Outcome>& reference() {
   return outcomes;
 }
 
-void tell_errors(benchmark::State& state, std::span<const Outcome> outcomes) {
-  double height = 0.0, time = 0.0;
-  int wrong = 0;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    const Outcome &a = outcomes[i], &b = reference()[i];
-    if (!same_flags(a, b)) {
-      ++wrong;
-    } else if (a.status == Status::jumped) {
-      height = std::max(height, std::abs(a.jump_height - b.jump_height));
-      time = std::max(time, std::abs(a.jump_time / b.jump_time - 1.0));
-    }
-  }
-  state.counters["height_error"] = height;
-  state.counters["time_error"] = time;
-  state.counters["wrong"] = wrong;
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(outcomes.size()));
-}
-
-double tolerance(const benchmark::State& state) {
-  return std::pow(10.0, -static_cast<double>(state.range(0)));
-}
-
 template <class T>
 void Exact(benchmark::State& state) {
   ExactSolver<T> solver(tolerance(state));
   std::vector<Outcome> outcomes(count);
   for (auto _ : state) solver.solve(designs(), scene(), outcomes);
-  tell_errors(state, outcomes);
+  tell_errors(state, outcomes, reference());
 }
 
 void ExactHeightsAndFlagsOnly(benchmark::State& state) {
@@ -74,7 +49,7 @@ void ExactHeightsAndFlagsOnly(benchmark::State& state) {
                             {.first_jump_time = false, .jump_time = false, .descent = false});
   std::vector<Outcome> outcomes(count);
   for (auto _ : state) solver.solve(designs(), scene(), outcomes);
-  tell_errors(state, outcomes);
+  tell_errors(state, outcomes, reference());
 }
 
 void GslRk8pd(benchmark::State& state) {
@@ -83,7 +58,7 @@ void GslRk8pd(benchmark::State& state) {
   std::vector<Outcome> outcomes(fewer);
   for (auto _ : state)
     for (std::size_t i = 0; i < fewer; ++i) outcomes[i] = rolling.solve(designs()[i], scene());
-  tell_errors(state, outcomes);
+  tell_errors(state, outcomes, reference());
 }
 
 void Engine(benchmark::State& state) {
