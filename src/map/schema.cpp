@@ -57,7 +57,8 @@ const std::array fields{
 std::span<const Field> map_fields() { return fields; }
 
 const Field* find_field(std::string_view name) {
-  const auto found = std::ranges::find(fields, name, &Field::name);
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
   return found == fields.end() ? nullptr : &*found;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "map/hdf5.hpp"
-#include "trajectory/trace.hpp"
+#include "trajectory/story.hpp"
 
 namespace leapmap {
 

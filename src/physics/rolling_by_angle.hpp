@@ -9,6 +9,10 @@
 /// evaluation.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
 #include "numerics/root.hpp"
 #include "physics/parameters.hpp"
 #include "physics/rolling.hpp"
@@ -75,6 +79,38 @@ template <class T>
 T vis_viva_past_release(const Roll<T>& roll, const T& x) {
   const Trig<T> turned = trig(x);
   return vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned.sin));
+}
+
+/// Where E is least for the first time after the release. E has minima only if rho > sin(theta), where theta
+/// + phi = pi - asin(sin(theta) / rho); they rise from one revolution to the next, so that the first one
+/// tells whether the hoop stalls. Otherwise E rises always, and least where theta + phi = pi / 2.
+template <class T>
+struct FirstMinimum {
+  T angle;
+  T crest;            ///< asin(sin(theta) / rho), or pi / 2
+  MaskOf<T> is_real;  ///< E has minima
+};
+template <class T>
+FirstMinimum<T> first_minimum(const Roll<T>& roll) {
+  using std::asin, std::floor;
+  const T pi(std::numbers::pi_v<ScalarOf<T>>), two_pi = T(2) * pi;
+  const MaskOf<T> is_real = roll.hoop.rho > roll.hoop.sin_slope;
+  const T crest = asin(select(is_real, roll.hoop.sin_slope / roll.hoop.rho, T(1)));
+  const T phase = pi - crest - roll.hoop.slope;
+  return {phase + two_pi * (floor((roll.release - phase) / two_pi) + T(1)), crest, is_real};
+}
+
+/// Where a hoop stalls whose first minimum of E is real and below zero: between E's maximum, or the release
+/// if that is later, and there.
+template <class S>
+S stall_angle(const Roll<S>& roll, const S& minimum, const S& crest) {
+  const auto vis_viva_at = [&](const S& angle) {
+    return Sample<S>{vis_viva_past_release(roll, S(angle - roll.release)),
+                     S(2) * torque(roll.hoop, trig(angle))};
+  };
+  const S from = std::max(roll.release, minimum - std::numbers::pi_v<S> + S(2) * crest);
+  const S resolution = S(4) * std::numeric_limits<S>::epsilon() * std::max(S(1), std::abs(minimum));
+  return polish_root(vis_viva_at, from, minimum, S(0.5L) * (from + minimum), false, resolution);
 }
 
 /// G and its first three derivatives at an angle.

@@ -13,11 +13,13 @@
 
 namespace leapmap {
 
-/// Told of every phase as it begins, and of flights how they go.
+/// Told of every phase as it begins, of flights how they go, and of the state that the design ends in, whose
+/// time and spin mean nothing if it stalls.
 struct CoulombObserver {
   std::function<void(Phase, const ContactState<double>&, int direction)>
       phase;  ///< direction of sliding: 1, -1; else 0
   std::function<void(const LiftOff<double>&, const Flight<double>&)> lift_off;
+  std::function<void(const ContactState<double>&)> end;
 };
 
 /// A thread's own workspace. S: double, or long double for the tests' reference.

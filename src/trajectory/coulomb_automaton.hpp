@@ -45,7 +45,13 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
   Outcome outcome;
   PhaseSequence sequence;
   S slipped(0);
+  const auto state = [&] {
+    return ContactState<double>{static_cast<double>(at.time),  static_cast<double>(at.travel),
+                                static_cast<double>(at.angle), static_cast<double>(at.spin),
+                                static_cast<double>(at.slip),  static_cast<double>(at.normal)};
+  };
   const auto end = [&](Status status, const char* reason = nullptr) {
+    if (observer.end) observer.end(state());
     outcome.status = status;
     outcome.failure = reason;
     outcome.phase_sequence = sequence.code();
@@ -60,12 +66,7 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
   };
   const auto begin = [&](Phase phase, int direction) {
     sequence.append(phase);
-    if (observer.phase)
-      observer.phase(
-          phase,
-          {static_cast<double>(at.time), static_cast<double>(at.travel), static_cast<double>(at.angle),
-           static_cast<double>(at.spin), static_cast<double>(at.slip), static_cast<double>(at.normal)},
-          direction);
+    if (observer.phase) observer.phase(phase, state(), direction);
   };
 
   ContactPhase next = contact_phase(hoop, contact, at);

@@ -74,7 +74,7 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
 template <class T>
 void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene,
                              std::span<Outcome> outcomes) {
-  using std::abs, std::asin, std::atan2, std::floor;
+  using std::abs, std::atan2, std::floor;
   const T pi(pi_of<S>), two_pi = T(2) * pi;
   searching_.clear();
   for (std::size_t first = 0; first < designs.size(); first += width) {
@@ -103,19 +103,13 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
         normal_force(hoop, roll.release_trig, spin, angular_acceleration(hoop, roll.release_trig, spin));
     const MaskOf<T> airborne = !(force > T(0));
     const MaskOf<T> uphill = (spin < T(0)) | ((spin == T(0)) & !(roll.push > T(0)));
-    // E has minima only if rho > sin(theta), where theta + phi = pi - asin(sin(theta) / rho); they rise from
-    // one revolution to the next, so that the first one after the release tells whether the hoop stalls.
-    // Otherwise E rises always, and least where theta + phi = pi / 2.
-    const MaskOf<T> uneven = hoop.rho > hoop.sin_slope;
-    const T crest = asin(select(uneven, hoop.sin_slope / hoop.rho, T(1)));
-    const T phase = pi - crest - hoop.slope;
-    const T minimum = phase + two_pi * (floor((roll.release - phase) / two_pi) + T(1));
+    const auto [minimum, crest, is_real] = first_minimum(roll);
     const T least = vis_viva_past_release(roll, minimum - roll.release);
     const T at_edge = vis_viva_past_release(roll, RollingTime<T>::first_panel(roll) * pi - roll.release);
     rows_.store(roll, Quiet<T>{smaller(least, at_edge), minimum - roll.release}, index.data(), count);
 
     const unsigned in_the_air = Lanes<T>::bits(airborne), not_off = Lanes<T>::bits(uphill),
-                   stalling = Lanes<T>::bits(uneven & !(least > T(0)));
+                   stalling = Lanes<T>::bits(is_real & !(least > T(0)));
     const auto release = lanes_of(roll.release), end = lanes_of(roll.release + two_pi * T(S(scene.runway))),
                first_turn = lanes_of(floor(roll.release / two_pi)),
                turns_back = lanes_of(release_angle - nearest), minima = lanes_of(minimum),
@@ -134,24 +128,13 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
         search.turn = search.node = search.halvings = 0, search.part = 0;
         search.stalls = false;
         searching_.push_back(design);
-        if (stalling >> i & 1u)
-          find_stall(search, rows_.template load_roll<S>(&design), minima[i], crests[i]);
+        if (stalling >> i & 1u) {
+          const S stall = stall_angle(rows_.template load_roll<S>(&design), minima[i], crests[i]);
+          if (stall < search.end) search.end = stall, search.stalls = true;
+        }
       }
     }
   }
-}
-
-/// E falls from its maximum, or from the release if that is later, to a minimum below zero.
-template <class T>
-void ExactSolver<T>::find_stall(Search& search, const Roll<S>& roll, const S& minimum, const S& crest) const {
-  const auto vis_viva_at = [&](const S& angle) {
-    return Sample<S>{vis_viva_past_release(roll, angle - roll.release),
-                     S(2) * torque(roll.hoop, trig(angle))};
-  };
-  const S from = std::max(roll.release, minimum - pi_of<S> + S(2) * crest);
-  const S resolution = S(4) * std::numeric_limits<S>::epsilon() * std::max(S(1), std::abs(minimum));
-  const S stall = polish_root(vis_viva_at, from, minimum, S(0.5L) * (from + minimum), false, resolution);
-  if (stall < search.end) search.end = stall, search.stalls = true;
 }
 
 template <class T>

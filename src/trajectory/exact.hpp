@@ -78,7 +78,6 @@ class ExactSolver {
 
   void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   void prepare(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
-  void find_stall(Search& search, const Roll<S>& roll, const S& minimum, const S& crest) const;
   void scan(const List& designs);
   bool next_interval(std::uint32_t design, Interval& interval);
   void advance(Search& search) const;

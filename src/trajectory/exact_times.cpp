@@ -70,14 +70,16 @@ void ExactSolver<T>::start_clocks() {
 template <class T>
 void ExactSolver<T>::sort_parts(std::vector<Part>& parts) {
   if (parts.empty()) return;
-  const auto [least, most] = std::ranges::minmax(parts, {}, &Part::number);
-  const auto range = static_cast<std::size_t>(most.number - least.number) + 1;
+  // Not by std::ranges: the page's compiler has no such algorithms yet.
+  const auto before = [](const Part& a, const Part& b) { return a.number < b.number; };
+  const auto [least, most] = std::minmax_element(parts.begin(), parts.end(), before);
+  const auto range = static_cast<std::size_t>(most->number - least->number) + 1;
   if (range > block) {
-    std::ranges::sort(parts, {}, &Part::number);
+    std::sort(parts.begin(), parts.end(), before);
     return;
   }
   places_.assign(range + 1, 0);
-  const long base = least.number;
+  const long base = least->number;
   for (const Part& part : parts) ++places_[static_cast<std::size_t>(part.number - base) + 1];
   for (std::size_t i = 1; i < range; ++i) places_[i] += places_[i - 1];
   sorted_parts_.resize(parts.size());

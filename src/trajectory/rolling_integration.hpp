@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "numerics/gsl_integrator.hpp"
+#include "trajectory/graze.hpp"
 #include "trajectory/outcome.hpp"
 #include "trajectory/rolling_models.hpp"
 
@@ -19,18 +20,6 @@ struct IntegrationOptions {
 
 /// Adaptive steps of the stepper of that name, which must be one of GSL's, with both tolerances the same.
 IntegrationOptions adaptive(std::string_view stepper, double tolerance);
-
-/// A place where the normal force touched zero, or nearly so, without an obvious answer.
-struct Graze {
-  double time;          ///< since release [sqrt(R/g)]
-  double angle;         ///< phi [rad]
-  double normal_force;  ///< at its extremum [weights]
-  bool minimum;         ///< a minimum or a maximum of the normal force
-
-  /// Whether it was counted as making a lift-off: a minimum below zero, or a maximum above zero, after which
-  /// the normal force falls again.
-  bool makes_lift_off() const { return minimum == (normal_force < 0.0); }
-};
 
 /// Looks on while a design is solved; unset functions cost nothing.
 template <std::size_t D>

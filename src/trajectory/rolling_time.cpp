@@ -57,16 +57,26 @@ T square_growth_beside(const T& height) {
   return T(3) * square / (T(3) + square);  // of asinh(height)
 }
 
+/// Rules of 0 to `most` nodes, worked out once.
+template <class S>
+const std::vector<GaussRule<S>>& rules_up_to(std::size_t most) {
+  static const std::vector<GaussRule<S>> rules = [&] {
+    std::vector<GaussRule<S>> found;
+    for (std::size_t n = 0; n <= most; ++n) found.push_back(gauss_rule<S>(n));
+    return found;
+  }();
+  return rules;
+}
+
 }  // namespace
 
 template <class T>
-RollingTime<T>::RollingTime(double tolerance) {
+RollingTime<T>::RollingTime(double tolerance) : rules_(rules_up_to<S>(most_nodes)) {
   using std::log;
   // A hundred times finer than asked for costs a few nodes, and the bounds on r are not strict in every
   // corner.
   tolerance_ = std::max(S(tolerance) * S(0.01L), S(450) * std::numeric_limits<S>::epsilon());
   digits_ = -log(tolerance_);
-  for (std::size_t n = 0; n <= most_nodes; ++n) rules_.push_back(gauss_rule<S>(n));
   starts_.resize(rules_.size());
   panels_.resize(rules_.size() * 2 * (parts_a_panel + 1));
 }
@@ -128,7 +138,7 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
     growth = smaller(growth, square_growth_beside(sqrt(T(0.5) * (sqrt(u * u + d * d) - u)) / half));
   }
   const auto nodes = lanes_of(nodes_for(growth, hard));
-  const int n = static_cast<int>(*std::ranges::max_element(nodes));
+  const int n = static_cast<int>(*std::max_element(nodes.begin(), nodes.end()));
 
   // E as in vis_viva_past_release, and J likewise turned on from the release
   const Trig<T>& phi0 = roll.release_trig;
@@ -160,10 +170,11 @@ const std::vector<typename RollingTime<T>::SharedNode>& RollingTime<T>::start_fr
                                                                                         int nodes) {
   using std::sqrt;
   std::vector<Start>& starts = starts_[static_cast<std::size_t>(nodes)];
-  const auto met = std::ranges::find(starts, span, &Start::span);
+  const auto met =
+      std::find_if(starts.begin(), starts.end(), [&](const Start& start) { return start.span == span; });
   if (met != starts.end()) return met->nodes;
   if (starts.size() >= most_starts) starts.clear();
-  Start& start = starts.emplace_back(span);
+  Start& start = starts.emplace_back(Start{span, {}});
   const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
   const S q1 = sqrt(span);
   for (std::size_t i = 0; i < rule.node.size(); ++i) {

@@ -90,7 +90,7 @@ class RollingTime {
   const std::vector<SharedNode>& start_from_rest(const S& span, int nodes);
 
   S tolerance_, digits_;                    // digits: log(1 / tolerance)
-  std::vector<GaussRule<S>> rules_;         // by number of nodes
+  const std::vector<GaussRule<S>>& rules_;  // by number of nodes, the same for all
   std::vector<std::vector<Start>> starts_;  // by number of nodes, the spans met so far
   std::vector<std::vector<SharedNode>>
       panels_;  // by number of nodes, evenness and parts; filled when first used

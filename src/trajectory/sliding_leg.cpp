@@ -206,11 +206,11 @@ S SlidingLeg<S>::first_event(const S& free_force, const ContactState<S>& at, con
       return guard.offset + guard.factor * panel_.value(guard.values, x);
     };
     // Where all values are well above zero nothing falls between them either.
-    const auto [least, most] = std::ranges::minmax(guard.values);
+    const auto [least, most] = std::minmax_element(guard.values.begin(), guard.values.end());
     const S lowest_value =
-        guard.factor > S(0) ? guard.offset + guard.factor * least : guard.offset + guard.factor * most;
+        guard.factor > S(0) ? guard.offset + guard.factor * *least : guard.offset + guard.factor * *most;
     const S highest_value =
-        guard.factor > S(0) ? guard.offset + guard.factor * most : guard.offset + guard.factor * least;
+        guard.factor > S(0) ? guard.offset + guard.factor * *most : guard.offset + guard.factor * *least;
     if (std::min({lowest_value, guard.first, guard.last}) > S(0.05) * highest_value) continue;
     S left = guard.first, left_place(0);
     for (std::size_t i = 0; i <= nodes && left_place < earliest; ++i) {
@@ -306,6 +306,22 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
     return end;
   }
   return PhaseEnd::too_long;
+}
+
+template <class S>
+bool SlidingLeg<S>::advance(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& duration,
+                            int direction) const {
+  Panel panel;
+  const S end = at.time + duration;
+  for (S step = std::min(duration, S(first_time)); at.time < end;) {
+    solve_by_time(hoop, S(S(direction) * mu_kinetic), at, std::min(step, S(end - at.time)), panel);
+    if (panel.excess <= S(1)) {
+      at = panel.end;
+    } else if ((step *= S(0.5)) < S(shortest_time)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 template class SlidingLeg<double>;

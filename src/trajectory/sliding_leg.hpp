@@ -25,6 +25,10 @@ class SlidingLeg {
   PhaseEnd run(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& runway,
                int direction) const;
 
+  /// Slides on for a time, with no look at what would end the phase. False: it could not be solved.
+  bool advance(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& duration,
+               int direction) const;
+
  private:
   static constexpr std::size_t nodes = 24;
   using Values = typename SpectralPanel<S, nodes>::Values;

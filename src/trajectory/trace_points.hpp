@@ -2,33 +2,12 @@
 /// The points of a trace, whatever the friction: where they lie in time, and what they hold.
 #pragma once
 
-#include <fmt/format.h>
-
 #include "physics/flight.hpp"
+#include "physics/sliding.hpp"
 #include "support/errors.hpp"
-#include "trajectory/trace.hpp"
+#include "trajectory/story.hpp"
 
 namespace leapmap {
-
-inline constexpr double check_tolerance = 1e-12;  ///< of a story's second method, and of its motion
-
-/// Samples at multiples of an interval. Throws InputError if they would be more than 10^7.
-struct TraceSampler {
-  double interval;
-  std::vector<TracePoint>& points;
-  long next = 0;
-
-  /// Takes the samples up to `end` that are not taken yet; point_at(t) gives them.
-  template <class PointAt>
-  void until(double end, const PointAt& point_at) {
-    constexpr double most_points = 1e7;
-    if (!(end / interval < most_points))
-      throw InputError(
-          fmt::format("a trace of more than {} points; allowed: a longer interval", most_points));
-    for (; interval * static_cast<double>(next) <= end; ++next)
-      points.push_back(point_at(interval * static_cast<double>(next)));
-  }
-};
 
 inline TracePoint rolling_point(const Hoop<double>& hoop, const ContactState<double>& at) {
   const Trig<double> phi = trig(at.angle);
@@ -43,6 +22,12 @@ inline TracePoint rolling_point(const Hoop<double>& hoop, const ContactState<dou
           Phase::rolling};
 }
 
+/// friction: mu_kinetic, with the sign of the sliding.
+inline TracePoint sliding_point(const Hoop<double>& hoop, double friction, const ContactState<double>& at) {
+  const auto motion = sliding_motion(hoop, trig(at.angle), at.spin * at.spin, friction);
+  return {at.time, at.angle, at.spin, at.travel, 0.0, motion.normal_force, motion.friction, Phase::sliding};
+}
+
 /// `flown` after the flight that begins at `from`.
 inline TracePoint flight_point(const Hoop<double>& hoop, const ContactState<double>& from, double flown) {
   const Trig<double> phi = trig(from.angle);
@@ -55,5 +40,27 @@ inline TracePoint flight_point(const Hoop<double>& hoop, const ContactState<doub
           0.0,
           Phase::flight};
 }
+
+/// Samples at multiples of an interval. Throws InputError if they would be more than 10^7.
+struct TraceSampler {
+  double interval;
+  std::vector<TracePoint>& points;
+  long next = 0;
+
+  /// Takes the samples up to `end` that are not taken yet; point_at(t) gives them.
+  template <class PointAt>
+  void until(double end, const PointAt& point_at) {
+    if (end / interval > 1e7)
+      throw InputError("a trace of more than 10000000 points; allowed: a longer interval");
+    for (; interval * static_cast<double>(next) <= end; ++next)
+      points.push_back(point_at(interval * static_cast<double>(next)));
+  }
+
+  /// A flight up to its landing, which is a sample of its own.
+  void fly(const Hoop<double>& hoop, const ContactState<double>& from, double flight_time) {
+    until(from.time + flight_time, [&](double t) { return flight_point(hoop, from, t - from.time); });
+    points.push_back(flight_point(hoop, from, flight_time));
+  }
+};
 
 }  // namespace leapmap

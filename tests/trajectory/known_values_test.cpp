@@ -7,7 +7,7 @@
 
 #include "physics/rolling.hpp"
 #include "support/designs.hpp"
-#include "trajectory/trace.hpp"
+#include "trajectory/story.hpp"
 
 namespace leapmap {
 namespace {
@@ -18,7 +18,7 @@ using testing::adaptive;
 constexpr double integrated = 1e-11;
 
 TEST(KnownValues, ThePapersHoopFromRest) {
-  const Story story = tell(testing::paper_hoop(), {}, adaptive("gsl-rk8pd", 1e-13));
+  const Story story = tell_by_integration(testing::paper_hoop(), {}, adaptive("gsl-rk8pd", 1e-13));
   ASSERT_EQ(story.candidates.size(), 2u);
   EXPECT_NEAR(story.candidates[0].lift_off.time, 6.0995372752511926, integrated);
   EXPECT_NEAR(story.candidates[0].flight.height, 0.0034444672, 1e-10);  // as many digits as the table has
@@ -46,7 +46,7 @@ TEST(KnownValues, TheReleaseThatPutsTheCandidatesAtThePapersTimes) {
   Design design = testing::paper_hoop();
   design.release_angle = 4.515558;
   design.release_spin = 17.13540 * second;
-  const Story story = tell(design, scene, adaptive("gsl-rk8pd", 1e-12));
+  const Story story = tell_by_integration(design, scene, adaptive("gsl-rk8pd", 1e-12));
   ASSERT_EQ(story.candidates.size(), 2u);
   // The release is given to 7 digits; the heights and times are given to the digits compared.
   EXPECT_NEAR(story.candidates[0].lift_off.time * second, 0.17, 1e-6);
@@ -90,7 +90,7 @@ TEST(KnownValues, FromRestOnAFlatPlaneItLiftsOnlyAboveAMassRatioOf13WhereNGrazes
   scene.hop_height = 0.0;
   for (const double side : {-1.0, 1.0}) {
     design.mass_ratio = 13.0 * (1.0 + side * 1e-8);
-    const Story story = tell(design, scene, adaptive("gsl-rk8pd", 1e-13), 0.0, 1e-6);
+    const Story story = tell_by_integration(design, scene, adaptive("gsl-rk8pd", 1e-13), 0.0, 1e-6);
     EXPECT_EQ(story.outcome.candidates, side > 0 ? 1 : 0) << side;
     ASSERT_EQ(story.grazes.size(), 1u) << "the graze must be told";
     EXPECT_EQ(story.grazes[0].normal_force<0.0, side> 0);

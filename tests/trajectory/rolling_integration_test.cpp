@@ -9,7 +9,7 @@
 #include "physics/rolling.hpp"
 #include "support/designs.hpp"
 #include "support/print.hpp"
-#include "trajectory/trace.hpp"
+#include "trajectory/story.hpp"
 
 namespace leapmap {
 namespace {
@@ -232,7 +232,7 @@ TEST(RollingIntegration, AMaximumThatGrazesZeroIsToldTheRightWay) {
   scene.hop_height = 100.0;
   const auto story_at = [&](double slope) {
     design.slope = slope;
-    return tell(design, scene, adaptive("gsl-rk8pd", 1e-13), 0.0, 1e-2);
+    return tell_by_integration(design, scene, adaptive("gsl-rk8pd", 1e-13), 0.0, 1e-2);
   };
   double low = 0.210, high = 0.212;
   const std::size_t at_low = story_at(low).candidates.size(), at_high = story_at(high).candidates.size();

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "trajectory/contact_phases.hpp"
+#include "trajectory/graze.hpp"
 #include "trajectory/outcome.hpp"
-#include "trajectory/rolling_integration.hpp"
 
 namespace leapmap {
+
+struct IntegrationOptions;
 
 /// The motion at one time. Lengths in R, times in sqrt(R/g), forces in weights.
 struct TracePoint {
@@ -38,28 +40,22 @@ struct Candidate {
 
 struct Story {
   Outcome outcome;
-  Outcome checked;  ///< by a second method: integration if `outcome` is exact, and the other way round
   std::vector<Candidate> candidates;
   std::vector<PhaseStart> phases;  ///< with Coulomb friction; else empty
-  std::vector<Graze> grazes;       ///< zeros of the normal force decided by a hair, see Graze
+  std::vector<Graze> grazes;       ///< zeros of the normal force decided by a hair; of integration only
   std::vector<TracePoint>
       points;  ///< from release to the end: the jump's landing, the stall, the runway's end
 };
 
-/// Solves one design and tells everything about it. interval > 0: samples the motion that often [sqrt(R/g)],
-/// and at the jump's lift-off and landing. Grazes are told if |N| there is below graze_limit.
-/// Throws InputError if that would be more than 10^7 samples.
-Story tell(const Design& design, const Scene& scene, const IntegrationOptions& options, double interval = 0.0,
-           double graze_limit = 1e-6);
+inline constexpr double check_tolerance = 1e-12;  ///< of the method that checks a story
 
-/// The same with Coulomb friction: by the exact solver at that tolerance if options.stepper is null, else by
-/// integration.
-Story tell_with_friction(const Design& design, const Scene& scene, const IntegrationOptions& options,
-                         double tolerance, double interval = 0.0);
+/// Solves one design by the exact solver and tells everything about it, for which no integrator is needed.
+/// interval > 0: samples the motion that often [sqrt(R/g)], and at the jump's lift-off and landing. The
+/// motion towards a stall ends a hair before it. Throws InputError if that would be more than 10^7 samples.
+Story tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval = 0.0);
 
-/// The same by the exact solver: outcome and candidates are its own. Motion and grazes are gsl-rk8pd's, at
-/// 1e-12, whose outcome is told as `checked`.
-Story tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval = 0.0,
-                   double graze_limit = 1e-6);
+/// The same by integration in time, with grazes whose |N| is below graze_limit.
+Story tell_by_integration(const Design& design, const Scene& scene, const IntegrationOptions& options,
+                          double interval = 0.0, double graze_limit = 1e-6);
 
 }  // namespace leapmap

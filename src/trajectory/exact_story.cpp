@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A design's story without an integrator: rolling by its energy integral, whose time is inverted, sliding by
+/// Picard's iteration from sample to sample, flights in closed form.
+#include <cmath>
+#include <limits>
+
+#include "physics/flight_search.hpp"
+#include "physics/rolling_by_angle.hpp"
+#include "trajectory/coulomb.hpp"
+#include "trajectory/exact.hpp"
+#include "trajectory/rolling_time.hpp"
+#include "trajectory/trace_points.hpp"
+
+namespace leapmap {
+namespace {
+
+/// Samples phase after phase.
+class Motion {
+ public:
+  Motion(const Design& design, const Scene& scene, double interval, std::vector<TracePoint>& points)
+      : hoop_(derive<double>(design)),
+        friction_(contact_of<double>(design, scene).mu_kinetic),
+        sampler_{interval, points} {}
+
+  /// Rolls without slip from a state to an angle ahead.
+  void roll(const ContactState<double>& from, double end) {
+    const double duration = time_.halving(begin_roll(hoop_, from.angle, from.spin), end);
+    ContactState<double> start = from;  // of a stretch short enough that its time is found at once
+    sampler_.until(from.time + duration, [&](double t) {
+      const Roll<double> roll = begin_roll(hoop_, start.angle, start.spin);
+      const double x = rolled_within(roll, t - start.time, end - start.angle);
+      ContactState<double> at{.time = t, .travel = start.travel + x, .angle = start.angle + x};
+      at.spin = x > 0.0 ? std::sqrt(std::max(vis_viva_past_release(roll, x), 0.0) /
+                                    contact_inertia(hoop_, trig(at.angle)))
+                        : start.spin;
+      if (x > 1.0) start = at;
+      return rolling_point(hoop_, at);
+    });
+  }
+
+  void slide(const ContactState<double>& from, int direction, double end) {
+    ContactState<double> at = from;
+    sampler_.until(end, [&](double t) {
+      if (!sliding_.advance(hoop_, friction_, at, t - at.time, direction)) at.angle = NAN;
+      at.time = t;
+      return sliding_point(hoop_, direction * friction_, at);
+    });
+  }
+
+  void fly(const ContactState<double>& from, double flight_time) { sampler_.fly(hoop_, from, flight_time); }
+
+ private:
+  /// How far it rolls in a time, at most `most`: the root of t(x), whose derivative is 1 / w.
+  double rolled_within(const Roll<double>& roll, double duration, double most) const {
+    if (!(duration > 0.0)) return 0.0;
+    const auto time_left = [&](double x) {
+      const double E = vis_viva_past_release(roll, x);
+      return Sample<double>{time_.halving(roll, roll.release + x) - duration,
+                            std::sqrt(contact_inertia(hoop_, trig(roll.release + x)) / E)};
+    };
+    const double resolution = 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + most);
+    return polish_root(time_left, 0.0, most * (1.0 + 1e-15), 0.5 * most, true, resolution);
+  }
+
+  Hoop<double> hoop_;
+  double friction_;
+  TraceSampler sampler_;
+  RollingTime<double> time_{check_tolerance};
+  SlidingLeg<double> sliding_{check_tolerance};
+};
+
+/// A stall is approached for ever so slowly as its energy is lost in roundings: a hair before it is enough.
+double short_of_stall(double release, double stall) { return release + (stall - release) * (1.0 - 1e-9); }
+
+/// As a sweep solves it: all but the times, which are within the tolerance, are the map's to the last digit.
+Story of_rolling(const Design& design, const Scene& scene, double tolerance, double interval) {
+  Story story;
+  std::vector<LiftOff<double>> lift_offs;
+  ExactSolver<Batch>(tolerance).solve({&design, 1}, scene, {&story.outcome, 1}, &lift_offs);
+  const Outcome& outcome = story.outcome;
+  const Hoop<double> hoop = derive<double>(design);
+  const Roll<double> roll = begin_roll(hoop, design.release_angle, design.release_spin);
+  const RollingTime<double> time(tolerance);
+  for (LiftOff<double>& lift_off : lift_offs) {
+    lift_off.time = time.halving(roll, lift_off.angle);
+    story.candidates.push_back({lift_off, fly(hoop, lift_off)});
+  }
+  if (!story.candidates.empty()) {
+    story.candidates.front().lift_off.time = outcome.first_jump_time;
+    story.candidates.front().flight.height = outcome.first_jump_height;
+  }
+  const bool jumps = outcome.status == Status::jumped;
+  if (jumps) {
+    Candidate& jump = story.candidates.back();
+    jump.lift_off.time = outcome.jump_time;
+    jump.flight = {outcome.jump_height, outcome.apex_time, outcome.flight_time, outcome.dip};
+  }
+  const bool sets_out = design.release_spin > 0.0 ||
+                        (design.release_spin == 0.0 && torque(hoop, trig(design.release_angle)) > 0.0);
+  if (!(interval > 0.0) || !sets_out || outcome.status == Status::airborne_at_release) return story;
+
+  double end = jumps ? outcome.jump_angle : design.release_angle + 2.0 * std::numbers::pi * scene.runway;
+  if (outcome.status == Status::stalled) {
+    const FirstMinimum<double> least = first_minimum(roll);
+    end = short_of_stall(design.release_angle, stall_angle(roll, least.angle, least.crest));
+  }
+  Motion motion(design, scene, interval, story.points);
+  motion.roll({.angle = design.release_angle, .spin = design.release_spin}, end);
+  if (jumps) {
+    const ContactState<double> lift_off{.time = outcome.jump_time,
+                                        .travel = outcome.jump_distance,
+                                        .angle = outcome.jump_angle,
+                                        .spin = outcome.jump_spin};
+    story.points.push_back(rolling_point(hoop, lift_off));
+    motion.fly(lift_off, outcome.flight_time);
+  }
+  return story;
+}
+
+Story with_friction(const Design& design, const Scene& scene, double tolerance, double interval) {
+  Story story;
+  ContactState<double> end;
+  CoulombObserver observer;
+  observer.phase = [&](Phase phase, const ContactState<double>& state, int direction) {
+    story.phases.push_back({phase, state, direction});
+  };
+  observer.lift_off = [&](const LiftOff<double>& lift_off, const Flight<double>& flight) {
+    story.candidates.push_back({lift_off, flight});
+  };
+  observer.end = [&](const ContactState<double>& state) { end = state; };
+  story.outcome = CoulombSolver<double>(tolerance).solve(design, scene, observer);
+  if (!(interval > 0.0)) return story;
+
+  const Hoop<double> hoop = derive<double>(design);
+  Motion motion(design, scene, interval, story.points);
+  auto flight = story.candidates.begin();
+  for (std::size_t i = 0; i < story.phases.size(); ++i) {
+    const auto& [phase, from, direction] = story.phases[i];
+    const bool is_last = i + 1 == story.phases.size();
+    const ContactState<double>& to = is_last ? end : story.phases[i + 1].state;
+    if (phase == Phase::rolling) {
+      const bool stalls = is_last && story.outcome.status == Status::stalled;
+      motion.roll(from, stalls ? short_of_stall(from.angle, to.angle) : to.angle);
+    } else if (phase == Phase::sliding) {
+      motion.slide(from, direction, to.time);
+    } else {
+      story.points.push_back(flight_point(hoop, from, 0.0));
+      motion.fly(from, (flight++)->flight.flight_time);
+    }
+  }
+  return story;
+}
+
+}  // namespace
+
+Story tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval) {
+  return scene.friction == Friction::coulomb ? with_friction(design, scene, tolerance, interval)
+                                             : of_rolling(design, scene, tolerance, interval);
+}
+
+}  // namespace leapmap

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/story.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/rolling.hpp"
+#include "support/designs.hpp"
+
+namespace leapmap {
+namespace {
+
+const Story& paper_story() {
+  static const Story story =
+      tell_by_integration(testing::paper_hoop(), {}, testing::adaptive("gsl-rk8pd", 1e-12), 0.01);
+  return story;
+}
+
+TEST(Story, SamplesEveryIntervalFromReleaseToLanding) {
+  const Story& story = paper_story();
+  const auto& points = story.points;
+  EXPECT_EQ(points.front().t, 0.0);
+  EXPECT_EQ(points.front().phi, std::numbers::pi);
+  const double landing = story.outcome.jump_time + story.outcome.flight_time;
+  EXPECT_NEAR(points.back().t, landing, 1e-12);
+  // Every multiple of the interval up to the landing, the lift-off and the landing.
+  EXPECT_EQ(points.size(), static_cast<std::size_t>(std::floor(landing / 0.01)) + 1 + 2);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    EXPECT_GT(points[i].t, points[i - 1].t);
+    EXPECT_LE(points[i].t - points[i - 1].t, 0.01 * (1 + 1e-9));
+  }
+}
+
+TEST(Story, RollingPointsObeyTheConstraintsAndConserveEnergy) {
+  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  for (const TracePoint& point : paper_story().points) {
+    if (point.phase != Phase::rolling) continue;
+    EXPECT_EQ(point.y, 0.0);
+    EXPECT_NEAR(point.x, point.phi - std::numbers::pi, 1e-14);
+    EXPECT_NEAR(rolling_energy(hoop, point.phi, point.spin), rolling_energy(hoop, std::numbers::pi, 0.0),
+                1e-11);
+  }
+}
+
+TEST(Story, TheNormalForceFallsThroughZeroAtEachCandidateAndTheJumpEndsTheRolling) {
+  const Story& story = paper_story();
+  ASSERT_EQ(story.candidates.size(), 2u);
+  for (const Candidate& candidate : story.candidates) {
+    const TracePoint* before = nullptr;
+    for (const TracePoint& point : story.points)
+      if (point.t < candidate.lift_off.time) before = &point;
+    ASSERT_NE(before, nullptr);
+    EXPECT_GT(before->normal_force, 0.0);
+    EXPECT_LT(before->normal_force, 0.05);
+  }
+  for (const TracePoint& point : story.points)
+    EXPECT_EQ(point.phase, point.t <= story.outcome.jump_time ? Phase::rolling : Phase::flight);
+}
+
+TEST(Story, FlightIsContinuousWithRollingAndReachesTheApex) {
+  const Story& story = paper_story();
+  double highest = 0.0, lowest = 0.0;
+  for (std::size_t i = 1; i < story.points.size(); ++i) {
+    const TracePoint &a = story.points[i - 1], &b = story.points[i];
+    EXPECT_LT(std::abs(b.x - a.x), 0.06);  // at most 4 radii per unit of time, for 0.01
+    EXPECT_LT(std::abs(b.y - a.y), 0.06);
+    highest = std::max(highest, b.y / 2);
+    lowest = std::min(lowest, b.y / 2);
+  }
+  EXPECT_NEAR(highest, story.outcome.jump_height, 1e-4);  // sampled every 0.01, curvature of order one
+  EXPECT_NEAR(lowest, story.outcome.dip, 1e-4);
+  EXPECT_NEAR(story.points.back().y, 0.0, 1e-12);
+}
+
+TEST(Story, WithoutAJumpItEndsWithTheRollingAndWithoutAnIntervalItIsEmpty) {
+  Design design = testing::paper_hoop();
+  design.slope = 0.02;
+  design.mass_ratio = 0.1;
+  const Story story = tell_by_integration(design, {}, testing::adaptive("gsl-rk8pd", 1e-10), 0.05);
+  EXPECT_EQ(story.outcome.status, Status::no_jump);
+  ASSERT_FALSE(story.points.empty());
+  EXPECT_EQ(story.points.back().phase, Phase::rolling);
+  EXPECT_TRUE(tell_by_integration(design, {}, testing::adaptive("gsl-rk8pd", 1e-10)).points.empty());
+}
+
+/// The motion without an integrator beside the integrated one, both at 1e-12.
+void expect_the_same_motion(const Design& design, const Scene& scene, const std::string& where) {
+  const Story exact = tell_exactly(design, scene, 1e-12, 0.05);
+  const Story integrated = tell_by_integration(design, scene, testing::adaptive("gsl-rk8pd", 1e-12), 0.05);
+  if (integrated.outcome.status == Status::failed || !same_flags(exact.outcome, integrated.outcome)) return;
+  ASSERT_EQ(exact.points.size(), integrated.points.size()) << where;
+  for (std::size_t i = 0; i < exact.points.size(); ++i) {
+    const TracePoint &a = exact.points[i], &b = integrated.points[i];
+    // Errors of the integration, 1e-12 a step, grow with the motion's own sensitivity.
+    const double close = 1e-8 * (1.0 + std::abs(b.spin) + std::abs(b.normal_force));
+    EXPECT_EQ(a.phase, b.phase) << where << " point " << i;
+    EXPECT_NEAR(a.t, b.t, 1e-8) << where << " point " << i;
+    EXPECT_NEAR(a.phi, b.phi, close) << where << " point " << i;
+    EXPECT_NEAR(a.spin, b.spin, close) << where << " point " << i;
+    EXPECT_NEAR(a.x, b.x, close) << where << " point " << i;
+    EXPECT_NEAR(a.y, b.y, close) << where << " point " << i;
+    EXPECT_NEAR(a.normal_force, b.normal_force, 10 * close) << where << " point " << i;
+    EXPECT_NEAR(a.friction, b.friction, 10 * close) << where << " point " << i;
+  }
+}
+
+TEST(Story, TheExactMotionIsTheIntegratedOneWithoutSlip) {
+  expect_the_same_motion(testing::paper_hoop(), {}, "the paper's hoop");
+  std::mt19937_64 random(4710);
+  for (int i = 0; i < 200; ++i)
+    expect_the_same_motion(testing::random_design(random), {}, "design " + std::to_string(i));
+}
+
+TEST(Story, TheExactMotionIsTheIntegratedOneWithFriction) {
+  Scene scene;
+  scene.friction = Friction::coulomb;
+  expect_the_same_motion(testing::paper_hoop(), scene, "the paper's hoop");
+  std::mt19937_64 random(4711);
+  for (int i = 0; i < 200; ++i) {
+    Design design = testing::random_design(random);
+    design.mu_static = testing::uniform(random, 0.1, 1.5);
+    design.restitution = testing::uniform(random, 0.0, 0.6);
+    expect_the_same_motion(design, scene, "design " + std::to_string(i));
+  }
+}
+
+TEST(Story, AStallAndAReleaseThatDoesNotSetOutHaveTheMotionThereIs) {
+  Design design = testing::paper_hoop();
+  design.slope = 0.1;
+  design.release_angle = 1.0;  // rises to a stall
+  design.release_spin = 0.3;
+  const Story story = tell_exactly(design, {}, 1e-10, 0.05);
+  ASSERT_EQ(story.outcome.status, Status::stalled);
+  ASSERT_GT(story.points.size(), 5u);
+  // Within a sample of the stall the spin is at most the deceleration, of order 1, times 0.05.
+  EXPECT_LT(story.points.back().spin, 0.1);
+  design.release_spin = -0.1;
+  EXPECT_TRUE(tell_exactly(design, {}, 1e-10, 0.05).points.empty());
+}
+
+}  // namespace
+}  // namespace leapmap
