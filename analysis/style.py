@@ -9,14 +9,13 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-NO_JUMP = "#d9d9d9"  # grey: the model gives no jump
 EDGE = "#303030"  # outlines and hatching
 MARK = "#d62728"  # the paper's hoop
 plt.rcParams.update({
     "font.size": 9, "axes.titlesize": 9, "axes.labelsize": 9, "legend.fontsize": 8, "figure.dpi": 100,
     "savefig.dpi": 120, "hatch.linewidth": 0.4, "hatch.color": EDGE,
     "svg.hashsalt": "leapmap",
-    "svg.fonttype": "none",
+    "svg.fonttype": "none", "pdf.fonttype": 42,
 })
 
 
@@ -25,26 +24,38 @@ def parser(description, source, default_output):
     p = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("source", metavar="FILE", help=source)
     p.add_argument("-o", "--output", default=default_output,
-                   help="file name without ending; PNG and SVG are written (default: %(default)s)")
+                   help="file name without ending; PNG, SVG and PDF are written (default: %(default)s)")
     return p
 
 
 def stem(output):
     """A file name without its ending, should the user have given one."""
-    return output.removesuffix(".png").removesuffix(".svg")
+    return output.removesuffix(".png").removesuffix(".svg").removesuffix(".pdf")
 
 
 def save(figure, output):
-    """Writes PNG and SVG and says where they are."""
+    """Writes PNG, SVG and PDF, the same bytes for the same map, and says where they are."""
     output = stem(output)
     folder = os.path.dirname(output)
     if folder:
         os.makedirs(folder, exist_ok=True)
-    for ending, metadata in (("png", None), ("svg", {"Date": None})):
+    for ending, metadata in (("png", None), ("svg", {"Date": None}), ("pdf", {"CreationDate": None})):
         path = f"{output}.{ending}"
         figure.savefig(path, metadata=metadata)
         print(path)
     plt.close(figure)
+
+
+def legend_above(figure, handles):
+    """A legend over all panels, in rows that fit the figure's width."""
+    if not handles:
+        return
+    # Some 5.5 points a letter of 8 points, and the handle beside.
+    longest = max(len(h.get_label()) for h in handles)
+    columns = max(1, min(len(handles), int(72 * figure.get_figwidth() / (4.6 * longest + 40))))
+    rows = -(-len(handles) // columns)
+    figure.legend(handles=handles, loc="upper center", ncols=columns, frameon=False)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - (0.12 + 0.2 * rows) / figure.get_figheight()))
 
 
 def run(main, *errors):

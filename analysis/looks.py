@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a map's quantities and outcomes are called and how they look, on charts and on the explorer's page."""
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from read_map import NotAMap
+
+PAPER = {"slope": 0.40, "mass_ratio": 20 / 8.2, "offset_ratio": 1.0, "inertia_factor": 1.0,
+         "release_angle": math.pi, "release_spin": 0.0}
+# parameter -> its name on an axis, its symbol in a title, its unit as shown
+PARAMETERS = {
+    "slope": ("slope", "slope", "°"),
+    "mass_ratio": ("mass ratio mₚ/m", "mₚ/m", ""),
+    "offset_ratio": ("offset ratio L/R", "L/R", ""),
+    "inertia_factor": ("inertia factor I/(m R²)", "I/(m R²)", ""),
+    "release_angle": ("release angle", "release angle", "°"),
+    "release_spin": ("release spin [√(g/R)]", "release spin", ""),
+    "mu_static": ("static friction coefficient μ", "μ", ""),
+    "mu_kinetic": ("kinetic friction coefficient", "μ kinetic", ""),
+    "restitution": ("restitution", "restitution", ""),
+}
+# status -> colour and words where there is no jump to draw
+STATUSES = {
+    "no_jump": ("#d9d9d9", "no jump on the runway"),
+    "stalled": ("#a6a6a6", "stalled"),
+    "airborne_at_release": ("#c6b7d6", "airborne at release"),
+    "indeterminate": ("#8c6bb1", "indeterminate (Painlevé)"),
+    "failed": ("#f4a582", "failed"),
+    "not_computed": ("#ffffff", "not computed"),
+}
+
+
+@dataclass
+class Look:
+    """How a quantity is drawn. levels: of the isolines, None: chosen from the data."""
+    label: str
+    unit: str
+    colours: str = "viridis"
+    exponent: float = 1.0  # of the colour scale
+    log: bool = False
+    levels: tuple = None
+    ink: str = "white"  # of the isolines
+
+    @property
+    def title(self):
+        return f"{self.label} [{self.unit}]" if self.unit else self.label
+
+
+HEIGHTS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
+LOOKS = {
+    "jump_height": Look("jump height", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_time": Look("time from release to the jump", "s", "cividis_r", ink="black"),
+    "agility": Look("agility: height over time from release to apex", "m/s", "plasma", log=True,
+                    levels=(0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0)),
+    "first_jump_height": Look("height of the first lift-off", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "first_jump_time": Look("time from release to the first lift-off", "s", "cividis_r", ink="black"),
+    "jump_angle": Look("angle at the jump's lift-off", "rad"),
+    "jump_spin": Look("spin at the jump's lift-off", "√(g/R)"),
+    "apex_time": Look("time from lift-off to apex", "s"),
+    "flight_time": Look("time from lift-off to landing", "s"),
+    "dip": Look("dip of the flight into the plane", "hoop diameters", "viridis_r"),
+    "candidates": Look("lift-offs looked at", ""),
+    "slip_distance": Look("distance slid", "R"),
+    "landing_spin": Look("spin after landing", "√(g/R)"),
+    "jump_distance": Look("rolled until the jump's lift-off", "R"),
+    "energy_lost": Look("energy lost until the jump", "(m + mₚ) g R"),
+}
+# Vertical jumping agility of published jumpers [m/s]: Haldane, Plecnik, Yim and Fearing, "Robotic vertical jumping agility via
+# series-elastic power modulation", Science Robotics 1 (2016) eaag2048.
+JUMPERS = {"Salto": 1.75, "galago": 2.24}
+JUMPERS_SOURCE = "Haldane et al., Science Robotics 1 (2016) eaag2048"
+
+
+def quantity(m, name):
+    """A field of the map, or what follows from several; NaN where it does not apply. None if the map cannot tell."""
+    if name == "agility":
+        parts = [m.fields.get(k) for k in ("jump_height", "jump_time", "apex_time")]
+        if any(p is None for p in parts):
+            return None
+        height, time, apex = (np.asarray(p, float) for p in parts)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return 2 * m.numbers()["radius"] * height / (time + apex)
+    values = m.fields.get(name)
+    return None if values is None or name not in LOOKS else np.asarray(values, float)
+
+
+def levels_of(look, values):
+    """Where the isolines lie: given, or 1-2-5 steps that give 8 to 16 of them over the middle of the data."""
+    if look.levels is not None:
+        return np.asarray(look.levels)
+    finite = values[np.isfinite(values)]
+    low, high = np.percentile(finite, [0.5, 99.0]) if finite.size else (0.0, 1.0)
+    high = max(high, low + 1e-6 * abs(low) + 1e-9)
+    for step in (s * 10.0**e for e in range(-9, 12) for s in (1, 2, 5)):
+        if (high - low) / step <= 16:
+            return np.arange(math.floor(low / step), math.ceil(high / step) + 1) * step
+    raise NotAMap("values beyond all bounds")
+
+
+def shown(name, value):
+    """A parameter's value in its unit as shown: angles in degrees."""
+    return f"{math.degrees(value):.4g}°" if PARAMETERS[name][2] == "°" else f"{value:.4g}"
+
+
+def titled(name, value):
+    return f"{PARAMETERS[name][1]} = {shown(name, value)}" if name in PARAMETERS else f"{name} = {value:.4g}"
+
+
+def is_log(values):
+    """Whether an axis is drawn on a logarithmic scale: its values are spread like that."""
+    if not (values[0] > 0 and values[-1] / values[0] > 10):
+        return False
+    middle, ends = values[len(values) // 2], (values[0] + values[-1]) / 2
+    return len(values) > 2 and abs(math.log(middle / math.sqrt(values[0] * values[-1]))) < abs(math.log(middle / ends))
+
+
+def cliffs(angle, axis):
+    """Where the jump passes to another lift-off between a design and the next along an axis: isolines must not cross."""
+    with np.errstate(invalid="ignore"):
+        return np.abs(np.diff(angle, axis=axis)) > 1.0  # rad; along one lift-off the angle changes far less a cell

@@ -1,0 +1,112 @@
+// One hoop on its slope, to scale, at a moment of its motion.
+
+const PHASES = { 1: ["rolls", "#1f4e79"], 2: ["slides", "#d95f02"], 3: ["flies", "#1b9e77"] };
+
+/** The sample before a time, and how far on to the next. */
+function sampleAt(motion, time) {
+  const t = motion.t;
+  let low = 0, high = t.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (t[middle] <= time) low = middle; else high = middle;
+  }
+  const span = t[high] - t[low];
+  return { low, high, part: span > 0 ? Math.min(1, Math.max(0, (time - t[low]) / span)) : 0 };
+}
+/** A column of the motion at a time, between samples along a straight line. */
+function valueAt(motion, name, time) {
+  const { low, high, part } = sampleAt(motion, time);
+  return motion[name][low] + (motion[name][high] - motion[name][low]) * part;
+}
+
+/**
+ * Draws the hoop at a time. design: {slope, offset_ratio, radius}; closeUp: follows the hoop. x goes down the slope and y away
+ * from it, on the screen turned by the slope; the point mass is at angle phi from the line to the plane, clockwise.
+ */
+function drawHoop(canvas, design, motion, time, closeUp) {
+  const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
+  canvas.width = Math.max(1, Math.round(box.width * ratio));
+  canvas.height = Math.max(1, Math.round(box.height * ratio));
+  const context = canvas.getContext("2d"), R = design.radius, n = motion.t.length;
+  const cos = Math.cos(design.slope), sin = Math.sin(design.slope);
+  // From along and above the plane to the right and down.
+  const turned = (x, y) => [x * cos + y * sin, x * sin - y * cos];
+  const centre = (k) => turned(motion.x[k], motion.y[k] + R);
+  let [left, right, top, bottom] = [Infinity, -Infinity, Infinity, -Infinity];
+  for (let k = 0; k < n; ++k) {
+    const [u, v] = centre(k);
+    left = Math.min(left, u - 1.6 * R); right = Math.max(right, u + 1.6 * R);
+    top = Math.min(top, v - 1.4 * R); bottom = Math.max(bottom, v + 2.2 * R);
+  }
+  const x = valueAt(motion, "x", time), y = valueAt(motion, "y", time), phi = valueAt(motion, "phi", time);
+  const [cu, cv] = turned(x, y + R);
+  if (closeUp) [left, right, top, bottom] = [cu - 4.5 * R, cu + 4.5 * R, cv - 2.2 * R, cv + 2.2 * R];
+  const scale = Math.min(canvas.width / (right - left), canvas.height / (bottom - top));
+  const px = ([u, v]) => [(u - (left + right) / 2) * scale + canvas.width / 2, (v - (top + bottom) / 2) * scale + canvas.height / 2];
+
+  context.fillStyle = "#f4f6f8";
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  // The plane, far beyond both edges.
+  const far = (canvas.width + canvas.height) / scale, here = x;
+  const [a, b] = [px(turned(here - far, 0)), px(turned(here + far, 0))];
+  context.beginPath();
+  context.moveTo(...a);
+  context.lineTo(...b);
+  context.lineTo(b[0], b[1] + 2 * canvas.height);
+  context.lineTo(a[0], a[1] + 4 * canvas.height + far * scale);
+  context.closePath();
+  context.fillStyle = "#dfe3e8";
+  context.fill();
+  context.lineWidth = 1.5 * ratio;
+  context.strokeStyle = "#404040";
+  context.stroke();
+
+  // The centre's path so far, coloured by phase; a mark wherever a phase begins.
+  const { low } = sampleAt(motion, time);
+  context.lineWidth = 2 * ratio;
+  for (let k = 0; k < low; ++k) {
+    context.beginPath();
+    context.strokeStyle = (PHASES[motion.phase[k + 1]] ?? PHASES[1])[1];
+    context.moveTo(...px(centre(k)));
+    context.lineTo(...px(centre(k + 1)));
+    context.stroke();
+  }
+  const phase = PHASES[motion.phase[low]] ?? PHASES[1];
+  context.beginPath();
+  context.arc(...px([cu, cv]), R * scale, 0, 2 * Math.PI);
+  context.lineWidth = Math.max(2 * ratio, 0.06 * R * scale);
+  context.strokeStyle = phase[1];
+  context.stroke();
+  // phi = 0: the mass is next to the plane; it goes round as the hoop rolls downhill.
+  const L = design.offset_ratio * R;
+  const mass = turned(x - L * Math.sin(phi), y + R - L * Math.cos(phi));
+  context.beginPath();
+  context.moveTo(...px([cu, cv]));
+  context.lineTo(...px(mass));
+  context.lineWidth = 1.2 * ratio;
+  context.stroke();
+  context.beginPath();
+  context.arc(...px(mass), Math.max(3 * ratio, 0.16 * R * scale), 0, 2 * Math.PI);
+  context.fillStyle = "#b2182b";
+  context.fill();
+
+  // A ruler of a round length, and what the hoop does.
+  const length = niceLength((right - left) / 5), font = 13 * ratio;
+  context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;
+  context.fillStyle = context.strokeStyle = "#303030";
+  context.lineWidth = 2 * ratio;
+  const ruler = [0.8 * font, canvas.height - 1.0 * font];
+  context.beginPath();
+  context.moveTo(ruler[0], ruler[1]);
+  context.lineTo(ruler[0] + length * scale, ruler[1]);
+  context.stroke();
+  context.fillText(length >= 1 ? `${length} m` : length >= 0.01 ? `${short(100 * length)} cm` : `${short(1000 * length)} mm`, ruler[0], ruler[1] - 0.5 * font);
+  context.textAlign = "right";
+  context.fillText(`${phase[0]}${y > 0 ? `, ${short(1000 * y, 3)} mm above the plane` : ""}`, canvas.width - 0.8 * font, 1.5 * font);
+  context.textAlign = "left";
+}
+
+function niceLength(wanted) {
+  const decade = 10 ** Math.floor(Math.log10(wanted));
+  return Number(([5, 2, 1].find((m) => m * decade <= wanted) * decade).toPrecision(3));
+}

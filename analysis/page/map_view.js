@@ -1,0 +1,264 @@
+// The map as an image: cells, hatching, isolines, axes, and a cursor on the design pointed at.
+
+const EDGE = "#303030", MARK = "#d62728";
+
+/**
+ * Draws into a canvas; `map` holds axes, fields with their values, codes. Calls onPoint(index) for the design pointed at,
+ * onPick(index) for the one clicked; index: along each axis of the map.
+ */
+function mapView(canvas, map, onPoint, onPick) {
+  const shape = map.axes.map((a) => a.values.length);
+  const strides = shape.map((_, k) => shape.slice(k + 1).reduce((a, b) => a * b, 1));
+  const view = { x: 0, y: 1, field: map.fields[0], index: shape.map((n) => Math.floor(n / 2)), picked: null };
+  const status = map.codes.status, flags = map.codes.spurious_first_jump, cliffs = map.codes.cliffs;
+  const background = document.createElement("canvas");  // all but the cursor
+  let sx, sy, frame;
+
+  const offset = (i, j) => {
+    let at = i * strides[view.x] + j * strides[view.y];
+    for (let k = 0; k < shape.length; ++k) if (k !== view.x && k !== view.y) at += view.index[k] * strides[k];
+    return at;
+  };
+
+  /** Everything but the cursor, at the screen's own resolution. */
+  function paint() {
+    const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
+    if (!(box.width > 0)) return;
+    canvas.width = background.width = Math.round(box.width * ratio);
+    canvas.height = background.height = Math.round(box.height * ratio);
+    const context = background.getContext("2d"), font = 13 * ratio;
+    frame = { left: 4.6 * font, top: 0.8 * font, right: canvas.width - 6.2 * font, bottom: canvas.height - 3.4 * font, font, ratio };
+    sx = axisScale(map.axes[view.x], frame.left, frame.right);
+    sy = axisScale(map.axes[view.y], frame.bottom, frame.top);
+    context.fillStyle = "#ffffff";
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    paintCells(context);
+    paintIsolines(context);
+    paintAxes(context);
+    paintBar(context);
+    paintPaper(context);
+    paintCursor();
+  }
+
+  function paintCells(context) {
+    const { left, top, right, bottom, ratio } = frame;
+    const x0 = Math.round(left), y0 = Math.round(top), w = Math.round(right) - x0, h = Math.round(bottom) - y0;
+    const image = context.createImageData(w, h), pixels = image.data;
+    const columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5));
+    const { values, table, place } = view.field, period = Math.round(9 * ratio), line = Math.max(1, Math.round(ratio * 0.8));
+    for (let q = 0; q < h; ++q) {
+      const j = sy.index(y0 + q + 0.5);
+      for (let p = 0; p < w; ++p) {
+        const i = columns[p], at = 4 * (q * w + p);
+        let r = 255, g = 255, b = 255;
+        if (i >= 0 && j >= 0) {
+          const k = offset(i, j), value = values[k];
+          if (value === value) {
+            const c = 3 * Math.round(255 * place(value));
+            r = table[c]; g = table[c + 1]; b = table[c + 2];
+            if (flags && flags.values[k] === 1 && (p + q) % period < line) { r *= 0.45; g *= 0.45; b *= 0.45; }
+          } else if (status) {
+            [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
+          } else { r = g = b = 217; }
+        }
+        pixels[at] = r; pixels[at + 1] = g; pixels[at + 2] = b; pixels[at + 3] = 255;
+      }
+    }
+    context.putImageData(image, x0, y0);
+  }
+
+  function paintIsolines(context) {
+    const { font } = frame, { values, levels, ink } = view.field;
+    const plane = (i, j) => values[offset(i, j)];
+    const bitX = 1 << view.x, bitY = 1 << view.y;
+    const torn = (i, j) => cliffs !== undefined &&
+      ((cliffs.values[offset(i, j)] & (bitX | bitY)) !== 0 || (cliffs.values[offset(i + 1, j)] & bitY) !== 0 || (cliffs.values[offset(i, j + 1)] & bitX) !== 0);
+    context.lineWidth = 1.1 * frame.ratio;
+    context.strokeStyle = context.fillStyle = ink;
+    context.font = `${0.85 * font}px system-ui, "DejaVu Sans", sans-serif`;
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    const labels = [];  // where there is text already
+    for (const level of levels)
+      for (const chain of isolines(plane, sx.n, sy.n, level, sx.centre, sy.centre, torn)) {
+        const text = short(level), room = context.measureText(text).width + 0.4 * font;
+        let length = 0;
+        for (let k = 2; k < chain.length; k += 2) length += Math.hypot(chain[k] - chain[k - 2], chain[k + 1] - chain[k - 1]);
+        // A label in the middle of a line long enough for it, away from others.
+        let label = null;
+        if (length > 4 * room) {
+          let gone = 0;
+          for (let k = 2; k < chain.length && label === null; k += 2) {
+            gone += Math.hypot(chain[k] - chain[k - 2], chain[k + 1] - chain[k - 1]);
+            const [x, y] = [chain[k], chain[k + 1]];
+            if (gone > 0.35 * length && labels.every(([u, v]) => Math.hypot(x - u, y - v) > 2.6 * font) &&
+                x > frame.left + room && x < frame.right - room) label = [x, y];
+          }
+        }
+        context.beginPath();
+        for (let k = 0; k < chain.length; k += 2) {
+          const hidden = label !== null && Math.hypot(chain[k] - label[0], chain[k + 1] - label[1]) < 0.55 * room;
+          if (hidden || k === 0) context.moveTo(chain[k], chain[k + 1]);
+          else context.lineTo(chain[k], chain[k + 1]);
+        }
+        context.stroke();
+        if (label) { context.fillText(text, ...label); labels.push(label); }
+      }
+  }
+
+  function paintAxes(context) {
+    const { left, top, right, bottom, font, ratio } = frame;
+    context.strokeStyle = context.fillStyle = EDGE;
+    context.lineWidth = ratio;
+    context.strokeRect(left, top, right - left, bottom - top);
+    context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;
+    context.textAlign = "center";
+    context.textBaseline = "top";
+    context.beginPath();
+    let last = -Infinity;
+    for (const tick of sx.ticks()) {
+      const p = sx.pixel(tick), text = short(tick, 12), width = context.measureText(text).width;
+      context.moveTo(p, bottom);
+      context.lineTo(p, bottom + 0.35 * font);
+      if (p - width / 2 > last) { context.fillText(text, p, bottom + 0.5 * font); last = p + width / 2 + 0.4 * font; }
+    }
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    for (const tick of sy.ticks()) {
+      const p = sy.pixel(tick);
+      context.moveTo(left, p);
+      context.lineTo(left - 0.35 * font, p);
+      context.fillText(short(tick, 12), left - 0.5 * font, p);
+    }
+    context.stroke();
+    context.textAlign = "center";
+    context.textBaseline = "alphabetic";
+    context.fillText(labelOf(map.axes[view.x]), (left + right) / 2, canvas.height - 0.6 * font);
+    context.save();
+    context.translate(1.1 * font, (top + bottom) / 2);
+    context.rotate(-Math.PI / 2);
+    context.fillText(labelOf(map.axes[view.y]), 0, 0);
+    context.restore();
+  }
+
+  /** The colour scale, with its isolines, and published jumpers beside agility. */
+  function paintBar(context) {
+    const { top, bottom, right, font } = frame, field = view.field;
+    const x = right + 0.8 * font, w = 0.9 * font, h = bottom - top;
+    const jumpers = field.name === "agility" ? Object.entries(map.jumpers) : [];
+    for (let q = 0; q < h; ++q) {
+      const c = 3 * Math.round(255 * (1 - q / h));
+      context.fillStyle = `rgb(${field.table[c]},${field.table[c + 1]},${field.table[c + 2]})`;
+      context.fillRect(x, top + q, w, 1.5);
+    }
+    context.font = `${0.85 * font}px system-ui, "DejaVu Sans", sans-serif`;
+    context.textAlign = "left";
+    context.textBaseline = "middle";
+    const placeOf = (value) => bottom - h * field.place(value);
+    let last = Infinity;
+    const mark = (value, text, colour) => {
+      const p = placeOf(value);
+      context.fillStyle = context.strokeStyle = colour;
+      context.beginPath();
+      context.moveTo(x, p);
+      context.lineTo(x + w, p);
+      context.stroke();
+      context.fillText(text, x + w + 0.3 * font, p);
+    };
+    for (const level of [field.low, ...field.levels.filter((l) => l > field.low && l < field.high), field.high]) {
+      const p = placeOf(level);
+      if (last - p < 0.95 * font && level !== field.low) continue;
+      if (jumpers.some(([, v]) => Math.abs(placeOf(v) - p) < 0.9 * font)) continue;
+      last = p;
+      mark(level, short(level, 3), EDGE);
+    }
+    for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name}`, MARK);
+  }
+
+  function paintPaper(context) {
+    if (!map.paper) return;
+    const near = (a, b) => Math.abs(a - b) <= 1e-6 * Math.max(1, Math.abs(b));
+    const here = { ...map.fixed };
+    map.axes.forEach((axis, k) => { if (k !== view.x && k !== view.y) here[axis.name] = axis.values[view.index[k]]; });
+    const drawn = [map.axes[view.x].name, map.axes[view.y].name];
+    if (!drawn.every((name) => name in map.paper) || Object.entries(map.paper).some(([k, v]) => !drawn.includes(k) && !near(here[k], v))) return;
+    const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1);
+    const x = sx.pixel(map.paper[drawn[0]] * unit(map.axes[view.x])), y = sy.pixel(map.paper[drawn[1]] * unit(map.axes[view.y]));
+    if (!(x > frame.left && x < frame.right && y > frame.top && y < frame.bottom)) return;
+    context.beginPath();
+    for (let k = 0; k < 10; ++k) {
+      const r = (k % 2 === 0 ? 0.75 : 0.32) * frame.font, a = -Math.PI / 2 + k * Math.PI / 5;
+      context.lineTo(x + r * Math.cos(a), y + r * Math.sin(a));
+    }
+    context.closePath();
+    context.fillStyle = MARK;
+    context.strokeStyle = "#ffffff";
+    context.lineWidth = 1.4 * frame.ratio;
+    context.fill();
+    context.stroke();
+  }
+
+  function paintCursor() {
+    if (!frame) return;
+    const context = canvas.getContext("2d"), { font, ratio } = frame;
+    context.drawImage(background, 0, 0);
+    const cross = (index, colour, width) => {
+      const x = sx.centre(index[view.x]), y = sy.centre(index[view.y]), r = 0.55 * font;
+      context.lineWidth = width * ratio;
+      context.strokeStyle = colour;
+      context.beginPath();
+      context.arc(x, y, r, 0, 2 * Math.PI);
+      for (const [u, v] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+        context.moveTo(x + u * r, y + v * r);
+        context.lineTo(x + 1.8 * u * r, y + 1.8 * v * r);
+      }
+      context.stroke();
+    };
+    if (view.picked && view.picked.every((i, k) => k === view.x || k === view.y || i === view.index[k])) {
+      cross(view.picked, "#ffffff", 4);
+      cross(view.picked, MARK, 2);
+    }
+    cross(view.index, "#ffffff", 4);
+    cross(view.index, "#000000", 1.6);
+  }
+
+  const labelOf = (axis) => axis.label + (axis.unit === "°" ? " [degrees]" : axis.unit ? ` [${axis.unit}]` : "");
+
+  function pointAt(event) {
+    const box = canvas.getBoundingClientRect();
+    if (!frame) return false;
+    const i = sx.index((event.clientX - box.left) * canvas.width / box.width), j = sy.index((event.clientY - box.top) * canvas.height / box.height);
+    if (i < 0 || j < 0) return false;
+    view.index[view.x] = i;
+    view.index[view.y] = j;
+    return true;
+  }
+  const point = () => { paintCursor(); onPoint(view.index); };
+  const pick = () => { view.picked = [...view.index]; paintCursor(); onPoint(view.index); onPick(view.index); };
+
+  canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch" && pointAt(event)) point(); });
+  canvas.addEventListener("click", (event) => { if (pointAt(event)) pick(); });
+  canvas.addEventListener("keydown", (event) => {
+    const moves = { ArrowLeft: [view.x, -1], ArrowRight: [view.x, 1], ArrowDown: [view.y, -1], ArrowUp: [view.y, 1] };
+    if (event.key in moves) {
+      const [axis, step] = moves[event.key];
+      view.index[axis] = Math.min(shape[axis] - 1, Math.max(0, view.index[axis] + step * (event.shiftKey ? 10 : 1)));
+      point();
+    } else if (event.key === "Enter" || event.key === " ") {
+      pick();
+    } else {
+      return;
+    }
+    event.preventDefault();
+  });
+  new ResizeObserver(() => paint()).observe(canvas);
+
+  return {
+    view, paint, pick, point, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
+    /** Where a design's cell is on the screen, for tests. */
+    placeOf(index) {
+      const box = canvas.getBoundingClientRect();
+      return [box.left + sx.centre(index[view.x]) * box.width / canvas.width, box.top + sy.centre(index[view.y]) * box.height / canvas.height];
+    },
+  };
+}

@@ -1,0 +1,103 @@
+// Height and forces over time, one under the other, with the moment shown.
+
+const PLOTS = [
+  { label: "height [mm]", lines: [{ column: "y", factor: 1000, colour: "#1f4e79" }] },
+  { label: "force [N]", lines: [{ column: "normal_force", colour: "#1f4e79", name: "normal force", contact: true },
+                                { column: "friction", colour: "#d95f02", name: "friction, downhill", contact: true, dash: [6, 4] }] },
+];
+
+/** Draws the plots; weight: what forces are multiplied by [N]. Returns the time at a place on the screen. */
+function drawPlots(canvas, motion, liftOffs, outcome, time, weight) {
+  const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
+  canvas.width = Math.max(1, Math.round(box.width * ratio));
+  canvas.height = Math.max(1, Math.round(box.height * ratio));
+  const context = canvas.getContext("2d"), font = 12 * ratio;
+  const left = 5 * font, right = canvas.width - font, end = motion.t[motion.t.length - 1] || 1;
+  const sx = (t) => left + (right - left) * t / end;
+  const height = (canvas.height - 2.8 * font) / PLOTS.length;
+  context.clearRect(0, 0, canvas.width, canvas.height);
+  context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;
+  context.lineJoin = "round";
+  PLOTS.forEach((plot, k) => {
+    const top = k * height + 0.6 * font, bottom = (k + 1) * height - 0.6 * font;
+    const scaled = plot.lines.map((line) => ({ ...line, values: motion[line.column].map((v) => v * (line.factor ?? weight)) }));
+    let low = 0, high = 1e-12;
+    for (const line of scaled) for (const v of line.values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+    high += 0.05 * (high - low);
+    const sy = (v) => bottom - (bottom - top) * (v - low) / (high - low);
+    // Phases but rolling are shaded.
+    for (let i = 0; i + 1 < motion.t.length; ++i) {
+      const phase = motion.phase[i + 1];
+      if (phase === 1 || phase !== motion.phase[i] && phase !== 3) continue;
+      context.fillStyle = phase === 3 ? "#1b9e7722" : "#d95f0222";
+      context.fillRect(sx(motion.t[i]), top, sx(motion.t[i + 1]) - sx(motion.t[i]), bottom - top);
+    }
+    context.strokeStyle = "#9aa4ae";
+    context.lineWidth = ratio;
+    context.strokeRect(left, top, right - left, bottom - top);
+    context.fillStyle = "#303030";
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    context.beginPath();
+    for (const tick of linearTicks(low, high, 4)) {
+      context.moveTo(left, sy(tick));
+      context.lineTo(right, sy(tick));
+      context.fillText(short(tick, 12), left - 0.4 * font, sy(tick));
+    }
+    context.save();
+    context.globalAlpha = 0.35;
+    context.stroke();
+    context.restore();
+    // Lift-offs: dashed, the jump's in red.
+    for (let i = 0; i < liftOffs.time.length; ++i) {
+      const jump = outcome.status === "jumped" && i + 1 === liftOffs.time.length;
+      context.beginPath();
+      context.setLineDash(jump ? [] : [4 * ratio, 4 * ratio]);
+      context.strokeStyle = jump ? "#d62728" : "#555555";
+      context.moveTo(sx(liftOffs.time[i]), top);
+      context.lineTo(sx(liftOffs.time[i]), bottom);
+      context.stroke();
+    }
+    let legend = left + 0.6 * font;
+    for (const line of scaled) {
+      context.beginPath();
+      context.setLineDash((line.dash ?? []).map((d) => d * ratio));
+      context.strokeStyle = context.fillStyle = line.colour;
+      context.lineWidth = 1.6 * ratio;
+      let drawing = false;
+      line.values.forEach((v, i) => {
+        // A force ends with the contact: no line through the lift-off.
+        if (!Number.isFinite(v) || (line.contact && motion.phase[i] === 3)) { drawing = false; return; }
+        if (drawing) context.lineTo(sx(motion.t[i]), sy(v)); else context.moveTo(sx(motion.t[i]), sy(v));
+        drawing = true;
+      });
+      context.stroke();
+      context.setLineDash([]);
+      if (line.name) {
+        context.textAlign = "left";
+        context.fillText(line.name, legend, top + 0.9 * font);
+        legend += context.measureText(line.name).width + font;
+      }
+    }
+    context.fillStyle = "#303030";
+    context.save();
+    context.translate(1.0 * font, (top + bottom) / 2);
+    context.rotate(-Math.PI / 2);
+    context.textAlign = "center";
+    context.fillText(plot.label, 0, 0);
+    context.restore();
+    context.strokeStyle = "#000000";
+    context.lineWidth = 1.2 * ratio;
+    context.beginPath();
+    context.moveTo(sx(time), top);
+    context.lineTo(sx(time), bottom);
+    context.stroke();
+  });
+  context.textAlign = "center";
+  context.textBaseline = "top";
+  context.fillStyle = "#303030";
+  for (const tick of linearTicks(0, end, 8)) context.fillText(short(tick, 12), sx(tick), PLOTS.length * height - 0.4 * font);
+  context.textBaseline = "alphabetic";
+  context.fillText("time since release [s]", (left + right) / 2, canvas.height - 0.3 * font);
+  return (clientX) => Math.min(end, Math.max(0, ((clientX - box.left) * canvas.width / box.width - left) / (right - left) * end));
+}

@@ -1,0 +1,45 @@
+// leapmap itself, compiled to WebAssembly (src/web/leapmap_wasm.cpp).
+
+async function loadSolver(text) {
+  const imports = {
+    env: { emscripten_notify_memory_growth() {} },
+    wasi_snapshot_preview1: { proc_exit() { throw new Error("the solver gave up"); } },
+  };
+  const { instance } = await WebAssembly.instantiate(await unpacked(text), imports);
+  const leapmap = instance.exports;
+  leapmap._initialize();
+  const word = (pointer) => {
+    if (!pointer) return null;
+    const bytes = new Uint8Array(leapmap.memory.buffer);
+    let end = pointer;
+    while (bytes[end]) ++end;
+    return new TextDecoder().decode(bytes.subarray(pointer, end));
+  };
+  const namesBy = (name) => {
+    const names = [];
+    for (let text; (text = word(name(names.length))) !== null;) names.push(text);
+    return names;
+  };
+  const parameters = namesBy(leapmap.parameter_name), columns = namesBy(leapmap.column_name);
+  const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name);
+  const doubles = (pointer, n) => new Float64Array(leapmap.memory.buffer, pointer, n);
+  const defaults = Object.fromEntries(parameters.map((name, i) => [name, doubles(leapmap.parameters(), parameters.length)[i]]));
+  const rows = (names, pointer, n) => {
+    const values = doubles(pointer, n * names.length).slice();
+    return Object.fromEntries(names.map((name, k) => [name, Float64Array.from({ length: n }, (_, i) => values[i * names.length + k])]));
+  };
+  return {
+    defaults,
+    /** One design in full: {outcome, motion, liftOffs}, in SI but for forces, in weights, and heights, in diameters. */
+    solve(design, slips, tolerance, interval) {
+      doubles(leapmap.parameters(), parameters.length).set(parameters.map((name) => design[name] ?? defaults[name]));
+      leapmap.solve(slips ? 1 : 0, tolerance, interval);
+      const outcome = Object.fromEntries(fields.map((name, i) => [name, word(leapmap.field_text(i)) ?? leapmap.field_value(i)]));
+      return {
+        outcome,
+        motion: rows(columns, leapmap.points(), leapmap.point_count()),
+        liftOffs: rows(liftOffColumns, leapmap.lift_offs(), leapmap.lift_off_count()),
+      };
+    },
+  };
+}

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A map cut into planes over two of its axes, a panel each."""
+import math
+
+import numpy as np
+
+import looks
+from read_map import NotAMap
+from style import plt
+
+MOST_PANELS = 12
+
+
+def add_options(parser):
+    """The options of every chart over two axes."""
+    parser.add_argument("-x", metavar="AXIS", help="the axis drawn to the right (default: slope, or the map's first)")
+    parser.add_argument("-y", metavar="AXIS", help="the axis drawn upwards (default: mass_ratio, or the map's next)")
+    add_at(parser)
+
+
+def add_at(parser):
+    parser.add_argument("--at", metavar="AXIS=VALUE", action="append", default=[],
+                        help="keep only the designs nearest to this value (angles in degrees); may be given again")
+
+
+def fixed_at(m, wanted):
+    """{axis: index of the value nearest to the one asked for}."""
+    found = {}
+    for text in wanted:
+        name, _, value = text.partition("=")
+        if name not in m.dims:
+            raise NotAMap(f"{m.path}: --at {text}: has no axis {name}; allowed: {', '.join(m.dims)}")
+        try:
+            number = float(value.removesuffix("deg").removesuffix("°"))
+        except ValueError:
+            raise NotAMap(f"{m.path}: --at {text}: is not a number after the =") from None
+        if looks.PARAMETERS.get(name, ("", "", ""))[2] == "°":
+            number = math.radians(number)
+        found[name] = int(np.argmin(np.abs(m.dims[name] - number)))
+    return found
+
+
+class Planes:
+    """A grid's panels over the axes x and y, each sorted; panels run over the other axes."""
+
+    def __init__(self, m, x=None, y=None, at=()):
+        self.map = m
+        if "design" in m.dims or len(m.dims) < 2:
+            raise NotAMap(f"{m.path}: is not over two axes or more; such a chart wants a sweep over slope and mass_ratio, say")
+        self.index = fixed_at(m, at)
+        free = [n for n in m.dims if n not in self.index]
+        rest = lambda taken, wish: wish if wish in free and wish != taken else next((n for n in free if n != taken), None)
+        self.x = x or rest(y, "slope")
+        self.y = y or rest(self.x, "mass_ratio")
+        for name in (self.x, self.y):
+            if name not in free:
+                raise NotAMap(f"{m.path}: has no axis {name} to draw; it has {', '.join(free) or 'none that --at does not fix'}")
+            if len(m.dims[name]) < 2:
+                raise NotAMap(f"{m.path}: has one {name} only; such a chart wants at least two")
+        if self.x == self.y:
+            raise NotAMap(f"{m.path}: -x and -y are both {self.x}")
+        self.others = [n for n in free if n not in (self.x, self.y)]
+        self.panels = list(np.ndindex(*(len(m.dims[n]) for n in self.others)))
+        if len(self.panels) > MOST_PANELS:
+            raise NotAMap(f"{m.path}: {len(self.panels)} panels are too many; fix an axis, for example --at "
+                          f"{self.others[0]}={m.dims[self.others[0]][0]:g}")
+        self.order = {n: np.argsort(m.dims[n]) for n in (self.x, self.y)}
+
+    def values(self, name):
+        """An axis's values as drawn: sorted, angles in degrees."""
+        values = self.map.dims[name][self.order[name]]
+        return np.degrees(values) if looks.PARAMETERS.get(name, ("", "", ""))[2] == "°" else values
+
+    def cut(self, array):
+        """An array along all of the map's axes as one plane a panel, rows along y."""
+        names = list(self.map.dims)
+        for name in sorted(self.index, key=names.index, reverse=True):
+            array = np.take(array, self.index[name], axis=names.index(name))
+        names = [n for n in names if n not in self.index]
+        array = np.moveaxis(array, [names.index(n) for n in (*self.others, self.y, self.x)], range(array.ndim))
+        return [array[p][np.ix_(self.order[self.y], self.order[self.x])] for p in self.panels]
+
+    def where(self, panel):
+        """{axis: value} of a panel."""
+        return {n: self.map.dims[n][i] for n, i in zip(self.others, panel)}
+
+    def told(self):
+        """{status: a plane a panel} of where designs do not jump, and why."""
+        m = self.map
+        if "status" in m.fields:
+            meaning = dict(zip(m.about["status"]["flag_meanings"].split(), m.about["status"]["flag_values"]))
+            return {c: self.cut(m.fields["status"] == meaning[c]) for c in looks.STATUSES}
+        done = m.computed()
+        some = next(iter(m.fields.values()))
+        missing = np.isnan(some) if some.dtype.kind == "f" else np.zeros(some.shape, bool)
+        nothing = np.zeros(some.shape, bool)
+        return {c: self.cut(missing & done if c == "no_jump" else ~done if c == "not_computed" else nothing) for c in looks.STATUSES}
+
+    def figure(self, extra_height=0.95):
+        """A figure with a panel each, titled, with its scales and labels; and the axes in use, in the panels' order."""
+        columns = min(4, len(self.panels))
+        rows = math.ceil(len(self.panels) / columns)
+        width, height = (3.0, 2.75) if len(self.panels) > 1 else (6.0, 4.6)
+        figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, layout="constrained",
+                                    figsize=(width * columns + 0.9, height * rows + extra_height))
+        for axis, panel in zip(axes.flat, self.panels):
+            axis.set_title("\n".join(looks.titled(k, v) for k, v in self.where(panel).items()))
+            if looks.is_log(self.values(self.x)):
+                axis.set_xscale("log")
+                axis.xaxis.set_major_formatter(lambda v, _: f"{v:g}")
+            if looks.is_log(self.values(self.y)):
+                axis.set_yscale("log")
+                axis.yaxis.set_major_formatter(lambda v, _: f"{v:g}")
+        for axis in axes.flat[len(self.panels):]:
+            axis.set_visible(False)
+        figure.supxlabel(f"{axis_label(self.x)}\n{self.caption(columns)}", fontsize=9)
+        figure.supylabel(axis_label(self.y), fontsize=9)
+        if not self.map.whole:
+            figure.text(0.01, 0.01, f"INCOMPLETE: {self.map.computed().mean():.0%} of the designs are computed", color="#d62728", fontsize=9)
+        return figure, list(axes.flat[:len(self.panels)])
+
+    def fixed(self):
+        """{parameter: value} of what all panels share."""
+        numbers = {**self.map.numbers(), **{n: self.map.dims[n][i] for n, i in self.index.items()}}
+        return {k: v for k, v in numbers.items() if k not in self.map.dims or k in self.index}
+
+    def caption(self, columns):
+        """What the axes do not tell: the parameters and the scene all panels share; on two lines below a single panel."""
+        fixed = self.fixed()
+        contact = ("mu_static", "mu_kinetic", "restitution")
+        words = [looks.titled(k, fixed[k]) for k in looks.PARAMETERS if k in fixed and (k not in contact or self.map.slips)]
+        words += [f"runway {fixed['runway']:g} turns", f"jump from {fixed['hop_height']:g} diameters", f"R = {1e3 * fixed['radius']:g} mm"]
+        half = len(words) if columns > 1 else (len(words) + 1) // 2
+        return "\n".join(",  ".join(part) for part in (words[:half], words[half:]) if part)
+
+    def paper(self, panel):
+        """Where the paper's hoop is in a panel, as drawn: (x, y), or None if it does not belong there."""
+        here = {**self.fixed(), **self.where(panel)}
+        other = [k for k in looks.PAPER if k not in (self.x, self.y)]
+        if self.map.slips or not all(math.isclose(here.get(k, math.nan), looks.PAPER[k], rel_tol=1e-6, abs_tol=1e-9) for k in other):
+            return None
+        place = []
+        for name in (self.x, self.y):
+            if name not in looks.PAPER:
+                return None
+            value = math.degrees(looks.PAPER[name]) if looks.PARAMETERS[name][2] == "°" else looks.PAPER[name]
+            values = self.values(name)
+            if not values[0] <= value <= values[-1]:
+                return None
+            place.append(value)
+        return tuple(place)
+
+
+def axis_label(name):
+    label, _, unit = looks.PARAMETERS.get(name, (name, name, ""))
+    return f"{label} [{'degrees' if unit == '°' else unit}]" if unit else label
