@@ -88,8 +88,7 @@ class Planes:
         """{status: a plane a panel} of where designs do not jump, and why."""
         m = self.map
         if "status" in m.fields:
-            meaning = dict(zip(m.about["status"]["flag_meanings"].split(), m.about["status"]["flag_values"]))
-            return {c: self.cut(m.fields["status"] == meaning[c]) for c in looks.STATUSES}
+            return {c: self.cut(m.code("status", c)) for c in looks.STATUSES}
         done = m.computed()
         some = next(iter(m.fields.values()))
         missing = np.isnan(some) if some.dtype.kind == "f" else np.zeros(some.shape, bool)

@@ -50,11 +50,17 @@ class Map:
             done = np.repeat(done, k, axis)
         return done[tuple(slice(n) for n in shape)]
 
+    def meanings(self, name):
+        """{meaning: value} of a code."""
+        about = self.about[name]
+        words, values = about.get("flag_meanings"), about.get("flag_values")
+        if not isinstance(words, str) or len(words.split()) != np.size(values):
+            raise NotAMap(f"{self.path}: {name} does not say what its codes mean")
+        return dict(zip(words.split(), np.atleast_1d(values).tolist()))
+
     def code(self, name, meaning):
         """Where the code `name` has this meaning."""
-        about = self.about[name]
-        value = about["flag_values"][about["flag_meanings"].split().index(meaning)]
-        return self.fields[name] == value
+        return self.fields[name] == self.meanings(name)[meaning]
 
     def numbers(self):
         """The numbers of the resolved spec that made it, by key; what an axis varies is not among them."""
@@ -74,25 +80,32 @@ def _read(path, filetype):
     except OSError as error:
         raise NotAMap(f"{path}: cannot be read as HDF5 ({error})") from None
     with file:
-        attributes = dict(file.attrs)
-        if attributes.get("filetype") != filetype:
-            raise NotAMap(f'{path}: is not a {filetype} (its attribute filetype is {attributes.get("filetype")!r})')
-        if attributes["version"][0] > FORMAT_MAJOR:
-            raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
-                          "use a newer leapmap")
-        result = Map(path, attributes)
-        for name, dataset in file.items():
-            if not isinstance(dataset, h5py.Dataset):  # the group that tells viewers what to plot
-                continue
-            result.about[name] = dict(dataset.attrs)
-            if h5py.h5ds.is_scale(dataset.id):
-                continue
-            texts = h5py.check_string_dtype(dataset.dtype)
-            result.fields[name] = dataset.asstr()[()] if texts else dataset[()]
-            result.tile = dataset.chunks or result.tile
-            for dimension in dataset.dims:  # the order of dimensions is the fields' own
-                scale = dimension[0]
-                result.dims.setdefault(scale.name.lstrip("/"), scale[()])
+        try:
+            return _read_open(path, file, filetype)
+        except (AttributeError, IndexError, KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
+            raise NotAMap(f"{path}: is damaged, or not written by leapmap ({str(error).strip()})") from None
+
+
+def _read_open(path, file, filetype):
+    attributes = dict(file.attrs)
+    if attributes.get("filetype") != filetype:
+        raise NotAMap(f'{path}: is not a {filetype} (its attribute filetype is {attributes.get("filetype")!r})')
+    if attributes["version"][0] > FORMAT_MAJOR:
+        raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
+                      "use a newer leapmap")
+    result = Map(str(path), attributes)
+    for name, dataset in file.items():
+        if not isinstance(dataset, h5py.Dataset):  # the group that tells viewers what to plot
+            continue
+        result.about[name] = dict(dataset.attrs)
+        if h5py.h5ds.is_scale(dataset.id):
+            continue
+        texts = h5py.check_string_dtype(dataset.dtype)
+        result.fields[name] = dataset.asstr()[()] if texts else dataset[()]
+        result.tile = dataset.chunks or result.tile
+        for dimension in dataset.dims:  # the order of dimensions is the fields' own
+            scale = dimension[0]
+            result.dims.setdefault(scale.name.lstrip("/"), scale[()])
     return result
 
 

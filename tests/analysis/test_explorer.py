@@ -1,0 +1,377 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The explorer's page in a real browser, Debian's chromium without a window: what it shows is the map's and leapmap's own."""
+import json
+import os
+import shlex
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import Select, WebDriverWait
+from support.program import PROGRAM, TOP, finished, leapmap, sweep
+
+MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
+ARTEFACTS = Path(os.environ["LEAPMAP_BUILD"]) / "artefacts"
+
+SPEC = """
+[design]
+slope = { from = "2 deg", to = "50 deg", count = 49 }
+mass_ratio = { from = 0.1, to = 20, count = 40, scale = "log" }
+offset_ratio = { values = [0.6, 1.0] }
+"""
+
+
+def explorer(*arguments):
+    return finished("/usr/bin/python3", TOP / "analysis/explorer", *arguments, "--module", MODULE)
+
+
+def made(path):
+    done = explorer(path, "-o", path.with_suffix(".html"))
+    assert done.returncode == 0, done.stderr
+    return path.with_suffix(".html")
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    options = Options()
+    options.binary_location = "/usr/bin/chromium"
+    for switch in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-dev-shm-usage",
+                   "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
+                   "--window-size=1400,1300", f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
+        options.add_argument(switch)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    yield driver
+    driver.quit()
+
+
+def opened(browser, page):
+    browser.get(page.as_uri())
+    WebDriverWait(browser, 20).until(lambda b: b.execute_script("return !!window.explorer || !document.getElementById('message').hidden"))
+    assert browser.find_element("id", "message").text == ""
+    complaints = [m for m in browser.get_log("browser") if m["level"] in ("SEVERE", "WARNING")]
+    assert not complaints, complaints
+
+
+@pytest.fixture(scope="module")
+def map_file(tmp_path_factory):
+    return sweep(tmp_path_factory.mktemp("explorer"), SPEC)
+
+
+@pytest.fixture
+def page(browser, map_file):
+    html = map_file.with_suffix(".html")
+    if not html.exists():
+        made(map_file)
+    opened(browser, html)
+    return browser
+
+
+def point(browser, index, click=False):
+    """Moves the mouse onto a design's cell, as a hand would."""
+    x, y = browser.execute_script("return window.explorer.view.placeOf(arguments[0])", index)
+    canvas = browser.find_element("id", "map")
+    left, top, width, height = (canvas.rect[k] for k in ("x", "y", "width", "height"))
+    chain = ActionChains(browser).move_to_element_with_offset(canvas, round(x - left - width / 2), round(y - top - height / 2))
+    (chain.click() if click else chain).perform()
+
+
+def readout(browser):
+    return browser.execute_script("return {...document.getElementById('readout').dataset}")
+
+
+def numbers(browser):
+    return browser.execute_script(
+        "return Object.fromEntries([...document.querySelectorAll('#numbers tr')].map(r => [r.dataset.name, r.dataset.value]))")
+
+
+def told_by_leapmap(browser):
+    words = shlex.split(browser.find_element("id", "command").text)
+    assert words[:2] == ["leapmap", "hop"]
+    return json.loads(leapmap(*words[1:], "--json").stdout)
+
+
+def agrees(page_numbers, told):
+    """The page's numbers against leapmap hop --json's: the same solver, compiled by another compiler for another machine."""
+    compared = 0
+    for name, text in page_numbers.items():
+        if name not in told:
+            continue
+        compared += 1
+        if isinstance(told[name], str):
+            assert text == told[name], name
+        elif told[name] is None:
+            assert text == "NaN", name
+        else:
+            # Roundings differ: this machine contracts a*b + c and has wider lanes. Times are good to the tolerance, 1e-10.
+            assert float(text) == pytest.approx(told[name], rel=1e-9, abs=1e-11), name
+    return compared
+
+
+@pytest.mark.parametrize("index", [[20, 30, 1], [40, 10, 0], [3, 2, 1]])
+def test_pointing_at_a_design_reads_the_map_s_own_number(index, page, map_file):
+    select_layer(page, index[2])
+    point(page, index)
+    shown = readout(page)
+    assert shown["index"] == ",".join(map(str, index))
+    with h5py.File(map_file) as file:
+        value = file["jump_height"][tuple(index)]
+    if np.isnan(value):
+        assert shown["value"] == "" and "no jump" in page.find_element("id", "value").text
+    else:
+        decimals = len(shown["value"].partition(".")[2])
+        assert decimals >= 3 and abs(float(shown["value"]) - value) <= 0.5001 * 10.0**-decimals
+        assert shown["value"] in page.find_element("id", "value").text
+
+
+def select_layer(browser, k):
+    browser.execute_script("const s = document.querySelector('#sliders input'); s.value = arguments[0]; s.dispatchEvent(new Event('input'))", k)
+
+
+def test_every_field_of_every_design_on_the_page_is_the_map_s_rounded(page, map_file):
+    fields = page.execute_script("return window.explorer.map.fields.map(f => ({name: f.name, step: f.step, values: [...f.values].map(v => v === v ? v : null)}))")
+    assert {"jump_height", "jump_time", "agility", "dip", "candidates"} <= {f["name"] for f in fields}
+    with h5py.File(map_file) as file:
+        for field in fields:
+            if field["name"] == "agility":
+                truth = 2 * 0.041 * file["jump_height"][()] / (file["jump_time"][()] + file["apex_time"][()])
+            else:
+                truth = file[field["name"]][()].astype(float)
+            shown = np.array(field["values"], float).reshape(truth.shape)
+            assert np.array_equal(np.isnan(shown), np.isnan(truth)), field["name"]
+            assert np.nanmax(np.abs(shown - truth)) <= 0.5001 * field["step"], field["name"]
+            assert field["step"] <= 2e-4 * np.nanmax(np.abs(truth)) or field["name"] == "candidates", field["name"]
+
+
+@pytest.mark.parametrize("index", [[20, 30, 1], [44, 5, 1], [0, 0, 0]])
+def test_a_click_shows_the_hoop_and_its_numbers_are_those_of_leapmap_hop(index, page):
+    select_layer(page, index[2])
+    point(page, index, click=True)
+    told = told_by_leapmap(page)
+    assert told["design"]["offset_ratio"] == [0.6, 1.0][index[2]]
+    assert agrees(numbers(page), told) >= (9 if told["status"] == "jumped" else 1)
+
+
+def pixels(browser, canvas):
+    return browser.execute_script("const c = document.getElementById(arguments[0]); return c.toDataURL()", canvas)
+
+
+def test_the_animation_moves_stops_and_can_be_scrubbed(page):
+    point(page, [20, 30, 1], click=True)
+    first, clock = pixels(page, "scene"), page.find_element("id", "clock").text
+    WebDriverWait(page, 10).until(lambda b: b.find_element("id", "clock").text != clock)
+    assert pixels(page, "scene") != first, "the hoop is elsewhere"
+    play = page.find_element("id", "play")
+    play.click()
+    assert "play" in play.text
+    page.execute_script("const s = document.getElementById('scrub'); s.value = s.max; s.dispatchEvent(new Event('input'))")
+    last = pixels(page, "scene")
+    told = told_by_leapmap(page)
+    # The motion ends with the landing of the jump.
+    assert float(page.find_element("id", "clock").text.split()[0]) == pytest.approx(told["jump_time"] + told["flight_time"], abs=6e-4)
+    page.execute_script("const s = document.getElementById('scrub'); s.value = 0; s.dispatchEvent(new Event('input'))")
+    assert pixels(page, "scene") != last and page.find_element("id", "clock").text == "0.000 s"
+
+
+def test_the_motion_shown_is_that_of_leapmap_s_trace(page, tmp_path):
+    point(page, [20, 30, 1], click=True)
+    motion = page.execute_script("""const e = window.explorer, d = {...e.map.fixed};
+        e.map.axes.forEach((a, k) => { d[a.name] = a.values[[20, 30, 1][k]]; });
+        const m = e.solver.solve(d, false, 1e-10, 1e-3).motion;
+        return Object.fromEntries(Object.entries(m).map(([k, v]) => [k, [...v]]))""")
+    words = shlex.split(page.find_element("id", "command").text)
+    leapmap(*words[1:], "--trace", tmp_path / "trace.h5")
+    with h5py.File(tmp_path / "trace.h5") as file:
+        for name in ("t", "phi", "spin", "x", "y", "normal_force", "friction", "phase"):
+            # As far as roundings of another machine go, on quantities up to 50.
+            assert np.allclose(motion[name], file[name][()], rtol=1e-8, atol=1e-9), name
+
+
+def test_keys_move_from_design_to_design_and_show_one(page):
+    point(page, [20, 30, 1])
+    canvas = page.find_element("id", "map")
+    page.execute_script("arguments[0].focus()", canvas)
+    canvas.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_UP, Keys.ARROW_UP, Keys.ARROW_LEFT, Keys.ARROW_LEFT)
+    assert readout(page)["index"] == "19,32,1"
+    canvas.send_keys(Keys.SHIFT + Keys.ARROW_RIGHT)
+    assert readout(page)["index"] == "29,32,1"
+    canvas.send_keys(Keys.ENTER)
+    assert agrees(numbers(page), told_by_leapmap(page)) >= 9
+
+
+def test_the_field_the_axes_and_the_layer_can_be_chosen(page, map_file):
+    before = pixels(page, "map")
+    Select(page.find_element("id", "field")).select_by_visible_text("time from release to the jump [s]")
+    assert pixels(page, "map") != before
+    point(page, [20, 30, 1])
+    with h5py.File(map_file) as file:
+        assert float(readout(page)["value"]) == pytest.approx(file["jump_time"][20, 30, 1], abs=6e-5)
+    Select(page.find_element("id", "x-axis")).select_by_visible_text("offset ratio L/R")
+    assert page.find_element("css selector", "#sliders input").get_attribute("data-axis") == "slope"
+    point(page, [20, 5, 0])
+    assert readout(page)["index"].endswith(",5,0")
+
+
+def test_radius_and_mass_scale_the_numbers(page):
+    point(page, [20, 30, 1], click=True)
+    before = numbers(page)
+    page.execute_script("const r = document.getElementById('radius'); r.value = 164; r.dispatchEvent(new Event('change'))")
+    page.execute_script("const m = document.getElementById('mass'); m.value = 56.4; m.dispatchEvent(new Event('change'))")
+    after = numbers(page)
+    assert float(after["jump_height"]) == pytest.approx(float(before["jump_height"]), rel=1e-9)
+    assert float(after["jump_time"]) == pytest.approx(2 * float(before["jump_time"]), rel=1e-9), "times grow with the root of the radius"
+    assert float(after["agility"]) == pytest.approx(2 * float(before["agility"]), rel=1e-9)
+    assert float(after["most_normal_force"]) == pytest.approx(2 * float(before["most_normal_force"]), rel=1e-6), "forces with the mass"
+    assert told_by_leapmap(page)["scene"]["radius"] == 0.164
+    assert agrees(after, told_by_leapmap(page)) >= 9
+
+
+def test_a_map_with_friction_shows_sliding(browser, tmp_path):
+    path = sweep(tmp_path, '[scene]\nfriction = "coulomb"\nmu_static = { values = [0.2, 0.5] }\nrestitution = 0.3\n[design]\n'
+                           'slope = { from = "10 deg", to = "40 deg", count = 13 }\nmass_ratio = { from = 1, to = 10, count = 12 }\n[numerics]\naudit = 0\n')
+    opened(browser, made(path))
+    with h5py.File(path) as file:
+        jumped = np.argwhere(file["status"][()] == 1)
+        order = [d[0].name.lstrip("/") for d in file["status"].dims]
+    index = [int(i) for i in jumped[len(jumped) // 2]]
+    select_layer(browser, index[order.index("mu_static")])
+    point(browser, index, click=True)
+    told = told_by_leapmap(browser)
+    assert told["scene"]["friction"] == "coulomb" and "S" in told["phase_sequence"]
+    assert agrees(numbers(browser), told) >= 10
+
+
+def test_the_page_fits_a_phone_and_a_screenshot_is_kept(page):
+    ARTEFACTS.mkdir(exist_ok=True)
+    point(page, [20, 30, 1], click=True)
+    time.sleep(0.5)
+    assert page.save_screenshot(str(ARTEFACTS / "explorer.png"))
+    try:
+        page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 360, "height": 800, "deviceScaleFactor": 2, "mobile": True})
+        time.sleep(0.5)
+        # Chromium's window is 500 px wide at least; what counts is that nothing is wider than it.
+        assert page.execute_script("return document.documentElement.scrollWidth <= window.innerWidth")
+        assert page.execute_script("return document.getElementById('map').getBoundingClientRect().bottom < document.getElementById('scene').getBoundingClientRect().top")
+        page.save_screenshot(str(ARTEFACTS / "explorer_phone.png"))
+    finally:
+        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_the_page_needs_no_network_and_stays_below_three_megabytes(tmp_path):
+    path = sweep(tmp_path, """[design]
+slope = { from = "2 deg", to = "50 deg", count = 241 }
+mass_ratio = { from = 0.1, to = 20, count = 256, scale = "log" }
+offset_ratio = { values = [0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0] }
+[numerics]
+audit = 0
+""")
+    html = made(path)
+    assert html.stat().st_size < 3_000_000
+    text = html.read_text()
+    assert "http://" not in text and "https://" not in text and "default-src 'none'" in text
+
+
+HOSTILE = "</script><script>window.pwned = 1</script><img src=x onerror='window.pwned = 1'>%%SCRIPT%%<!--"
+
+
+def test_a_hostile_map_is_data_and_nothing_else(browser, map_file, tmp_path):
+    path = tmp_path / f"{HOSTILE.replace('/', '')[:60]}.h5"
+    path.write_bytes(map_file.read_bytes())
+    with h5py.File(path, "a") as file:
+        for name in ("title", "program_version", "git_revision", "host"):
+            file.attrs[name] = HOSTILE
+        file["status"].attrs["flag_meanings"] = " ".join(f"{HOSTILE.replace(' ', '')}{i}" for i in range(7))
+        file.move("offset_ratio", "<script>window.pwned = 1<script>")
+    opened(browser, made(path))
+    assert browser.execute_script("return window.pwned === undefined")
+    assert browser.find_element("id", "title").text == HOSTILE
+    point(browser, [3, 2, 1], click=True)
+    assert browser.execute_script("return window.pwned === undefined && document.images.length === 0")
+
+
+def broken(map_file, tmp_path, change):
+    path = tmp_path / "broken.h5"
+    path.write_bytes(map_file.read_bytes())
+    with h5py.File(path, "a") as file:
+        change(file)
+    return path
+
+
+def with_nan_axis(file):
+    file["slope"][3] = np.nan
+
+
+def without_shape(file):
+    del file["jump_time"]
+    file["jump_time"] = np.zeros(7)
+
+
+def without_spec(file):
+    del file.attrs["spec"]
+
+
+def with_a_text_for_status(file):
+    file["status"].attrs["flag_meanings"] = 5
+
+
+@pytest.mark.parametrize("change", [with_nan_axis, without_shape, without_spec, with_a_text_for_status])
+def test_a_broken_map_is_refused_with_one_line(change, map_file, tmp_path):
+    done = explorer(broken(map_file, tmp_path, change), "-o", tmp_path / "x.html")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "Traceback" not in done.stderr, done.stderr
+    assert not (tmp_path / "x.html").exists()
+
+
+def test_files_that_are_no_grids_are_refused_with_one_line_that_says_what_to_do(map_file, tmp_path):
+    (tmp_path / "words.h5").write_text("words")
+    one_axis = sweep(tmp_path, "[design]\nslope = { values = [0.3, 0.4] }\n")
+    for path, word in ((tmp_path / "words.h5", "HDF5"), (tmp_path / "nowhere.h5", "nowhere"), (one_axis, "two axes")):
+        done = explorer(path, "-o", tmp_path / "x.html")
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
+    done = finished("/usr/bin/python3", TOP / "analysis/explorer", map_file, "-o", tmp_path / "x.html", "--module", tmp_path / "no.wasm")
+    assert done.returncode == 2 and "leapmap-wasm" in done.stderr, done.stderr
+    small = explorer(map_file, "-o", tmp_path / "x.html", "--most", "0.1")
+    assert small.returncode == 2 and "--most" in small.stderr
+    size = 0.9e-6 * made(map_file).stat().st_size
+    fewer = explorer(map_file, "-o", tmp_path / "x.html", "--most", size)
+    assert fewer.returncode == 0 and "left out" in fewer.stderr and (tmp_path / "x.html").stat().st_size < 1e6 * size
+
+
+def test_a_damaged_page_says_so(browser, map_file, tmp_path):
+    text = made(map_file).read_text()
+    start = text.index('"data": "') + 9
+    (tmp_path / "cut.html").write_text(text[:start] + "eJwDAAAAAAE=" + text[text.index('"', start):])
+    browser.get((tmp_path / "cut.html").as_uri())
+    WebDriverWait(browser, 10).until(lambda b: b.find_element("id", "message").text != "")
+    assert "cannot be shown" in browser.find_element("id", "message").text
+
+
+def test_an_unfinished_map_says_how_much_of_it_is_there(browser, map_file, tmp_path):
+    path = tmp_path / "stopped.h5"
+    path.write_bytes(map_file.read_bytes())
+    with h5py.File(path, "a") as file:
+        file.attrs["tiles_done"] = 0
+    opened(browser, made(path))
+    assert "INCOMPLETE" in browser.find_element("id", "subtitle").text
+
+
+def test_the_solver_on_the_page_is_as_good_as_the_program_on_random_designs(page):
+    """A hundred designs with and without slip, through the page's WebAssembly and through leapmap hop."""
+    random = np.random.default_rng(7)
+    for k in range(100):
+        slips = k % 2 == 1
+        design = {"slope": random.uniform(0.1, 0.8), "mass_ratio": random.uniform(0.3, 10), "offset_ratio": random.uniform(0.3, 1),
+                  "release_angle": random.uniform(2.6, 4.4), "mu_static": random.uniform(0.1, 1.0), "restitution": random.uniform(0, 0.5)}
+        outcome = page.execute_script("""const s = window.explorer.solver;
+            const o = s.solve({...s.defaults, ...arguments[0]}, arguments[1], 1e-10, 0).outcome;
+            return Object.fromEntries(Object.entries(o).map(([k, v]) => [k, String(v)]))""", design, slips)
+        flags = [w for name, value in design.items() for w in (f"--{name.replace('_', '-')}", repr(float(value)))]
+        told = json.loads(finished(PROGRAM, "hop", *flags, "--json", *(["--set", "friction=coulomb"] if slips else [])).stdout)
+        assert outcome["status"] == told["status"], design
+        assert agrees(outcome, told) >= 10
