@@ -91,7 +91,7 @@ def chart(grid, name):
         filled = draw_panel(axis, x, y, panels[i], flags[i], angles[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
         if place := grid.paper(grid.panels[i]):
             starred = True
-            axis.plot(*place, "*", color=style.MARK, markersize=13, markeredgecolor="white", zorder=5)
+            axis.plot(*place, "*", color=look.star, markersize=13, markeredgecolor="white", zorder=5)
     levels = scale[3]
     bar = figure.colorbar(filled, ax=axes, label=look.title, ticks=levels, shrink=0.9, pad=0.015)
     bar.ax.set_yticks(levels, [f"{v:g}" for v in levels])
@@ -108,7 +108,7 @@ def chart(grid, name):
         if any(t.any() for t in told[code]):
             handles.append(plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="#808080", label=words))
     if starred:
-        handles.append(plt.Line2D([], [], marker="*", color="none", markerfacecolor=style.MARK, markeredgecolor="white",
+        handles.append(plt.Line2D([], [], marker="*", color="none", markerfacecolor=look.star, markeredgecolor="white",
                                   markersize=12, label="the paper's hoop"))
     if name == "agility":
         handles.append(plt.Line2D([], [], color=style.MARK, label=f"published jumpers ({looks.JUMPERS_SOURCE})"))

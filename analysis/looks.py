@@ -42,6 +42,7 @@ class Look:
     log: bool = False
     levels: tuple = None
     ink: str = "white"  # of the isolines
+    star: str = "#d62728"  # of the paper's hoop
 
     @property
     def title(self):
@@ -52,7 +53,7 @@ HEIGHTS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 LOOKS = {
     "jump_height": Look("jump height", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "jump_time": Look("time from release to the jump", "s", "cividis_r", ink="black"),
-    "agility": Look("agility: height over time from release to apex", "m/s", "plasma", log=True,
+    "agility": Look("agility: height over time from release to apex", "m/s", "plasma", log=True, star="black",
                     levels=(0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0)),
     "first_jump_height": Look("height of the first lift-off", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "first_jump_time": Look("time from release to the first lift-off", "s", "cividis_r", ink="black"),

@@ -1,15 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Redraws the paper's Figs 4 and 5 from a trace: angle, spin, normal and friction force over time, and the flight.
+"""Redraws the paper's Figs 4 to 6 from a trace: angle, spin, normal and friction force and height over time; and, where the hoop
+jumps, a second figure of its flight: how x, y and the angle change from the lift-off on.
 
-Lift-off candidates are dashed lines, the jump a solid one; the flight is shaded. Forces are in units of
-the weight, friction positive downhill; y is the height of the hoop's lowest point above the plane.
+Lift-off candidates are dashed lines, the jump a solid one; sliding and flight are shaded. Forces are in units of the weight,
+friction positive downhill; y is the height of the hoop's lowest point above the plane. --paper marks what the paper published.
 """
 import numpy as np
 
 import style
 from read_map import NotAMap, read_trace
 from style import plt
+
+
+# Section 3 of the paper: when its model's normal force vanishes (Fig. 5: "about 0.17 s", "about 0.3 s"), when the hoop was seen to
+# leave the plane (Fig. 3 b); and of the flight, from the lift-off, its apex and its landing (Fig. 3 c and d), and its height.
+PAPER_MODEL, PAPER_SEEN = (0.17, 0.30), 0.330  # s
+PAPER_APEX, PAPER_LANDING = 0.129, 0.198  # s
+PUBLISHED = "#7b3294"
 
 
 def panels(trace):
@@ -30,7 +38,7 @@ def runs(mask):
     return [(begin, end - 1) for begin, end in zip(edges[::2], edges[1::2])]
 
 
-def chart(trace):
+def chart(trace, paper):
     t = trace.dims["t"]
     if len(t) < 2:
         raise NotAMap(f"{trace.path}: holds no motion to draw (the hoop {trace.attributes['status'].replace('_', ' ')})")
@@ -52,6 +60,10 @@ def chart(trace):
         if force:
             axis.axhline(0.0, color="black", linewidth=0.6)
         axis.set_ylabel(label)
+        if paper:
+            for time in PAPER_MODEL:
+                axis.axvline(time, color=PUBLISHED, linestyle=":", linewidth=1.4)
+            axis.axvline(PAPER_SEEN, color=PUBLISHED, linestyle="-.", linewidth=1.4)
         axis.margins(x=0.01)
         axis.grid(alpha=0.25)
     for i, (time, height) in enumerate(zip(times, heights)):
@@ -62,8 +74,55 @@ def chart(trace):
         place = dict(xy=(time, 0.06), xytext=(5, 0), ha="left", va="bottom", color=style.MARK) if is_jump else dict(
             xy=(time, 0.94), xytext=(-5, 0), ha="right", va="top", color="#555555")
         axes[0].annotate(text, xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=7.5, **place)
+    if paper:
+        for time in PAPER_MODEL:
+            axes[2].annotate(f"paper's model {time:.2f} s", (time, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
+                             textcoords="offset points", ha="left", va="top", fontsize=7, color=PUBLISHED, rotation=90)
+        axes[2].annotate(f"seen {PAPER_SEEN:.3f} s", (PAPER_SEEN, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
+                         textcoords="offset points", ha="left", va="top", fontsize=7, color=PUBLISHED, rotation=90)
     axes[-1].set_xlabel("time since release [s]")
-    design = trace.numbers()
+    axes[0].set_title(caption(trace), fontsize=8)
+    return figure
+
+
+def flight_chart(trace, paper):
+    """The flight of the jump, after the paper's Fig. 6."""
+    t, f = trace.dims["t"], trace.fields
+    begin = runs(trace.code("phase", "flight"))[-1][0]
+    # The lift-off itself is the last moment of contact where it is a sample, as without slip.
+    begin -= int(begin > 0 and t[begin - 1] >= trace.fields["candidate_time"][-1] * (1 - 1e-12))
+    after = t[begin:] - trace.fields["candidate_time"][-1]
+    radius = trace.numbers()["radius"]
+    figure, axes = plt.subplots(3, 1, sharex=True, figsize=(6.6, 6.6), layout="constrained")
+    for axis, (label, values) in zip(axes, (("Δx along the plane [mm]", 1e3 * (f["x"] - f["x"][begin])), ("Δy above the plane [mm]", 1e3 * f["y"]),
+                                            ("Δφ [degrees]", np.degrees(f["phi"] - f["phi"][begin])))):
+        axis.plot(after, values[begin:], color="#1f4e79", linewidth=1.3, label="leapmap")
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.25)
+        axis.margins(x=0.01)
+        if paper:
+            axis.axvline(PAPER_APEX, color=PUBLISHED, linestyle="-.", linewidth=1.4)
+            axis.axvline(PAPER_LANDING, color=PUBLISHED, linestyle="-.", linewidth=1.4)
+    apex = int(np.argmax(f["y"][begin:]))
+    axes[1].plot(after[apex], 1e3 * f["y"][begin:][apex], "o", color="#1f4e79", markersize=4)
+    axes[1].annotate(f"apex {trace.fields['candidate_height'][-1]:.3f} diameters\nafter {after[apex]:.3f} s", (after[apex], 1e3 * f["y"][begin:][apex]),
+                     xytext=(0, -18), textcoords="offset points", ha="center", va="top", fontsize=7.5, bbox=dict(facecolor="white", edgecolor="none", pad=1))
+    axes[1].annotate(f"lands after {after[-1]:.4f} s", (after[-1], 0), xytext=(-24, 2), textcoords="offset points", ha="right", va="bottom", fontsize=7.5)
+    if paper:
+        axes[1].axhline(2e3 * radius, color=PUBLISHED, linestyle="-.", linewidth=1.4)
+        axes[1].annotate("one diameter", (0, 2e3 * radius), xytext=(2, 2), textcoords="offset points", fontsize=7.5, color=PUBLISHED, va="bottom")
+        axes[1].margins(y=0.12)
+        for time, words in ((PAPER_APEX, "apex"), (PAPER_LANDING, "landing")):
+            axes[2].annotate(f"measured {words} {time:.3f} s", (time, 0.03), xycoords=("data", "axes fraction"), xytext=(-3, 0),
+                             textcoords="offset points", ha="right", va="bottom", fontsize=7, color=PUBLISHED, rotation=90)
+    axes[-1].set_xlabel("time since lift-off [s]")
+    axes[0].set_title(caption(trace), fontsize=8)
+    return figure
+
+
+def caption(trace):
+    """Which hoop it is, and by which model it moves."""
+    flight, design = trace.code("phase", "flight"), trace.numbers()
     shown = [f"slope {np.degrees(design['slope']):.4g}°", f"mₚ/m = {design['mass_ratio']:.4g}", f"L/R = {design['offset_ratio']:.4g}",
              f"released at {np.degrees(design['release_angle']):.4g}°", f"spin {design['release_spin']:.4g} √(g/R)",
              trace.attributes["status"].replace("_", " ")]
@@ -74,14 +133,17 @@ def chart(trace):
         below = "Coulomb friction: sliding shaded orange, flight blue"
     else:
         below = "rolling (10)-(12), then flight (13), shaded" if flight.any() else "rolling (10)-(12)"
-    axes[0].set_title(",  ".join(shown) + "\n" + below, fontsize=8)
-    return figure
+    return ",  ".join(shown) + "\n" + below
 
 
 def main():
     p = style.parser(__doc__, "a trace: leapmap hop --trace FILE", "maps/trace_chart")
+    p.add_argument("--paper", action="store_true", help="mark the paper's times and its height")
     arguments = p.parse_args()
-    style.save(chart(read_trace(arguments.source)), arguments.output)
+    trace = read_trace(arguments.source)
+    style.save(chart(trace, arguments.paper), arguments.output)
+    if trace.attributes["status"] == "jumped":
+        style.save(flight_chart(trace, arguments.paper), f"{style.stem(arguments.output)}_flight")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The README's first command: installs what Debian provides, builds leapmap, sweeps slope x mass ratio x L/R around
-# the paper's hoop, and draws its charts. Safe to run again: maps and charts are made anew.
+# the paper's hoop, draws its charts and makes the page to explore it. Safe to run again: everything is made anew.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -20,6 +20,10 @@ $leapmap sweep sweeps/slope_mass_ratio_offset.toml --overwrite || [ $? = 1 ]  # 
 echo
 echo "== charts"
 /usr/bin/python3 analysis/design_chart.py maps/slope_mass_ratio_offset.h5 -o maps/design_chart
-/usr/bin/python3 analysis/trace_chart.py maps/paper_figures.h5 -o maps/paper_figures
+/usr/bin/python3 analysis/status_chart.py maps/slope_mass_ratio_offset.h5 -o maps/status
+/usr/bin/python3 analysis/cut_chart.py maps/slope_mass_ratio_offset.h5 -o maps/cut
+/usr/bin/python3 analysis/trace_chart.py maps/paper_figures.h5 --paper -o maps/paper_figures
+/usr/bin/python3 analysis/explorer maps/slope_mass_ratio_offset.h5
 echo
 echo "The design chart: $PWD/maps/design_chart_jump_height.png"
+echo "The page to explore, for any browser: $PWD/maps/slope_mass_ratio_offset.html"

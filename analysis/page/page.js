@@ -73,7 +73,7 @@ function start(map, solver) {
     dataset.index = index.join(",");
     dataset.value = shown.values[at] === shown.values[at] ? shown.values[at].toFixed(decimalsOf(shown.step)) : "";
   };
-  const view = mapView(canvas, map, told, chosen);
+  const view = mapView(canvas, map, told, chosen.show);
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value if there are others.
   const liked = (axis, k) => [axis.values.length > 1 ? 0 : 1, ["slope", "mass_ratio"].includes(axis.name) ? 0 : 1, axis.name === "slope" ? 0 : 1, k];
@@ -137,15 +137,28 @@ function start(map, solver) {
     const away = axis.values.map((v) => Math.abs(v - wanted));
     view.view.index[k] = away.indexOf(Math.min(...away));
   });
+  const asked = addressed(map);
+  if (asked.index) view.view.index = asked.index;
   arrange();
   legend();
   view.paint();
   told(view.view.index);
   view.pick();
+  if (asked.time !== undefined) chosen.stopAt(asked.time);
   window.explorer = { map, view, solver };
 }
 
-/** The part that shows one hoop; returns what to call with a design's index. */
+/** What the address asks for, as #design=20,30,1&time=0.5: a design by its place along each axis, and a moment to stop at [s]. */
+function addressed(map) {
+  const words = new URLSearchParams(location.hash.slice(1)), asked = {};
+  const index = (words.get("design") ?? "").split(",").map(Number);
+  if (index.length === map.axes.length && map.axes.every((axis, k) => Number.isInteger(index[k]) && index[k] >= 0 && index[k] < axis.values.length))
+    asked.index = index;
+  if (words.has("time") && Number.isFinite(Number(words.get("time")))) asked.time = Number(words.get("time"));
+  return asked;
+}
+
+/** The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion. */
 function hopPanel(map, solver) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
@@ -281,13 +294,16 @@ function hopPanel(map, solver) {
   });
   new ResizeObserver(draw).observe(scene);
 
-  return (index) => {
+  const show = (index) => {
+    history.replaceState(null, "", `#design=${index.join(",")}`);
     now.design = { ...map.fixed };
     map.axes.forEach((axis, k) => { now.design[axis.name] = axis.values[index[k]]; });
     element("hop-title").textContent = `One hoop: ${placeText(map, index)}`;
     solve(true);
     run(!still);
   };
+  const stopAt = (time) => { run(false); now.time = Math.min(Math.max(0, time), end()); draw(); };
+  return { show, stopAt };
 }
 
 (async () => {

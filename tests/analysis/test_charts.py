@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The charts, drawn from small maps and read back from their SVG: what they must contain, not merely that they exist."""
+import json
 import xml.etree.ElementTree as ElementTree
 
+import h5py
 import pytest
 from support.program import TOP, finished, leapmap, sweep
 
@@ -28,23 +30,81 @@ def charts(tmp_path_factory):
     folder = tmp_path_factory.mktemp("charts")
     done = draw("design_chart.py", sweep(folder, CHART), "-o", folder / "chart")
     assert done.returncode == 0, done.stderr
-    assert done.stdout.split() == [f"{folder}/chart_{f}.{e}" for f in ("jump_height", "jump_time") for e in ("png", "svg")]
+    assert done.stdout.split() == [f"{folder}/chart_{f}.{e}" for f in ("jump_height", "jump_time", "agility") for e in ("png", "svg", "pdf")]
     return folder
 
 
 @pytest.mark.parametrize("field,label,level", [("jump_height", "jump height [hoop diameters]", "0.75"),
-                                               ("jump_time", "time from release to the jump [s]", "0.4")])
+                                               ("jump_time", "time from release to the jump [s]", "0.4"),
+                                               ("agility", "agility: height over time from release to apex [m/s]", "0.05")])
 def test_the_design_chart_has_units_panels_levels_and_marks(field, label, level, charts):
     words = texts(charts / f"chart_{field}.svg")
     for word in ("slope [degrees]", label, "L/R = 0.7", "L/R = 1", "first lift-off is spurious", "no jump on the runway",
                  "the paper's hoop"):
         assert word in words, word
-    assert any(w.startswith("mass ratio") for w in words)
+    assert "mass ratio mₚ/m" in words
     assert words.count(level) >= 2, "an isoline's label, besides the colour bar's"
     assert "40" in words and "10" in words
     svg = (charts / f"chart_{field}.svg").read_text()
     assert "<pattern" in svg, "spurious designs are hatched"
     assert (charts / f"chart_{field}.png").read_bytes().startswith(b"\x89PNG")
+    told = finished("pdftotext", charts / f"chart_{field}.pdf", "-").stdout
+    assert "slope [degrees]" in told and "first lift-off is spurious" in told
+
+
+def test_the_agility_chart_marks_published_jumpers_with_their_source(charts):
+    words = " ".join(texts(charts / "chart_agility.svg"))
+    assert "Salto 1.75" in words and "galago 2.24" in words and "Haldane et al., Science Robotics" in words
+    assert "Salto" not in " ".join(texts(charts / "chart_jump_height.svg"))
+
+
+def test_charts_are_the_same_bytes_for_the_same_map(charts, tmp_path):
+    assert draw("design_chart.py", charts / "map.h5", "-o", tmp_path / "chart").returncode == 0
+    for field in ("jump_height", "agility"):
+        for ending in ("png", "svg", "pdf"):
+            assert (tmp_path / f"chart_{field}.{ending}").read_bytes() == (charts / f"chart_{field}.{ending}").read_bytes(), ending
+
+
+def test_any_two_axes_of_any_map_can_be_drawn(charts, tmp_path):
+    done = draw("design_chart.py", charts / "map.h5", "-x", "mass_ratio", "-y", "offset_ratio", "--at", "slope=23", "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "chart_jump_height.svg")
+    assert "offset ratio L/R" in words and any(w.startswith("mass ratio") for w in words)
+    assert any("slope = 22.3" in w or "slope = 23.1" in w for w in words), "the nearest slope there is"
+    for wrong, word in ((["--at", "weight=3"], "no axis weight"), (["--at", "slope=steep"], "not a number"), (["-x", "weight"], "no axis weight"),
+                        (["-x", "slope", "-y", "slope"], "both slope"), (["-x", "mass_ratio", "-y", "offset_ratio"], "--at")):
+        refused = draw("design_chart.py", charts / "map.h5", *wrong, "-o", tmp_path / "no")
+        assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and word in refused.stderr, refused.stderr
+
+
+def test_the_status_chart_tells_how_designs_end_and_how_many(charts, tmp_path):
+    done = draw("status_chart.py", charts / "map.h5", "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "chart.svg")
+    with h5py.File(charts / "map.h5") as file:
+        status, flag = file["status"][()], file["spurious_first_jump"][()]
+    for label, where in (("jumps at its first lift-off", (status == 1) & (flag == 0)),
+                         ("jumps after a spurious first lift-off", (status == 1) & (flag == 1)),
+                         ("no jump, yet a lift-off below the hop height", (status == 2) & (flag == 1)),
+                         ("no jump on the runway", (status == 2) & (flag == 255))):
+        assert f"{label}: {100 * where.mean():.3g} %" in words, (label, words)
+    assert "slope [degrees]" in words and "L/R = 0.7" in words and "the paper's hoop" in words
+
+
+def test_the_cut_chart_draws_a_line_for_each_value_with_units_and_what_is_fixed(charts, tmp_path):
+    done = draw("cut_chart.py", charts / "map.h5", "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "chart.svg")
+    for word in ("[hoop diameters]", "[m/s]", "slope [degrees]", "mₚ/m = 0.1", "mₚ/m = 20", "first lift-off is spurious"):
+        assert word in words, (word, words)
+    assert any("L/R = 1" in w and "R = 41 mm" in w for w in words)
+    done = draw("cut_chart.py", charts / "map.h5", "--along", "mass_ratio", "--by", "offset_ratio", "--at", "slope=30", "--fields", "dip", "-o", tmp_path / "dip")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "dip.svg")
+    assert "dip of the flight into the plane" in words and "L/R = 0.7" in words and any("slope = 30" in w or "slope = 29.6" in w for w in words)
+    for wrong, word in ((["--along", "mu_static"], "mu_static"), (["--by", "slope"], "no other axis"), (["--fields", "beauty"], "beauty")):
+        refused = draw("cut_chart.py", charts / "map.h5", *wrong, "-o", tmp_path / "no")
+        assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and word in refused.stderr, refused.stderr
 
 
 def test_designs_without_a_jump_are_told_apart_and_the_star_needs_its_panel(tmp_path):
@@ -74,6 +134,30 @@ def test_the_trace_chart_marks_both_candidates(tmp_path):
         assert word in words, word
 
 
+def test_the_trace_charts_mark_what_the_paper_published(tmp_path):
+    leapmap("hop", TOP / "sweeps/paper_figures.toml", "--trace", tmp_path / "trace.h5")
+    done = draw("trace_chart.py", tmp_path / "trace.h5", "--paper", "-o", tmp_path / "figure")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "figure.svg")
+    for word in ("paper's model 0.17 s", "paper's model 0.30 s", "seen 0.330 s"):
+        assert word in words, word
+    words = texts(tmp_path / "figure_flight.svg")
+    for word in ("Δx along the plane [mm]", "Δy above the plane [mm]", "Δφ [degrees]", "time since lift-off [s]", "measured apex 0.129 s",
+                 "measured landing 0.198 s", "one diameter", "apex 0.997 diameters", "lands after 0.2003 s"):
+        assert word in words, (word, words)
+    unmarked = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "plain")
+    assert unmarked.returncode == 0 and not any("paper" in w or "measured" in w for w in texts(tmp_path / "plain.svg") + texts(tmp_path / "plain_flight.svg"))
+
+
+def test_a_trace_with_friction_has_its_flight_drawn_from_the_jump_on(tmp_path):
+    leapmap("hop", "--set", "friction=coulomb", "--mu-static", "0.4", "--trace", tmp_path / "trace.h5")
+    done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "figure")
+    assert done.returncode == 0, done.stderr
+    told = json.loads(leapmap("hop", "--set", "friction=coulomb", "--mu-static", "0.4", "--json").stdout)
+    words = texts(tmp_path / "figure_flight.svg")
+    assert f"lands after {told['flight_time']:.4f} s" in words and f"apex {told['jump_height']:.3f} diameters" in words, words
+
+
 def test_a_trace_without_a_jump_is_drawn_too(tmp_path):
     leapmap("hop", "--slope", "1deg", "--mass-ratio", "0.1", "--trace", tmp_path / "trace.h5")
     done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "figure")
@@ -81,7 +165,7 @@ def test_a_trace_without_a_jump_is_drawn_too(tmp_path):
     assert not any(w.startswith("jump") for w in texts(tmp_path / "figure.svg"))
 
 
-@pytest.mark.parametrize("script", ["design_chart.py", "trace_chart.py"])
+@pytest.mark.parametrize("script", ["design_chart.py", "trace_chart.py", "status_chart.py", "cut_chart.py"])
 def test_other_files_are_refused_with_one_line(script, tmp_path):
     (tmp_path / "words.h5").write_text("words")
     for path in (tmp_path / "words.h5", tmp_path / "nowhere.h5"):

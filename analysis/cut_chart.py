@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws cuts through a map: quantities along one axis, a line for each of some values of a second, the others fixed.
+
+Solid where the first lift-off is the jump, dotted where it is spurious; gaps where nothing jumps, and at cliffs, where the jump
+passes to another lift-off. Axes that are neither drawn nor fixed by --at stay at the value nearest to the paper's hoop, or in the middle.
+"""
+import numpy as np
+
+import looks
+import planes
+import style
+from read_map import NotAMap, read_map
+from style import plt
+
+FIELDS = ("jump_height", "jump_time", "agility")
+MOST_LINES = 6
+
+
+def chart(m, along, by, at, fields):
+    free = [n for n in m.dims if n not in planes.fixed_at(m, at)]
+    if "design" in m.dims:
+        raise NotAMap(f"{m.path}: is a list of designs, which has no axis to cut along")
+    along = along or next((n for n in ("slope", *free) if n in free and len(m.dims[n]) > 1), None)
+    if along not in free or len(m.dims[along]) < 2:
+        raise NotAMap(f"{m.path}: has no axis {along or 'of two values or more'} to cut along; it has {', '.join(m.dims)}")
+    if by is not None and (by not in free or by == along):
+        raise NotAMap(f"{m.path}: has no other axis {by}; it has {', '.join(n for n in free if n != along) or 'none'}")
+    by = by or next((n for n in ("mass_ratio", *free) if n in free and n != along), None)
+    index = {n: int(np.argmin(np.abs(v - looks.PAPER[n]))) if n in looks.PAPER else len(v) // 2 for n, v in m.dims.items()}
+    index.update(planes.fixed_at(m, at))
+    drawn = [f for f in fields if looks.quantity(m, f) is not None and np.isfinite(looks.quantity(m, f)).any()]
+    if not drawn:
+        raise NotAMap(f"{m.path}: has none of {', '.join(fields)} to draw; it has {', '.join(m.fields)}")
+
+    names = list(m.dims)
+    order = np.argsort(m.dims[along])
+    x = m.dims[along][order]
+    degrees = looks.PARAMETERS.get(along, ("", "", ""))[2] == "°"
+    x = np.degrees(x) if degrees else x
+
+    def line(array, k):
+        here = dict(index)
+        if by:
+            here[by] = k
+        return array[tuple(slice(None) if n == along else here[n] for n in names)][order]
+
+    picked = [0]
+    if by:
+        n = len(m.dims[by])
+        ranked = np.argsort(m.dims[by])
+        picked = [int(ranked[i]) for i in np.unique(np.linspace(0, n - 1, min(n, MOST_LINES)).round().astype(int))]
+    figure, axes = plt.subplots(len(drawn), 1, sharex=True, squeeze=False, figsize=(6.6, 2.5 * len(drawn) + 1.4), layout="constrained")
+    colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(picked)))
+    for axis, field in zip(axes[:, 0], drawn):
+        look, values = looks.LOOKS[field], looks.quantity(m, field)
+        for colour, k in zip(colours, picked):
+            y = line(values, k).astype(float)
+            if "jump_angle" in m.fields:
+                torn = looks.cliffs(line(m.fields["jump_angle"], k), 0)
+                y = np.insert(y, np.flatnonzero(torn) + 1, np.nan)
+                places = np.insert(x, np.flatnonzero(torn) + 1, np.nan)
+            else:
+                torn, places = np.zeros(0, bool), x
+            flags = line(m.fields["spurious_first_jump"], k) if "spurious_first_jump" in m.fields else np.zeros(len(x))
+            flags = np.insert(flags, np.flatnonzero(torn) + 1, 255)
+            axis.plot(places, np.where(flags == 1, np.nan, y), color=colour, linewidth=1.5, marker="." if len(x) < 30 else "",
+                      label=looks.titled(by, m.dims[by][k]) if by else None)
+            axis.plot(places, np.where(flags == 1, y, np.nan), color=colour, linewidth=1.5, linestyle=":", marker="." if len(x) < 30 else "")
+        axis.set_ylabel("\n[".join(look.title.replace(": height over time from release to apex", "").split(" [")))
+        axis.grid(alpha=0.25)
+        if looks.is_log(x):
+            axis.set_xscale("log")
+            axis.xaxis.set_major_formatter(lambda v, _: f"{v:g}")
+    others = [looks.titled(n, m.dims[n][index[n]]) for n in names if n not in (along, by)]
+    numbers = m.numbers()
+    words = others + [looks.titled(k, numbers[k]) for k in ("inertia_factor", "release_angle", "release_spin") if k in numbers and k not in m.dims]
+    if m.slips:
+        words += [looks.titled(k, numbers[k]) for k in ("mu_static", "restitution") if k in numbers and k not in m.dims]
+    axes[-1, 0].set_xlabel(f"{planes.axis_label(along)}\n{',  '.join(words)},  R = {1e3 * numbers['radius']:g} mm")
+    handles = axes[0, 0].get_legend_handles_labels()[0]
+    handles += [plt.Line2D([], [], color="#404040", linestyle=":", label="first lift-off is spurious")]
+    style.legend_above(figure, handles)
+    return figure
+
+
+def main():
+    p = style.parser(__doc__, "a map, for example maps/slope_mass_ratio_offset.h5", "maps/cut")
+    p.add_argument("--along", metavar="AXIS", help="the axis drawn to the right (default: slope, or the map's first)")
+    p.add_argument("--by", metavar="AXIS", help="the axis that lines are drawn for (default: mass_ratio, or the map's next)")
+    planes.add_at(p)
+    p.add_argument("--fields", default=",".join(FIELDS), help=f"what to draw, of {', '.join(looks.LOOKS)} (default: %(default)s)")
+    arguments = p.parse_args()
+    fields = arguments.fields.split(",")
+    unknown = [f for f in fields if f not in looks.LOOKS]
+    if unknown:
+        raise NotAMap(f"--fields {unknown[0]}: is unknown; allowed: {', '.join(looks.LOOKS)}")
+    style.save(chart(read_map(arguments.source), arguments.along, arguments.by, arguments.at, fields), arguments.output)
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError, KeyError)

@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws how designs end over two axes of a map, a panel for each value of the others: whether the first lift-off is the jump or a
+spurious one, and why there is no jump elsewhere. A star at the paper's hoop. Needs status.
+"""
+import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
+
+import looks
+import planes
+import style
+from read_map import NotAMap, read_map
+from style import plt
+
+JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a spurious first lift-off"),
+         ("#5aae61", "jumps (the map does not tell at which lift-off)")]
+NONE_SPURIOUS = ("#dfc27d", "no jump, yet a lift-off below the hop height")
+
+
+def chart(grid):
+    m = grid.map
+    if "status" not in m.fields:
+        raise NotAMap(f"{m.path}: has no status; a status chart wants it")
+    kinds = [*JUMPS, NONE_SPURIOUS, *looks.STATUSES.values()]
+    known = "spurious_first_jump" in m.fields
+    flag = m.fields["spurious_first_jump"] if known else np.full(m.fields["status"].shape, 255)
+    jumped = m.code("status", "jumped")
+    kind = np.zeros(jumped.shape, int)
+    for i, code in enumerate(looks.STATUSES):
+        kind[m.code("status", code)] = len(JUMPS) + 1 + i
+    kind[m.code("status", "no_jump") & (flag == 1)] = len(JUMPS)
+    kind[jumped] = np.where(flag[jumped] == 0, 0, 1) if known else 2
+    panels = grid.cut(kind)
+
+    figure, axes = grid.figure()
+    for axis, panel, plane in zip(axes, grid.panels, panels):
+        axis.pcolormesh(grid.values(grid.x), grid.values(grid.y), plane, shading="nearest", rasterized=True,
+                        norm=BoundaryNorm(np.arange(len(kinds) + 1) - 0.5, len(kinds)), cmap=ListedColormap([c for c, _ in kinds]))
+        if place := grid.paper(panel):
+            axis.plot(*place, "*", color=style.MARK, markersize=13, markeredgecolor="white", zorder=5)
+    shares = np.bincount(np.concatenate([p.ravel() for p in panels]), minlength=len(kinds)) / sum(p.size for p in panels)
+    handles = [plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="#808080", label=f"{words}: {100 * share:.3g} %")
+               for (colour, words), share in zip(kinds, shares) if share > 0]
+    if any(grid.paper(p) for p in grid.panels):
+        handles.append(plt.Line2D([], [], marker="*", color="none", markerfacecolor=style.MARK, markeredgecolor="white",
+                                  markersize=12, label="the paper's hoop"))
+    style.legend_above(figure, handles)
+    return figure
+
+
+def main():
+    p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "maps/status")
+    planes.add_options(p)
+    arguments = p.parse_args()
+    style.save(chart(planes.Planes(read_map(arguments.source), arguments.x, arguments.y, arguments.at)), arguments.output)
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError, KeyError)
