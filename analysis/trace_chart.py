@@ -116,12 +116,12 @@ def flight_chart(trace, paper):
             axes[2].annotate(f"measured {words} {time:.3f} s", (time, 0.03), xycoords=("data", "axes fraction"), xytext=(-3, 0),
                              textcoords="offset points", ha="right", va="bottom", fontsize=7, color=PUBLISHED, rotation=90)
     axes[-1].set_xlabel("time since lift-off [s]")
-    axes[0].set_title(caption(trace), fontsize=8)
+    axes[0].set_title(caption(trace, "the flight of the jump (13)" + (", marked: measured in the paper" if paper else "")), fontsize=8)
     return figure
 
 
-def caption(trace):
-    """Which hoop it is, and by which model it moves."""
+def caption(trace, below=None):
+    """Which hoop it is, and below it by which model it moves, or other words."""
     flight, design = trace.code("phase", "flight"), trace.numbers()
     shown = [f"slope {np.degrees(design['slope']):.4g}°", f"mₚ/m = {design['mass_ratio']:.4g}", f"L/R = {design['offset_ratio']:.4g}",
              f"released at {np.degrees(design['release_angle']):.4g}°", f"spin {design['release_spin']:.4g} √(g/R)",
@@ -130,9 +130,9 @@ def caption(trace):
         kinetic = design.get("mu_kinetic", design["mu_static"])
         shown[-1:] = [f"μ = {design['mu_static']:.4g}" + (f" / {kinetic:.4g}" if kinetic != design["mu_static"] else ""),
                       f"restitution {design['restitution']:.4g}", shown[-1]]
-        below = "Coulomb friction: sliding shaded orange, flight blue"
+        below = below or "Coulomb friction: sliding shaded orange, flight blue"
     else:
-        below = "rolling (10)-(12), then flight (13), shaded" if flight.any() else "rolling (10)-(12)"
+        below = below or "rolling (10)-(12), then flight (13), shaded" if flight.any() else "rolling (10)-(12)"
     return ",  ".join(shown) + "\n" + below
 
 

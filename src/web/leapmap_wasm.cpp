@@ -69,7 +69,6 @@ const char* name_in(const std::array<const char*, n>& names, int i) {
 
 }  // namespace
 
-// NOLINTBEGIN: exported by name
 #define LEAPMAP_EXPORT extern "C" __attribute__((visibility("default"), used))
 
 /// Names by number, null after the last.
@@ -138,6 +137,5 @@ LEAPMAP_EXPORT int lift_off_count() { return static_cast<int>(page.lift_offs.siz
 LEAPMAP_EXPORT const double* lift_offs() {
   return page.lift_offs.empty() ? nullptr : page.lift_offs[0].data();
 }
-// NOLINTEND
 
 }  // namespace leapmap

@@ -84,6 +84,12 @@ TEST(Story, WithoutAJumpItEndsWithTheRollingAndWithoutAnIntervalItIsEmpty) {
   EXPECT_TRUE(tell_by_integration(design, {}, testing::adaptive("gsl-rk8pd", 1e-10)).points.empty());
 }
 
+#ifdef NDEBUG
+constexpr int many = 200;
+#else
+constexpr int many = 20;  // under sanitizers
+#endif
+
 /// The motion without an integrator beside the integrated one, both at 1e-12.
 void expect_the_same_motion(const Design& design, const Scene& scene, const std::string& where) {
   const Story exact = tell_exactly(design, scene, 1e-12, 0.05);
@@ -108,7 +114,7 @@ void expect_the_same_motion(const Design& design, const Scene& scene, const std:
 TEST(Story, TheExactMotionIsTheIntegratedOneWithoutSlip) {
   expect_the_same_motion(testing::paper_hoop(), {}, "the paper's hoop");
   std::mt19937_64 random(4710);
-  for (int i = 0; i < 200; ++i)
+  for (int i = 0; i < many; ++i)
     expect_the_same_motion(testing::random_design(random), {}, "design " + std::to_string(i));
 }
 
@@ -117,7 +123,7 @@ TEST(Story, TheExactMotionIsTheIntegratedOneWithFriction) {
   scene.friction = Friction::coulomb;
   expect_the_same_motion(testing::paper_hoop(), scene, "the paper's hoop");
   std::mt19937_64 random(4711);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < many; ++i) {
     Design design = testing::random_design(random);
     design.mu_static = testing::uniform(random, 0.1, 1.5);
     design.restitution = testing::uniform(random, 0.0, 0.6);
