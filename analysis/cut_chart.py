@@ -52,12 +52,13 @@ def chart(m, along, by, at, fields):
         picked = [int(ranked[i]) for i in np.unique(np.linspace(0, n - 1, min(n, MOST_LINES)).round().astype(int))]
     figure, axes = plt.subplots(len(drawn), 1, sharex=True, squeeze=False, figsize=(6.6, 2.5 * len(drawn) + 1.4), layout="constrained")
     colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(picked)))
+    course = looks.course(m)
     for axis, field in zip(axes[:, 0], drawn):
         look, values = looks.LOOKS[field], looks.quantity(m, field)
         for colour, k in zip(colours, picked):
             y = line(values, k).astype(float)
-            if "jump_angle" in m.fields:
-                torn = looks.cliffs(line(m.fields["jump_angle"], k), 0)
+            if course is not None:
+                torn = looks.cliffs(line(course, k), 0)
                 y = np.insert(y, np.flatnonzero(torn) + 1, np.nan)
                 places = np.insert(x, np.flatnonzero(torn) + 1, np.nan)
             else:

@@ -21,11 +21,11 @@ from style import plt
 FIELDS = ("jump_height", "jump_time", "agility")
 
 
-def without_cliffs(plane, angle):
-    """The plane with gaps where the jump passes from one lift-off to another."""
+def without_cliffs(plane, course):
+    """The plane with gaps where the jump takes another course."""
     gaps = np.zeros(plane.shape, dtype=bool)
     for axis in (0, 1):
-        jumps = looks.cliffs(angle, axis)
+        jumps = looks.cliffs(course, axis)
         before, after = [slice(None)] * 2, [slice(None)] * 2
         before[axis], after[axis] = slice(None, -1), slice(1, None)
         gaps[tuple(before)] |= jumps
@@ -50,7 +50,7 @@ def scale_of(look, levels, values):
     return ListedColormap(plt.get_cmap(look.colours)(np.linspace(*ends, 256))), norm, fill, levels
 
 
-def draw_panel(axis, x, y, plane, flags, angle, told, scale, ink):
+def draw_panel(axis, x, y, plane, flags, course, told, scale, ink):
     """One panel: what happened where there is no jump, the field, its isolines, and hatching where spurious."""
     colours, norm, fill, levels = scale
     codes = list(looks.STATUSES)
@@ -64,7 +64,7 @@ def draw_panel(axis, x, y, plane, flags, angle, told, scale, ink):
     filled = axis.contourf(x, y, plane, levels=fill, cmap=colours, norm=norm, extend="both")
     for part in filled.collections:  # thousands of shapes a reader of the SVG need not wait for
         part.set_rasterized(True)
-    lines = axis.contour(x, y, without_cliffs(plane, angle), levels=levels, colors=ink, linewidths=0.8)
+    lines = axis.contour(x, y, without_cliffs(plane, course), levels=levels, colors=ink, linewidths=0.8)
     axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7)
     hatched = np.where(np.isfinite(plane), (flags == 1) * 1.0, np.nan)
     axis.contourf(x, y, hatched, levels=[0.5, 1.5], colors="none", hatches=["///"])
@@ -81,14 +81,14 @@ def chart(grid, name):
         raise NotAMap(f"{m.path}: no design in it jumps, so there is no {name} to draw")
     scale = scale_of(look, looks.levels_of(look, values), values)
     # What a map was not asked to store is not drawn: hatching, gaps of isolines at cliffs, reasons why there is no jump.
-    flags, angles = (grid.cut(m.fields[k]) if k in m.fields else [np.zeros(p.shape) for p in panels]
-                     for k in ("spurious_first_jump", "jump_angle"))
+    flags, courses = (grid.cut(array) if array is not None else [np.zeros(p.shape) for p in panels]
+                      for array in (m.fields.get("spurious_first_jump"), looks.course(m)))
     told = grid.told()
     figure, axes = grid.figure()
     x, y = grid.values(grid.x), grid.values(grid.y)
     starred = False
     for i, axis in enumerate(axes):
-        filled = draw_panel(axis, x, y, panels[i], flags[i], angles[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
+        filled = draw_panel(axis, x, y, panels[i], flags[i], courses[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
         if place := grid.paper(grid.panels[i]):
             starred = True
             axis.plot(*place, "*", color=look.star, markersize=13, markeredgecolor="white", zorder=5)

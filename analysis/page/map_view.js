@@ -27,7 +27,7 @@ function mapView(canvas, map, onPoint, onPick) {
     canvas.width = background.width = Math.round(box.width * ratio);
     canvas.height = background.height = Math.round(box.height * ratio);
     const context = background.getContext("2d"), font = 13 * ratio;
-    frame = { left: 4.6 * font, top: 0.8 * font, right: canvas.width - 6.2 * font, bottom: canvas.height - 3.4 * font, font, ratio };
+    frame = { left: 4.6 * font, top: 0.8 * font, right: canvas.width - 7 * font, bottom: canvas.height - 3.4 * font, font, ratio };
     sx = axisScale(map.axes[view.x], frame.left, frame.right);
     sy = axisScale(map.axes[view.y], frame.bottom, frame.top);
     context.fillStyle = "#ffffff";
@@ -172,11 +172,11 @@ function mapView(canvas, map, onPoint, onPick) {
       last = p;
       mark(level, short(level, 3), EDGE);
     }
-    for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name}`, MARK);
+    for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${value}`, MARK);
   }
 
   function paintPaper(context) {
-    if (!map.paper) return;
+    if (map.slips) return;
     const near = (a, b) => Math.abs(a - b) <= 1e-6 * Math.max(1, Math.abs(b));
     const here = { ...map.fixed };
     map.axes.forEach((axis, k) => { if (k !== view.x && k !== view.y) here[axis.name] = axis.values[view.index[k]]; });

@@ -3,6 +3,7 @@
 /// Picard's iteration from sample to sample, flights in closed form.
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "physics/flight_search.hpp"
 #include "physics/rolling_by_angle.hpp"
@@ -22,20 +23,24 @@ class Motion {
         friction_(contact_of<double>(design, scene).mu_kinetic),
         sampler_{interval, points} {}
 
-  /// Rolls without slip from a state to an angle ahead.
+  /// Rolls without slip from a state to an angle ahead, a turn at a time.
   void roll(const ContactState<double>& from, double end) {
-    const double duration = time_.halving(begin_roll(hoop_, from.angle, from.spin), end);
-    ContactState<double> start = from;  // of a stretch short enough that its time is found at once
-    sampler_.until(from.time + duration, [&](double t) {
+    constexpr double turn = 2.0 * std::numbers::pi;
+    const double turns = std::ceil((end - from.angle) / turn);
+    ContactState<double> start = from;
+    for (double k = 1.0; k <= turns; ++k) {
       const Roll<double> roll = begin_roll(hoop_, start.angle, start.spin);
-      const double x = rolled_within(roll, t - start.time, end - start.angle);
-      ContactState<double> at{.time = t, .travel = start.travel + x, .angle = start.angle + x};
-      at.spin = x > 0.0 ? std::sqrt(std::max(vis_viva_past_release(roll, x), 0.0) /
-                                    contact_inertia(hoop_, trig(at.angle)))
-                        : start.spin;
-      if (x > 1.0) start = at;
-      return rolling_point(hoop_, at);
-    });
+      const double most = (k == turns ? end : from.angle + k * turn) - start.angle;
+      const double duration = time_.halving(roll, start.angle + most);
+      ContactState<double> at = start;
+      sampler_.until(start.time + duration, [&](double t) {
+        const double x =
+            rolled_within(roll, t - start.time, at.angle - start.angle, at.spin * (t - at.time), most);
+        at = rolled(roll, start, x, t);
+        return rolling_point(hoop_, at);
+      });
+      start = rolled(roll, start, most, start.time + duration);
+    }
   }
 
   void slide(const ContactState<double>& from, int direction, double end) {
@@ -50,16 +55,30 @@ class Motion {
   void fly(const ContactState<double>& from, double flight_time) { sampler_.fly(hoop_, from, flight_time); }
 
  private:
-  /// How far it rolls in a time, at most `most`: the root of t(x), whose derivative is 1 / w.
-  double rolled_within(const Roll<double>& roll, double duration, double most) const {
+  ContactState<double> rolled(const Roll<double>& roll, const ContactState<double>& from, double x,
+                              double time) const {
+    ContactState<double> to{.time = time, .travel = from.travel + x, .angle = from.angle + x};
+    const double E = std::max(vis_viva_past_release(roll, x), 0.0);
+    to.spin = x > 0.0 ? std::sqrt(E / contact_inertia(hoop_, trig(to.angle))) : from.spin;
+    return to;
+  }
+
+  /// How far it rolls in a time: further than `least`, by some `step`, and at most `most`. The root of t(x),
+  /// whose derivative is 1 / w.
+  double rolled_within(const Roll<double>& roll, double duration, double least, double step,
+                       double most) const {
     if (!(duration > 0.0)) return 0.0;
     const auto time_left = [&](double x) {
       const double E = vis_viva_past_release(roll, x);
       return Sample<double>{time_.halving(roll, roll.release + x) - duration,
                             std::sqrt(contact_inertia(hoop_, trig(roll.release + x)) / E)};
     };
+    // What is left of the turn may be hard to time, so that the end of the bracket is come to from below.
+    double reach = std::max(1.5 * step, 1e-6 * most);
+    while (least + reach < most && time_left(least + reach).value < 0.0) reach *= 2.0;
     const double resolution = 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + most);
-    return polish_root(time_left, 0.0, most * (1.0 + 1e-15), 0.5 * most, true, resolution);
+    return polish_root(time_left, least, std::min(least + reach, most * (1.0 + 1e-15)), least + step, true,
+                       resolution);
   }
 
   Hoop<double> hoop_;
@@ -79,10 +98,13 @@ Story of_rolling(const Design& design, const Scene& scene, double tolerance, dou
   ExactSolver<Batch>(tolerance).solve({&design, 1}, scene, {&story.outcome, 1}, &lift_offs);
   const Outcome& outcome = story.outcome;
   const Hoop<double> hoop = derive<double>(design);
-  const Roll<double> roll = begin_roll(hoop, design.release_angle, design.release_spin);
+  const Roll<double> released = begin_roll(hoop, design.release_angle, design.release_spin);
   const RollingTime<double> time(tolerance);
+  Roll<double> roll = released;  // on from the last lift-off
+  double passed = 0.0;
   for (LiftOff<double>& lift_off : lift_offs) {
-    lift_off.time = time.halving(roll, lift_off.angle);
+    lift_off.time = passed += time.halving(roll, lift_off.angle);
+    roll = begin_roll(hoop, lift_off.angle, lift_off.spin);
     story.candidates.push_back({lift_off, fly(hoop, lift_off)});
   }
   if (!story.candidates.empty()) {
@@ -101,8 +123,8 @@ Story of_rolling(const Design& design, const Scene& scene, double tolerance, dou
 
   double end = jumps ? outcome.jump_angle : design.release_angle + 2.0 * std::numbers::pi * scene.runway;
   if (outcome.status == Status::stalled) {
-    const FirstMinimum<double> least = first_minimum(roll);
-    end = short_of_stall(design.release_angle, stall_angle(roll, least.angle, least.crest));
+    const FirstMinimum<double> least = first_minimum(released);
+    end = short_of_stall(design.release_angle, stall_angle(released, least.angle, least.crest));
   }
   Motion motion(design, scene, interval, story.points);
   motion.roll({.angle = design.release_angle, .spin = design.release_spin}, end);

@@ -91,17 +91,21 @@ constexpr int many = 20;  // under sanitizers
 #endif
 
 /// The motion without an integrator beside the integrated one, both at 1e-12.
-void expect_the_same_motion(const Design& design, const Scene& scene, const std::string& where) {
+/// False: the methods do not see the same phases, and there is nothing to compare.
+bool expect_the_same_motion(const Design& design, const Scene& scene, const std::string& where,
+                            double looser = 1.0) {
   const Story exact = tell_exactly(design, scene, 1e-12, 0.05);
   const Story integrated = tell_by_integration(design, scene, testing::adaptive("gsl-rk8pd", 1e-12), 0.05);
-  if (integrated.outcome.status == Status::failed || !same_flags(exact.outcome, integrated.outcome)) return;
-  ASSERT_EQ(exact.points.size(), integrated.points.size()) << where;
+  if (integrated.outcome.status == Status::failed || !same_flags(exact.outcome, integrated.outcome))
+    return false;
+  EXPECT_EQ(exact.points.size(), integrated.points.size()) << where;
+  if (exact.points.size() != integrated.points.size()) return true;
   for (std::size_t i = 0; i < exact.points.size(); ++i) {
     const TracePoint &a = exact.points[i], &b = integrated.points[i];
     // Errors of the integration, 1e-12 a step, grow with the motion's own sensitivity.
-    const double close = 1e-8 * (1.0 + std::abs(b.spin) + std::abs(b.normal_force));
+    const double close = looser * 1e-8 * (1.0 + std::abs(b.spin) + std::abs(b.normal_force));
     EXPECT_EQ(a.phase, b.phase) << where << " point " << i;
-    EXPECT_NEAR(a.t, b.t, 1e-8) << where << " point " << i;
+    EXPECT_NEAR(a.t, b.t, looser * 1e-8) << where << " point " << i;
     EXPECT_NEAR(a.phi, b.phi, close) << where << " point " << i;
     EXPECT_NEAR(a.spin, b.spin, close) << where << " point " << i;
     EXPECT_NEAR(a.x, b.x, close) << where << " point " << i;
@@ -109,26 +113,61 @@ void expect_the_same_motion(const Design& design, const Scene& scene, const std:
     EXPECT_NEAR(a.normal_force, b.normal_force, 10 * close) << where << " point " << i;
     EXPECT_NEAR(a.friction, b.friction, 10 * close) << where << " point " << i;
   }
+  return true;
 }
 
 TEST(Story, TheExactMotionIsTheIntegratedOneWithoutSlip) {
-  expect_the_same_motion(testing::paper_hoop(), {}, "the paper's hoop");
+  EXPECT_TRUE(expect_the_same_motion(testing::paper_hoop(), {}, "the paper's hoop"));
   std::mt19937_64 random(4710);
+  int compared = 0;
   for (int i = 0; i < many; ++i)
-    expect_the_same_motion(testing::random_design(random), {}, "design " + std::to_string(i));
+    compared += expect_the_same_motion(testing::random_design(random), {}, "design " + std::to_string(i));
+  EXPECT_GE(compared, many * 98 / 100);
 }
 
 TEST(Story, TheExactMotionIsTheIntegratedOneWithFriction) {
   Scene scene;
   scene.friction = Friction::coulomb;
-  expect_the_same_motion(testing::paper_hoop(), scene, "the paper's hoop");
+  EXPECT_TRUE(expect_the_same_motion(testing::paper_hoop(), scene, "the paper's hoop"));
   std::mt19937_64 random(4711);
+  int compared = 0;
   for (int i = 0; i < many; ++i) {
     Design design = testing::random_design(random);
     design.mu_static = testing::uniform(random, 0.1, 1.5);
     design.restitution = testing::uniform(random, 0.0, 0.6);
-    expect_the_same_motion(design, scene, "design " + std::to_string(i));
+    compared += expect_the_same_motion(design, scene, "design " + std::to_string(i));
   }
+  EXPECT_GE(compared, many * 95 / 100);
+}
+
+TEST(Story, TheExactMotionHoldsWhereRollingIsHard) {
+  Design needle = testing::paper_hoop();
+  needle.mass_ratio = 1e6;
+  needle.release_spin = 0.5;
+  EXPECT_TRUE(expect_the_same_motion(needle, {}, "a needle of the spin", 100.0));
+  Design balanced = testing::paper_hoop();
+  balanced.slope = 0.2;
+  // A little past the unstable equilibrium, where rho sin(theta + phi) = sin(theta); the start's rounding
+  // grows by as much.
+  const Hoop<double> hoop = derive<double>(balanced);
+  balanced.release_angle = std::numbers::pi - std::asin(hoop.sin_slope / hoop.rho) - balanced.slope + 1e-6;
+  EXPECT_TRUE(expect_the_same_motion(balanced, {}, "beside the equilibrium", 1e3));
+}
+
+TEST(Story, ALongRunIsSampledToItsEndInTimeThatGrowsWithItsLength) {
+  Design design = testing::paper_hoop();
+  design.mass_ratio = 0.05;
+  Scene scene;
+  scene.hop_height = 50.0;
+  scene.runway = 200.0;  // quadratic work would take minutes
+  EXPECT_TRUE(expect_the_same_motion(design, scene, "200 turns", 100.0));
+  const Story story = tell_exactly(design, scene, 1e-10, 0.05);
+  ASSERT_EQ(story.outcome.status, Status::no_jump);
+  const double end = design.release_angle + 400.0 * std::numbers::pi;
+  EXPECT_NEAR(story.points.back().phi, end, 0.05 * story.points.back().spin);
+  scene.runway = 4000.0;  // more panels than one quadrature may take
+  EXPECT_GT(tell_exactly(design, scene, 1e-10, 1.0).points.back().phi,
+            20.0 * (end - design.release_angle) - 200.0);
 }
 
 TEST(Story, AStallAndAReleaseThatDoesNotSetOutHaveTheMotionThereIs) {

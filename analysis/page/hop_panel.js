@@ -1,0 +1,149 @@
+// The part of the page that shows one hoop: its controls, numbers and command line.
+
+/** The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion. */
+function hopPanel(map, solver) {
+  const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
+  const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
+  const now = { design: null, story: null, time: 0, playing: false, last: 0, timeAt: null };
+  radius.value = 1000 * map.fixed.radius;
+  mass.value = 28.2;  // the paper's: 8.2 g and 20 g
+
+  const end = () => now.story.motion.t.at(-1) ?? 0;
+  const positive = (input, otherwise) => (Number(input.value) > 0 ? Number(input.value) : otherwise);
+  const weight = () => positive(mass, 28.2) / 1000 * (now.design.gravity ?? solver.defaults.gravity);
+
+  function draw() {
+    if (!now.story || now.story.motion.t.length === 0) {
+      for (const canvas of [scene, plots]) canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
+      clock.textContent = "it does not set out";
+      return;
+    }
+    drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked);
+    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.story.outcome, now.time, weight());
+    clock.textContent = `${now.time.toFixed(3)} s`;
+    scrub.value = now.time;
+  }
+
+  function tick(stamp) {
+    if (!now.playing) return;
+    const passed = now.last ? Math.min(0.1, (stamp - now.last) / 1000) : 0;
+    now.last = stamp;
+    now.time += passed * Number(element("speed").value);
+    if (now.time >= end()) { now.time = end(); run(false); }
+    draw();
+    if (now.playing) requestAnimationFrame(tick);
+  }
+  function run(on) {
+    if (on && now.time >= end()) now.time = 0;
+    now.playing = on && end() > 0;
+    now.last = 0;
+    play.textContent = now.playing ? "❚❚ pause" : "▶ play";
+    if (now.playing) requestAnimationFrame(tick);
+  }
+
+  function row(name, words, text, value) {
+    const tr = document.createElement("tr"), th = document.createElement("th"), td = document.createElement("td");
+    th.scope = "row";
+    th.textContent = words;
+    td.textContent = text;
+    tr.dataset.name = name;
+    tr.dataset.value = String(value);
+    tr.append(th, td);
+    return tr;
+  }
+
+  function tell() {
+    const { outcome } = now.story, R = now.design.radius, g = now.design.gravity, second = Math.sqrt(R / g), kg = positive(mass, 28.2) / 1000;
+    const jumped = outcome.status === "jumped", rows = [];
+    const add = (name, words, text, value = outcome[name]) => rows.push(row(name, words, text, value));
+    add("status", "ends as", outcome.status.replaceAll("_", " "));
+    if (jumped) {
+      const metres = 2 * R * outcome.jump_height, speed = outcome.jump_spin / second;
+      add("jump_height", "jump height", `${short(1000 * metres)} mm = ${short(outcome.jump_height, 5)} diameters`);
+      add("jump_time", "lift-off after", `${short(outcome.jump_time, 5)} s`);
+      add("agility", "agility", `${short(metres / (outcome.jump_time + outcome.apex_time))} m/s`, metres / (outcome.jump_time + outcome.apex_time));
+      add("apex_time", "apex, landing after lift-off", `${short(outcome.apex_time, 4)} s, ${short(outcome.flight_time, 4)} s`);
+      add("jump_spin", "spin at lift-off", `${short(speed)} rad/s`);
+      add("jump_angle", "angle at lift-off", `${short(outcome.jump_angle * 180 / Math.PI, 5)}°`);
+      add("jump_distance", "rolled until lift-off", `${short(outcome.jump_distance * R * 1000)} mm`);
+      if (!map.slips) add("dip", "flight first dips", `${short(2000 * R * outcome.dip, 3)} mm`);
+    }
+    if (outcome.candidates > 0) {
+      add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump === 1 ? `spurious: ${short(1000 * 2 * R * outcome.first_jump_height, 3)} mm high, after ${short(outcome.first_jump_time)} s` : "is the jump");
+      add("candidates", "lift-offs looked at", String(outcome.candidates));
+    }
+    if (map.slips) {
+      add("phase_sequence", "phases", outcome.phase_sequence);
+      if (Number.isFinite(outcome.slip_distance)) add("slip_distance", "slid", `${short(1000 * R * outcome.slip_distance)} mm`);
+      if (jumped) add("landing_spin", "spin after landing", `${short(outcome.landing_spin / second)} rad/s`);
+      if (jumped) add("energy_lost", "energy lost until the jump", `${short(1000 * outcome.energy_lost * kg * g * R)} mJ`);
+    }
+    const pushes = now.story.motion.normal_force;
+    if (pushes.length > 0) {
+      const most = pushes.reduce((a, b) => Math.max(a, b), 0) * kg * g;
+      add("most_normal_force", "largest normal force", `${short(most)} N`, most);
+    }
+    table.replaceChildren(...rows);
+    command.textContent = hopCommand();
+  }
+
+  /** The command line that tells the same hoop. */
+  function hopCommand() {
+    const { design } = now, contact = ["mu_static", "mu_kinetic", "restitution"];
+    const flags = ["slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin", ...(map.slips ? contact : [])];
+    const words = ["leapmap hop", ...flags.filter((k) => Number.isFinite(design[k])).map((k) => `--${k.replaceAll("_", "-")} ${design[k]}`)];
+    if (map.slips) words.push("--set friction=coulomb", `--set rest_speed=${design.rest_speed}`);
+    for (const key of ["runway", "hop_height", "radius", "gravity"])
+      if (design[key] !== solver.defaults[key]) words.push(`--set ${key}=${design[key]}`);
+    if (map.tolerance !== 1e-10) words.push(`--set tolerance=${map.tolerance}`);
+    return words.join(" ");
+  }
+
+  function solve(restart) {
+    const { design } = now;
+    design.radius = positive(radius, 1000 * map.fixed.radius) / 1000;
+    // Some 30 samples a radian of the swiftest motion that the eye can follow; a thousand at most over a usual run.
+    const interval = 0.03 * Math.sqrt(design.radius / (design.gravity ?? solver.defaults.gravity));
+    now.story = solver.solve(design, map.slips, map.tolerance, interval);
+    scrub.max = end();
+    if (restart) now.time = 0;
+    now.time = Math.min(now.time, end());
+    tell();
+    draw();
+  }
+
+  play.addEventListener("click", () => run(!now.playing));
+  scrub.addEventListener("input", () => { run(false); now.time = Number(scrub.value); draw(); });
+  element("follow").addEventListener("change", draw);
+  radius.addEventListener("change", () => { if (now.design) solve(true); });
+  mass.addEventListener("change", () => { if (now.design) { tell(); draw(); } });
+  const seek = (event) => { if (now.timeAt && (event.type === "click" || event.buttons === 1)) { run(false); now.time = now.timeAt(event.clientX); draw(); } };
+  plots.addEventListener("click", seek);
+  plots.addEventListener("pointermove", seek);
+  element("copy").addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText(command.textContent);
+      element("copy").textContent = "copied";
+    } catch {  // a page from a file may not; the text is selected instead
+      const range = document.createRange();
+      range.selectNodeContents(command);
+      window.getSelection().removeAllRanges();
+      window.getSelection().addRange(range);
+      element("copy").textContent = "selected: Ctrl+C";
+    }
+    setTimeout(() => { element("copy").textContent = "copy"; }, 2000);
+  });
+  new ResizeObserver(draw).observe(scene);
+
+  const show = (index) => {
+    history.replaceState(null, "", `#design=${index.join(",")}`);
+    now.design = { ...map.fixed };
+    map.axes.forEach((axis, k) => { now.design[axis.name] = axis.values[index[k]]; });
+    element("hop-title").textContent = `One hoop: ${placeText(map, index)}`;
+    solve(true);
+    run(!still);
+  };
+  const stopAt = (time) => { run(false); now.time = Math.min(Math.max(0, time), end()); draw(); };
+  return { show, stopAt };
+}
