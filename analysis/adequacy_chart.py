@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
+import planes
 import style
 from read_map import NotAMap, read_map
 from style import plt
@@ -62,8 +63,8 @@ def chart(rigid, slipping):
     for i, (axis, mu) in enumerate(zip(axes.flat, mus)):
         here = (i,) if "mu_static" in slipping.dims else ()
         kind = kinds(height, heights[here], jumps, jump[here], unknown[here])
-        axis.pcolormesh(ratios, degrees, kind.T, cmap=ListedColormap([c for c, _ in KINDS]), vmin=-0.5, vmax=len(KINDS) - 0.5,
-                        shading="nearest", rasterized=True)
+        axis.pcolormesh(planes.edges_of(ratios), planes.edges_of(degrees), kind.T, cmap=ListedColormap([c for c, _ in KINDS]), vmin=-0.5, vmax=len(KINDS) - 0.5,
+                        shading="flat", rasterized=True)
         differs = (flag != flags[here]) & jumps & jump[here]
         if differs.any():
             axis.contourf(ratios, degrees, differs.T, levels=[0.5, 1.5], colors="none", hatches=["////"])
@@ -91,4 +92,4 @@ def main():
 
 
 if __name__ == "__main__":
-    style.run(main, NotAMap, OSError, KeyError)
+    style.run(main, NotAMap, OSError)

@@ -27,7 +27,7 @@ def chart(m, along, by, at, fields):
     if by is not None and (by not in free or by == along):
         raise NotAMap(f"{m.path}: has no other axis {by}; it has {', '.join(n for n in free if n != along) or 'none'}")
     by = by or next((n for n in ("mass_ratio", *free) if n in free and n != along), None)
-    index = {n: int(np.argmin(np.abs(v - looks.PAPER[n]))) if n in looks.PAPER else len(v) // 2 for n, v in m.dims.items()}
+    index = {n: int(np.argmin(np.abs(v - looks.PAPER[n]))) if n in looks.PAPER else int(np.argsort(v)[len(v) // 2]) for n, v in m.dims.items()}
     index.update(planes.fixed_at(m, at))
     drawn = [f for f in fields if looks.quantity(m, f) is not None and np.isfinite(looks.quantity(m, f)).any()]
     if not drawn:
@@ -65,9 +65,9 @@ def chart(m, along, by, at, fields):
                 torn, places = np.zeros(0, bool), x
             flags = line(m.fields["spurious_first_jump"], k) if "spurious_first_jump" in m.fields else np.zeros(len(x))
             flags = np.insert(flags, np.flatnonzero(torn) + 1, 255)
-            axis.plot(places, np.where(flags == 1, np.nan, y), color=colour, linewidth=1.5, marker="." if len(x) < 30 else "",
+            axis.plot(places, np.where(flags == 1, np.nan, y), color=colour, linewidth=1.5, marker=".", markersize=3,
                       label=looks.titled(by, m.dims[by][k]) if by else None)
-            axis.plot(places, np.where(flags == 1, y, np.nan), color=colour, linewidth=1.5, linestyle=":", marker="." if len(x) < 30 else "")
+            axis.plot(places, np.where(flags == 1, y, np.nan), color=colour, linewidth=1.5, linestyle=":", marker=".", markersize=3)
         axis.set_ylabel("\n[".join(look.title.replace(": height over time from release to apex", "").split(" [")))
         axis.grid(alpha=0.25)
         if looks.is_log(x):
@@ -78,7 +78,8 @@ def chart(m, along, by, at, fields):
     words = others + [looks.titled(k, numbers[k]) for k in ("inertia_factor", "release_angle", "release_spin") if k in numbers and k not in m.dims]
     if m.slips:
         words += [looks.titled(k, numbers[k]) for k in ("mu_static", "restitution") if k in numbers and k not in m.dims]
-    axes[-1, 0].set_xlabel(f"{planes.axis_label(along)}\n{',  '.join(words)},  R = {1e3 * numbers['radius']:g} mm")
+    words.append(f"R = {1e3 * numbers['radius']:g} mm")
+    axes[-1, 0].set_xlabel(f"{planes.axis_label(along)}\n{style.wrapped(words, figure)}")
     handles = axes[0, 0].get_legend_handles_labels()[0]
     handles += [plt.Line2D([], [], color="#404040", linestyle=":", label="first lift-off is spurious")]
     style.legend_above(figure, handles)
@@ -100,4 +101,4 @@ def main():
 
 
 if __name__ == "__main__":
-    style.run(main, NotAMap, OSError, KeyError)
+    style.run(main, NotAMap, OSError)

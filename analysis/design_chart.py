@@ -10,6 +10,7 @@ spurious_first_jump, jump_angle (gaps at cliffs) and status are drawn if they ar
 import sys
 
 import numpy as np
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, PowerNorm
 
 import looks
@@ -50,26 +51,33 @@ def scale_of(look, levels, values):
     return ListedColormap(plt.get_cmap(look.colours)(np.linspace(*ends, 256))), norm, fill, levels
 
 
-def draw_panel(axis, x, y, plane, flags, course, told, scale, ink):
+def draw_panel(axis, grid, plane, flags, course, told, scale, ink):
     """One panel: what happened where there is no jump, the field, its isolines, and hatching where spurious."""
     colours, norm, fill, levels = scale
+    x, y, cells = grid.values(grid.x), grid.values(grid.y), (grid.edges(grid.x), grid.edges(grid.y))
     codes = list(looks.STATUSES)
     background = np.full(plane.shape, np.nan)
     for i, code in enumerate(codes):
         background[told[code]] = i
-    axis.pcolormesh(x, y, background, shading="nearest", norm=BoundaryNorm(np.arange(len(codes) + 1) - 0.5, len(codes)),
+    axis.pcolormesh(*cells, background, shading="flat", norm=BoundaryNorm(np.arange(len(codes) + 1) - 0.5, len(codes)),
                     cmap=ListedColormap([looks.STATUSES[c][0] for c in codes]), rasterized=True)
     # Cells first: contours need four neighbours, and a lone design must show too.
-    axis.pcolormesh(x, y, plane, shading="nearest", cmap=colours, norm=norm, rasterized=True)
-    filled = axis.contourf(x, y, plane, levels=fill, cmap=colours, norm=norm, extend="both")
+    axis.pcolormesh(*cells, plane, shading="flat", cmap=colours, norm=norm, rasterized=True)
+    if not np.isfinite(plane).any():
+        return
+    filled = axis.contourf(x, y, np.ma.masked_invalid(plane), levels=fill, cmap=colours, norm=norm, extend="both")
     for part in filled.collections:  # thousands of shapes a reader of the SVG need not wait for
         part.set_rasterized(True)
-    lines = axis.contour(x, y, without_cliffs(plane, course), levels=levels, colors=ink, linewidths=0.8)
-    axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7)
-    hatched = np.where(np.isfinite(plane), (flags == 1) * 1.0, np.nan)
-    axis.contourf(x, y, hatched, levels=[0.5, 1.5], colors="none", hatches=["///"])
-    axis.contour(x, y, hatched, levels=[0.5], colors=style.EDGE, linewidths=0.7)
-    return filled
+    torn = without_cliffs(plane, course)
+    present = [v for v in levels if np.isfinite(torn).any() and np.nanmin(torn) < v < np.nanmax(torn)]
+    if present:
+        lines = axis.contour(x, y, np.ma.masked_invalid(torn), levels=present, colors=ink, linewidths=0.8)
+        axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7)
+    hatched = np.ma.masked_where(~np.isfinite(plane), (flags == 1) * 1.0)
+    if hatched.max() > 0:
+        axis.contourf(x, y, hatched, levels=[0.5, 1.5], colors="none", hatches=["///"])
+        if hatched.min() == 0:
+            axis.contour(x, y, hatched, levels=[0.5], colors=style.EDGE, linewidths=0.7)
 
 
 def chart(grid, name):
@@ -85,15 +93,15 @@ def chart(grid, name):
                       for array in (m.fields.get("spurious_first_jump"), looks.course(m)))
     told = grid.told()
     figure, axes = grid.figure()
-    x, y = grid.values(grid.x), grid.values(grid.y)
     starred = False
     for i, axis in enumerate(axes):
-        filled = draw_panel(axis, x, y, panels[i], flags[i], courses[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
+        draw_panel(axis, grid, panels[i], flags[i], courses[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
         if place := grid.paper(grid.panels[i]):
             starred = True
             axis.plot(*place, "*", color=look.star, markersize=13, markeredgecolor="white", zorder=5)
-    levels = scale[3]
-    bar = figure.colorbar(filled, ax=axes, label=look.title, ticks=levels, shrink=0.9, pad=0.015)
+    colours, norm, _, levels = scale
+    # A bar of its own scale, whatever the panels hold.
+    bar = figure.colorbar(ScalarMappable(norm, colours), ax=axes, extend="both", label=look.title, ticks=levels, shrink=0.9, pad=0.015)
     bar.ax.set_yticks(levels, [f"{v:g}" for v in levels])
     bar.ax.minorticks_off()
     if name == "agility":
@@ -132,4 +140,4 @@ def main():
 
 
 if __name__ == "__main__":
-    style.run(main, NotAMap, OSError, KeyError)
+    style.run(main, NotAMap, OSError)

@@ -54,4 +54,4 @@ def main():
 
 
 if __name__ == "__main__":
-    style.run(main, NotAMap, OSError, KeyError)
+    style.run(main, NotAMap, OSError)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 import looks
+import style
 from read_map import NotAMap
 from style import plt
 
@@ -71,6 +72,10 @@ class Planes:
         values = self.map.dims[name][self.order[name]]
         return np.degrees(values) if looks.PARAMETERS.get(name, ("", "", ""))[2] == "°" else values
 
+    def edges(self, name):
+        """Where an axis's cells end: halfway between its values as they are drawn."""
+        return edges_of(self.values(name))
+
     def cut(self, array):
         """An array along all of the map's axes as one plane a panel, rows along y."""
         names = list(self.map.dims)
@@ -112,7 +117,7 @@ class Planes:
                 axis.yaxis.set_major_formatter(lambda v, _: f"{v:g}")
         for axis in axes.flat[len(self.panels):]:
             axis.set_visible(False)
-        figure.supxlabel(f"{axis_label(self.x)}\n{self.caption(columns)}", fontsize=9)
+        figure.supxlabel(f"{axis_label(self.x)}\n{style.wrapped(self.caption(), figure)}", fontsize=9)
         figure.supylabel(axis_label(self.y), fontsize=9)
         if not self.map.whole:
             figure.text(0.01, 0.01, f"INCOMPLETE: {self.map.computed().mean():.0%} of the designs are computed", color="#d62728", fontsize=9)
@@ -123,14 +128,13 @@ class Planes:
         numbers = {**self.map.numbers(), **{n: self.map.dims[n][i] for n, i in self.index.items()}}
         return {k: v for k, v in numbers.items() if k not in self.map.dims or k in self.index}
 
-    def caption(self, columns):
-        """What the axes do not tell: the parameters and the scene all panels share; on two lines below a single panel."""
+    def caption(self):
+        """What the axes do not tell: the parameters and the scene all panels share."""
         fixed = self.fixed()
         contact = ("mu_static", "mu_kinetic", "restitution")
         words = [looks.titled(k, fixed[k]) for k in looks.PARAMETERS if k in fixed and (k not in contact or self.map.slips)]
         words += [f"runway {fixed['runway']:g} turns", f"jump from {fixed['hop_height']:g} diameters", f"R = {1e3 * fixed['radius']:g} mm"]
-        half = len(words) if columns > 1 else (len(words) + 1) // 2
-        return "\n".join(",  ".join(part) for part in (words[:half], words[half:]) if part)
+        return words
 
     def paper(self, panel):
         """Where the paper's hoop is in a panel, as drawn: (x, y), or None if it does not belong there."""
@@ -148,6 +152,14 @@ class Planes:
                 return None
             place.append(value)
         return tuple(place)
+
+
+def edges_of(values):
+    """The edges of cells around sorted values: halfway to the neighbours, by ratio on a logarithmic axis."""
+    at = np.log(values) if looks.is_log(values) else values
+    middle = (at[1:] + at[:-1]) / 2
+    edges = np.concatenate([[2 * at[0] - middle[0]], middle, [2 * at[-1] - middle[-1]]])
+    return np.exp(edges) if looks.is_log(values) else edges
 
 
 def axis_label(name):

@@ -16,7 +16,18 @@ FORMAT_MAJOR = 1  # the newest format this reader knows
 
 
 class NotAMap(Exception):
-    """The file is of another type, or of a newer format."""
+    """The file is of another type, of a newer format, damaged, or lacks what was asked of it."""
+
+
+class Fields(dict):
+    """Arrays by name; one that is not there is said so in one line."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.path = path
+
+    def __missing__(self, name):
+        raise NotAMap(f"{self.path}: has no {name}; it has {', '.join(self) or 'no fields'}")
 
 
 @dataclass
@@ -24,7 +35,7 @@ class Map:
     path: str
     attributes: dict
     dims: dict = field(default_factory=dict)  # name -> values, in the order of the fields' dimensions
-    fields: dict = field(default_factory=dict)  # name -> array
+    fields: Fields = None  # name -> array
     about: dict = field(default_factory=dict)  # name -> its attributes (units, long_name, ...)
     tile: tuple = ()  # how many designs a chunk holds along each axis
 
@@ -53,14 +64,14 @@ class Map:
     def meanings(self, name):
         """{meaning: value} of a code."""
         about = self.about[name]
-        words, values = about.get("flag_meanings"), about.get("flag_values")
-        if not isinstance(words, str) or len(words.split()) != np.size(values):
+        words, values = about.get("flag_meanings"), np.atleast_1d(about.get("flag_values", []))
+        if not isinstance(words, str) or len(words.split()) != len(values) or values.dtype.kind not in "iu" or (values > 255).any():
             raise NotAMap(f"{self.path}: {name} does not say what its codes mean")
-        return dict(zip(words.split(), np.atleast_1d(values).tolist()))
+        return dict(zip(words.split(), values.tolist()))
 
     def code(self, name, meaning):
-        """Where the code `name` has this meaning."""
-        return self.fields[name] == self.meanings(name)[meaning]
+        """Where the code `name` has this meaning; nowhere if it knows none such."""
+        return self.fields[name] == self.meanings(name).get(meaning, 256)
 
     def numbers(self):
         """The numbers of the resolved spec that made it, by key; what an axis varies is not among them."""
@@ -93,7 +104,7 @@ def _read_open(path, file, filetype):
     if attributes["version"][0] > FORMAT_MAJOR:
         raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
                       "use a newer leapmap")
-    result = Map(str(path), attributes)
+    result = Map(str(path), attributes, fields=Fields(str(path)))
     for name, dataset in file.items():
         if not isinstance(dataset, h5py.Dataset):  # the group that tells viewers what to plot
             continue
@@ -109,14 +120,59 @@ def _read_open(path, file, filetype):
     return result
 
 
+BEYOND = 1e100  # no quantity of a hoop is as large
+
+
+def _check_numbers(m, name, values, dimensions):
+    """Real numbers of that many dimensions, NaN allowed, of sizes that can be drawn."""
+    if values.ndim != dimensions or values.dtype.kind not in "fiu":
+        raise NotAMap(f"{m.path}: is damaged: {name} is no array of numbers over its axes")
+    if values.dtype.kind == "f" and (np.abs(values[~np.isnan(values)]) > BEYOND).any():
+        raise NotAMap(f"{m.path}: is damaged: {name} holds numbers beyond all bounds")
+
+
+def _check_scene(m):
+    """What every chart says of the scene."""
+    if not isinstance(m.attributes.get("spec"), str):
+        raise NotAMap(f"{m.path}: is damaged: its attribute spec is no text")
+    numbers = m.numbers()
+    for key, least in (("radius", 0.0), ("gravity", 0.0), ("runway", 0.0), ("tolerance", 0.0), ("hop_height", -1e-300)):
+        if not least < numbers.get(key, np.nan) < BEYOND:
+            raise NotAMap(f"{m.path}: is damaged: its spec says {key} = {numbers.get(key, 'nothing')}")
+
+
 def read_map(path):
     """A map, as `leapmap sweep` writes it. Raises NotAMap with one clear line for anything else."""
-    return _read(path, "leapmap map")
+    m = _read(path, "leapmap map")
+    _check_scene(m)
+    for name, values in m.dims.items():
+        _check_numbers(m, name, values, 1)
+        if not np.isfinite(values).all() or len(np.unique(values)) != len(values) or len(values) == 0:
+            raise NotAMap(f"{m.path}: is damaged: the values of its axis {name} are not distinct numbers")
+    for name, values in m.fields.items():
+        _check_numbers(m, name, values, len(m.dims))
+        if values.shape != tuple(len(v) for v in m.dims.values()):
+            raise NotAMap(f"{m.path}: is damaged: {name} has the shape {values.shape}, which is not that of its axes")
+    if not m.whole and not (isinstance(m.attributes["tiles_done"], np.integer) and len(m.tile) == len(m.dims)):
+        raise NotAMap(f"{m.path}: is damaged: it does not say which of its tiles are done")
+    return m
 
 
 def read_trace(path):
-    """One design's motion, as `leapmap hop --trace` writes it."""
-    return _read(path, "leapmap trace")
+    """One design's motion, as `leapmap hop --trace` writes it. Raises NotAMap likewise."""
+    trace = _read(path, "leapmap trace")
+    _check_scene(trace)
+    if not isinstance(trace.attributes.get("status"), str):
+        raise NotAMap(f"{trace.path}: is damaged: its attribute status is no text")
+    columns = ("phi", "spin", "x", "y", "normal_force", "friction", "phase")
+    for name in (*columns, "candidate_time", "candidate_height"):
+        along = trace.dims.get("t" if name in columns else "candidate", np.zeros(0))
+        _check_numbers(trace, name, trace.fields[name], 1)
+        if len(trace.fields[name]) != len(along):
+            raise NotAMap(f"{trace.path}: is damaged: {name} is not as long as its axis")
+    if trace.attributes["status"] == "jumped" and not (len(trace.fields["candidate_time"]) and trace.code("phase", "flight").any()):
+        raise NotAMap(f"{trace.path}: is damaged: it says that the hoop jumped, but holds no flight")
+    return trace
 
 
 def phases(sequence):

@@ -34,7 +34,7 @@ def chart(grid):
 
     figure, axes = grid.figure()
     for axis, panel, plane in zip(axes, grid.panels, panels):
-        axis.pcolormesh(grid.values(grid.x), grid.values(grid.y), plane, shading="nearest", rasterized=True,
+        axis.pcolormesh(grid.edges(grid.x), grid.edges(grid.y), plane, shading="flat", rasterized=True,
                         norm=BoundaryNorm(np.arange(len(kinds) + 1) - 0.5, len(kinds)), cmap=ListedColormap([c for c, _ in kinds]))
         if place := grid.paper(panel):
             axis.plot(*place, "*", color=style.MARK, markersize=13, markeredgecolor="white", zorder=5)
@@ -56,4 +56,4 @@ def main():
 
 
 if __name__ == "__main__":
-    style.run(main, NotAMap, OSError, KeyError)
+    style.run(main, NotAMap, OSError)

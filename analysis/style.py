@@ -46,6 +46,17 @@ def save(figure, output):
     plt.close(figure)
 
 
+def wrapped(words, figure, size=9):
+    """Words joined by commas in lines that fit a figure's width; size: the font's."""
+    most = int(72 * figure.get_figwidth() / (0.56 * size))
+    lines = [""]
+    for word in words:
+        if lines[-1] and len(lines[-1]) + len(word) + 3 > most:
+            lines.append("")
+        lines[-1] += (",  " if lines[-1] else "") + word
+    return "\n".join(lines)
+
+
 def legend_above(figure, handles):
     """A legend over all panels, in rows that fit the figure's width."""
     if not handles:

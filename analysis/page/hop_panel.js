@@ -5,7 +5,7 @@ function hopPanel(map, solver) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
-  const now = { design: null, story: null, time: 0, playing: false, last: 0, timeAt: null };
+  const now = { design: null, story: null, time: 0, playing: false, last: 0, frame: 0, timeAt: null };
   radius.value = 1000 * map.fixed.radius;
   mass.value = 28.2;  // the paper's: 8.2 g and 20 g
 
@@ -32,14 +32,15 @@ function hopPanel(map, solver) {
     now.time += passed * Number(element("speed").value);
     if (now.time >= end()) { now.time = end(); run(false); }
     draw();
-    if (now.playing) requestAnimationFrame(tick);
+    if (now.playing) now.frame = requestAnimationFrame(tick);
   }
   function run(on) {
     if (on && now.time >= end()) now.time = 0;
     now.playing = on && end() > 0;
     now.last = 0;
     play.textContent = now.playing ? "❚❚ pause" : "▶ play";
-    if (now.playing) requestAnimationFrame(tick);
+    cancelAnimationFrame(now.frame);
+    if (now.playing) now.frame = requestAnimationFrame(tick);
   }
 
   function row(name, words, text, value) {
@@ -100,15 +101,16 @@ function hopPanel(map, solver) {
     return words.join(" ");
   }
 
-  function solve(restart) {
+  /** Solves the design anew, its motion from the start. */
+  function solve() {
+    try { solved(); } catch (error) { complain(error); }
+  }
+  function solved() {
     const { design } = now;
     design.radius = positive(radius, 1000 * map.fixed.radius) / 1000;
-    // Some 30 samples a radian of the swiftest motion that the eye can follow; a thousand at most over a usual run.
-    const interval = 0.03 * Math.sqrt(design.radius / (design.gravity ?? solver.defaults.gravity));
-    now.story = solver.solve(design, map.slips, map.tolerance, interval);
+    now.story = solver.solve(design, map.slips, map.tolerance);
     scrub.max = end();
-    if (restart) now.time = 0;
-    now.time = Math.min(now.time, end());
+    now.time = 0;
     tell();
     draw();
   }
@@ -116,7 +118,7 @@ function hopPanel(map, solver) {
   play.addEventListener("click", () => run(!now.playing));
   scrub.addEventListener("input", () => { run(false); now.time = Number(scrub.value); draw(); });
   element("follow").addEventListener("change", draw);
-  radius.addEventListener("change", () => { if (now.design) solve(true); });
+  radius.addEventListener("change", () => { if (now.design) solve(); });
   mass.addEventListener("change", () => { if (now.design) { tell(); draw(); } });
   const seek = (event) => { if (now.timeAt && (event.type === "click" || event.buttons === 1)) { run(false); now.time = now.timeAt(event.clientX); draw(); } };
   plots.addEventListener("click", seek);
@@ -141,8 +143,8 @@ function hopPanel(map, solver) {
     now.design = { ...map.fixed };
     map.axes.forEach((axis, k) => { now.design[axis.name] = axis.values[index[k]]; });
     element("hop-title").textContent = `One hoop: ${placeText(map, index)}`;
-    solve(true);
-    run(!still);
+    solve();
+    run(!still && now.story !== null);
   };
   const stopAt = (time) => { run(false); now.time = Math.min(Math.max(0, time), end()); draw(); };
   return { show, stopAt };

@@ -50,12 +50,16 @@ function start(map, solver) {
     (map.computed < 1 ? `, INCOMPLETE: ${(100 * map.computed).toFixed(0)} % of them computed` : "") +
     (map.slips ? "; slips by Coulomb's law" : "; never slips") + ` · runway ${short(map.fixed.runway)} turns · a jump is ${short(map.fixed.hop_height)} diameters or more`;
   element("footer").textContent = `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as shown` +
+    (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop here by exact`) +
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
     (map.fields.some((f) => f.name === "agility") ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "") + ".";
 
   const chosen = hopPanel(map, solver);
+  let said = "";
   const told = (index) => {
-    const at = view.offset(index), shown = view.view.field;
+    const at = view.offset(index), shown = view.view.field, key = `${index} ${shown.name}`;
+    if (key === said) return;  // the pointer moved inside a cell
+    said = key;
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
     const text = (f) => (f.values[at] === f.values[at] ? withUnit(f.values[at].toFixed(decimalsOf(f.step)), f.unit) : "none");
     const notes = [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "),
@@ -161,7 +165,7 @@ function addressed(map) {
 (async () => {
   try {
     if (typeof DecompressionStream === "undefined" || typeof WebAssembly === "undefined")
-      throw new Error("this browser is too old; Chrome 80, Firefox 113 and Safari 16.4 are not");
+      throw new Error("this browser is too old; Chrome 97, Firefox 113 and Safari 16.4 are not");
     start(await readMap(), await loadSolver(element("module").textContent));
   } catch (error) { complain(error); }
 })();

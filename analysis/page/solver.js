@@ -30,8 +30,11 @@ async function loadSolver(text) {
   };
   return {
     defaults,
-    /** One design in full: {outcome, motion, liftOffs}, in SI but for forces, in weights, and heights, in diameters. */
-    solve(design, slips, tolerance, interval) {
+    /**
+     * One design in full: {outcome, motion, liftOffs}, in SI but for forces, in weights, and heights, in diameters. interval: of the
+     * motion's samples [s]; 0: as fine as a picture needs.
+     */
+    solve(design, slips, tolerance, interval = 0) {
       doubles(leapmap.parameters(), parameters.length).set(parameters.map((name) => design[name] ?? defaults[name]));
       leapmap.solve(slips ? 1 : 0, tolerance, interval);
       const outcome = Object.fromEntries(fields.map((name, i) => [name, word(leapmap.field_text(i)) ?? leapmap.field_value(i)]));

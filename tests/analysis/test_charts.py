@@ -4,7 +4,10 @@ import json
 import xml.etree.ElementTree as ElementTree
 
 import h5py
+import numpy as np
 import pytest
+from matplotlib import image
+from matplotlib.colors import to_rgb
 from support.program import TOP, finished, leapmap, sweep
 
 CHART = """
@@ -105,6 +108,36 @@ def test_the_cut_chart_draws_a_line_for_each_value_with_units_and_what_is_fixed(
     for wrong, word in ((["--along", "mu_static"], "mu_static"), (["--by", "slope"], "no other axis"), (["--fields", "beauty"], "beauty")):
         refused = draw("cut_chart.py", charts / "map.h5", *wrong, "-o", tmp_path / "no")
         assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and word in refused.stderr, refused.stderr
+
+
+def colours_of(png, colour):
+    """The share of pixels of that colour, a name or a hex text."""
+    return (np.abs(image.imread(png)[..., :3] - to_rgb(colour)) < 0.02).all(axis=-1).mean()
+
+
+def test_a_coarse_logarithmic_axis_fills_its_panel_row_by_row(tmp_path):
+    path = sweep(tmp_path, "[design]\nslope = { values = [0.1, 0.4, 0.7] }\nmass_ratio = { values = [0.1, 1, 10, 100] }\n[numerics]\naudit = 0\n")
+    for script, output in (("status_chart.py", "chart.png"), ("design_chart.py", "chart_jump_height.png")):
+        done = draw(script, path, "-o", tmp_path / "chart")
+        assert done.returncode == 0 and done.stderr == "", done.stderr
+        assert "100" in texts(tmp_path / output.replace("png", "svg"))
+    # Each design is a twelfth of the panel, which is some 60 % of the picture.
+    with h5py.File(path) as file:
+        shares = {"#1b7837": (file["spurious_first_jump"][()] == 0).mean(), "#fdae61": (file["spurious_first_jump"][()] == 1)[file["status"][()] == 1].sum() / 12}
+    seen = {colour: colours_of(tmp_path / "chart.png", colour) for colour in shares}
+    assert seen["#1b7837"] / seen["#fdae61"] == pytest.approx(shares["#1b7837"] / shares["#fdae61"], rel=0.05)
+
+
+@pytest.mark.parametrize("damage", ["spin", "phase", "candidate_time", "status", "spec"])
+def test_a_damaged_trace_is_refused_with_one_line_that_names_it(damage, tmp_path):
+    leapmap("hop", "--trace", tmp_path / "trace.h5")
+    with h5py.File(tmp_path / "trace.h5", "a") as file:
+        if damage in file:
+            del file[damage]
+        else:
+            del file.attrs[damage]
+    done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "x")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and str(tmp_path / "trace.h5") in done.stderr, done.stderr
 
 
 def test_designs_without_a_jump_are_told_apart_and_the_star_needs_its_panel(tmp_path):

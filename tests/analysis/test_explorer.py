@@ -194,6 +194,26 @@ def test_the_motion_shown_is_that_of_leapmap_s_trace(page, tmp_path):
             assert np.allclose(motion[name], file[name][()], rtol=1e-8, atol=1e-9), name
 
 
+def test_one_animation_runs_however_many_designs_were_clicked(page):
+    for i in range(6):
+        point(page, [20, 25 + i, 1], click=True)
+    drawn = page.execute_async_script("""const done = arguments[0], context = CanvasRenderingContext2D.prototype, arc = context.arc;
+        let arcs = 0, frames = 0;
+        context.arc = function (...a) { ++arcs; return arc.apply(this, a); };
+        const count = () => { if (++frames < 20) requestAnimationFrame(count); else { context.arc = arc; done(arcs / frames); } };
+        requestAnimationFrame(count);""")
+    assert 1 <= drawn <= 2.5, "the hoop and its mass are two arcs a picture"
+
+
+def test_a_run_of_a_thousand_turns_is_shown_too(browser, tmp_path):
+    path = sweep(tmp_path, '[scene]\nrunway = 1000\nhop_height = 100\n[design]\nslope = { values = [0.1, 0.2] }\nmass_ratio = { values = [0.05, 0.1] }\n'
+                           '[output]\nfields = ["status", "first_jump_height"]\n')
+    opened(browser, made(path))
+    assert numbers(browser)["status"] == "no_jump"
+    motion = browser.execute_script("return [...window.explorer.solver.solve({...window.explorer.map.fixed, slope: 0.1, mass_ratio: 0.05}, false, 1e-10).motion.x]")
+    assert 1000 < len(motion) <= 4200 and motion[-1] == pytest.approx(2 * np.pi * 1000 * 0.041, rel=1e-3)
+
+
 def test_keys_move_from_design_to_design_and_show_one(page):
     point(page, [20, 30, 1])
     canvas = page.find_element("id", "map")
@@ -296,35 +316,66 @@ def test_a_hostile_map_is_data_and_nothing_else(browser, map_file, tmp_path):
     assert browser.execute_script("return window.pwned === undefined && document.images.length === 0")
 
 
-def broken(map_file, tmp_path, change):
-    path = tmp_path / "broken.h5"
-    path.write_bytes(map_file.read_bytes())
-    with h5py.File(path, "a") as file:
+def broken(path, tmp_path, change):
+    copy = tmp_path / "broken.h5"
+    copy.write_bytes(path.read_bytes())
+    with h5py.File(copy, "a") as file:
         change(file)
-    return path
+    return copy
 
 
-def with_nan_axis(file):
-    file["slope"][3] = np.nan
+def with_value(name, value):
+    def change(file):
+        file[name][(3,) * file[name].ndim if file[name].ndim == 1 else (3, 2, 1)] = value
+    return change
 
 
-def without_shape(file):
-    del file["jump_time"]
-    file["jump_time"] = np.zeros(7)
+def with_dataset(name, value):
+    def change(file):
+        del file[name]
+        file[name] = value
+    return change
 
 
-def without_spec(file):
-    del file.attrs["spec"]
+def with_attribute(name, value, of="/"):
+    def change(file):
+        if value is None:
+            del file[of].attrs[name]
+        else:
+            file[of].attrs[name] = value
+    return change
 
 
-def with_a_text_for_status(file):
-    file["status"].attrs["flag_meanings"] = 5
+def with_spec(old, new):
+    def change(file):
+        assert old in file.attrs["spec"]
+        file.attrs["spec"] = file.attrs["spec"].replace(old, new)
+    return change
 
 
-@pytest.mark.parametrize("change", [with_nan_axis, without_shape, without_spec, with_a_text_for_status])
-def test_a_broken_map_is_refused_with_one_line(change, map_file, tmp_path):
-    done = explorer(broken(map_file, tmp_path, change), "-o", tmp_path / "x.html")
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "Traceback" not in done.stderr, done.stderr
+BROKEN = {
+    "an axis with a NaN": with_value("slope", np.nan), "an axis with an infinity": with_value("slope", np.inf),
+    "an axis with the same value twice": lambda file: file["slope"].__setitem__(3, file["slope"][4]),
+    "a field of another shape": with_dataset("jump_time", np.zeros(7)), "a field of texts": with_dataset("jump_height", ["high"] * 3),
+    "a field beyond all bounds": with_value("jump_height", 1e308), "no spec": with_attribute("spec", None),
+    "a spec that is no text": with_attribute("spec", 5), "a spec of bytes": with_attribute("spec", np.bytes_(b"radius = 1")),
+    "no radius": with_spec("radius", "diameter"), "a radius below zero": with_spec("radius = ", "radius = -"),
+    "a gravity of zero": with_spec("gravity = 9.81", "gravity = 0.0"), "a runway that is none": with_spec("runway = 5.0", "runway = nan"),
+    "codes without a meaning": with_attribute("flag_meanings", 5, "status"),
+    "codes with texts for values": with_attribute("flag_values", "0 1 2 3 4 5 6", "status"),
+    "codes beyond all bounds": with_attribute("flag_values", np.arange(7) * 50_000_000, "status"),
+    "tiles that are no number": with_attribute("tiles_done", "x"), "no version": with_attribute("version", None),
+}
+
+
+@pytest.mark.parametrize("script", ["explorer", "design_chart.py", "status_chart.py", "cut_chart.py"])
+@pytest.mark.parametrize("kind", BROKEN)
+def test_a_broken_map_is_refused_with_one_line_that_names_it(kind, script, map_file, tmp_path):
+    path = broken(map_file, tmp_path, BROKEN[kind])
+    if script != "status_chart.py" and kind.startswith("codes"):
+        script = "explorer"  # all that read codes alike
+    done = finished("/usr/bin/python3", TOP / "analysis" / script, path, "-o", tmp_path / "x.html")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and str(path) in done.stderr, done.stderr
     assert not (tmp_path / "x.html").exists()
 
 
@@ -336,6 +387,9 @@ def test_files_that_are_no_grids_are_refused_with_one_line_that_says_what_to_do(
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
     done = finished("/usr/bin/python3", TOP / "analysis/explorer", map_file, "-o", tmp_path / "x.html", "--module", tmp_path / "no.wasm")
     assert done.returncode == 2 and "leapmap-wasm" in done.stderr, done.stderr
+    only_status = sweep(tmp_path, SPEC + '[output]\nfields = ["status"]\n', name="status.h5")
+    done = explorer(only_status, "-o", tmp_path / "x.html")
+    assert done.returncode == 2 and "output.fields" in done.stderr and "jump_height" in done.stderr, done.stderr
     small = explorer(map_file, "-o", tmp_path / "x.html", "--most", "0.1")
     assert small.returncode == 2 and "--most" in small.stderr
     size = 0.9e-6 * made(map_file).stat().st_size
