@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the paper's model is enough: a map of hoops that never slip beside one of the same hoops with Coulomb friction.
 
-One panel for each friction coefficient, over slope and mass ratio: green where heights agree within 5 % (which may be chance),
+One panel for each friction coefficient, over slope and mass ratio: dark green where heights agree within 5 % (which may be chance),
 yellow where both jump but heights do not agree, orange where they disagree on whether it jumps, purple where sliding is
 indeterminate (Painleve); hatched where only one of them sees a spurious first lift-off. A star at the paper's hoop.
 """
@@ -16,8 +16,8 @@ from read_map import NotAMap, read_map
 from style import plt
 
 ENOUGH = 0.05  # of the height
-KINDS = [("#d9d9d9", "neither jumps"), ("#2ca02c", "height within 5 %"), ("#ffdd57", "both jump, heights differ by more"),
-         ("#ff7f0e", "only one of them jumps"), ("#9467bd", "indeterminate or failed")]
+KINDS = [("#d9d9d9", "neither jumps"), ("#1b7837", "height within 5 %"), ("#ffdd57", "both jump, heights differ by more"),
+         ("#e66101", "only one of them jumps"), ("#8c6bb1", "indeterminate or failed")]
 KEEP = ("mass_ratio", "slope")
 
 
@@ -73,6 +73,7 @@ def chart(rigid, slipping):
         share = 100 * (kind == 1).sum() / max(both.sum(), 1)
         axis.set_title(f"μ = {mu:g}: height agrees for {share:.0f} % of what jumps in both")
         axis.set_xscale("log")
+        axis.xaxis.set_major_formatter(lambda v, _: f"{v:g}")
     for axis in axes[-1]:
         axis.set_xlabel("mass ratio")
     for axis in axes[:, 0]:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws the design charts of a map: jump height, time and agility over two of its axes, a panel for each value of the others.
 
-Filled contours with labelled isolines; hatched where the first lift-off is spurious; other colours where there is no jump, by
+A cell a design, with labelled isolines; hatched where the first lift-off is spurious; other colours where there is no jump, by
 the reason; a star at the paper's hoop. Agility is the jump's height over the time from release to its apex; the colour bar
 marks published jumpers. Draws what the map holds: agility wants jump_height, jump_time and apex_time;
 spurious_first_jump, jump_angle (gaps at cliffs) and status are drawn if they are there.
@@ -11,7 +11,7 @@ import sys
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, PowerNorm
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize, PowerNorm
 
 import looks
 import planes
@@ -35,25 +35,23 @@ def without_cliffs(plane, course):
 
 
 def scale_of(look, levels, values):
-    """The colours, their scale, and the levels between which they are filled."""
-    levels = levels[levels > 0] if look.log else levels
+    """The colours, their scale, and the levels of the isolines."""
     if look.log:
-        low = np.nanpercentile(values[values > 0], 1)
+        low = np.nanpercentile(values[values > 0], 1) if (values > 0).any() else levels[0]
         levels = levels[levels >= low] if (levels >= low).sum() > 2 else levels
-        top = max([levels[-1], *looks.JUMPERS.values()]) * 1.15  # the marks must be on the bar
-        fill = np.geomspace(levels[0], top, 60)
-        norm = LogNorm(fill[0], fill[-1])
-    else:
-        fill = np.unique(np.concatenate([levels] + [np.linspace(a, b, 5) for a, b in zip(levels, levels[1:])]))
-        norm = PowerNorm(look.exponent, fill[0], fill[-1])
+        norm = LogNorm(levels[0], 1.15 * max([levels[-1], *looks.JUMPERS.values()]))  # the marks must be on the bar
+    elif look.exponent == 1.0:
+        norm = Normalize(levels[0], levels[-1])
+    else:  # a power has no colour below its least value
+        norm = PowerNorm(look.exponent, min(levels[0], np.nanmin(values)), levels[-1])
     # A quarter at the dark end is left out: hatching must show on every colour.
     ends = (0.0, 0.75) if look.colours.endswith("_r") else (0.25, 1.0)
-    return ListedColormap(plt.get_cmap(look.colours)(np.linspace(*ends, 256))), norm, fill, levels
+    return ListedColormap(plt.get_cmap(look.colours)(np.linspace(*ends, 256))), norm, levels
 
 
 def draw_panel(axis, grid, plane, flags, course, told, scale, ink):
     """One panel: what happened where there is no jump, the field, its isolines, and hatching where spurious."""
-    colours, norm, fill, levels = scale
+    colours, norm, levels = scale
     x, y, cells = grid.values(grid.x), grid.values(grid.y), (grid.edges(grid.x), grid.edges(grid.y))
     codes = list(looks.STATUSES)
     background = np.full(plane.shape, np.nan)
@@ -61,13 +59,10 @@ def draw_panel(axis, grid, plane, flags, course, told, scale, ink):
         background[told[code]] = i
     axis.pcolormesh(*cells, background, shading="flat", norm=BoundaryNorm(np.arange(len(codes) + 1) - 0.5, len(codes)),
                     cmap=ListedColormap([looks.STATUSES[c][0] for c in codes]), rasterized=True)
-    # Cells first: contours need four neighbours, and a lone design must show too.
-    axis.pcolormesh(*cells, plane, shading="flat", cmap=colours, norm=norm, rasterized=True)
+    # Cells, no filled contours: those would reach across cliffs, and miss a lone design.
+    axis.pcolormesh(*cells, np.maximum(plane, norm.vmin), shading="flat", cmap=colours, norm=norm, rasterized=True)
     if not np.isfinite(plane).any():
         return
-    filled = axis.contourf(x, y, np.ma.masked_invalid(plane), levels=fill, cmap=colours, norm=norm, extend="both")
-    for part in filled.collections:  # thousands of shapes a reader of the SVG need not wait for
-        part.set_rasterized(True)
     torn = without_cliffs(plane, course)
     present = [v for v in levels if np.isfinite(torn).any() and np.nanmin(torn) < v < np.nanmax(torn)]
     if present:
@@ -99,9 +94,10 @@ def chart(grid, name):
         if place := grid.paper(grid.panels[i]):
             starred = True
             axis.plot(*place, "*", color=look.star, markersize=13, markeredgecolor="white", zorder=5)
-    colours, norm, _, levels = scale
+    colours, norm, levels = scale
     # A bar of its own scale, whatever the panels hold.
-    bar = figure.colorbar(ScalarMappable(norm, colours), ax=axes, extend="both", label=look.title, ticks=levels, shrink=0.9, pad=0.015)
+    bar = figure.colorbar(ScalarMappable(norm, colours), ax=axes, extend="max" if look.exponent != 1.0 else "both", label=look.title,
+                          ticks=levels, shrink=0.9, pad=0.015)
     bar.ax.set_yticks(levels, [f"{v:g}" for v in levels])
     bar.ax.minorticks_off()
     if name == "agility":
