@@ -14,17 +14,19 @@ from read_map import NotAMap, read_map
 from style import plt
 
 FIELDS = ("jump_height", "jump_time", "agility")
-MOST_LINES = 6
+MOST_LINES = 8
 
 
-def chart(m, along, by, at, fields):
+def chart(m, along, by, wanted, at, fields):
     free = [n for n in m.dims if n not in planes.fixed_at(m, at)]
     if "design" in m.dims:
         raise NotAMap(f"{m.path}: is a list of designs, which has no axis to cut along")
     along = along or next((n for n in ("slope", *free) if n in free and len(m.dims[n]) > 1), None)
     if along not in free or len(m.dims[along]) < 2:
         raise NotAMap(f"{m.path}: has no axis {along or 'of two values or more'} to cut along; it has {', '.join(m.dims)}")
-    if by is not None and (by not in free or by == along):
+    if by is not None and by == along:
+        raise NotAMap(f"{m.path}: --along and --by are both {by}")
+    if by is not None and by not in free:
         raise NotAMap(f"{m.path}: has no other axis {by}; it has {', '.join(n for n in free if n != along) or 'none'}")
     by = by or next((n for n in ("mass_ratio", *free) if n in free and n != along), None)
     index = {n: int(np.argmin(np.abs(v - looks.PAPER[n]))) if n in looks.PAPER else int(np.argsort(v)[len(v) // 2]) for n, v in m.dims.items()}
@@ -50,6 +52,10 @@ def chart(m, along, by, at, fields):
         n = len(m.dims[by])
         ranked = np.argsort(m.dims[by])
         picked = [int(ranked[i]) for i in np.unique(np.linspace(0, n - 1, min(n, MOST_LINES)).round().astype(int))]
+    if wanted:
+        if not by:
+            raise NotAMap(f"{m.path}: --values: there is no second axis to have them")
+        picked = list(dict.fromkeys(planes.fixed_at(m, [f"{by}={value}"])[by] for value in wanted.split(",")))
     figure, axes = plt.subplots(len(drawn), 1, sharex=True, squeeze=False, figsize=(6.6, 2.5 * len(drawn) + 1.4), layout="constrained")
     colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(picked)))
     course = looks.course(m)
@@ -65,9 +71,13 @@ def chart(m, along, by, at, fields):
                 torn, places = np.zeros(0, bool), x
             flags = line(m.fields["spurious_first_jump"], k) if "spurious_first_jump" in m.fields else np.zeros(len(x))
             flags = np.insert(flags, np.flatnonzero(torn) + 1, 255)
-            axis.plot(places, np.where(flags == 1, np.nan, y), color=colour, linewidth=1.5, marker=".", markersize=3,
-                      label=looks.titled(by, m.dims[by][k]) if by else None)
-            axis.plot(places, np.where(flags == 1, y, np.nan), color=colour, linewidth=1.5, linestyle=":", marker=".", markersize=3)
+            axis.plot([], [], color=colour, label=looks.titled(by, m.dims[by][k]) if by else "first lift-off is the jump")
+            for spurious, line_style, width in ((False, "-", 1.9), (True, (0, (1, 1.2)), 1.2)):
+                part = np.where((flags == 1) == spurious, y, np.nan)
+                axis.plot(places, part, color=colour, linewidth=width, linestyle=line_style)
+                here = np.isfinite(np.concatenate([[np.nan], part, [np.nan]]))
+                alone = here[1:-1] & ~here[:-2] & ~here[2:]  # a line through one design is none
+                axis.plot(places[alone], part[alone], ".", color=colour, markersize=3)
         axis.set_ylabel("\n[".join(look.title.replace(": height over time from release to apex", "").split(" [")))
         axis.grid(alpha=0.25)
         if looks.is_log(x):
@@ -81,7 +91,7 @@ def chart(m, along, by, at, fields):
     words.append(f"R = {1e3 * numbers['radius']:g} mm")
     axes[-1, 0].set_xlabel(f"{planes.axis_label(along)}\n{style.wrapped(words, figure)}")
     handles = axes[0, 0].get_legend_handles_labels()[0]
-    handles += [plt.Line2D([], [], color="#404040", linestyle=":", label="first lift-off is spurious")]
+    handles += [plt.Line2D([], [], color="#404040", linestyle=(0, (1, 1.2)), label="dotted: first lift-off is spurious")]
     style.legend_above(figure, handles)
     return figure
 
@@ -90,6 +100,7 @@ def main():
     p = style.parser(__doc__, "a map, for example maps/slope_mass_ratio_offset.h5", "maps/cut")
     p.add_argument("--along", metavar="AXIS", help="the axis drawn to the right (default: slope, or the map's first)")
     p.add_argument("--by", metavar="AXIS", help="the axis that lines are drawn for (default: mass_ratio, or the map's next)")
+    p.add_argument("--values", metavar="V,V,...", help="of that axis, those nearest to these (default: eight, spread over it)")
     planes.add_at(p)
     p.add_argument("--fields", default=",".join(FIELDS), help=f"what to draw, of {', '.join(looks.LOOKS)} (default: %(default)s)")
     arguments = p.parse_args()
@@ -97,7 +108,7 @@ def main():
     unknown = [f for f in fields if f not in looks.LOOKS]
     if unknown:
         raise NotAMap(f"--fields {unknown[0]}: is unknown; allowed: {', '.join(looks.LOOKS)}")
-    style.save(chart(read_map(arguments.source), arguments.along, arguments.by, arguments.at, fields), arguments.output)
+    style.save(chart(read_map(arguments.source), arguments.along, arguments.by, arguments.values, arguments.at, fields), arguments.output)
 
 
 if __name__ == "__main__":

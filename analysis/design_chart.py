@@ -70,9 +70,12 @@ def draw_panel(axis, grid, plane, flags, course, told, scale, ink):
         axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7)
     hatched = np.ma.masked_where(~np.isfinite(plane), (flags == 1) * 1.0)
     if hatched.max() > 0:
-        axis.contourf(x, y, hatched, levels=[0.5, 1.5], colors="none", hatches=["///"])
+        # Every cell by its four corners, so that the hatching ends where cells do.
+        corners = [np.repeat(edges, 2)[1:-1] for edges in cells]
+        hatched = hatched.repeat(2, axis=0).repeat(2, axis=1)
+        axis.contourf(*corners, hatched, levels=[0.5, 1.5], colors="none", hatches=["///"])
         if hatched.min() == 0:
-            axis.contour(x, y, hatched, levels=[0.5], colors=style.EDGE, linewidths=0.7)
+            axis.contour(*corners, hatched, levels=[0.5], colors=style.EDGE, linewidths=0.7)
 
 
 def chart(grid, name):

@@ -53,14 +53,14 @@ LOOKS = {
     "jump_time": Look("time from release to the jump", "s", "cividis_r", ink="black"),
     "agility": Look("agility: height over time from release to apex", "m/s", "plasma", log=True, star="black",
                     levels=(0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0)),
-    "first_jump_height": Look("height of the first lift-off", "hoop diameters", exponent=0.6, levels=HEIGHTS),
-    "first_jump_time": Look("time from release to the first lift-off", "s", "cividis_r", ink="black"),
+    "first_jump_height": Look("height of the first lift-off", "hoop diameters", exponent=0.6, levels=()),  # it has cliffs of its own
+    "first_jump_time": Look("time from release to the first lift-off", "s", "cividis_r", ink="black", levels=()),
     "jump_angle": Look("angle at the jump's lift-off", "rad"),
     "jump_spin": Look("spin at the jump's lift-off", "√(g/R)"),
     "apex_time": Look("time from lift-off to apex", "s"),
     "flight_time": Look("time from lift-off to landing", "s"),
     "dip": Look("dip of the flight into the plane", "hoop diameters", "viridis_r"),
-    "candidates": Look("lift-offs looked at", ""),
+    "candidates": Look("lift-offs looked at", "", levels=()),
     "slip_distance": Look("distance slid", "R"),
     "landing_spin": Look("spin after landing", "√(g/R)"),
     "jump_distance": Look("rolled until the jump's lift-off", "R"),
@@ -100,11 +100,11 @@ def levels_of(look, values):
 
 def shown(name, value):
     """A parameter's value in its unit as shown: angles in degrees."""
-    return f"{math.degrees(value):.4g}°" if PARAMETERS[name][2] == "°" else f"{value:.4g}"
+    return f"{math.degrees(value):.4g}°" if PARAMETERS.get(name, ("", "", ""))[2] == "°" else f"{value:.4g}"
 
 
 def titled(name, value):
-    return f"{PARAMETERS[name][1]} = {shown(name, value)}" if name in PARAMETERS else f"{name} = {value:.4g}"
+    return f"{PARAMETERS.get(name, ('', name))[1]} = {shown(name, value)}"
 
 
 def is_log(values):

@@ -37,7 +37,10 @@ def fixed_at(m, wanted):
             raise NotAMap(f"{m.path}: --at {text}: is not a number after the =") from None
         if looks.PARAMETERS.get(name, ("", "", ""))[2] == "°":
             number = math.radians(number)
-        found[name] = int(np.argmin(np.abs(m.dims[name] - number)))
+        values = m.dims[name]
+        if not values.min() - 1e-9 <= number <= values.max() + 1e-9:
+            raise NotAMap(f"{m.path}: --at {text}: lies beyond the map; allowed: {looks.shown(name, values.min())} to {looks.shown(name, values.max())}")
+        found[name] = int(np.argmin(np.abs(values - number)))
     return found
 
 

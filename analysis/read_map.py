@@ -7,6 +7,7 @@
     m.fields["jump_height"]    # an array along all axes, NaN where there is no jump
     m.code("status", "jumped") # where a code has a meaning, as a boolean array
 """
+import os
 from dataclasses import dataclass, field
 
 import h5py
@@ -86,6 +87,8 @@ class Map:
 
 
 def _read(path, filetype):
+    if not os.path.exists(path):
+        raise NotAMap(f"{path}: does not exist")
     try:
         file = h5py.File(path, "r")
     except OSError as error:

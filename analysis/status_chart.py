@@ -14,14 +14,15 @@ from style import plt
 
 JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a spurious first lift-off"),
          ("#5aae61", "jumps (the map does not tell at which lift-off)")]
-NONE_SPURIOUS = ("#dfc27d", "no jump, yet a lift-off below the hop height")
+NONE_SPURIOUS = ("#dfc27d", "no jump: its lift-offs stay below the hop height")
 
 
 def chart(grid):
     m = grid.map
     if "status" not in m.fields:
         raise NotAMap(f"{m.path}: has no status; a status chart wants it")
-    kinds = [*JUMPS, NONE_SPURIOUS, *looks.STATUSES.values()]
+    statuses = {**looks.STATUSES, "no_jump": (looks.STATUSES["no_jump"][0], "no lift-off at all")}
+    kinds = [*JUMPS, NONE_SPURIOUS, *statuses.values()]
     known = "spurious_first_jump" in m.fields
     flag = m.fields["spurious_first_jump"] if known else np.full(m.fields["status"].shape, 255)
     jumped = m.code("status", "jumped")

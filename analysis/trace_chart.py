@@ -6,6 +6,8 @@ jumps, a second figure of its flight: how x, y and the angle change from the lif
 Lift-off candidates are dashed lines, the jump a solid one; sliding and flight are shaded. Forces are in units of the weight,
 friction positive downhill; y is the height of the hoop's lowest point above the plane. --paper marks what the paper published.
 """
+import sys
+
 import numpy as np
 
 import style
@@ -73,10 +75,11 @@ def chart(trace, paper):
         text = f"{'jump' if is_jump else 'candidate'} {time:.4f} s\nflies {height:.3g} diameters"
         place = dict(xy=(time, 0.06), xytext=(5, 0), ha="left", va="bottom", color=style.MARK) if is_jump else dict(
             xy=(time, 0.94), xytext=(-5, 0), ha="right", va="top", color="#555555")
-        axes[0].annotate(text, xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=7.5, **place)
+        axes[0].annotate(text, xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=7.5, zorder=5,
+                         bbox=dict(facecolor="white", alpha=0.8, edgecolor="none", pad=0.5), **place)
     if paper:
         for time in PAPER_MODEL:
-            axes[2].annotate(f"paper's model {time:.2f} s", (time, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
+            axes[2].annotate(f"paper: about {time:.2f} s", (time, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
                              textcoords="offset points", ha="left", va="top", fontsize=7, color=PUBLISHED, rotation=90)
         axes[2].annotate(f"seen {PAPER_SEEN:.3f} s", (PAPER_SEEN, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
                          textcoords="offset points", ha="left", va="top", fontsize=7, color=PUBLISHED, rotation=90)
@@ -141,8 +144,12 @@ def main():
     p.add_argument("--paper", action="store_true", help="mark the paper's times and its height")
     arguments = p.parse_args()
     trace = read_trace(arguments.source)
-    style.save(chart(trace, arguments.paper), arguments.output)
-    if trace.attributes["status"] == "jumped":
+    jumped = trace.attributes["status"] == "jumped"
+    same_clock = jumped and abs(trace.fields["candidate_time"][-1] - PAPER_SEEN) < 0.05
+    if arguments.paper and not same_clock:
+        print(f"{trace.path}: was released at another moment than the paper's hoop; its times since release are not marked", file=sys.stderr)
+    style.save(chart(trace, arguments.paper and same_clock), arguments.output)
+    if jumped:
         style.save(flight_chart(trace, arguments.paper), f"{style.stem(arguments.output)}_flight")
 
 

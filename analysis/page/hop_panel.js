@@ -20,7 +20,7 @@ function hopPanel(map, solver) {
       return;
     }
     drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked);
-    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.story.outcome, now.time, weight());
+    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.story.outcome, now.time, weight(), now.design.radius);
     clock.textContent = `${now.time.toFixed(3)} s`;
     scrub.value = now.time;
   }
@@ -67,15 +67,17 @@ function hopPanel(map, solver) {
       add("apex_time", "apex, landing after lift-off", `${short(outcome.apex_time, 4)} s, ${short(outcome.flight_time, 4)} s`);
       add("jump_spin", "spin at lift-off", `${short(speed)} rad/s`);
       add("jump_angle", "angle at lift-off", `${short(outcome.jump_angle * 180 / Math.PI, 5)}°`);
-      add("jump_distance", "rolled until lift-off", `${short(outcome.jump_distance * R * 1000)} mm`);
+      add("jump_distance", map.slips ? "travelled until lift-off" : "rolled until lift-off", `${short(outcome.jump_distance * R * 1000)} mm`);
       if (!map.slips) add("dip", "flight first dips", `${short(2000 * R * outcome.dip, 3)} mm`);
     }
     if (outcome.candidates > 0) {
-      add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump === 1 ? `spurious: ${short(1000 * 2 * R * outcome.first_jump_height, 3)} mm high, after ${short(outcome.first_jump_time)} s` : "is the jump");
+      add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"
+        : outcome.first_jump_height > 0 ? `spurious: ${short(1000 * 2 * R * outcome.first_jump_height, 3)} mm high, after ${short(outcome.first_jump_time)} s`
+        : `spurious: sinks at once, after ${short(outcome.first_jump_time)} s; rolling on without slip asks the plane to pull`);
       add("candidates", "lift-offs looked at", String(outcome.candidates));
     }
     if (map.slips) {
-      add("phase_sequence", "phases", outcome.phase_sequence);
+      add("phase_sequence", "phases", `${outcome.phase_sequence} (R rolls, S slides, F flies)`);
       if (Number.isFinite(outcome.slip_distance)) add("slip_distance", "slid", `${short(1000 * R * outcome.slip_distance)} mm`);
       if (jumped) add("landing_spin", "spin after landing", `${short(outcome.landing_spin / second)} rad/s`);
       if (jumped) add("energy_lost", "energy lost until the jump", `${short(1000 * outcome.energy_lost * kg * g * R)} mJ`);
@@ -86,10 +88,15 @@ function hopPanel(map, solver) {
       add("most_normal_force", "largest normal force", `${short(most)} N`, most);
     }
     table.replaceChildren(...rows);
-    command.textContent = hopCommand();
+    // Each flag with its value in a piece, which lines do not break.
+    command.replaceChildren(...hopCommand().flatMap((text, k) => {
+      const piece = document.createElement("span");
+      piece.textContent = text;
+      return k > 0 ? [" ", piece] : [piece];
+    }));
   }
 
-  /** The command line that tells the same hoop. */
+  /** The command line that tells the same hoop, in pieces. */
   function hopCommand() {
     const { design } = now, contact = ["mu_static", "mu_kinetic", "restitution"];
     const flags = ["slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin", ...(map.slips ? contact : [])];
@@ -98,16 +105,17 @@ function hopPanel(map, solver) {
     for (const key of ["runway", "hop_height", "radius", "gravity"])
       if (design[key] !== solver.defaults[key]) words.push(`--set ${key}=${design[key]}`);
     if (map.tolerance !== 1e-10) words.push(`--set tolerance=${map.tolerance}`);
-    return words.join(" ");
+    return words;
   }
 
   /** Solves the design anew, its motion from the start. */
   function solve() {
-    try { solved(); } catch (error) { complain(error); }
+    try { solved(); } catch (error) { now.story = null; complain(error); }
   }
   function solved() {
     const { design } = now;
     design.radius = positive(radius, 1000 * map.fixed.radius) / 1000;
+    element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.story = solver.solve(design, map.slips, map.tolerance);
     scrub.max = end();
     now.time = 0;
@@ -118,8 +126,15 @@ function hopPanel(map, solver) {
   play.addEventListener("click", () => run(!now.playing));
   scrub.addEventListener("input", () => { run(false); now.time = Number(scrub.value); draw(); });
   element("follow").addEventListener("change", draw);
-  radius.addEventListener("change", () => { if (now.design) solve(); });
-  mass.addEventListener("change", () => { if (now.design) { tell(); draw(); } });
+  /** Says so if an input is no number above zero; what is shown stays as it was. */
+  const usable = (input) => {
+    const good = Number(input.value) > 0 && input.checkValidity();
+    input.setAttribute("aria-invalid", String(!good));
+    notice(good ? "" : `${input === radius ? "The radius" : "The mass"} must be a number above 0.`);
+    return good;
+  };
+  radius.addEventListener("change", () => { if (usable(radius) && now.design) solve(); });
+  mass.addEventListener("change", () => { if (usable(mass) && now.story) { tell(); draw(); } });
   const seek = (event) => { if (now.timeAt && (event.type === "click" || event.buttons === 1)) { run(false); now.time = now.timeAt(event.clientX); draw(); } };
   plots.addEventListener("click", seek);
   plots.addEventListener("pointermove", seek);
@@ -138,13 +153,21 @@ function hopPanel(map, solver) {
   });
   new ResizeObserver(draw).observe(scene);
 
-  const show = (index) => {
-    history.replaceState(null, "", `#design=${index.join(",")}`);
-    now.design = { ...map.fixed };
-    map.axes.forEach((axis, k) => { now.design[axis.name] = axis.values[index[k]]; });
-    element("hop-title").textContent = `One hoop: ${placeText(map, index)}`;
+  const begin = (design, title) => {
+    now.design = design;
+    element("hop-title").textContent = title;
     solve();
     run(!still && now.story !== null);
+  };
+  if (!map.slips) {
+    element("paper").hidden = false;
+    element("paper").addEventListener("click", () => begin({ ...map.fixed, ...map.paper }, "One hoop: the paper's, from rest with its mass on top"));
+  }
+  const show = (index) => {
+    history.replaceState(null, "", `#design=${index.join(",")}`);
+    const design = { ...map.fixed };
+    map.axes.forEach((axis, k) => { design[axis.name] = axis.values[index[k]]; });
+    begin(design, `One hoop: ${placeText(map, index)}`);
   };
   const stopAt = (time) => { run(false); now.time = Math.min(Math.max(0, time), end()); draw(); };
   return { show, stopAt };

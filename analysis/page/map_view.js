@@ -165,7 +165,8 @@ function mapView(canvas, map, onPoint, onPick) {
       context.stroke();
       context.fillText(text, x + w + 0.3 * font, p);
     };
-    for (const level of [field.low, ...field.levels.filter((l) => l > field.low && l < field.high), field.high]) {
+    const marks = field.levels.length > 0 ? field.levels : linearTicks(field.low, field.high);
+    for (const level of [field.low, ...marks.filter((l) => l > field.low && l < field.high), field.high]) {
       const p = placeOf(level);
       if (last - p < 0.95 * font && level !== field.low) continue;
       if (jumpers.some(([, v]) => Math.abs(placeOf(v) - p) < 0.9 * font)) continue;

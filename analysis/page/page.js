@@ -2,11 +2,12 @@
 
 const element = (id) => document.getElementById(id);
 
-function complain(error) {
+function notice(text) {
   const message = element("message");
-  message.hidden = false;
-  message.textContent = `This page cannot be shown: ${error.message ?? error}`;
+  message.hidden = text === "";
+  message.textContent = text;
 }
+const complain = (error) => notice(`This page cannot be shown: ${error.message ?? error}`);
 
 /** The map as the explorer wrote it, with its numbers unpacked. */
 async function readMap() {
@@ -48,7 +49,7 @@ function start(map, solver) {
   element("title").textContent = map.title || map.name;
   element("subtitle").textContent = `${map.name}: ${map.designs.toLocaleString("en")} designs` +
     (map.computed < 1 ? `, INCOMPLETE: ${(100 * map.computed).toFixed(0)} % of them computed` : "") +
-    (map.slips ? "; slips by Coulomb's law" : "; never slips") + ` · runway ${short(map.fixed.runway)} turns · a jump is ${short(map.fixed.hop_height)} diameters or more`;
+    (map.slips ? "; slips by Coulomb's law" : "; never slips") + ` · runway ${short(map.fixed.runway)} turns · a jump is ${short(map.fixed.hop_height)} diameters or more · R = ${short(1000 * map.fixed.radius)} mm`;
   element("footer").textContent = `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as shown` +
     (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop here by exact`) +
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
@@ -62,8 +63,9 @@ function start(map, solver) {
     said = key;
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
     const text = (f) => (f.values[at] === f.values[at] ? withUnit(f.values[at].toFixed(decimalsOf(f.step)), f.unit) : "none");
-    const notes = [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "),
-                   map.codes.spurious_first_jump?.values[at] === 1 ? "the first lift-off is spurious" : ""];
+    const spurious = map.codes.spurious_first_jump?.values[at] === 1;
+    const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${short(map.fixed.hop_height)} diameters`]
+      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
     element("place").textContent = placeText(map, index);
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notes].filter((w) => w).join("; ");
     element("others").replaceChildren(...map.fields.filter((f) => f !== shown && f.values[at] === f.values[at]).map((f) => {
@@ -156,7 +158,9 @@ function start(map, solver) {
 function addressed(map) {
   const words = new URLSearchParams(location.hash.slice(1)), asked = {};
   const index = (words.get("design") ?? "").split(",").map(Number);
-  if (index.length === map.axes.length && map.axes.every((axis, k) => Number.isInteger(index[k]) && index[k] >= 0 && index[k] < axis.values.length))
+  if (words.has("design") && !(index.length === map.axes.length && map.axes.every((axis, k) => Number.isInteger(index[k]) && index[k] >= 0 && index[k] < axis.values.length)))
+    notice(`The address asks for a design that is not on this map; there are ${map.axes.map((axis) => axis.values.length).join(" x ")}.`);
+  else if (words.has("design"))
     asked.index = index;
   if (words.has("time") && Number.isFinite(Number(words.get("time")))) asked.time = Number(words.get("time"));
   return asked;

@@ -6,8 +6,8 @@ const PLOTS = [
                                 { column: "friction", colour: "#d95f02", name: "friction, downhill", contact: true, dash: [6, 4] }] },
 ];
 
-/** Draws the plots; weight: what forces are multiplied by [N]. Returns the time at a place on the screen. */
-function drawPlots(canvas, motion, liftOffs, outcome, time, weight) {
+/** Draws the plots; weight: what forces are multiplied by [N]; radius: of the hoop [m]. Returns the time at a place on the screen. */
+function drawPlots(canvas, motion, liftOffs, outcome, time, weight, radius) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
   canvas.width = Math.max(1, Math.round(box.width * ratio));
   canvas.height = Math.max(1, Math.round(box.height * ratio));
@@ -21,7 +21,7 @@ function drawPlots(canvas, motion, liftOffs, outcome, time, weight) {
   PLOTS.forEach((plot, k) => {
     const top = k * height + 0.6 * font, bottom = (k + 1) * height - 0.6 * font;
     const scaled = plot.lines.map((line) => ({ ...line, values: motion[line.column].map((v) => v * (line.factor ?? weight)) }));
-    let low = 0, high = 1e-12;
+    let low = 0, high = plot.lines[0].column === "y" ? 100 * radius : 1e-9 * weight;  // a tenth of R: what is less is nothing to look at
     for (const line of scaled) for (const v of line.values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
     high += 0.05 * (high - low);
     const sy = (v) => bottom - (bottom - top) * (v - low) / (high - low);

@@ -88,8 +88,8 @@ def test_the_status_chart_tells_how_designs_end_and_how_many(charts, tmp_path):
         status, flag = file["status"][()], file["spurious_first_jump"][()]
     for label, where in (("jumps at its first lift-off", (status == 1) & (flag == 0)),
                          ("jumps after a spurious first lift-off", (status == 1) & (flag == 1)),
-                         ("no jump, yet a lift-off below the hop height", (status == 2) & (flag == 1)),
-                         ("no jump on the runway", (status == 2) & (flag == 255))):
+                         ("no jump: its lift-offs stay below the hop height", (status == 2) & (flag == 1)),
+                         ("no lift-off at all", (status == 2) & (flag == 255))):
         assert f"{label}: {100 * where.mean():.3g} %" in words, (label, words)
     assert "slope [degrees]" in words and "L/R = 0.7" in words and "the paper's hoop" in words
 
@@ -98,14 +98,15 @@ def test_the_cut_chart_draws_a_line_for_each_value_with_units_and_what_is_fixed(
     done = draw("cut_chart.py", charts / "map.h5", "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "chart.svg")
-    for word in ("[hoop diameters]", "[m/s]", "slope [degrees]", "mₚ/m = 0.1", "mₚ/m = 20", "first lift-off is spurious"):
+    for word in ("[hoop diameters]", "[m/s]", "slope [degrees]", "mₚ/m = 0.1", "mₚ/m = 20", "dotted: first lift-off is spurious"):
         assert word in words, (word, words)
     assert any("L/R = 1" in w and "R = 41 mm" in w for w in words)
     done = draw("cut_chart.py", charts / "map.h5", "--along", "mass_ratio", "--by", "offset_ratio", "--at", "slope=30", "--fields", "dip", "-o", tmp_path / "dip")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "dip.svg")
     assert "dip of the flight into the plane" in words and "L/R = 0.7" in words and any("slope = 30" in w or "slope = 29.6" in w for w in words)
-    for wrong, word in ((["--along", "mu_static"], "mu_static"), (["--by", "slope"], "no other axis"), (["--fields", "beauty"], "beauty")):
+    for wrong, word in ((["--along", "mu_static"], "mu_static"), (["--by", "slope"], "both slope"), (["--by", "weight"], "no other axis"), (["--values", "99"], "beyond the map"),
+                        (["--at", "offset_ratio=3"], "beyond the map"), (["--fields", "beauty"], "beauty")):
         refused = draw("cut_chart.py", charts / "map.h5", *wrong, "-o", tmp_path / "no")
         assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and word in refused.stderr, refused.stderr
 
@@ -172,7 +173,7 @@ def test_the_trace_charts_mark_what_the_paper_published(tmp_path):
     done = draw("trace_chart.py", tmp_path / "trace.h5", "--paper", "-o", tmp_path / "figure")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "figure.svg")
-    for word in ("paper's model 0.17 s", "paper's model 0.30 s", "seen 0.330 s"):
+    for word in ("paper: about 0.17 s", "paper: about 0.30 s", "seen 0.330 s"):
         assert word in words, word
     words = texts(tmp_path / "figure_flight.svg")
     for word in ("Δx along the plane [mm]", "Δy above the plane [mm]", "Δφ [degrees]", "time since lift-off [s]", "measured apex 0.129 s",
@@ -180,6 +181,13 @@ def test_the_trace_charts_mark_what_the_paper_published(tmp_path):
         assert word in words, (word, words)
     unmarked = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "plain")
     assert unmarked.returncode == 0 and not any("paper" in w or "measured" in w for w in texts(tmp_path / "plain.svg") + texts(tmp_path / "plain_flight.svg"))
+
+
+def test_the_papers_times_are_not_marked_on_another_release(tmp_path):
+    leapmap("hop", "--trace", tmp_path / "trace.h5")
+    done = draw("trace_chart.py", tmp_path / "trace.h5", "--paper", "-o", tmp_path / "figure")
+    assert done.returncode == 0 and "another moment" in done.stderr
+    assert not any("about" in w for w in texts(tmp_path / "figure.svg")) and "one diameter" in texts(tmp_path / "figure_flight.svg")
 
 
 def test_a_trace_with_friction_has_its_flight_drawn_from_the_jump_on(tmp_path):

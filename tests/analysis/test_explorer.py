@@ -253,6 +253,34 @@ def test_radius_and_mass_scale_the_numbers(page):
     assert agrees(after, told_by_leapmap(page)) >= 9
 
 
+def test_what_is_no_radius_is_said_so_and_changes_nothing(page):
+    point(page, [20, 30, 1], click=True)
+    before = numbers(page)
+    for wrong in ("0", "-5", ""):
+        page.execute_script("const r = document.getElementById('radius'); r.value = arguments[0]; r.dispatchEvent(new Event('change'))", wrong)
+        assert "above 0" in page.find_element("id", "message").text and numbers(page) == before
+    page.execute_script("const r = document.getElementById('radius'); r.value = 41; r.dispatchEvent(new Event('change'))")
+    assert page.find_element("id", "message").text == ""
+
+
+def test_an_address_opens_a_design_at_a_moment_and_says_if_there_is_none(page, map_file):
+    address = map_file.with_suffix(".html").as_uri()
+    for place, index, text in (("#design=7,8,0&time=0.1", "7,8,0", ""), ("#design=999,8,0", None, "not on this map")):
+        page.get("about:blank")
+        page.get(address + place)
+        WebDriverWait(page, 20).until(lambda b: b.execute_script("return !!window.explorer"))
+        assert index in (None, readout(page)["index"]) and text in page.find_element("id", "message").text
+        if index:
+            assert page.find_element("id", "clock").text == "0.100 s" and "play" in page.find_element("id", "play").text
+
+
+def test_the_papers_hoop_can_be_shown_whether_or_not_it_is_on_the_grid(page):
+    page.find_element("id", "paper").click()
+    told = told_by_leapmap(page)
+    assert told["jump_height"] == pytest.approx(0.98280096607, abs=1e-10)
+    assert agrees(numbers(page), told) >= 9
+
+
 def test_a_map_with_friction_shows_sliding(browser, tmp_path):
     path = sweep(tmp_path, '[scene]\nfriction = "coulomb"\nmu_static = { values = [0.2, 0.5] }\nrestitution = 0.3\n[design]\n'
                            'slope = { from = "10 deg", to = "40 deg", count = 13 }\nmass_ratio = { from = 1, to = 10, count = 12 }\n[numerics]\naudit = 0\n')
@@ -384,7 +412,7 @@ def test_a_broken_map_is_refused_with_one_line_that_names_it(script, kind, map_f
 def test_files_that_are_no_grids_are_refused_with_one_line_that_says_what_to_do(map_file, tmp_path):
     (tmp_path / "words.h5").write_text("words")
     one_axis = sweep(tmp_path, "[design]\nslope = { values = [0.3, 0.4] }\n")
-    for path, word in ((tmp_path / "words.h5", "HDF5"), (tmp_path / "nowhere.h5", "nowhere"), (one_axis, "two axes")):
+    for path, word in ((tmp_path / "words.h5", "HDF5"), (tmp_path / "nowhere.h5", "does not exist"), (one_axis, "two axes")):
         done = explorer(path, "-o", tmp_path / "x.html")
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
     done = finished("/usr/bin/python3", TOP / "analysis/explorer", map_file, "-o", tmp_path / "x.html", "--module", tmp_path / "no.wasm")
