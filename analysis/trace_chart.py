@@ -115,9 +115,9 @@ def flight_chart(trace, paper):
         axes[1].axhline(2e3 * radius, color=PUBLISHED, linestyle="-.", linewidth=1.4)
         axes[1].annotate("one diameter", (0, 2e3 * radius), xytext=(2, 2), textcoords="offset points", fontsize=7.5, color=PUBLISHED, va="bottom")
         axes[1].margins(y=0.12)
-        for time, words in ((PAPER_APEX, "apex"), (PAPER_LANDING, "landing")):
-            axes[2].annotate(f"measured {words} {time:.3f} s", (time, 0.03), xycoords=("data", "axes fraction"), xytext=(-3, 0),
-                             textcoords="offset points", ha="right", va="bottom", fontsize=7, color=PUBLISHED, rotation=90)
+        for time, words, side in ((PAPER_APEX, "apex", 1), (PAPER_LANDING, "landing", -1)):
+            axes[2].annotate(f"measured {words} {time:.3f} s", (time, 0.03), xycoords=("data", "axes fraction"), xytext=(3 * side, 0),
+                             textcoords="offset points", ha="left" if side > 0 else "right", va="bottom", fontsize=7, color=PUBLISHED, rotation=90)
     axes[-1].set_xlabel("time since lift-off [s]")
     axes[0].set_title(caption(trace, "the flight of the jump (13)" + (", marked: measured in the paper" if paper else "")), fontsize=8)
     return figure

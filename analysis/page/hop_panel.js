@@ -6,12 +6,11 @@ function hopPanel(map, solver) {
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
   const now = { design: null, story: null, time: 0, playing: false, last: 0, frame: 0, timeAt: null };
-  radius.value = 1000 * map.fixed.radius;
-  mass.value = 28.2;  // the paper's: 8.2 g and 20 g
+  const chosen = { radius: map.fixed.radius, mass: 0.0282 };  // m; kg, of hoop and point mass: the paper's 8.2 g and 20 g
+  radius.value = 1000 * chosen.radius;
+  mass.value = 1000 * chosen.mass;
 
-  const end = () => now.story.motion.t.at(-1) ?? 0;
-  const positive = (input, otherwise) => (Number(input.value) > 0 ? Number(input.value) : otherwise);
-  const weight = () => positive(mass, 28.2) / 1000 * (now.design.gravity ?? solver.defaults.gravity);
+  const end = () => now.story?.motion.t.at(-1) ?? 0;
 
   function draw() {
     if (!now.story || now.story.motion.t.length === 0) {
@@ -20,7 +19,7 @@ function hopPanel(map, solver) {
       return;
     }
     drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked);
-    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.story.outcome, now.time, weight(), now.design.radius);
+    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.story.outcome, now.time, chosen.mass * now.design.gravity, now.design.radius);
     clock.textContent = `${now.time.toFixed(3)} s`;
     scrub.value = now.time;
   }
@@ -55,30 +54,31 @@ function hopPanel(map, solver) {
   }
 
   function tell() {
-    const { outcome } = now.story, R = now.design.radius, g = now.design.gravity, second = Math.sqrt(R / g), kg = positive(mass, 28.2) / 1000;
+    const { outcome } = now.story, R = now.design.radius, g = now.design.gravity, second = Math.sqrt(R / g), kg = chosen.mass;
     const jumped = outcome.status === "jumped", rows = [];
+    const length = (metres, digits = 4) => (Math.abs(metres) >= 1 ? `${short(metres, digits)} m` : `${short(Math.abs(metres) < 1e-9 * R ? 0 : 1000 * metres, digits)} mm`);
     const add = (name, words, text, value = outcome[name]) => rows.push(row(name, words, text, value));
     add("status", "ends as", outcome.status.replaceAll("_", " "));
     if (jumped) {
       const metres = 2 * R * outcome.jump_height, speed = outcome.jump_spin / second;
-      add("jump_height", "jump height", `${short(1000 * metres)} mm = ${short(outcome.jump_height, 5)} diameters`);
+      add("jump_height", "jump height", `${length(metres)} = ${short(outcome.jump_height, 5)} diameters`);
       add("jump_time", "lift-off after", `${short(outcome.jump_time, 5)} s`);
       add("agility", "agility", `${short(metres / (outcome.jump_time + outcome.apex_time))} m/s`, metres / (outcome.jump_time + outcome.apex_time));
       add("apex_time", "apex, landing after lift-off", `${short(outcome.apex_time, 4)} s, ${short(outcome.flight_time, 4)} s`);
       add("jump_spin", "spin at lift-off", `${short(speed)} rad/s`);
       add("jump_angle", "angle at lift-off", `${short(outcome.jump_angle * 180 / Math.PI, 5)}°`);
-      add("jump_distance", map.slips ? "travelled until lift-off" : "rolled until lift-off", `${short(outcome.jump_distance * R * 1000)} mm`);
-      if (!map.slips) add("dip", "flight first dips", `${short(2000 * R * outcome.dip, 3)} mm`);
+      add("jump_distance", map.slips ? "travelled until lift-off" : "rolled until lift-off", length(outcome.jump_distance * R));
+      if (!map.slips) add("dip", "flight first dips", length(2 * R * outcome.dip, 3));
     }
     if (outcome.candidates > 0) {
       add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"
-        : outcome.first_jump_height > 0 ? `spurious: ${short(1000 * 2 * R * outcome.first_jump_height, 3)} mm high, after ${short(outcome.first_jump_time)} s`
+        : outcome.first_jump_height > 0 ? `spurious: ${length(2 * R * outcome.first_jump_height, 3)} high, after ${short(outcome.first_jump_time)} s`
         : `spurious: sinks at once, after ${short(outcome.first_jump_time)} s; rolling on without slip asks the plane to pull`);
       add("candidates", "lift-offs looked at", String(outcome.candidates));
     }
     if (map.slips) {
       add("phase_sequence", "phases", `${outcome.phase_sequence} (R rolls, S slides, F flies)`);
-      if (Number.isFinite(outcome.slip_distance)) add("slip_distance", "slid", `${short(1000 * R * outcome.slip_distance)} mm`);
+      if (Number.isFinite(outcome.slip_distance)) add("slip_distance", "slid", length(R * outcome.slip_distance));
       if (jumped) add("landing_spin", "spin after landing", `${short(outcome.landing_spin / second)} rad/s`);
       if (jumped) add("energy_lost", "energy lost until the jump", `${short(1000 * outcome.energy_lost * kg * g * R)} mJ`);
     }
@@ -114,7 +114,7 @@ function hopPanel(map, solver) {
   }
   function solved() {
     const { design } = now;
-    design.radius = positive(radius, 1000 * map.fixed.radius) / 1000;
+    design.radius = chosen.radius;
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.story = solver.solve(design, map.slips, map.tolerance);
     scrub.max = end();
@@ -126,15 +126,17 @@ function hopPanel(map, solver) {
   play.addEventListener("click", () => run(!now.playing));
   scrub.addEventListener("input", () => { run(false); now.time = Number(scrub.value); draw(); });
   element("follow").addEventListener("change", draw);
-  /** Says so if an input is no number above zero; what is shown stays as it was. */
-  const usable = (input) => {
+  /** Takes a number above zero; says so if it is none, and what is shown stays as it was. */
+  const choose = (input, name, then) => input.addEventListener("change", () => {
     const good = Number(input.value) > 0 && input.checkValidity();
     input.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `${input === radius ? "The radius" : "The mass"} must be a number above 0.`);
-    return good;
-  };
-  radius.addEventListener("change", () => { if (usable(radius) && now.design) solve(); });
-  mass.addEventListener("change", () => { if (usable(mass) && now.story) { tell(); draw(); } });
+    notice(good ? "" : `The ${name} must be a number above 0, and not beyond all bounds.`);
+    if (!good) return;
+    chosen[name] = Number(input.value) / 1000;
+    if (now.story) then();
+  });
+  choose(radius, "radius", solve);
+  choose(mass, "mass", () => { tell(); draw(); });
   const seek = (event) => { if (now.timeAt && (event.type === "click" || event.buttons === 1)) { run(false); now.time = now.timeAt(event.clientX); draw(); } };
   plots.addEventListener("click", seek);
   plots.addEventListener("pointermove", seek);
@@ -163,7 +165,10 @@ function hopPanel(map, solver) {
     element("paper").hidden = false;
     element("paper").addEventListener("click", () => begin({ ...map.fixed, ...map.paper }, "One hoop: the paper's, from rest with its mass on top"));
   }
-  const show = (index) => {
+  const show = (index, byHand) => {
+    // On a phone the hoop is further down.
+    const part = element("hop-part");
+    if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight) part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
     history.replaceState(null, "", `#design=${index.join(",")}`);
     const design = { ...map.fixed };
     map.axes.forEach((axis, k) => { design[axis.name] = axis.values[index[k]]; });

@@ -61,9 +61,20 @@ function drawHoop(canvas, design, motion, time, closeUp) {
   context.strokeStyle = "#404040";
   context.stroke();
 
+  // A tick every radius tells how fast the slope goes by.
+  const ticks = Math.min(400, Math.ceil(far / R));
+  context.beginPath();
+  for (let k = Math.floor(here / R) - ticks; k <= here / R + ticks; ++k) {
+    context.moveTo(...px(turned(k * R, 0)));
+    context.lineTo(...px(turned(k * R, -0.12 * R)));
+  }
+  context.lineWidth = ratio;
+  context.stroke();
+
   // The centre's path so far, coloured by phase; a mark wherever a phase begins.
   const { low } = sampleAt(motion, time);
-  context.lineWidth = 2 * ratio;
+  context.lineWidth = 2.5 * ratio;
+  context.globalAlpha = 0.45;
   for (let k = 0; k < low; ++k) {
     context.beginPath();
     context.strokeStyle = (PHASES[motion.phase[k + 1]] ?? PHASES[1])[1];
@@ -71,6 +82,7 @@ function drawHoop(canvas, design, motion, time, closeUp) {
     context.lineTo(...px(centre(k + 1)));
     context.stroke();
   }
+  context.globalAlpha = 1;
   const phase = PHASES[motion.phase[low]] ?? PHASES[1];
   context.beginPath();
   context.arc(...px([cu, cv]), R * scale, 0, 2 * Math.PI);

@@ -171,7 +171,7 @@ function mapView(canvas, map, onPoint, onPick) {
       if (last - p < 0.95 * font && level !== field.low) continue;
       if (jumpers.some(([, v]) => Math.abs(placeOf(v) - p) < 0.9 * font)) continue;
       last = p;
-      mark(level, short(level, 3), EDGE);
+      mark(level, (level === field.high && field.most > field.high ? "≥ " : "") + short(level, 3), EDGE);
     }
     for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${value}`, MARK);
   }
@@ -235,10 +235,15 @@ function mapView(canvas, map, onPoint, onPick) {
     return true;
   }
   const point = () => { paintCursor(); onPoint(view.index); };
-  const pick = () => { view.picked = [...view.index]; paintCursor(); onPoint(view.index); onPick(view.index); };
+  const pick = (byHand = false) => { view.picked = [...view.index]; paintCursor(); onPoint(view.index); onPick(view.index, byHand); };
 
   canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch" && pointAt(event)) point(); });
-  canvas.addEventListener("click", (event) => { if (pointAt(event)) pick(); });
+  canvas.addEventListener("click", (event) => { if (pointAt(event)) pick(true); });
+  canvas.addEventListener("pointerleave", (event) => {  // back to the design that is shown
+    if (event.pointerType === "touch" || !view.picked) return;
+    for (const k of [view.x, view.y]) view.index[k] = view.picked[k];
+    point();
+  });
   canvas.addEventListener("keydown", (event) => {
     const moves = { ArrowLeft: [view.x, -1], ArrowRight: [view.x, 1], ArrowDown: [view.y, -1], ArrowUp: [view.y, 1] };
     if (event.key in moves) {

@@ -19,6 +19,7 @@ async function readMap() {
     field.table = Uint8Array.from(atob(field.colours), (c) => c.charCodeAt(0));
     let low = Infinity, high = -Infinity;
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
+    field.most = high;
     if (field.log) high = Math.max(high, ...(field.name === "agility" ? Object.values(map.jumpers).map((v) => 1.15 * v) : []));
     // A few extreme designs do not set the scale: isolines that are given do.
     const given = field.levels.filter((l) => l >= low && l <= high);
@@ -133,6 +134,15 @@ function start(map, solver) {
     map.codes.status?.shown.forEach(({ colour, words }, k) => {
       if (map.codes.status.meanings[k] !== "jumped" && map.codes.status.values.includes(k)) items.push(entry(words, colour));
     });
+    const symbol = (words, sign, colour) => {
+      const item = document.createElement("li"), mark = document.createElement("span");
+      mark.textContent = sign;
+      mark.style.color = colour;
+      item.append(mark, ` ${words}`);
+      return item;
+    };
+    if (!map.slips) items.push(symbol("the paper's hoop", "★", "#d62728"));
+    items.push(symbol("pointed at", "⊕", "#000"), symbol("shown beside", "⊕", "#d62728"));
     element("legend").replaceChildren(...items);
   }
 

@@ -214,6 +214,14 @@ def test_a_run_of_a_thousand_turns_is_shown_too(browser, tmp_path):
     assert 1000 < len(motion) <= 4200 and motion[-1] == pytest.approx(2 * np.pi * 1000 * 0.041, rel=1e-3)
 
 
+def test_the_readout_goes_back_to_the_design_shown_when_the_pointer_leaves_the_map(page):
+    point(page, [20, 30, 1], click=True)
+    point(page, [40, 10, 1])
+    assert readout(page)["index"] == "40,10,1"
+    ActionChains(page).move_to_element(page.find_element("id", "title")).perform()
+    assert readout(page)["index"] == "20,30,1"
+
+
 def test_keys_move_from_design_to_design_and_show_one(page):
     point(page, [20, 30, 1])
     canvas = page.find_element("id", "map")
@@ -308,6 +316,11 @@ def test_the_page_fits_a_phone_and_a_screenshot_is_kept(page):
         assert page.execute_script("return document.documentElement.scrollWidth <= 360")
         assert page.execute_script("return document.getElementById('map').getBoundingClientRect().bottom < document.getElementById('scene').getBoundingClientRect().top")
         page.save_screenshot(str(ARTEFACTS / "explorer_phone.png"))
+        page.execute_script("window.scrollTo(0, 0)")
+        point(page, [10, 35, 1], click=True)
+        # A tap on the map brings the hoop, which is further down, into sight.
+        WebDriverWait(page, 10).until(lambda b: 0 <= b.execute_script("return document.getElementById('scene').getBoundingClientRect().top") < 800)
+        page.execute_script("window.scrollTo(0, 0)")
     finally:
         page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
