@@ -55,7 +55,7 @@ def chart(m, along, by, wanted, at, fields):
     if wanted:
         if not by:
             raise NotAMap(f"{m.path}: --values: there is no second axis to have them")
-        picked = list(dict.fromkeys(planes.fixed_at(m, [f"{by}={value}"])[by] for value in wanted.split(",")))
+        picked = list(dict.fromkeys(planes.fixed_at(m, [f"{by}={value}"], "--values")[by] for value in wanted.split(",")))
     figure, axes = plt.subplots(len(drawn), 1, sharex=True, squeeze=False, figsize=(6.6, 2.5 * len(drawn) + 1.4), layout="constrained")
     colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(picked)))
     course = looks.course(m)

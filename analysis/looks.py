@@ -116,16 +116,18 @@ def is_log(values):
 
 
 def course(m):
-    """A number for each jump that changes by more than 1 from a design to the next only where the jump passes to another lift-off, an
-    angle of more than 1 rad away, or its apex to another maximum of its flight, in time by a quarter. None if the map cannot tell."""
+    """A complex number for each jump, either part of which changes by more than 1 from a design to the next only where the jump passes
+    to another lift-off, an angle of more than 1 rad away, or its apex to another maximum of its flight, in time by a quarter. None if
+    the map cannot tell."""
     if "jump_angle" not in m.fields:
         return None
     apex = np.asarray(m.fields["apex_time"], float) if "apex_time" in m.fields else 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(m.fields["jump_angle"], float) + 4.0 * np.log(apex)
+        return np.asarray(m.fields["jump_angle"], float) + 4.0j * np.log(apex)
 
 
 def cliffs(course, axis):
     """Between which neighbours along an axis the jump takes another course: isolines must not cross there."""
     with np.errstate(invalid="ignore"):
-        return np.abs(np.diff(course, axis=axis)) > 1.0
+        change = np.diff(course, axis=axis)
+        return (np.abs(change.real) > 1.0) | (np.abs(change.imag) > 1.0)

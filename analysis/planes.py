@@ -24,22 +24,23 @@ def add_at(parser):
                         help="keep only the designs nearest to this value (angles in degrees); may be given again")
 
 
-def fixed_at(m, wanted):
-    """{axis: index of the value nearest to the one asked for}."""
+def fixed_at(m, wanted, option="--at"):
+    """{axis: index of the value nearest to the one asked for}; option: what asked for it, for messages."""
     found = {}
     for text in wanted:
         name, _, value = text.partition("=")
         if name not in m.dims:
-            raise NotAMap(f"{m.path}: --at {text}: has no axis {name}; allowed: {', '.join(m.dims)}")
+            raise NotAMap(f"{m.path}: {option} {text}: has no axis {name}; allowed: {', '.join(m.dims)}")
         try:
             number = float(value.removesuffix("deg").removesuffix("°"))
         except ValueError:
-            raise NotAMap(f"{m.path}: --at {text}: is not a number after the =") from None
+            raise NotAMap(f"{m.path}: {option} {text}: is not a number after the =") from None
         if looks.PARAMETERS.get(name, ("", "", ""))[2] == "°":
             number = math.radians(number)
         values = m.dims[name]
-        if not values.min() - 1e-9 <= number <= values.max() + 1e-9:
-            raise NotAMap(f"{m.path}: --at {text}: lies beyond the map; allowed: {looks.shown(name, values.min())} to {looks.shown(name, values.max())}")
+        slack = 0.5 * np.ptp(values) / max(1, len(values) - 1) + 1e-3 * np.abs(values).max()  # half a cell, and labels' rounding
+        if not values.min() - slack <= number <= values.max() + slack:
+            raise NotAMap(f"{m.path}: {option} {text}: lies beyond the map; allowed: {looks.shown(name, values.min())} to {looks.shown(name, values.max())}")
         found[name] = int(np.argmin(np.abs(values - number)))
     return found
 
@@ -67,7 +68,7 @@ class Planes:
         self.panels = list(np.ndindex(*(len(m.dims[n]) for n in self.others)))
         if len(self.panels) > MOST_PANELS:
             raise NotAMap(f"{m.path}: {len(self.panels)} panels are too many; fix an axis, for example --at "
-                          f"{self.others[0]}={m.dims[self.others[0]][0]:g}")
+                          f"{self.others[0]}={looks.shown(self.others[0], m.dims[self.others[0]][0])}")
         self.order = {n: np.argsort(m.dims[n]) for n in (self.x, self.y)}
 
     def values(self, name):

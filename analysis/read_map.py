@@ -127,10 +127,10 @@ BEYOND = 1e100  # no quantity of a hoop is as large
 
 
 def _check_numbers(m, name, values, dimensions):
-    """Real numbers of that many dimensions, NaN allowed, of sizes that can be drawn."""
+    """Real numbers of that many dimensions, NaN allowed; of fields, of sizes that can be drawn."""
     if values.ndim != dimensions or values.dtype.kind not in "fiu":
         raise NotAMap(f"{m.path}: is damaged: {name} is no array of numbers over its axes")
-    if values.dtype.kind == "f" and (np.abs(values[~np.isnan(values)]) > BEYOND).any():
+    if name in m.fields and values.dtype.kind == "f" and (np.abs(values[~np.isnan(values)]) > BEYOND).any():
         raise NotAMap(f"{m.path}: is damaged: {name} holds numbers beyond all bounds")
 
 
@@ -140,7 +140,7 @@ def _check_scene(m):
         raise NotAMap(f"{m.path}: is damaged: its attribute spec is no text")
     numbers = m.numbers()
     for key, least in (("radius", 0.0), ("gravity", 0.0), ("runway", 0.0), ("tolerance", 0.0), ("hop_height", -1e-300)):
-        if not least < numbers.get(key, np.nan) < BEYOND:
+        if not least < numbers.get(key, np.nan) < np.inf:
             raise NotAMap(f"{m.path}: is damaged: its spec says {key} = {numbers.get(key, 'nothing')}")
 
 
@@ -165,6 +165,9 @@ def read_trace(path):
     """One design's motion, as `leapmap hop --trace` writes it. Raises NotAMap likewise."""
     trace = _read(path, "leapmap trace")
     _check_scene(trace)
+    for key in ("slope", "mass_ratio", "offset_ratio", "release_angle", "release_spin", "mu_static", "restitution"):
+        if not np.isfinite(trace.numbers().get(key, np.nan)):
+            raise NotAMap(f"{trace.path}: is damaged: its spec does not say the {key}")
     if not isinstance(trace.attributes.get("status"), str):
         raise NotAMap(f"{trace.path}: is damaged: its attribute status is no text")
     columns = ("phi", "spin", "x", "y", "normal_force", "friction", "phase")

@@ -110,7 +110,7 @@ function hopPanel(map, solver) {
 
   /** Solves the design anew, its motion from the start. */
   function solve() {
-    try { solved(); } catch (error) { now.story = null; complain(error); }
+    try { solved(); } catch (error) { now.story = null; notice(`This hoop cannot be shown: ${error.message ?? error}`); }
   }
   function solved() {
     const { design } = now;
@@ -130,7 +130,8 @@ function hopPanel(map, solver) {
   const choose = (input, name, then) => input.addEventListener("change", () => {
     const good = Number(input.value) > 0 && input.checkValidity();
     input.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `The ${name} must be a number above 0, and not beyond all bounds.`);
+    if (!document.querySelector('[aria-invalid="true"]')) notice("");
+    if (!good) notice(`The ${name} must be a number above 0, and not beyond all bounds.`);
     if (!good) return;
     chosen[name] = Number(input.value) / 1000;
     if (now.story) then();
@@ -163,7 +164,10 @@ function hopPanel(map, solver) {
   };
   if (!map.slips) {
     element("paper").hidden = false;
-    element("paper").addEventListener("click", () => begin({ ...map.fixed, ...map.paper }, "One hoop: the paper's, from rest with its mass on top"));
+    element("paper").addEventListener("click", () => {
+      history.replaceState(null, "", "#paper");
+      begin({ ...map.fixed, ...map.paper }, "One hoop: the paper's, from rest with its mass on top");
+    });
   }
   const show = (index, byHand) => {
     // On a phone the hoop is further down.

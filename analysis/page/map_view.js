@@ -240,7 +240,8 @@ function mapView(canvas, map, onPoint, onPick) {
   canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch" && pointAt(event)) point(); });
   canvas.addEventListener("click", (event) => { if (pointAt(event)) pick(true); });
   canvas.addEventListener("pointerleave", (event) => {  // back to the design that is shown
-    if (event.pointerType === "touch" || !view.picked) return;
+    const aside = (i, k) => k !== view.x && k !== view.y && i !== view.index[k];
+    if (event.pointerType === "touch" || !view.picked || view.picked.some(aside)) return;
     for (const k of [view.x, view.y]) view.index[k] = view.picked[k];
     point();
   });

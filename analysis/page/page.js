@@ -153,6 +153,7 @@ function start(map, solver) {
     const away = axis.values.map((v) => Math.abs(v - wanted));
     view.view.index[k] = away.indexOf(Math.min(...away));
   });
+  element("paper").addEventListener("click", () => { view.view.picked = null; view.point(); });
   const asked = addressed(map);
   if (asked.index) view.view.index = asked.index;
   arrange();
@@ -160,19 +161,20 @@ function start(map, solver) {
   view.paint();
   told(view.view.index);
   view.pick();
+  if (asked.paper) element("paper").click();
   if (asked.time !== undefined) chosen.stopAt(asked.time);
   window.explorer = { map, view, solver };
 }
 
-/** What the address asks for, as #design=20,30,1&time=0.5: a design by its place along each axis, and a moment to stop at [s]. */
+/** What the address asks for, as #design=20,30,1&time=0.5 or #paper: a design by its place along each axis, and a moment to stop at [s]. */
 function addressed(map) {
-  const words = new URLSearchParams(location.hash.slice(1)), asked = {};
-  const index = (words.get("design") ?? "").split(",").map(Number);
+  const words = new URLSearchParams(location.hash.slice(1)), asked = { paper: words.has("paper") && !map.slips };
+  const index = (words.get("design") ?? "").split(",").map((word) => (/^\d+$/.test(word) ? Number(word) : -1));
   if (words.has("design") && !(index.length === map.axes.length && map.axes.every((axis, k) => Number.isInteger(index[k]) && index[k] >= 0 && index[k] < axis.values.length)))
     notice(`The address asks for a design that is not on this map; there are ${map.axes.map((axis) => axis.values.length).join(" x ")}.`);
   else if (words.has("design"))
     asked.index = index;
-  if (words.has("time") && Number.isFinite(Number(words.get("time")))) asked.time = Number(words.get("time"));
+  if (words.get("time") && Number.isFinite(Number(words.get("time")))) asked.time = Number(words.get("time"));
   return asked;
 }
 

@@ -41,6 +41,7 @@ class Motion {
       });
       start = rolled(roll, start, most, start.time + duration);
     }
+    end_ = start.time;
   }
 
   void slide(const ContactState<double>& from, int direction, double end) {
@@ -50,9 +51,15 @@ class Motion {
       at.time = t;
       return sliding_point(hoop_, direction * friction_, at);
     });
+    end_ = end;
   }
 
-  void fly(const ContactState<double>& from, double flight_time) { sampler_.fly(hoop_, from, flight_time); }
+  void fly(const ContactState<double>& from, double flight_time) {
+    sampler_.fly(hoop_, from, flight_time);
+    end_ = from.time + flight_time;
+  }
+
+  double end() const { return end_; }
 
  private:
   ContactState<double> rolled(const Roll<double>& roll, const ContactState<double>& from, double x,
@@ -84,6 +91,7 @@ class Motion {
   Hoop<double> hoop_;
   double friction_;
   TraceSampler sampler_;
+  double end_ = 0.0;
   RollingTime<double> time_{check_tolerance};
   SlidingLeg<double> sliding_{check_tolerance};
 };
@@ -136,6 +144,7 @@ Story of_rolling(const Design& design, const Scene& scene, double tolerance, dou
     story.points.push_back(rolling_point(hoop, lift_off));
     motion.fly(lift_off, outcome.flight_time);
   }
+  story.end = motion.end();
   return story;
 }
 
@@ -170,6 +179,7 @@ Story with_friction(const Design& design, const Scene& scene, double tolerance, 
       motion.fly(from, (flight++)->flight.flight_time);
     }
   }
+  story.end = motion.end();
   return story;
 }
 

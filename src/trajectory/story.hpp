@@ -44,7 +44,8 @@ struct Story {
   std::vector<PhaseStart> phases;  ///< with Coulomb friction; else empty
   std::vector<Graze> grazes;       ///< zeros of the normal force decided by a hair; of integration only
   std::vector<TracePoint>
-      points;  ///< from release to the end: the jump's landing, the stall, the runway's end
+      points;        ///< from release to the end: the jump's landing, the stall, the runway's end
+  double end = 0.0;  ///< when that is [sqrt(R/g)], if the motion was asked for; of exact only
 };
 
 inline constexpr double check_tolerance = 1e-12;  ///< of the method that checks a story
@@ -52,6 +53,7 @@ inline constexpr double check_tolerance = 1e-12;  ///< of the method that checks
 /// Solves one design by the exact solver and tells everything about it, for which no integrator is needed.
 /// interval > 0: samples the motion that often [sqrt(R/g)], and at the jump's lift-off and landing. The
 /// motion towards a stall ends a hair before it. Throws InputError if that would be more than 10^7 samples.
+/// An infinite interval: those two only.
 Story tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval = 0.0);
 
 /// The same by integration in time, with grazes whose |N| is below graze_limit.

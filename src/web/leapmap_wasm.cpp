@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -91,7 +92,7 @@ LEAPMAP_EXPORT const char* field_name(int i) {
 LEAPMAP_EXPORT double* parameters() { return page.parameters.data(); }
 
 /// Solves the design to a tolerance of times, and its motion every `interval` [s]; 0: as often as a picture
-/// needs, some 30 times a radian of its usual spin, but 4,000 times at most.
+/// needs, 400 to 4,000 times in all.
 LEAPMAP_EXPORT void solve(int with_friction, double tolerance, double interval) {
   Design design;
   Scene scene;
@@ -105,9 +106,8 @@ LEAPMAP_EXPORT void solve(int with_friction, double tolerance, double interval) 
   const double second = page.time_unit = time_unit(scene);
   interval /= second;
   if (!(interval > 0.0)) {
-    constexpr double coarse = 1.0, fine = 0.03, most_points = 4000.0;
-    const Story whole = tell_exactly(design, scene, tolerance, coarse);
-    interval = std::max(fine, whole.points.empty() ? 0.0 : whole.points.back().t / most_points);
+    const double end = tell_exactly(design, scene, tolerance, std::numeric_limits<double>::infinity()).end;
+    interval = std::max({std::min(0.03, end / 400.0), end / 4000.0, 1e-12});
   }
   const Story story = tell_exactly(design, scene, tolerance, interval);
   page.outcome = story.outcome;

@@ -129,6 +129,15 @@ def test_a_coarse_logarithmic_axis_fills_its_panel_row_by_row(tmp_path):
     assert seen["#1b7837"] / seen["#fdae61"] == pytest.approx(shares["#1b7837"] / shares["#fdae61"], rel=0.05)
 
 
+def test_the_axis_to_fix_that_a_refusal_names_can_be_typed_as_it_stands(tmp_path):
+    path = sweep(tmp_path, '[design]\nslope = { from = 0.2, to = 0.9, count = 14 }\n'
+                           "mass_ratio = { values = [1, 3] }\noffset_ratio = { values = [0.6, 1] }\n[numerics]\naudit = 0\n")
+    refused = draw("design_chart.py", path, "-x", "mass_ratio", "-y", "offset_ratio", "-o", tmp_path / "x")
+    assert refused.returncode == 2 and "--at slope=11.46°" in refused.stderr, refused.stderr
+    named = refused.stderr.split("--at ")[1].split()[0]
+    assert draw("design_chart.py", path, "-x", "mass_ratio", "-y", "offset_ratio", "--at", named, "-o", tmp_path / "x").returncode == 0
+
+
 @pytest.mark.parametrize("damage", ["spin", "phase", "candidate_time", "status", "spec"])
 def test_a_damaged_trace_is_refused_with_one_line_that_names_it(damage, tmp_path):
     leapmap("hop", "--trace", tmp_path / "trace.h5")

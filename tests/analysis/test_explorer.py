@@ -282,8 +282,17 @@ def test_an_address_opens_a_design_at_a_moment_and_says_if_there_is_none(page, m
             assert page.find_element("id", "clock").text == "0.100 s" and "play" in page.find_element("id", "play").text
 
 
+def test_slow_and_swift_hoops_are_sampled_as_a_picture_needs(page):
+    for spin in (1e-6, 1.0, 1e4):
+        motion = page.execute_script("""const e = window.explorer;
+            const m = e.solver.solve({...e.map.fixed, slope: 0, mass_ratio: 0, release_angle: 0, release_spin: arguments[0]}, false, 1e-10).motion;
+            return {t: [...m.t], phi: [...m.phi]}""", spin)
+        assert 390 <= len(motion["t"]) <= 4100 and motion["phi"][-1] == pytest.approx(10 * np.pi, rel=5e-3)
+
+
 def test_the_papers_hoop_can_be_shown_whether_or_not_it_is_on_the_grid(page):
     page.find_element("id", "paper").click()
+    assert page.execute_script("return location.hash") == "#paper"
     told = told_by_leapmap(page)
     assert told["jump_height"] == pytest.approx(0.98280096607, abs=1e-10)
     assert agrees(numbers(page), told) >= 9
