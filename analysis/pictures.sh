@@ -15,7 +15,7 @@ cp "$work/design_chart_jump_height.png" analysis/pictures/
 cp "$work/paper_figures_flight.png" analysis/pictures/
 # The paper's hoop, or the design nearest to it, at the apex of its jump.
 chromium --headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
-  --disable-component-update --disable-sync --hide-scrollbars --user-data-dir="$work/chromium" --window-size=1400,1420 \
+  --disable-component-update --disable-sync --hide-scrollbars --user-data-dir="$work/chromium" --window-size=1400,1470 \
   --virtual-time-budget=5000 --screenshot="$PWD/analysis/pictures/explorer.png" \
   "file://$PWD/maps/slope_mass_ratio_offset.html#time=0.66" 2> "$work/log" || { cat "$work/log" >&2; exit 1; }
 ls analysis/pictures/design_chart_jump_height.png analysis/pictures/paper_figures_flight.png analysis/pictures/explorer.png
