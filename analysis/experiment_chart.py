@@ -8,6 +8,7 @@ the measured.
 """
 import numpy as np
 
+import looks
 import style
 from read_map import NotAMap, read_map
 from style import plt
@@ -39,7 +40,8 @@ def chart(m):
     drawn = right.pcolormesh(angle, mu, np.minimum(hops, 3), cmap=plt.get_cmap("Blues", 4), vmin=-0.5, vmax=3.5, shading="nearest", rasterized=True)
     bar = figure.colorbar(drawn, ax=right, ticks=[0, 1, 2, 3], label="small hops before the jump")
     bar.ax.set_yticklabels(["none", "1", "2", "3 or more"])
-    right.set_facecolor("#d9d9d9")
+    for axis in (left, right):
+        axis.set_facecolor(looks.STATUSES["no_jump"][0])
     right.set_title("where the spurious jump is real: hops below 0.05 diameters on the way; grey: no jump")
     for axis in (left, right):
         axis.set_xlabel("release angle [°]")
