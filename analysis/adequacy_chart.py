@@ -10,13 +10,14 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
+import looks
 import planes
 import style
 from read_map import NotAMap, read_map
 from style import plt
 
 ENOUGH = 0.05  # of the height
-KINDS = [("#d9d9d9", "neither jumps"), ("#1b7837", "height within 5 %"), ("#ffdd57", "both jump, heights differ by more"),
+KINDS = [(looks.STATUSES["no_jump"][0], "neither jumps"), ("#1b7837", "height within 5 %"), ("#ffdd57", "both jump, heights differ by more"),
          ("#e66101", "only one of them jumps"), ("#8c6bb1", "indeterminate or failed")]
 KEEP = ("mass_ratio", "slope")
 
@@ -68,12 +69,11 @@ def chart(rigid, slipping):
         differs = (flag != flags[here]) & jumps & jump[here]
         if differs.any():
             axis.contourf(ratios, degrees, differs.T, levels=[0.5, 1.5], colors="none", hatches=["////"])
-        axis.plot(20 / 8.2, np.degrees(0.40), "*", markersize=10, color=style.MARK, markeredgecolor="white")
+        axis.plot(looks.PAPER["mass_ratio"], np.degrees(looks.PAPER["slope"]), "*", markersize=10, color=style.MARK, markeredgecolor="white")
         both = jumps & jump[here]
         share = 100 * (kind == 1).sum() / max(both.sum(), 1)
         axis.set_title(f"μ = {mu:g}: height agrees for {share:.0f} % of what jumps in both")
-        axis.set_xscale("log")
-        axis.xaxis.set_major_formatter(lambda v, _: f"{v:g}")
+        style.log_scale(axis.xaxis)
     for axis in axes[-1]:
         axis.set_xlabel("mass ratio")
     for axis in axes[:, 0]:

@@ -18,7 +18,8 @@ MOST_LINES = 8
 
 
 def chart(m, along, by, wanted, at, fields):
-    free = [n for n in m.dims if n not in planes.fixed_at(m, at)]
+    fixed = planes.fixed_at(m, at)
+    free = [n for n in m.dims if n not in fixed]
     if "design" in m.dims:
         raise NotAMap(f"{m.path}: is a list of designs, which has no axis to cut along")
     along = along or next((n for n in ("slope", *free) if n in free and len(m.dims[n]) > 1), None)
@@ -30,16 +31,15 @@ def chart(m, along, by, wanted, at, fields):
         raise NotAMap(f"{m.path}: has no other axis {by}; it has {', '.join(n for n in free if n != along) or 'none'}")
     by = by or next((n for n in ("mass_ratio", *free) if n in free and n != along), None)
     index = {n: int(np.argmin(np.abs(v - looks.PAPER[n]))) if n in looks.PAPER else int(np.argsort(v)[len(v) // 2]) for n, v in m.dims.items()}
-    index.update(planes.fixed_at(m, at))
-    drawn = [f for f in fields if looks.quantity(m, f) is not None and np.isfinite(looks.quantity(m, f)).any()]
+    index.update(fixed)
+    found = {f: looks.quantity(m, f) for f in fields}
+    drawn = {f: values for f, values in found.items() if values is not None and np.isfinite(values).any()}
     if not drawn:
         raise NotAMap(f"{m.path}: has none of {', '.join(fields)} to draw; it has {', '.join(m.fields)}")
 
     names = list(m.dims)
     order = np.argsort(m.dims[along])
-    x = m.dims[along][order]
-    degrees = looks.PARAMETERS.get(along, ("", "", ""))[2] == "°"
-    x = np.degrees(x) if degrees else x
+    x = looks.as_shown(along, m.dims[along][order])
 
     def line(array, k):
         here = dict(index)
@@ -59,8 +59,8 @@ def chart(m, along, by, wanted, at, fields):
     figure, axes = plt.subplots(len(drawn), 1, sharex=True, squeeze=False, figsize=(6.6, 2.5 * len(drawn) + 1.4), layout="constrained")
     colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(picked)))
     course = looks.course(m)
-    for axis, field in zip(axes[:, 0], drawn):
-        look, values = looks.LOOKS[field], looks.quantity(m, field)
+    for axis, (field, values) in zip(axes[:, 0], drawn.items()):
+        look = looks.LOOKS[field]
         for colour, k in zip(colours, picked):
             y = line(values, k).astype(float)
             if course is not None:
@@ -81,8 +81,7 @@ def chart(m, along, by, wanted, at, fields):
         axis.set_ylabel("\n[".join(look.title.replace(": height over time from release to apex", "").split(" [")))
         axis.grid(alpha=0.25)
         if looks.is_log(x):
-            axis.set_xscale("log")
-            axis.xaxis.set_major_formatter(lambda v, _: f"{v:g}")
+            style.log_scale(axis.xaxis)
     others = [looks.titled(n, m.dims[n][index[n]]) for n in names if n not in (along, by)]
     numbers = m.numbers()
     words = others + [looks.titled(k, numbers[k]) for k in ("inertia_factor", "release_angle", "release_spin") if k in numbers and k not in m.dims]

@@ -96,7 +96,7 @@ def chart(grid, name):
         draw_panel(axis, grid, panels[i], flags[i], courses[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
         if place := grid.paper(grid.panels[i]):
             starred = True
-            axis.plot(*place, "*", color=look.star, markersize=13, markeredgecolor="white", zorder=5)
+            style.draw_star(axis, place, look.star)
     colours, norm, levels = scale
     # A bar of its own scale, whatever the panels hold.
     bar = figure.colorbar(ScalarMappable(norm, colours), ax=axes, extend="max" if look.exponent != 1.0 else "both", label=look.title,
@@ -110,13 +110,12 @@ def chart(grid, name):
                             textcoords="offset points", ha="right", va="center", fontsize=7, color=style.MARK, annotation_clip=False)
     handles = []
     if any((f == 1).any() for f in flags):
-        handles.append(plt.Rectangle((0, 0), 1, 1, facecolor="white", edgecolor=style.EDGE, hatch="///", label="first lift-off is spurious"))
+        handles.append(style.swatch("white", "first lift-off is spurious", edgecolor=style.EDGE, hatch="///"))
     for code, (colour, words) in looks.STATUSES.items():
         if any(t.any() for t in told[code]):
-            handles.append(plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="#808080", label=words))
+            handles.append(style.swatch(colour, words))
     if starred:
-        handles.append(plt.Line2D([], [], marker="*", color="none", markerfacecolor=look.star, markeredgecolor="white",
-                                  markersize=12, label="the paper's hoop"))
+        handles.append(style.star_handle(look.star))
     if name == "agility":
         handles.append(plt.Line2D([], [], color=style.MARK, label=f"published jumpers ({looks.JUMPERS_SOURCE})"))
     style.legend_above(figure, handles)

@@ -98,13 +98,26 @@ def levels_of(look, values):
     return np.zeros(0)  # none is of use
 
 
+def parameter(name):
+    """A parameter's name on an axis, its symbol, its unit as shown; its own name for one that is unknown."""
+    return PARAMETERS.get(name, (name, name, ""))
+
+
+def is_angle(name):
+    return parameter(name)[2] == "°"
+
+
+def as_shown(name, values):
+    """A parameter's values in the unit they are shown in: angles in degrees."""
+    return np.degrees(values) if is_angle(name) else values
+
+
 def shown(name, value):
-    """A parameter's value in its unit as shown: angles in degrees."""
-    return f"{math.degrees(value):.4g}°" if PARAMETERS.get(name, ("", "", ""))[2] == "°" else f"{value:.4g}"
+    return f"{as_shown(name, value):.4g}{parameter(name)[2]}"
 
 
 def titled(name, value):
-    return f"{PARAMETERS.get(name, ('', name))[1]} = {shown(name, value)}"
+    return f"{parameter(name)[1]} = {shown(name, value)}"
 
 
 def is_log(values):

@@ -35,7 +35,7 @@ def fixed_at(m, wanted, option="--at"):
             number = float(value.removesuffix("deg").removesuffix("°"))
         except ValueError:
             raise NotAMap(f"{m.path}: {option} {text}: is not a number after the =") from None
-        if looks.PARAMETERS.get(name, ("", "", ""))[2] == "°":
+        if looks.is_angle(name):
             number = math.radians(number)
         values = m.dims[name]
         slack = 0.5 * np.ptp(values) / max(1, len(values) - 1) + 1e-3 * np.abs(values).max()  # half a cell, and labels' rounding
@@ -73,8 +73,7 @@ class Planes:
 
     def values(self, name):
         """An axis's values as drawn: sorted, angles in degrees."""
-        values = self.map.dims[name][self.order[name]]
-        return np.degrees(values) if looks.PARAMETERS.get(name, ("", "", ""))[2] == "°" else values
+        return looks.as_shown(name, self.map.dims[name][self.order[name]])
 
     def edges(self, name):
         """Where an axis's cells end: halfway between its values as they are drawn."""
@@ -114,11 +113,9 @@ class Planes:
         for axis, panel in zip(axes.flat, self.panels):
             axis.set_title("\n".join(looks.titled(k, v) for k, v in self.where(panel).items()))
             if looks.is_log(self.values(self.x)):
-                axis.set_xscale("log")
-                axis.xaxis.set_major_formatter(lambda v, _: f"{v:g}")
+                style.log_scale(axis.xaxis)
             if looks.is_log(self.values(self.y)):
-                axis.set_yscale("log")
-                axis.yaxis.set_major_formatter(lambda v, _: f"{v:g}")
+                style.log_scale(axis.yaxis)
         for axis in axes.flat[len(self.panels):]:
             axis.set_visible(False)
         figure.supxlabel(f"{axis_label(self.x)}\n{style.wrapped(self.caption(), figure)}", fontsize=9)
@@ -150,7 +147,7 @@ class Planes:
         for name in (self.x, self.y):
             if name not in looks.PAPER:
                 return None
-            value = math.degrees(looks.PAPER[name]) if looks.PARAMETERS[name][2] == "°" else looks.PAPER[name]
+            value = looks.as_shown(name, looks.PAPER[name])
             values = self.values(name)
             if not values[0] <= value <= values[-1]:
                 return None
@@ -167,5 +164,5 @@ def edges_of(values):
 
 
 def axis_label(name):
-    label, _, unit = looks.PARAMETERS.get(name, (name, name, ""))
+    label, _, unit = looks.parameter(name)
     return f"{label} [{'degrees' if unit == '°' else unit}]" if unit else label

@@ -189,12 +189,3 @@ def phases(sequence):
 def read_table(path, filetype):
     """A study's table, for example "leapmap precision": fields are its columns, numbers or texts."""
     return _read(path, filetype)
-
-
-def sliced(m, name, keep):
-    """Cuts a field into planes along the two axes `keep`: yields (fixed coordinates, plane with keep[0] first)."""
-    names = list(m.dims)
-    others = [n for n in names if n not in keep]
-    array = np.moveaxis(m.fields[name], [names.index(k) for k in keep], [-2, -1])
-    for index in np.ndindex(*(len(m.dims[o]) for o in others)):
-        yield {o: m.dims[o][i] for o, i in zip(others, index)}, array[index]

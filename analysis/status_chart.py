@@ -10,7 +10,6 @@ import looks
 import planes
 import style
 from read_map import NotAMap, read_map
-from style import plt
 
 JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a spurious first lift-off"),
          ("#5aae61", "jumps (the map does not tell at which lift-off)")]
@@ -38,13 +37,12 @@ def chart(grid):
         axis.pcolormesh(grid.edges(grid.x), grid.edges(grid.y), plane, shading="flat", rasterized=True,
                         norm=BoundaryNorm(np.arange(len(kinds) + 1) - 0.5, len(kinds)), cmap=ListedColormap([c for c, _ in kinds]))
         if place := grid.paper(panel):
-            axis.plot(*place, "*", color=style.MARK, markersize=13, markeredgecolor="white", zorder=5)
+            style.draw_star(axis, place)
     shares = np.bincount(np.concatenate([p.ravel() for p in panels]), minlength=len(kinds)) / sum(p.size for p in panels)
-    handles = [plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="#808080", label=f"{words}: {100 * share:.3g} %")
+    handles = [style.swatch(colour, f"{words}: {100 * share:.3g} %")
                for (colour, words), share in zip(kinds, shares) if share > 0]
     if any(grid.paper(p) for p in grid.panels):
-        handles.append(plt.Line2D([], [], marker="*", color="none", markerfacecolor=style.MARK, markeredgecolor="white",
-                                  markersize=12, label="the paper's hoop"))
+        handles.append(style.star_handle())
     style.legend_above(figure, handles)
     return figure
 

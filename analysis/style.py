@@ -19,12 +19,11 @@ plt.rcParams.update({
 })
 
 
-def parser(description, source, default_output):
-    """The command line every chart shares."""
+def parser(description, source, default_output, output="file name without ending; PNG, SVG and PDF are written (default: %(default)s)"):
+    """The command line every chart shares; output: what -o means."""
     p = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("source", metavar="FILE", help=source)
-    p.add_argument("-o", "--output", default=default_output,
-                   help="file name without ending; PNG, SVG and PDF are written (default: %(default)s)")
+    p.add_argument("-o", "--output", default=default_output, help=output)
     return p
 
 
@@ -44,6 +43,27 @@ def save(figure, output):
         figure.savefig(path, metadata=metadata)
         print(path)
     plt.close(figure)
+
+
+def log_scale(axis):
+    """Makes an x or y axis logarithmic, its numbers written out."""
+    getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
+    axis.set_major_formatter(lambda v, _: f"{v:g}")
+
+
+def draw_star(axis, place, colour=MARK):
+    """The paper's hoop."""
+    axis.plot(*place, "*", color=colour, markersize=13, markeredgecolor="white", zorder=5)
+
+
+def star_handle(colour=MARK):
+    return plt.Line2D([], [], marker="*", color="none", markerfacecolor=colour, markeredgecolor="white", markersize=12,
+                      label="the paper's hoop")
+
+
+def swatch(colour, words, **more):
+    """An entry of a legend for cells of a colour."""
+    return plt.Rectangle((0, 0), 1, 1, **{"facecolor": colour, "edgecolor": "#808080", "label": words, **more})
 
 
 def wrapped(words, figure, size=9):

@@ -63,13 +63,14 @@ function start(map, solver) {
     if (key === said) return;  // the pointer moved inside a cell
     said = key;
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
-    const text = (f) => (f.values[at] === f.values[at] ? withUnit(f.values[at].toFixed(decimalsOf(f.step)), f.unit) : "none");
+    const number = (f) => (f.values[at] === f.values[at] ? f.values[at].toFixed(decimalsOf(f.step)) : "");
+    const text = (f) => (number(f) ? withUnit(number(f), f.unit) : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${short(map.fixed.hop_height)} diameters`]
       : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
     element("place").textContent = placeText(map, index);
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notes].filter((w) => w).join("; ");
-    element("others").replaceChildren(...map.fields.filter((f) => f !== shown && f.values[at] === f.values[at]).map((f) => {
+    element("others").replaceChildren(...map.fields.filter((f) => f !== shown && number(f)).map((f) => {
       const pair = document.createElement("div"), name = document.createElement("dt"), value = document.createElement("dd");
       name.textContent = f.label.split(":")[0];
       value.textContent = text(f);
@@ -78,19 +79,19 @@ function start(map, solver) {
     }));
     const { dataset } = element("readout");
     dataset.index = index.join(",");
-    dataset.value = shown.values[at] === shown.values[at] ? shown.values[at].toFixed(decimalsOf(shown.step)) : "";
+    dataset.value = number(shown);
   };
   const view = mapView(canvas, map, told, chosen.show);
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value if there are others.
   const liked = (axis, k) => [axis.values.length > 1 ? 0 : 1, ["slope", "mass_ratio"].includes(axis.name) ? 0 : 1, axis.name === "slope" ? 0 : 1, k];
-  const order = map.axes.map((axis, k) => liked(axis, k)).sort((a, b) => a.reduce((sum, v, i) => sum || v - b[i], 0));
+  const order = map.axes.map(liked).sort((a, b) => a.reduce((sum, v, i) => sum || v - b[i], 0));
   [view.view.x, view.view.y] = [order[0][3], order[1][3]];
 
   const fieldSelect = element("field"), selects = { x: element("x-axis"), y: element("y-axis") };
   map.fields.forEach((f, k) => option(fieldSelect, k, withUnit(f.label, f.unit ? `[${f.unit}]` : "")));
   for (const select of Object.values(selects)) map.axes.forEach((a, k) => option(select, k, a.label));
-  fieldSelect.addEventListener("change", () => { view.view.field = map.fields[fieldSelect.value]; legend(); view.paint(); told(view.view.index); });
+  fieldSelect.addEventListener("change", () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); told(view.view.index); });
   for (const [key, select] of Object.entries(selects))
     select.addEventListener("change", () => {
       const other = key === "x" ? "y" : "x", taken = Number(select.value);
@@ -148,7 +149,7 @@ function start(map, solver) {
 
   // Begin where the paper's hoop is, if it is on the map, else in the middle.
   map.axes.forEach((axis, k) => {
-    const wanted = map.paper?.[axis.name];
+    const wanted = map.paper[axis.name];
     if (wanted === undefined) return;
     const away = axis.values.map((v) => Math.abs(v - wanted));
     view.view.index[k] = away.indexOf(Math.min(...away));
@@ -170,7 +171,7 @@ function start(map, solver) {
 function addressed(map) {
   const words = new URLSearchParams(location.hash.slice(1)), asked = { paper: words.has("paper") && !map.slips };
   const index = (words.get("design") ?? "").split(",").map((word) => (/^\d+$/.test(word) ? Number(word) : -1));
-  if (words.has("design") && !(index.length === map.axes.length && map.axes.every((axis, k) => Number.isInteger(index[k]) && index[k] >= 0 && index[k] < axis.values.length)))
+  if (words.has("design") && !(index.length === map.axes.length && map.axes.every((axis, k) => index[k] >= 0 && index[k] < axis.values.length)))
     notice(`The address asks for a design that is not on this map; there are ${map.axes.map((axis) => axis.values.length).join(" x ")}.`);
   else if (words.has("design"))
     asked.index = index;
