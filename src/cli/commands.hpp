@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "map/journaled_file.hpp"
+
 namespace leapmap::cli {
 
 void add_sweep(CLI::App& app, int& status);
@@ -12,5 +14,9 @@ void add_hop(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
 void add_precision(CLI::App& app, int& status);
 void add_stability(CLI::App& app, int& status);
+void add_check(CLI::App& app, int& status);
+
+/// --no-lock, of every command that opens files of ours.
+void add_no_lock(CLI::App& command, Locking& locking);
 
 }  // namespace leapmap::cli

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/provenance.hpp"
 #include "map/schema.hpp"
 #include "map/trace_file.hpp"
@@ -22,6 +23,7 @@ struct HopArguments {
   std::vector<std::string> overrides;
   std::vector<std::pair<const Option*, std::string>> parameters;
   bool json = false;
+  Locking locking = Locking::required;
 };
 
 constexpr double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
@@ -67,19 +69,18 @@ void print_jump(const Spec& spec, const Story& story, const Outcome& checked) {
   const Outcome& jump = story.outcome;
   const double second = time_unit(spec.scene);
   if (jump.status == Status::jumped) {
-    fmt::print("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off",
-               jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time * second,
-               jump.flight_time * second);
+    say("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off",
+        jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time * second,
+        jump.flight_time * second);
     if (spec.scene.friction == Friction::sticking) {
-      fmt::print("; the flight first dips {:.4g} diameters.\n", jump.dip);
+      say("; the flight first dips {:.4g} diameters.\n", jump.dip);
     } else {
-      fmt::print(
-          ".\nSlid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
+      say(".\nSlid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
           "rad/s.\n",
           jump.slip_distance, jump.energy_lost, jump.landing_spin / second);
     }
   }
-  fmt::print("{}\n", check_line(spec, story, checked));
+  say("{}\n", check_line(spec, story, checked));
 }
 
 /// Every phase with Coulomb friction, flights with how they go.
@@ -89,14 +90,14 @@ void print_phases(const Story& story, double second) {
     const std::string begins =
         fmt::format("{:>12.6f} {:>12.4f} {:>14.6f}", at.time * second, degrees(at.angle), at.spin / second);
     if (phase == Phase::rolling) {
-      fmt::print("{:<22} {}\n", "R  rolls", begins);
+      say("{:<22} {}\n", "R  rolls", begins);
     } else if (phase == Phase::sliding) {
-      fmt::print("{:<22} {}\n", direction > 0 ? "S  slides forwards" : "S  slides backwards", begins);
+      say("{:<22} {}\n", direction > 0 ? "S  slides forwards" : "S  slides backwards", begins);
     } else {
       const Flight<double>& flown = story.candidates[flights++].flight;
       const bool jumps = story.outcome.status == Status::jumped && flights == story.candidates.size();
-      fmt::print("{:<22} {} {:>12.6f} {:>12.6f}\n", jumps ? "F  jumps" : "F  hops, too low", begins,
-                 flown.height, (at.time + flown.flight_time) * second);
+      say("{:<22} {} {:>12.6f} {:>12.6f}\n", jumps ? "F  jumps" : "F  hops, too low", begins, flown.height,
+          (at.time + flown.flight_time) * second);
     }
   }
 }
@@ -105,43 +106,42 @@ void print_table(const Spec& spec, const Story& story, const Outcome& checked) {
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters(spec)) {
     const double value = value_of(*parameter, spec.design);
-    fmt::print("{:<15} {:<12.8g} {}\n", parameter->key, value,
-               parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", degrees(value))
-               : parameter->unit == "1" ? ""
-                                        : parameter->unit);
+    say("{:<15} {:<12.8g} {}\n", parameter->key, value,
+        parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", degrees(value))
+        : parameter->unit == "1" ? ""
+                                 : parameter->unit);
   }
-  fmt::print("{:<15} {:<12.8g} m, gravity {:g} m/s^2, sqrt(R/g) = {:.6g} s\n", "radius", spec.scene.radius,
-             spec.scene.gravity, second);
-  fmt::print("{:<15} {}, tolerance {:g}\n\n", "method", resolved_method(spec.numerics),
-             spec.numerics.tolerance);
+  say("{:<15} {:<12.8g} m, gravity {:g} m/s^2, sqrt(R/g) = {:.6g} s\n", "radius", spec.scene.radius,
+      spec.scene.gravity, second);
+  say("{:<15} {}, tolerance {:g}\n\n", "method", resolved_method(spec.numerics), spec.numerics.tolerance);
 
-  fmt::print("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]",
-             "spin [rad/s]", "height [2R]", "landing [s]");
+  say("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]", "spin [rad/s]",
+      "height [2R]", "landing [s]");
   if (spec.scene.friction == Friction::coulomb) {
     print_phases(story, second);
-    fmt::print("\n{}  {}\n", phase_letters(story.outcome.phase_sequence), verdict(story, spec.scene));
+    say("\n{}  {}\n", phase_letters(story.outcome.phase_sequence), verdict(story, spec.scene));
     print_jump(spec, story, checked);
     return;
   }
-  fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f}\n", "R  rolls from release", 0.0,
-             degrees(spec.design.release_angle), spec.design.release_spin / second);
+  say("{:<22} {:>12.6f} {:>12.4f} {:>14.6f}\n", "R  rolls from release", 0.0,
+      degrees(spec.design.release_angle), spec.design.release_spin / second);
   const auto& candidates = story.candidates;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const bool jump = story.outcome.status == Status::jumped && i + 1 == candidates.size();
     const auto& [lift_off, flight] = candidates[i];
-    fmt::print("{:<22} {:>12.6f} {:>12.4f} {:>14.6f} {:>12.6f} {:>12.6f}\n",
-               jump ? "F  jumps" : fmt::format("   lift-off {}, too low", i + 1), lift_off.time * second,
-               degrees(lift_off.angle), lift_off.spin / second, flight.height,
-               (lift_off.time + flight.flight_time) * second);
+    say("{:<22} {:>12.6f} {:>12.4f} {:>14.6f} {:>12.6f} {:>12.6f}\n",
+        jump ? "F  jumps" : fmt::format("   lift-off {}, too low", i + 1), lift_off.time * second,
+        degrees(lift_off.angle), lift_off.spin / second, flight.height,
+        (lift_off.time + flight.flight_time) * second);
     if (flight.height == 0.0)
-      fmt::print("{:<22} it sinks at once: no-slip rolling asks the plane to pull here\n", "");
+      say("{:<22} it sinks at once: no-slip rolling asks the plane to pull here\n", "");
   }
-  fmt::print("\n{}\n", verdict(story, spec.scene));
+  say("\n{}\n", verdict(story, spec.scene));
   print_jump(spec, story, checked);
   for (const Graze& graze : story.grazes)
-    fmt::print("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",
-               graze.time * second, graze.minimum ? "minimum" : "maximum", graze.normal_force,
-               graze.makes_lift_off() ? "making a " : "making no ");
+    say("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",
+        graze.time * second, graze.minimum ? "minimum" : "maximum", graze.normal_force,
+        graze.makes_lift_off() ? "making a " : "making no ");
 }
 
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
@@ -229,14 +229,14 @@ int run(const HopArguments& arguments) {
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
     attributes.emplace_back("status", std::string(name_of(story.outcome.status)));
-    write_trace(arguments.trace, story, spec.scene, attributes);
+    if (!write_trace(arguments.trace, story, spec.scene, attributes, arguments.locking))
+      tell_of_folder(arguments.trace);
   }
   if (arguments.json) {
-    fmt::print("{}", json_text(spec, story, check.outcome));
+    say("{}", json_text(spec, story, check.outcome));
   } else {
     print_table(spec, story, check.outcome);
-    if (!arguments.trace.empty())
-      fmt::print("Trace of {} points: {}\n", story.points.size(), arguments.trace);
+    if (!arguments.trace.empty()) say("Trace of {} points: {}\n", story.points.size(), arguments.trace);
   }
   return story.outcome.status == Status::failed ? 1 : 0;
 }
@@ -265,6 +265,7 @@ void add_hop(CLI::App& app, int& status) {
       ->check(CLI::Range(1e-9, 1e9));
   command->add_flag("--json", arguments->json, "print JSON, under the map's names and units");
   command->footer(options_help());
+  add_no_lock(*command, arguments->locking);
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -11,11 +11,13 @@
 #include <map>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/spoken.hpp"
 #include "map/reader.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "support/errors.hpp"
+#include "support/printable.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/map_spec.hpp"
 
@@ -26,6 +28,7 @@ struct InfoArguments {
   std::string path;
   bool only_spec = false, failed = false;
   std::size_t limit = 20;
+  Locking locking = Locking::required;
 };
 
 struct Extreme {
@@ -42,35 +45,35 @@ struct Summary {
   std::map<double, std::size_t> words;
 };
 
-/// Calls visit(first design's number, values) on a field block by block, so that no map is too large.
+/// Calls visit(block, its tile, values) on a field block by block, so that no map is too large.
 template <class Visit>
 void for_each_block(const MapReader& map, const std::string& field, const Visit& visit) {
-  const std::vector<std::size_t> shape = map.shape();
-  std::size_t row = 1;
-  for (std::size_t i = 1; i < shape.size(); ++i) row *= shape[i];
-  const std::size_t rows_at_once = std::max<std::size_t>(1, 4'000'000 / std::max<std::size_t>(row, 1));
-  for (std::size_t first = 0; first < shape[0]; first += rows_at_once) {
-    Tile block{std::vector<std::size_t>(shape.size(), 0), shape, 0};
-    block.start[0] = first;
-    block.extent[0] = std::min(rows_at_once, shape[0] - first);
-    block.count = block.extent[0] * row;
-    visit(first * row, map.read(field, block));
+  const Tiling blocks = map.blocks(field);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Tile tile = blocks.tile(b);
+    visit(blocks, tile, map.read(field, tile));
   }
 }
 
 Summary summarise(const MapReader& map, const std::string& name) {
+  constexpr std::size_t most_words = 100'000;  // that are told apart
   const Field* field = find_field(name);
   const bool code = field && std::holds_alternative<Code>(field->source);
   const bool word = field && std::holds_alternative<Word>(field->source);
   Summary summary;
-  for_each_block(map, name, [&](std::size_t first, const std::vector<double>& values) {
+  for_each_block(map, name, [&](const Tiling& blocks, const Tile& tile, const std::vector<double>& values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double value = values[i];
       if (code) ++summary.counts[value >= 0.0 && value < 256.0 ? static_cast<std::uint8_t>(value) : 255];
-      if (word) ++summary.words[value];
+      if (word && (summary.words.size() < most_words || summary.words.contains(value)))
+        ++summary.words[value];
       if (std::isnan(value)) ++summary.missing;
-      if (value < summary.least.value) summary.least = {value, first + i};
-      if (value > summary.most.value) summary.most = {value, first + i};
+      // The first of equals, in the order of the map, as blocks are in another.
+      const auto better = [&](const Extreme& extreme, bool beats) {
+        return beats || (value == extreme.value && blocks.number(tile, i) < extreme.design);
+      };
+      if (better(summary.least, value < summary.least.value)) summary.least = {value, blocks.number(tile, i)};
+      if (better(summary.most, value > summary.most.value)) summary.most = {value, blocks.number(tile, i)};
     }
   });
   return summary;
@@ -78,8 +81,8 @@ Summary summarise(const MapReader& map, const std::string& name) {
 
 /// A value of a dimension; a design's number whole.
 std::string coordinate(const MapReader::Dimension& dimension, std::size_t position) {
-  const double value = dimension.values[position];
-  return dimension.name == "design" ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value);
+  return dimension.values.empty() ? fmt::format("{}", position)
+                                  : fmt::format("{:.6g}", dimension.values[position]);
 }
 
 std::string place(const MapReader& map, std::size_t design) {
@@ -88,7 +91,8 @@ std::string place(const MapReader& map, std::size_t design) {
   std::vector<std::string> coordinates;
   for (std::size_t i = 0; i < position.size(); ++i) {
     const auto& dimension = map.dimensions()[i];
-    coordinates.push_back(fmt::format("{} {}", dimension.name, coordinate(dimension, position[i])));
+    coordinates.push_back(
+        fmt::format("{} {}", printable(dimension.name), coordinate(dimension, position[i])));
   }
   return fmt::format("{}", fmt::join(coordinates, ", "));
 }
@@ -101,10 +105,10 @@ void print_counts(const Code& code, const Summary& summary, std::size_t designs)
     std::string meaning = i < code.names.size() ? std::string(code.names[i])
                           : i == code.fill      ? "(no lift-off, or not computed)"
                                                 : fmt::format("{}", i);
-    fmt::print("  {:>12} {:5.1f} %  {}\n", summary.counts[i],
-               100.0 * static_cast<double>(summary.counts[i]) / static_cast<double>(designs), meaning);
+    say("  {:>12} {:5.1f} %  {}\n", summary.counts[i],
+        100.0 * static_cast<double>(summary.counts[i]) / static_cast<double>(designs), meaning);
   }
-  if (told > most_told) fmt::print("  and {} larger values\n", told - most_told);
+  if (told > most_told) say("  and {} larger values\n", told - most_told);
 }
 
 /// The commonest phase sequences. Doubles hold those of up to 26 phases.
@@ -115,10 +119,9 @@ void print_sequences(const Summary& summary, std::size_t designs) {
     counted.emplace_back(count, word < 0x1p53 ? phase_letters(static_cast<std::uint64_t>(word)) : "(longer)");
   std::ranges::stable_sort(counted, std::greater<>(), [](const auto& entry) { return entry.first; });
   for (std::size_t i = 0; i < std::min(counted.size(), most_told); ++i)
-    fmt::print("  {:>12} {:5.1f} %  {}\n", counted[i].first,
-               100.0 * static_cast<double>(counted[i].first) / static_cast<double>(designs),
-               counted[i].second);
-  if (counted.size() > most_told) fmt::print("  and {} other sequences\n", counted.size() - most_told);
+    say("  {:>12} {:5.1f} %  {}\n", counted[i].first,
+        100.0 * static_cast<double>(counted[i].first) / static_cast<double>(designs), counted[i].second);
+  if (counted.size() > most_told) say("  and {} other sequences\n", counted.size() - most_told);
 }
 
 /// Lists failed designs, each with the command that shows what happens.
@@ -126,19 +129,23 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
   if (!map.has("status"))
     throw InputError(arguments.path + ": holds no status; allowed: a map with that field");
   const Spec spec = spec_of(map, arguments.path);
+  if (shape_of(spec) != map.shape())
+    throw BrokenFile(arguments.path + ": is damaged: its spec is of other designs than it holds");
   const DesignSpace space(spec);
   std::size_t failed = 0;
-  for_each_block(map, "status", [&](std::size_t first, const std::vector<double>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i] != static_cast<double>(Status::failed) || ++failed > arguments.limit) continue;
-      fmt::print("{}  # design {}\n", hop_command(spec, space.at(first + i)), first + i);
-    }
-  });
+  for_each_block(map, "status",
+                 [&](const Tiling& blocks, const Tile& tile, const std::vector<double>& values) {
+                   for (std::size_t i = 0; i < values.size(); ++i) {
+                     if (values[i] != static_cast<double>(Status::failed) || ++failed > arguments.limit)
+                       continue;
+                     const std::size_t number = blocks.number(tile, i);
+                     say("{}  # design {}\n", hop_command(spec, space.at(number)), number);
+                   }
+                 });
   if (failed > arguments.limit)
-    fmt::print("# and {} more (--limit {})\n", grouped(failed - arguments.limit), failed);
-  fmt::print("# {} failed designs{}\n", grouped(failed),
-             failed > 0
-                 ? fmt::format("; solve them again by: leapmap info --spec {0} > spec.toml && leapmap sweep "
+    say("# and {} more (--limit {})\n", grouped(failed - arguments.limit), failed);
+  say("# {} failed designs{}\n", grouped(failed),
+      failed > 0 ? fmt::format("; solve them again by: leapmap info --spec {0} > spec.toml && leapmap sweep "
                                "spec.toml -o {0} --retry-failed",
                                shell_quoted(arguments.path))
                  : "");
@@ -149,8 +156,7 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
 void print_incomplete(const MapReader& map, const std::string& part) {
   const std::size_t designs = Tiling(map.shape()).designs(), done = designs_in(map.status_counts());
   const std::string name = part.ends_with(".part") ? part.substr(0, part.size() - 5) : part;
-  fmt::print(
-      "INCOMPLETE: {} of {} designs, {:.3g} %; the others are holes; go on by: leapmap sweep SPEC.toml -o {} "
+  say("INCOMPLETE: {} of {} designs, {:.3g} %; the others are holes; go on by: leapmap sweep SPEC.toml -o {} "
       "--resume\n",
       grouped(done), grouped(designs), 100.0 * static_cast<double>(done) / static_cast<double>(designs),
       shell_quoted(name));
@@ -163,45 +169,48 @@ int run(const InfoArguments& arguments) {
     throw IoError(
         fmt::format("{}: is not there yet, only {}: ask for that, or end it by leapmap sweep --resume",
                     arguments.path, part));
-  const MapReader map(arguments.path);
+  const MapReader map(arguments.path, arguments.locking);
   if (arguments.only_spec) {
-    fmt::print("{}", map.attribute("spec"));
+    write_out(printable(map.attribute("spec"), "\n\t"));
     return 0;
   }
   if (arguments.failed) return list_failed(map, arguments);
+  const auto told = [&](const std::string& name) { return printable(map.attribute(name)); };
   const auto short_form = [&](const std::string& name, const char* form) {
     return hdf5::has_attribute(map.file(), name)
                ? fmt::format(fmt::runtime(fmt::format("{{:{}}}", form)), hdf5::read_number(map.file(), name))
                : "?";
   };
   std::size_t designs = 1;
-  fmt::print("{}\n", map.attribute("title"));
-  fmt::print("made {} on {} by leapmap {} (git {}), {} threads, {} s\n", map.attribute("date"),
-             map.attribute("host"), map.attribute("program_version"), map.attribute("git_revision"),
-             map.attribute("threads"), short_form("wall_time", ".3g"));
+  say("{}\n", told("title"));
+  say("made {} on {} by leapmap {} (git {}), {} threads, {} s\n", told("date"), told("host"),
+      told("program_version"), told("git_revision"), told("threads"), short_form("wall_time", ".3g"));
   if (!map.is_whole()) print_incomplete(map, arguments.path);
-  fmt::print("method {}, tolerance {}\n", map.attribute("method"), map.attribute("tolerance"));
+  say("method {}, tolerance {}\n", told("method"), told("tolerance"));
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
-    fmt::print(
-        "audit{}: {} designs again by {}: height within {} diameters, time within {} relative, {} flags "
+    say("audit{}: {} designs again by {}: height within {} diameters, time within {} relative, {} flags "
         "differ, {} errors beyond the tolerance, {} designs nobody can decide\n",
         hdf5::has_attribute(map.file(), "retry_designs") ? " (before failed designs were retried)" : "",
-        audited, map.attribute("audit_method"), short_form("audit_max_abs_height_error", ".1e"),
-        short_form("audit_max_rel_time_error", ".1e"), map.attribute("audit_flag_mismatches"),
-        map.attribute("audit_beyond_tolerance"), map.attribute("audit_undecided"));
+        audited, told("audit_method"), short_form("audit_max_abs_height_error", ".1e"),
+        short_form("audit_max_rel_time_error", ".1e"), told("audit_flag_mismatches"),
+        told("audit_beyond_tolerance"), told("audit_undecided"));
   if (hdf5::has_attribute(map.file(), "retry_designs"))
-    fmt::print("retried: {} failed designs by {} at tolerance {}\n", map.attribute("retry_designs"),
-               map.attribute("retry_method"), map.attribute("retry_tolerance"));
-  fmt::print("\ndimensions\n");
+    say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),
+        told("retry_tolerance"));
+  say("\ndimensions\n");
   for (const auto& dimension : map.dimensions()) {
+    designs *= dimension.size;
+    if (dimension.values.empty()) {
+      say("  {:<16} {:>7} in a list\n", dimension.name, dimension.size);
+      continue;
+    }
     const auto [least, most] = std::ranges::minmax(dimension.values);
-    fmt::print("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", dimension.name, dimension.values.size(),
-               least, most, dimension.unit == "1" ? "" : dimension.unit);
-    designs *= dimension.values.size();
+    say("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", printable(dimension.name), dimension.size, least,
+        most, dimension.unit == "1" ? "" : printable(dimension.unit));
   }
-  fmt::print("\nfields, {} designs\n", designs);
+  say("\nfields, {} designs\n", designs);
   if (!map.has("status") && hdf5::has_attribute(map.file(), "status_counts")) {
-    fmt::print("status, not stored but counted\n");
+    say("status, not stored but counted\n");
     Summary counted;
     std::ranges::copy(map.status_counts(), counted.counts.begin());
     print_counts(std::get<Code>(find_field("status")->source), counted, designs);
@@ -209,18 +218,18 @@ int run(const InfoArguments& arguments) {
   for (const std::string& name : map.fields()) {
     const Field* field = find_field(name);
     const Summary summary = summarise(map, name);
-    fmt::print("{}\n", name);
+    say("{}\n", printable(name));
     if (field && std::holds_alternative<Code>(field->source)) {
       print_counts(std::get<Code>(field->source), summary, designs);
     } else if (field && std::holds_alternative<Word>(field->source)) {
       print_sequences(summary, designs);
     } else if (summary.missing == designs) {
-      fmt::print("  none\n");
+      say("  none\n");
     } else {
-      const std::string unit = map.unit(name) == "1" ? "" : " " + map.unit(name);
-      fmt::print("  least {:<12.8g}{} at {}\n", summary.least.value, unit, place(map, summary.least.design));
-      fmt::print("  most  {:<12.8g}{} at {}\n", summary.most.value, unit, place(map, summary.most.design));
-      if (summary.missing > 0) fmt::print("  none  in {} designs\n", summary.missing);
+      const std::string unit = map.unit(name) == "1" ? "" : " " + printable(map.unit(name));
+      say("  least {:<12.8g}{} at {}\n", summary.least.value, unit, place(map, summary.least.design));
+      say("  most  {:<12.8g}{} at {}\n", summary.most.value, unit, place(map, summary.most.design));
+      if (summary.missing > 0) say("  none  in {} designs\n", summary.missing);
     }
   }
   return 0;
@@ -237,6 +246,7 @@ void add_info(CLI::App& app, int& status) {
   command->add_flag("--failed", arguments->failed,
                     "list the failed designs, each as the command that reproduces it");
   command->add_option("--limit", arguments->limit, "list at most so many; default: 20");
+  add_no_lock(*command, arguments->locking);
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -5,32 +5,31 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
 
 #include "cli/commands.hpp"
-#include "cli/progress.hpp"
+#include "cli/output.hpp"
 #include "support/errors.hpp"
+#include "support/system_calls.hpp"
 #include "support/version.hpp"
 
 namespace {
 
 enum ExitStatus { done = 0, other_failure = 1, bad_input = 2, io_failure = 3 };
 
-/// One line on stderr, whatever a file's name or a key's value holds.
-int complain(int status, std::string_view what) {
-  std::string line;
-  for (const char c : what) {
-    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    line += control ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c)) : std::string(1, c);
+/// Tells what went wrong in one line.
+int complain(int status, std::string_view what) noexcept {
+  try {
+    leapmap::cli::tell(std::string(what));
+  } catch (const std::bad_alloc&) {
+    std::fputs("leapmap: out of memory\n", stderr);
   }
-  leapmap::cli::tell(line);
   return status;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow (ulimit -f) is an error of the write, not an end
+/// Reads the command line, runs its command, and turns errors into a line and a status.
+int run(int argc, char** argv) {
   int status = done;
   CLI::App app{
       "leapmap maps the jumps of passive hoops: thin hoops with an off-centre mass that roll down a plane "
@@ -41,6 +40,7 @@ int main(int argc, char** argv) {
       "  leapmap hop --slope 30deg --trace hop.h5          another slope, its motion written to a file\n"
       "  leapmap sweep sweeps/slope_mass_ratio.toml        a map of 61,696 designs\n"
       "  leapmap info maps/slope_mass_ratio.h5             what is in it\n"
+      "  leapmap check maps/slope_mass_ratio.h5            whether it is what was written, and right\n"
       "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 "
       "interrupted.");
   app.set_version_flag("--version",
@@ -50,13 +50,17 @@ int main(int argc, char** argv) {
   leapmap::cli::add_sweep(app, status);
   leapmap::cli::add_hop(app, status);
   leapmap::cli::add_info(app, status);
+  leapmap::cli::add_check(app, status);
   leapmap::cli::add_precision(app, status);
   leapmap::cli::add_stability(app, status);
   try {
     app.parse(argc, argv);
-    if (std::fflush(stdout) != 0) throw leapmap::IoError("standard output: cannot be written");
+    leapmap::cli::flush_out();
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {  // --help, --version
+      app.exit(error);
+      return std::cout.flush() ? done : complain(io_failure, "standard output: cannot be written");
+    }
     return complain(bad_input, fmt::format("{} (leapmap --help, leapmap COMMAND --help)", error.what()));
   } catch (const leapmap::InputError& error) {
     return complain(bad_input, error.what());
@@ -68,4 +72,22 @@ int main(int argc, char** argv) {
     return complain(other_failure, error.what());
   }
   return status;
+}
+
+}  // namespace
+
+void leapmap::cli::add_no_lock(CLI::App& command, Locking& locking) {
+  command.add_flag_callback(
+      "--no-lock", [&locking] { locking = Locking::if_possible; },
+      "go on where the file system cannot lock files; only if no other program uses them");
+}
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow (ulimit -f) is an error of the write, not an end
+  try {
+    if (!leapmap::open_standard_streams()) return io_failure;  // and nowhere to say why
+    return run(argc, argv);
+  } catch (...) {  // the command line itself found no memory
+    return complain(other_failure, "out of memory");
+  }
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/provenance.hpp"
 #include "cli/spoken.hpp"
@@ -24,27 +25,26 @@ constexpr const char* filetype = "leapmap precision";
 struct PrecisionArguments {
   std::string table = "maps/precision.h5", points;
   PrecisionOptions options;
+  Locking locking = Locking::required;
 };
 
 void print_head() {
-  fmt::print("{:<7} {:<20} {:<9} {:>8}  {:>9} {:>9} {:>9}  {:>7} {:>7}  {:>9} {:>10}  {}\n", "designs",
-             "method", "control", "setting", "height", "time", "angle", "wrong", "failed", "rhs", "designs/s",
-             "model");
+  say("{:<7} {:<20} {:<9} {:>8}  {:>9} {:>9} {:>9}  {:>7} {:>7}  {:>9} {:>10}  {}\n", "designs", "method",
+      "control", "setting", "height", "time", "angle", "wrong", "failed", "rhs", "designs/s", "model");
 }
 
 void print_row(const PrecisionRow& row) {
   const Measurement& m = row.measurement;
-  fmt::print(
-      "{:<7} {:<20} {:<9} {:>8.1e}  {:>9.1e} {:>9.1e} {:>9.1e}  {:>6.1f}% {:>6.1f}%  {:>9} {:>10.4g}  {}\n",
+  say("{:<7} {:<20} {:<9} {:>8.1e}  {:>9.1e} {:>9.1e} {:>9.1e}  {:>6.1f}% {:>6.1f}%  {:>9} {:>10.4g}  {}\n",
       row.designs, row.contestant.method, row.contestant.fixed_step ? "step" : "tolerance",
       row.contestant.setting, m.max_height_error, m.max_time_error, m.max_angle_error, 100.0 * m.wrong,
       100.0 * m.failed, std::isnan(m.evaluations) ? "none" : fmt::format("{:.4g}", m.evaluations),
       1.0 / m.seconds, name_of(row.contestant.model));
-  std::fflush(stdout);
+  flush_out();
 }
 
-std::vector<TableColumn> columns_of(const std::vector<PrecisionRow>& rows) {
-  std::vector<TableColumn> columns;
+Table table_of(const std::vector<PrecisionRow>& rows) {
+  Table columns{numbered_rows(rows.size())};
   const auto texts = [&](const char* name, const char* long_name, auto value) {
     std::vector<std::string> values;
     for (const PrecisionRow& row : rows) values.push_back(value(row));
@@ -105,7 +105,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
   if (options.quick) options.budget = 0.3;
   if (!arguments.points.empty()) options.points = read_designs(arguments.points);
   const Scene scene{.runway = 4.0};
-  hdf5::refuse_other_file(arguments.table, filetype);  // not after minutes of work
+  hdf5::refuse_other_file(arguments.table, filetype, arguments.locking);  // not after minutes of work
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
   print_head();
@@ -123,9 +123,11 @@ int run(PrecisionArguments arguments, bool designs_given) {
   attributes.emplace_back("budget", options.budget);
   attributes.emplace_back("wall_time",
                           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  write_table(arguments.table, filetype, columns_of(rows), attributes);
-  fmt::print("table    {} rows in {}\nchart    /usr/bin/python3 analysis/precision_chart.py {}\n",
-             rows.size(), arguments.table, shell_quoted(arguments.table));
+  const std::array tables{table_of(rows)};
+  if (!write_tables(arguments.table, filetype, tables, attributes, arguments.locking))
+    tell_of_folder(arguments.table);
+  say("table    {} rows in {}\nchart    /usr/bin/python3 analysis/precision_chart.py {}\n", rows.size(),
+      arguments.table, shell_quoted(arguments.table));
   return 0;
 }
 
@@ -164,6 +166,7 @@ void add_precision(CLI::App& app, int& status) {
       "long double; wrong: the share of the others. rhs: how often a design asked for the acceleration. One "
       "thread.\n"
       "A method's settings that would take longer than a few seconds are left out.");
+  add_no_lock(*command, arguments->locking);
   command->callback([arguments, designs, &status] { status = run(*arguments, designs->count() > 0); });
 }
 

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "cli/output.hpp"
 #include "cli/spoken.hpp"
 
 namespace leapmap::cli {
@@ -42,8 +43,6 @@ void Progress::update(std::size_t done) {
   terminal_ ? static_cast<void>(std::fputs(("\r\033[K" + line).c_str(), stderr)) : tell(line);
   std::fflush(stderr);
 }
-
-void tell(const std::string& line) { std::fputs(("leapmap: " + line + "\n").c_str(), stderr); }
 
 void note_signals() {
   struct sigaction action {};

@@ -25,9 +25,6 @@ class Progress {
   Clock::time_point begin_ = Clock::now(), last_ = begin_;
 };
 
-/// A line on stderr. A terminal that is gone or a log on a full disk is no reason to stop.
-void tell(const std::string& line);
-
 /// From now on the first SIGINT or SIGTERM is only noted, so that work can be brought to a good end; the
 /// second one ends the program at once.
 void note_signals();

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/provenance.hpp"
 #include "cli/spoken.hpp"
@@ -22,6 +23,7 @@ constexpr const char* filetype = "leapmap stability";
 struct StabilityArguments {
   std::string table = "maps/stability.h5";
   StabilityOptions options;
+  Locking locking = Locking::required;
 };
 
 /// The rows of one method in one case, which stand together, and their verdict.
@@ -59,16 +61,16 @@ void print_verdicts(std::span<const StabilityRow> rows) {
       evaluations = std::fmax(evaluations, row.evaluations);
     }
     const auto shown = [](double value) { return std::isnan(value) ? "none" : fmt::format("{:.1e}", value); };
-    fmt::print("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", first.study,
-               first.method, first.control, series.verdict, count(Finding::fine), count(Finding::lossy),
-               count(Finding::failed), count(Finding::wrong), count(Finding::undecided), shown(worst),
-               shown(evaluations));
+    say("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", first.study,
+        first.method, first.control, series.verdict, count(Finding::fine), count(Finding::lossy),
+        count(Finding::failed), count(Finding::wrong), count(Finding::undecided), shown(worst),
+        shown(evaluations));
   }
-  std::fflush(stdout);
+  flush_out();
 }
 
-std::vector<TableColumn> columns_of(std::span<const StabilityRow> rows) {
-  std::vector<TableColumn> columns;
+Table table_of(std::span<const StabilityRow> rows) {
+  Table columns{numbered_rows(rows.size())};
   const auto texts = [&](const char* name, const char* long_name, auto value) {
     std::vector<std::string> values;
     for (const StabilityRow& row : rows) values.emplace_back(value(row));
@@ -111,11 +113,11 @@ std::vector<TableColumn> columns_of(std::span<const StabilityRow> rows) {
 }
 
 int run(const StabilityArguments& arguments) {
-  hdf5::refuse_other_file(arguments.table, filetype);  // not after minutes of work
+  hdf5::refuse_other_file(arguments.table, filetype, arguments.locking);  // not after minutes of work
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
-  fmt::print("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", "case", "method",
-             "control", "verdict", "fine", "lossy", "failed", "wrong", "undecided", "worst", "most rhs");
+  say("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", "case", "method",
+      "control", "verdict", "fine", "lossy", "failed", "wrong", "undecided", "worst", "most rhs");
   std::vector<StabilityRow> rows;
   const auto stop_requested = [] { return noted_signal() != 0; };
   for (const StabilityCase& stability_case : stability_cases(arguments.options)) {
@@ -134,9 +136,11 @@ int run(const StabilityArguments& arguments) {
   attributes.emplace_back("quick", std::int64_t{arguments.options.quick});
   attributes.emplace_back("wall_time",
                           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  write_table(arguments.table, filetype, columns_of(rows), attributes);
-  fmt::print("table    {} rows in {}\ncharts   /usr/bin/python3 analysis/stability_chart.py {}\n",
-             rows.size(), arguments.table, shell_quoted(arguments.table));
+  const std::array tables{table_of(rows)};
+  if (!write_tables(arguments.table, filetype, tables, attributes, arguments.locking))
+    tell_of_folder(arguments.table);
+  say("table    {} rows in {}\ncharts   /usr/bin/python3 analysis/stability_chart.py {}\n", rows.size(),
+      arguments.table, shell_quoted(arguments.table));
   return 0;
 }
 
@@ -170,6 +174,7 @@ void add_stability(CLI::App& app, int& status) {
       "the most\n"
       "right-hand sides that a design took. --quick leaves out places, and so may find a better verdict. One "
       "thread.");
+  add_no_lock(*command, arguments->locking);
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

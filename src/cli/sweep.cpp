@@ -4,9 +4,10 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
+#include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/provenance.hpp"
 #include "cli/spoken.hpp"
@@ -24,61 +25,38 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Runs the audit; its result as attributes. A disagreement sets status and is told with the command to see
-/// it.
-std::vector<hdf5::Attribute> run_audit(const Spec& spec, std::span<const AuditSample> samples,
-                                       const SweepArguments& arguments, int& status) {
-  if (spec.numerics.audit <= 0.0) return {};
-  const AuditReport report = audit(spec, samples, arguments.threads, [] { return noted_signal() != 0; });
-  if (!arguments.quiet)
-    fmt::print(
-        "audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
-        "differ{}{}\n",
-        grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
-        report.flag_mismatches,
-        report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "",
-        report.failed > 0 ? fmt::format("; {} failed, not compared", report.failed) : "");
-  const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
-    if (!design) return;
-    status = 1;
-    tell(fmt::format("audit: {} on design {}; see it by: {}", what, *design,
-                     hop_command(spec, DesignSpace(spec).at(*design))));
-  };
-  const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
-  complain(report.first_mismatch, both + " disagree on status, flag or candidates");
-  complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
-  return {{"audit_designs", static_cast<std::int64_t>(report.designs)},
-          {"audit_method", report.method},
-          {"audit_max_abs_height_error", report.max_abs_height_error},
-          {"audit_max_rel_time_error", report.max_rel_time_error},
-          {"audit_flag_mismatches", static_cast<std::int64_t>(report.flag_mismatches)},
-          {"audit_undecided", static_cast<std::int64_t>(report.undecided)},
-          {"audit_beyond_tolerance", static_cast<std::int64_t>(report.beyond_tolerance)}};
-}
+/// What a tile adds to the map and to what is known of it.
+struct FinishedTile {
+  EncodedTile encoded;
+  AuditReport audit;
+  double audit_seconds = 0.0;
+};
 
-/// The samples of the tiles that are in the map already.
-std::vector<AuditSample> samples_of(const SweepArguments& arguments, const Spec& spec, const Tiling& tiling,
-                                    const MapWriter& writer) {
-  std::vector<AuditSample> samples;
-  if (spec.numerics.audit <= 0.0 || writer.progress().tiles == 0) return samples;
-  std::vector<std::vector<AuditSample>> by_tile(writer.progress().tiles);
-  parallel_for_each(by_tile.size(), arguments.threads, [&] {
-    return [&, solve = make_solver(spec)](std::size_t t) {
-      by_tile[t] = audit_samples(spec, tiling, tiling.tile(t), solve);
-      return noted_signal() == 0;
-    };
-  });
-  const MapReader map = writer.reader();
-  for (std::size_t t = 0; t < by_tile.size() && noted_signal() == 0; ++t) {
-    take_quantities(map, spec, tiling, tiling.tile(t), by_tile[t]);
-    std::ranges::move(by_tile[t], std::back_inserter(samples));
+/// A tile's share of the audit; unset if a stop was requested meanwhile.
+std::optional<AuditReport> audit_tile(const Auditor& auditor, const Spec& spec, const Tiling& tiling,
+                                      const Tile& tile, std::span<const Outcome> outcomes) {
+  AuditReport report = auditor.begin();
+  for (const AuditSample& sample : audit_samples(spec, tiling, tile, outcomes)) {
+    if (noted_signal() != 0) return std::nullopt;
+    auditor.look_at(sample, report);
   }
-  return samples;
+  return report;
 }
 
-/// Solves what is missing in the map, committing now and then.
-void solve_rest(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout,
-                const Tiling& tiling, MapWriter& writer, std::vector<AuditSample>& samples) {
+/// What a sweep has found so far besides the map, and how long it took in this session.
+struct Course {
+  AuditReport audit;
+  double audit_seconds = 0.0;  ///< summed over threads
+  double seconds = 0.0;
+};
+
+/// Solves and audits what is missing in the map, committing now and then.
+Course solve_rest(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout,
+                  const Tiling& tiling, MapWriter& writer) {
+  const bool audited = spec.numerics.audit > 0.0;
+  Course course;
+  if (audited)
+    course.audit = writer.progress().tiles > 0 ? read_audit(writer.reader()) : Auditor(spec).begin();
   Progress progress(tiling.designs(), writer.progress().designs(), arguments.quiet);
   EngineOptions options;
   options.threads = arguments.threads;
@@ -87,60 +65,68 @@ void solve_rest(const SweepArguments& arguments, const Spec& spec, const MapLayo
   auto last_commit = Clock::now();
   const double seconds_before = writer.progress().seconds;
   const auto begin = Clock::now();
-  const auto store = [&](const EncodedTile& tile, const std::vector<AuditSample>& drawn) {
-    writer.write(tile);
-    samples.insert(samples.end(), drawn.begin(), drawn.end());
-    progress.update(writer.progress().designs());
-    const auto now = Clock::now();
-    if (std::chrono::duration<double>(now - last_commit).count() < arguments.commit_interval) return;
-    writer.set_seconds(seconds_before + std::chrono::duration<double>(now - begin).count());
-    writer.commit();
+  const auto commit = [&] {
+    course.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    writer.set_seconds(seconds_before + course.seconds);
+    writer.commit(audited ? audit_attributes(course.audit) : std::vector<hdf5::Attribute>{});
     last_commit = Clock::now();
+  };
+  const auto store = [&](const FinishedTile& tile) {
+    writer.write(tile.encoded);
+    merge(course.audit, tile.audit);
+    course.audit_seconds += tile.audit_seconds;
+    progress.update(writer.progress().designs());
+    if (std::chrono::duration<double>(Clock::now() - last_commit).count() >= arguments.commit_interval)
+      commit();
   };
   run_sweep(spec, tiling, options, [&] {
     const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
-    return [&, encoder](std::size_t number, const Tile& tile, std::span<const Outcome> outcomes) -> Prepared {
-      const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number, outcomes));
-      auto drawn = audit_samples(spec, tiling, tile, outcomes);
-      const std::size_t bytes = encoded->bytes() + drawn.size() * sizeof(AuditSample);
-      return {[&store, encoded, drawn = std::move(drawn)] { store(*encoded, drawn); }, bytes};
+    const auto auditor = audited ? std::make_shared<Auditor>(spec) : nullptr;
+    return [&, encoder, auditor](std::size_t number, const Tile& tile,
+                                 std::span<const Outcome> outcomes) -> Prepared {
+      const auto finished = std::make_shared<FinishedTile>();
+      finished->encoded = encoder->encode(number, outcomes);
+      if (auditor) {
+        const auto audit_begin = Clock::now();
+        const auto report = audit_tile(*auditor, spec, tiling, tile, outcomes);
+        if (!report) return {};
+        finished->audit = *report;
+        finished->audit_seconds = std::chrono::duration<double>(Clock::now() - audit_begin).count();
+      }
+      return {[&store, finished] { store(*finished); }, finished->encoded.bytes() + sizeof(FinishedTile)};
     };
   });
+  commit();
+  return course;
 }
 
 /// All of a sweep between the map's opening and its end. Returns the exit status.
 int fill(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout, const Tiling& tiling,
          const std::string& map, MapWriter& writer) {
-  int status = 0;
-  const auto begin = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  const double seconds_before = writer.progress().seconds;
   const std::size_t already = writer.progress().designs();
-  std::vector<AuditSample> samples = samples_of(arguments, spec, tiling, writer);
-  if (noted_signal() == 0) solve_rest(arguments, spec, layout, tiling, writer, samples);
-  const double solving = seconds();
+  const Course course = solve_rest(arguments, spec, layout, tiling, writer);
   const std::size_t done = writer.progress().designs();
-  writer.set_seconds(seconds_before + solving);
-  writer.commit();  // a full disk is told before the audit takes its time
-  std::vector<hdf5::Attribute> closing;
-  if (noted_signal() == 0) closing = run_audit(spec, samples, arguments, status);
-  writer.set_seconds(seconds_before + seconds());
   if (noted_signal() != 0) {
     writer.keep();
     tell(fmt::format("interrupted after {} of {} designs, which {} keeps; go on by: {}", grouped(done),
                      grouped(tiling.designs()), part_of(map), sweep_command(arguments, map, "--resume")));
     return 128 + noted_signal();
   }
-  writer.finish(closing);
+  const StatusCounts statuses = writer.progress().statuses;
+  if (!writer.finish({})) tell_of_folder(map);
+  const int threads = thread_count(arguments.threads);
+  const double solving = course.seconds - course.audit_seconds / threads;
+  if (!arguments.quiet)
+    say("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done - already),
+        spoken_duration(solving), static_cast<double>(done - already) / solving, threads,
+        resolved_method(spec.numerics));
+  const int status = spec.numerics.audit > 0.0 ? tell_audit(arguments, spec, course.audit) : 0;
   if (arguments.quiet) return status;
-  fmt::print("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done - already),
-             spoken_duration(solving), static_cast<double>(done - already) / solving,
-             thread_count(arguments.threads), resolved_method(spec.numerics));
-  print_totals(writer.progress().statuses);
-  if (writer.progress().statuses[static_cast<std::size_t>(Status::failed)] > 0)
-    fmt::print("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", shell_quoted(map),
-               sweep_command(arguments, map, "--retry-failed"));
-  fmt::print("map      {}\n", map);
+  print_totals(statuses);
+  if (statuses[static_cast<std::size_t>(Status::failed)] > 0)
+    say("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", shell_quoted(map),
+        sweep_command(arguments, map, "--retry-failed"));
+  say("map      {}\n", map);
   return status;
 }
 
@@ -157,22 +143,26 @@ int run(const SweepArguments& arguments) {
     throw InputError(
         fmt::format("{}: output.file is not set; allowed: a file's name there or with -o", arguments.spec));
   if (arguments.retry_failed) return retry_sweep(arguments, spec, map);
+  refuse_own_input(arguments, spec, map);
   if (is_done(arguments, map, spec)) {
-    if (!arguments.quiet) fmt::print("map      {} is whole already\n", map);
-    return 0;
+    if (!arguments.quiet) say("map      {} is whole already\n", map);
+    const MapReader whole(map, arguments.locking);
+    return hdf5::has_attribute(whole.file(), "audit_first_mismatch")
+               ? tell_audit(arguments, spec, read_audit(whole))
+               : 0;
   }
 
   std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
   opening.emplace_back("threads", std::int64_t{thread_count(arguments.threads)});
+  if (spec.numerics.audit > 0.0) opening.emplace_back("audit_method", audit_method(spec.numerics));
   MapWriter writer = open_map(arguments, map, spec, layout, tiling, opening);
   note_signals();
   if (arguments.resume && !arguments.quiet) {
     const std::size_t there = writer.progress().designs();
-    fmt::print("resumed  {}\n", there > 0
-                                    ? fmt::format("{} of {} designs were there already", grouped(there),
-                                                  grouped(tiling.designs()))
-                                    : fmt::format("nothing to go on with in {}: begun anew", part_of(map)));
-    std::fflush(stdout);
+    say("resumed  {}\n", there > 0 ? fmt::format("{} of {} designs were there already", grouped(there),
+                                                 grouped(tiling.designs()))
+                                   : fmt::format("nothing to go on with in {}: begun anew", part_of(map)));
+    flush_out();
   }
   try {
     return fill(arguments, spec, layout, tiling, map, writer);
@@ -186,11 +176,30 @@ int run(const SweepArguments& arguments) {
 
 }  // namespace
 
+int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditReport& report) {
+  if (!arguments.quiet)
+    say("audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
+        "differ{}{}\n",
+        grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
+        report.flag_mismatches,
+        report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "",
+        report.failed > 0 ? fmt::format("; {} failed, not compared", report.failed) : "");
+  const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
+    if (design)
+      tell(fmt::format("audit: {} on design {}; see it by: {}", what, *design,
+                       hop_command(spec, DesignSpace(spec).at(*design))));
+  };
+  const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
+  complain(report.first_mismatch, both + " disagree on status, flag or candidates");
+  complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
+  return disagree(report) ? 1 : 0;
+}
+
 void print_totals(const StatusCounts& totals) {
   for (std::size_t i = 0; i < totals.size(); ++i)
     if (totals[i] > 0)
-      fmt::print("         {:>12} {}\n", grouped(static_cast<std::uint64_t>(totals[i])),
-                 name_of(static_cast<Status>(i)));
+      say("         {:>12} {}\n", grouped(static_cast<std::uint64_t>(totals[i])),
+          name_of(static_cast<Status>(i)));
 }
 
 void add_sweep(CLI::App& app, int& status) {
@@ -205,7 +214,7 @@ void add_sweep(CLI::App& app, int& status) {
       ->expected(1)
       ->take_all();
   command->add_option("--threads", arguments->threads, "threads to use; default: all")
-      ->check(CLI::Range(1, 4096));
+      ->check(CLI::Range(1, most_threads));
   auto* resume = command->add_flag("--resume", arguments->resume,
                                    "go on with the MAP.part that an interrupted sweep left, if there is one");
   command->add_flag("--overwrite", arguments->overwrite,
@@ -223,6 +232,7 @@ void add_sweep(CLI::App& app, int& status) {
                    "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
                    "hand; default: 1")
       ->check(CLI::Range(0.0, 86400.0));
+  add_no_lock(*command, arguments->locking);
   command->add_flag("--dry-run", arguments->dry_run,
                     "tell designs, memory, file size and time, and compute nothing else");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "map/writer.hpp"
+#include "sweep/audit.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap::cli {
@@ -18,6 +19,7 @@ struct SweepArguments {
   int threads = 0;
   double commit_interval = 1.0;  ///< [s]
   bool resume = false, overwrite = false, retry_failed = false, dry_run = false, quiet = false;
+  Locking locking = Locking::required;
 };
 
 /// --dry-run: prints what is there, designs, fields, memory, file size and time; times a sample of designs
@@ -32,6 +34,12 @@ MapWriter open_map(const SweepArguments& arguments, const std::string& map, cons
 
 /// True if a sweep to be resumed has ended already: its map is there, of the same spec.
 bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec);
+
+/// Refuses (InputError) to write the map over what it is made from: the spec or its list of designs.
+void refuse_own_input(const SweepArguments& arguments, const Spec& spec, const std::string& map);
+
+/// Tells what the audit found; where it disagrees, with the command to see it. Returns the exit status.
+int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditReport& report);
 
 /// The file behind a symbolic link, which is to stay one; any other name as it is.
 std::string behind_links(const std::string& map);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/output.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
 #include "sweep/audit.hpp"
@@ -20,14 +21,14 @@ namespace {
 std::size_t print_existing(const SweepArguments& arguments, const std::string& map) {
   std::error_code ignored;
   if (std::filesystem::exists(map, ignored) && !arguments.overwrite)
-    fmt::print("there    {} exists already: it is refused without --overwrite\n", map);
-  if (!has_part(map)) return 0;
+    say("there    {} exists already: it is refused without --overwrite\n", map);
+  if (!has_part(map, arguments.locking)) return 0;
   const std::string part = part_of(map);
-  const std::size_t designs = designs_in(MapReader(part).status_counts());
-  fmt::print("there    {} holds {} designs: {}\n", part, grouped(designs),
-             arguments.resume      ? "it is gone on with"
-             : arguments.overwrite ? "they are overwritten"
-                                   : "it is refused without --resume or --overwrite");
+  const std::size_t designs = designs_in(MapReader(part, arguments.locking).status_counts());
+  say("there    {} holds {} designs: {}\n", part, grouped(designs),
+      arguments.resume      ? "it is gone on with"
+      : arguments.overwrite ? "they are overwritten"
+                            : "it is refused without --resume or --overwrite");
   return arguments.resume ? designs : 0;
 }
 
@@ -37,21 +38,21 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
                 const Tiling& tiling) {
   const MapLayout layout = layout_of(spec);
   const int threads = thread_count(arguments.threads);
-  fmt::print("map      {}\n", map.empty() ? "(none: give -o or output.file)" : map);
+  say("map      {}\n", map.empty() ? "(none: give -o or output.file)" : map);
   if (arguments.retry_failed) {
-    const StatusCounts counts = MapReader(map).status_counts();
-    fmt::print("retry    {} failed designs\n",
-               grouped(static_cast<std::uint64_t>(counts[static_cast<std::size_t>(Status::failed)])));
+    const StatusCounts counts = MapReader(map, arguments.locking).status_counts();
+    say("retry    {} failed designs\n",
+        grouped(static_cast<std::uint64_t>(counts[static_cast<std::size_t>(Status::failed)])));
     return;
   }
   const std::size_t already = map.empty() ? 0 : print_existing(arguments, map);
-  if (spec.axes.empty()) fmt::print("list     {} designs {}\n", grouped(spec.list.count), spec.list.path);
+  if (spec.axes.empty()) say("list     {} designs {}\n", grouped(spec.list.count), spec.list.path);
   for (const Axis& axis : spec.axes)
-    fmt::print("axis     {} from {:.6g} to {:.6g}, {} values\n", axis.key, axis.values.front(),
-               axis.values.back(), axis.values.size());
-  fmt::print("designs  {} in {} tiles of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
-             fmt::join(tiling.tile_shape(), " x "));
-  fmt::print("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
+    say("axis     {} from {:.6g} to {:.6g}, {} values\n", axis.key, axis.values.front(), axis.values.back(),
+        axis.values.size());
+  say("designs  {} in {} tiles of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
+      fmt::join(tiling.tile_shape(), " x "));
+  say("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
   const double tile_bytes = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
   double axis_values = 0.0;
   for (const Axis& axis : spec.axes) axis_values += static_cast<double>(axis.values.size());
@@ -61,14 +62,13 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
                         (spec.axes.empty() ? 64.0 * static_cast<double>(spec.list.count) : 0.0);
   std::vector<std::string_view> fields;
   for (const Field* field : layout.fields) fields.push_back(field->name);
-  fmt::print("audit    {:g} of them, again by {}\n", spec.numerics.audit, audit_method(spec.numerics));
-  fmt::print("fields   {} in {}\n", fmt::join(fields, ", "), spec.output.precision);
-  fmt::print("memory   about {}, at most\n", spoken_bytes(memory));
-  fmt::print("file     about {}{}\n", spoken_bytes(file),
-             layout.compression > 0 ? " before compression" : "");
+  say("audit    {:g} of them, again by {}\n", spec.numerics.audit, audit_method(spec.numerics));
+  say("fields   {} in {}\n", fmt::join(fields, ", "), spec.output.precision);
+  say("memory   about {}, at most\n", spoken_bytes(memory));
+  say("file     about {}{}\n", spoken_bytes(file), layout.compression > 0 ? " before compression" : "");
   const double seconds =
       seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already) / threads;
-  fmt::print("time     about {} on {} threads\n", spoken_duration(seconds), threads);
+  say("time     about {} on {} threads\n", spoken_duration(seconds), threads);
 }
 
 }  // namespace leapmap::cli

@@ -53,6 +53,7 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
   if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
   if (arguments.commit_interval != SweepArguments{}.commit_interval)
     command += fmt::format(" --commit-interval {}", arguments.commit_interval);
+  if (arguments.locking != Locking::required) command += " --no-lock";
   if (how == "--resume" && exists(map))
     command += " --overwrite";  // the older map, once the new one is whole
   return command;
@@ -61,10 +62,10 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
 MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
                    const MapLayout& layout, const Tiling& tiling, std::span<const hdf5::Attribute> opening) {
   const std::string part = part_of(map);
-  if (!arguments.resume || !has_part(map))
-    return MapWriter::begin(map, layout, tiling, opening, arguments.overwrite);
+  if (!arguments.resume || !has_part(map, arguments.locking))
+    return MapWriter::begin(map, layout, tiling, opening, arguments.overwrite, arguments.locking);
   try {
-    MapWriter writer = MapWriter::resume(map, layout, tiling, arguments.overwrite);
+    MapWriter writer = MapWriter::resume(map, layout, tiling, arguments.overwrite, arguments.locking);
     refuse_other_beginning(writer.reader(), part, spec, opening);
     writer.verify();
     return writer;
@@ -74,9 +75,18 @@ MapWriter open_map(const SweepArguments& arguments, const std::string& map, cons
   }
 }
 
+void refuse_own_input(const SweepArguments& arguments, const Spec& spec, const std::string& map) {
+  for (const std::string& input : {arguments.spec, spec.points})
+    for (const std::string& output : {map, part_of(map)}) {
+      std::error_code ignored;  // one of them is not there
+      if (!input.empty() && std::filesystem::equivalent(input, output, ignored))
+        throw InputError(fmt::format("{}: is what the sweep is made from; allowed: another -o", output));
+    }
+}
+
 bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec) {
   if (!arguments.resume || arguments.overwrite || exists(part_of(map)) || !exists(map)) return false;
-  if (const auto difference = first_difference(spec_of(MapReader(map), map), spec))
+  if (const auto difference = first_difference(spec_of(MapReader(map, arguments.locking), map), spec))
     throw InputError(fmt::format(
         "{}: exists already, of another spec: {}; allowed: another -o, or --overwrite", map, *difference));
   return true;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
@@ -19,7 +20,7 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
     throw InputError(fmt::format("{}: is not there yet, only {}; allowed: first {}", map, part_of(map),
                                  sweep_command(arguments, map, "--resume")));
   {
-    const MapReader reader(map);
+    const MapReader reader(map, arguments.locking);
     there = spec_of(reader, map);
   }
   if (const auto difference = first_difference(there, spec, true))
@@ -28,17 +29,19 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
                     *difference, shell_quoted(map)));
   there.numerics = retry_numerics(there.numerics, spec.numerics);
   note_signals();
-  const auto report = retry_failed(map, there, arguments.threads, [] { return noted_signal() != 0; });
+  const auto report =
+      retry_failed(map, there, arguments.threads, arguments.locking, [] { return noted_signal() != 0; });
   if (!report) {
     tell(fmt::format("interrupted; {} is as it was", map));
     return 128 + noted_signal();
   }
+  if (!report->durable) tell_of_folder(map);
   if (arguments.quiet) return 0;
-  fmt::print("retried  {} failed designs by {} at tolerance {:g}: {} settled, {} still failed\n",
-             grouped(report->retried), resolved_method(there.numerics), there.numerics.tolerance,
-             grouped(report->retried - report->still_failed), grouped(report->still_failed));
+  say("retried  {} failed designs by {} at tolerance {:g}: {} settled, {} still failed\n",
+      grouped(report->retried), resolved_method(there.numerics), there.numerics.tolerance,
+      grouped(report->retried - report->still_failed), grouped(report->still_failed));
   print_totals(report->statuses);
-  fmt::print("map      {}\n", map);
+  say("map      {}\n", map);
   return 0;
 }
 

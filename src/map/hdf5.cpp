@@ -5,6 +5,7 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "support/errors.hpp"
 
@@ -51,16 +52,30 @@ void write(hid_t object, const std::string& name, hid_t file_type, hid_t memory_
   check(H5Awrite(writable_attribute(object, name, file_type, space, what), memory_type, values), what);
 }
 
-Handle write_values(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
-                    hid_t file_type, hid_t memory_type, hsize_t count, const void* values,
-                    const Handle* scale) {
-  Handle dataset = create_dataset(file, {name, file_type, {&count, 1}});
-  check(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "writing " + name);
-  write_attribute(dataset, "long_name", long_name);
-  write_attribute(dataset, "units", unit);
-  check(scale ? H5DSattach_scale(dataset, *scale, 0) : H5DSset_scale(dataset, name.c_str()),
-        "scaling " + name);
-  return dataset;
+/// What a series looks like to HDF5: one pointer to all values, and types in the file and in memory.
+struct SeriesView {
+  Handle text;  ///< the type of texts, where they are
+  std::vector<const char*> texts;
+  const void* values = nullptr;
+  hid_t file_type = H5I_INVALID_HID, memory_type = H5I_INVALID_HID;
+};
+
+SeriesView view_of(const SeriesValues& values) {
+  SeriesView view;
+  if (const auto* numbers = std::get_if<std::vector<double>>(&values)) {
+    view.values = numbers->data();
+    view.file_type = H5T_IEEE_F64LE, view.memory_type = H5T_NATIVE_DOUBLE;
+  } else if (const auto* codes = std::get_if<Codes>(&values)) {
+    view.values = codes->values.data();
+    view.file_type = H5T_STD_U8LE, view.memory_type = H5T_NATIVE_UINT8;
+  } else {
+    for (const std::string& text : std::get<std::vector<std::string>>(values))
+      view.texts.push_back(text.c_str());
+    view.text = text_type();
+    view.values = view.texts.data();
+    view.file_type = view.memory_type = view.text;
+  }
+  return view;
 }
 
 /// The dataspaces of a block, in memory and in the file.
@@ -76,6 +91,17 @@ std::pair<Handle, Handle> select(hid_t dataset, const std::vector<std::size_t>& 
 hssize_t points_of(hid_t attribute, const std::string& what) {
   const Handle space(H5Aget_space(attribute), H5Sclose, what);
   return H5Sget_simple_extent_npoints(space);
+}
+
+/// Whether a dataset of texts holds these.
+bool holds_texts(hid_t dataset, const std::vector<std::string>& texts, const std::string& what) {
+  const Handle type = text_type(), space(H5Dget_space(dataset), H5Sclose, what);
+  std::vector<char*> read(texts.size());
+  check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, read.data()), what);
+  const bool same = std::ranges::equal(
+      read, texts, [](const char* there, const std::string& here) { return (there ? there : "") == here; });
+  check(H5Dvlen_reclaim(type, space, H5P_DEFAULT, read.data()), what);
+  return same;
 }
 
 }  // namespace
@@ -105,6 +131,7 @@ Handle create_dataset(hid_t file, const DatasetPlan& plan) {
     if (H5Tget_size(plan.type) > 1) check(H5Pset_shuffle(creation), what);
     check(H5Pset_deflate(creation, static_cast<unsigned>(plan.compression)), what);
   }
+  if (plan.checksums) check(H5Pset_fletcher32(creation), what);
   if (plan.fill) check(H5Pset_fill_value(creation, plan.type, plan.fill), what);
   const Handle space(H5Screate_simple(static_cast<int>(plan.shape.size()), plan.shape.data(), nullptr),
                      H5Sclose, what);
@@ -112,18 +139,40 @@ Handle create_dataset(hid_t file, const DatasetPlan& plan) {
           what};
 }
 
-Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
-                    std::span<const double> values, const Handle* scale) {
-  return write_values(file, name, unit, long_name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.size(),
-                      values.data(), scale);
+std::size_t size_of(const SeriesValues& values) {
+  if (const auto* codes = std::get_if<Codes>(&values)) return codes->values.size();
+  if (const auto* numbers = std::get_if<std::vector<double>>(&values)) return numbers->size();
+  return std::get<std::vector<std::string>>(values).size();
 }
 
 Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
-                    std::span<const std::string> values, const Handle* scale) {
-  std::vector<const char*> texts;
-  for (const std::string& value : values) texts.push_back(value.c_str());
-  const Handle type = text_type();
-  return write_values(file, name, unit, long_name, type, type, texts.size(), texts.data(), scale);
+                    const SeriesValues& values, const Handle* scale) {
+  const SeriesView view = view_of(values);
+  const hsize_t count = size_of(values);
+  Handle dataset = create_dataset(file, {name, view.file_type, {&count, 1}});
+  check(H5Dwrite(dataset, view.memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, view.values), "writing " + name);
+  write_attribute(dataset, "long_name", long_name);
+  write_attribute(dataset, "units", unit);
+  if (const auto* codes = std::get_if<Codes>(&values)) {
+    write_attribute(dataset, "flag_values", codes->allowed);
+    write_attribute(dataset, "flag_meanings", codes->meanings);
+  }
+  check(scale ? H5DSattach_scale(dataset, *scale, 0) : H5DSset_scale(dataset, name.c_str()),
+        "scaling " + name);
+  return dataset;
+}
+
+bool holds(hid_t file, const std::string& name, const SeriesValues& values) {
+  const std::string what = "reading " + name;
+  const Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, what);
+  if (shape_of(dataset) != std::vector<hsize_t>{size_of(values)}) return false;
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&values))
+    return holds_texts(dataset, *texts, what);
+  const SeriesView view = view_of(values);
+  const std::size_t bytes = size_of(values) * H5Tget_size(view.memory_type);
+  std::vector<std::byte> read(bytes);
+  check(H5Dread(dataset, view.memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, read.data()), what);
+  return bytes == 0 || std::memcmp(read.data(), view.values, bytes) == 0;
 }
 
 void write_attribute(hid_t object, const std::string& name, std::string_view text) {
@@ -173,7 +222,11 @@ void annotate(hid_t object, std::span<const Attribute> attributes) {
     std::visit([&, &key = name](const auto& v) { write_attribute(object, key, v); }, value);
 }
 
-bool has_attribute(hid_t object, const std::string& name) { return H5Aexists(object, name.c_str()) > 0; }
+bool has_attribute(hid_t object, const std::string& name) {
+  const htri_t exists = H5Aexists(object, name.c_str());
+  if (exists < 0) fail(fmt::format("reading attribute {}", name));
+  return exists > 0;
+}
 
 void remove_attribute(hid_t object, const std::string& name) {
   if (has_attribute(object, name))
@@ -213,6 +266,17 @@ std::vector<std::int64_t> read_integers(hid_t object, const std::string& name) {
   std::vector<std::int64_t> values(static_cast<std::size_t>(count));
   check(H5Aread(attribute, H5T_NATIVE_INT64, values.data()), what);
   return values;
+}
+
+std::uint32_t read_chunk(hid_t dataset, const std::vector<hsize_t>& place, std::vector<std::byte>& bytes,
+                         const std::string& what) {
+  hsize_t size = 0;
+  std::uint32_t skipped_filters = 0;
+  check(H5Dget_chunk_storage_size(dataset, place.data(), &size), what);
+  if (size > H5Dget_storage_size(dataset)) throw IoError(what + ": a chunk is larger than its dataset");
+  bytes.resize(size);
+  check(H5Dread_chunk(dataset, H5P_DEFAULT, place.data(), &skipped_filters, bytes.data()), what);
+  return skipped_filters;
 }
 
 std::vector<double> read_block(hid_t dataset, const std::vector<std::size_t>& start,

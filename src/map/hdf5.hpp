@@ -37,12 +37,15 @@ class Handle {
     std::swap(close_, other.close_);
     return *this;
   }
+  /// Closes without a word: what was written to is closed by close, which tells.
   ~Handle() {
     if (id_ >= 0) close_(id_);
   }
   operator hid_t() const { return id_; }
-  /// Closes now; false if HDF5 could not, for instance because the disk is full.
-  bool close() { return id_ < 0 || close_(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
+  /// Closes now. Throws IoError with `what` if HDF5 cannot, for instance because the disk is full.
+  void close(const std::string& what) {
+    if (id_ >= 0 && close_(std::exchange(id_, H5I_INVALID_HID)) < 0) fail(what);
+  }
 
  private:
   hid_t id_ = H5I_INVALID_HID;
@@ -62,15 +65,25 @@ struct DatasetPlan {
   std::span<const hsize_t> chunk = {};
   const void* fill = nullptr;  ///< of `type`; unset: zero
   int compression = 0;         ///< > 0: bytes shuffled (but single ones), deflated at that level
+  bool checksums = false;      ///< of a chunked one: each chunk ends with HDF5's fletcher32
 };
 Handle create_dataset(hid_t file, const DatasetPlan& plan);
 
-/// A one-dimensional dataset with units and long_name. `scale` is its dimension, unset where the dataset is a
-/// dimension scale itself. Texts are UTF-8 of variable length.
+/// The values of a one-dimensional dataset: numbers, texts (UTF-8 of variable length), or codes with a
+/// meaning each, separated by blanks.
+struct Codes {
+  std::vector<std::uint8_t> values, allowed;
+  std::string meanings;
+};
+using SeriesValues = std::variant<std::vector<double>, std::vector<std::string>, Codes>;
+std::size_t size_of(const SeriesValues& values);
+
+/// Writes a one-dimensional dataset with units and long_name. `scale` is its dimension; unset: it is a
+/// dimension scale itself. Returns the dataset, which is to be closed by close.
 Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
-                    std::span<const double> values, const Handle* scale);
-Handle write_series(hid_t file, const std::string& name, std::string_view unit, std::string_view long_name,
-                    std::span<const std::string> values, const Handle* scale);
+                    const SeriesValues& values, const Handle* scale);
+/// Whether a dataset holds these values, bit for bit. Throws IoError if it cannot be read.
+bool holds(hid_t file, const std::string& name, const SeriesValues& values);
 
 /// Attributes: UTF-8 text of variable length, or numbers of the given file type. An older one of that name
 /// goes.
@@ -97,6 +110,10 @@ bool has_attribute(hid_t object, const std::string& name);
 std::string read_text(hid_t object, const std::string& name);
 double read_number(hid_t object, const std::string& name);
 std::vector<std::int64_t> read_integers(hid_t object, const std::string& name);
+
+/// The raw bytes of a chunk as stored, and which filters were skipped for it. Throws IoError.
+std::uint32_t read_chunk(hid_t dataset, const std::vector<hsize_t>& place, std::vector<std::byte>& bytes,
+                         const std::string& what);
 
 /// A block of a dataset in C order, as doubles whatever its type. `what` is for messages. Throws IoError.
 std::vector<double> read_block(hid_t dataset, const std::vector<std::size_t>& start,

@@ -2,27 +2,29 @@
 #include "map/hdf5_driver.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <new>
 
+#include "map/hdf5_trust.hpp"
 #include "support/errors.hpp"
 
 namespace leapmap::hdf5 {
 namespace {
 
-/// What HDF5 holds of an open file.
+/// What HDF5 holds of an open file. It shares the file: where HDF5 cannot close, its driver outlives us.
 struct Driver : H5FD_t {
-  JournaledFile* file = nullptr;
+  std::shared_ptr<JournaledFile> file;
 };
 
 /// What the property list of an open carries to it.
 struct Target {
-  JournaledFile* file;
+  const std::shared_ptr<JournaledFile>* file;
 };
 
 Driver& driver(H5FD_t* base) { return *static_cast<Driver*>(base); }
@@ -41,10 +43,16 @@ herr_t guarded(const F& f) {
   }
 }
 
-H5FD_t* open(const char*, unsigned, hid_t access, haddr_t) {
+/// Opens the target, and no other file: HDF5 comes here too for a file that another one refers to.
+H5FD_t* open(const char* name, unsigned, hid_t access, haddr_t) {
   const auto* target = static_cast<const Target*>(H5Pget_driver_info(access));
+  if (!target || (*target->file)->path() != name) {
+    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_FILE, H5E_CANTOPENFILE,
+             "another file is referred to");
+    return nullptr;
+  }
   auto* opened = new (std::nothrow) Driver;
-  if (opened) opened->file = target->file;
+  if (opened) opened->file = *target->file;
   return opened;
 }
 
@@ -107,15 +115,16 @@ hid_t driver_id() {
   return id;
 }
 
-Handle access_to(JournaledFile& file) {
+/// Valid while `file` is.
+Handle access_to(const std::shared_ptr<JournaledFile>& file) {
   initialise();
   const Target target{&file};
-  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file.path());
-  check(H5Pset_driver(access, driver_id(), &target), file.path());
-  check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG),
-        file.path());                                // nothing may write after we have closed
-  if (file.access() != JournaledFile::Access::read)  // a map that others have repacked may be read as well
-    check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), file.path());
+  const std::string& path = file->path();
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path);
+  check(H5Pset_driver(access, driver_id(), &target), path);
+  check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG), path);  // nothing may write after we have closed
+  if (file->access() != JournaledFile::Access::read)  // a map that others have repacked may be read as well
+    check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), path);
   return access;
 }
 
@@ -126,60 +135,87 @@ Handle creation_of(const std::string& path) {
   return creation;
 }
 
-Handle open_in(JournaledFile& file, unsigned flags) {
+Handle open_in(const std::shared_ptr<JournaledFile>& file, unsigned flags) {
   const Handle access = access_to(file);
+  const std::string& path = file->path();
   try {
-    return {H5Fopen(file.path().c_str(), flags, access), H5Fclose, file.path() + ": cannot be read as HDF5"};
+    Handle opened(H5Fopen(path.c_str(), flags, access), H5Fclose, path + ": cannot be read as HDF5");
+    refuse_foreign_parts(opened, path);
+    return opened;
+  } catch (const BrokenFile&) {
+    throw;
   } catch (const IoError& error) {
     throw BrokenFile(error.what());
   }
 }
 
+/// Of HDF5 files, and of those that begin with zeros.
+bool has_signature(const std::string& path) {
+  constexpr std::array signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  std::array<char, signature.size()> first{};
+  std::ifstream(path, std::ios::binary).read(first.data(), first.size());
+  return first == signature || first == decltype(first){};
+}
+
 }  // namespace
 
-File File::create(const std::string& path) {
+File File::create(const std::string& path, Locking locking) {
   if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   }
-  File file(std::make_unique<JournaledFile>(path, JournaledFile::Access::create));
-  const Handle access = access_to(*file.bytes_), creation = creation_of(path);
+  File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::create, locking));
+  const Handle access = access_to(file.bytes_), creation = creation_of(path);
   file.handle_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose,
                   path + ": cannot be created"};
   return file;
 }
 
-File File::open(const std::string& path) {
-  File file(std::make_unique<JournaledFile>(path, JournaledFile::Access::read));
-  file.handle_ = open_in(*file.bytes_, H5F_ACC_RDONLY);
+File File::open(const std::string& path, Locking locking) {
+  File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::read, locking));
+  file.handle_ = open_in(file.bytes_, H5F_ACC_RDONLY);
   return file;
 }
 
-File File::change(const std::string& path) {
-  File file(std::make_unique<JournaledFile>(path, JournaledFile::Access::change));
-  file.handle_ = open_in(*file.bytes_, H5F_ACC_RDWR);
+File File::change(const std::string& path, Locking locking) {
+  File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::change, locking));
+  file.handle_ = open_in(file.bytes_, H5F_ACC_RDWR);
   file.flush();  // cuts off what was written after the last one
   return file;
 }
 
-File File::copy(const std::string& from, const std::string& to) {
-  const JournaledFile original(from, JournaledFile::Access::read);
-  File file(std::make_unique<JournaledFile>(to, JournaledFile::Access::create));
-  std::vector<std::byte> bytes(std::size_t{1} << 20);
-  for (std::uint64_t offset = 0; offset < original.end(); offset += bytes.size()) {
-    bytes.resize(std::min<std::uint64_t>(bytes.size(), original.end() - offset));
-    original.read(offset, bytes);
-    file.bytes_->write(offset, bytes);
+std::optional<File> File::copy(const JournaledFile& original, const std::string& to, Locking locking,
+                               const std::function<bool()>& stop_requested) {
+  if (!original.seal_holds().value_or(true))
+    throw BrokenFile(original.path() + ": is damaged: its bytes are not those that were written");
+  File file(std::make_shared<JournaledFile>(to, JournaledFile::Access::create, locking));
+  try {
+    std::vector<std::byte> bytes(std::size_t{1} << 20);
+    for (std::uint64_t offset = 0; offset < original.end(); offset += bytes.size()) {
+      if (stop_requested && stop_requested()) {
+        file.discard();
+        return std::nullopt;
+      }
+      bytes.resize(std::min<std::uint64_t>(bytes.size(), original.end() - offset));
+      original.read(offset, bytes);
+      file.bytes_->write(offset, bytes);
+    }
+    file.bytes_->resize(original.end());
+    std::error_code ignored;
+    std::filesystem::permissions(to, std::filesystem::status(original.path(), ignored).permissions(),
+                                 ignored);
+    file.handle_ = open_in(file.bytes_, H5F_ACC_RDWR);
+  } catch (...) {
+    file.discard();
+    throw;
   }
-  file.bytes_->resize(original.end());
-  std::error_code ignored;
-  std::filesystem::permissions(to, std::filesystem::status(from, ignored).permissions(), ignored);
-  file.handle_ = open_in(*file.bytes_, H5F_ACC_RDWR);
   return file;
 }
 
-bool File::blank(const std::string& path) { return JournaledFile(path, JournaledFile::Access::read).blank(); }
+bool File::blank(const std::string& path, Locking locking) {
+  return JournaledFile(path, JournaledFile::Access::read, locking).blank();
+}
 
 File& File::operator=(File&& other) noexcept {
   abandon();
@@ -194,39 +230,50 @@ void File::flush() { check(H5Fflush(handle_, H5F_SCOPE_LOCAL), bytes_->path() + 
 
 void File::close() {
   flush();
-  if (!handle_.close()) fail(bytes_->path() + ": cannot be written");
+  handle_.close(bytes_->path() + ": cannot be written");
   bytes_->commit();  // HDF5 writes its last as it closes
 }
 
-void refuse_other_file(const std::string& path, std::string_view filetype) {
+void refuse_other_file(const std::string& path, std::string_view filetype, Locking locking) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored) || !std::filesystem::is_regular_file(path, ignored)) return;
-  bool same = false;
+  const auto there = std::filesystem::status(path, ignored);
+  if (!std::filesystem::exists(there)) return;
+  bool same = std::filesystem::is_regular_file(there);
   try {
-    const File file = File::open(path);
-    same = has_attribute(file, "filetype") && read_text(file, "filetype") == filetype;
-  } catch (const IoError&) {
+    if (same && std::filesystem::file_size(path, ignored) > 0) {
+      same = has_signature(path);
+      const File file = same ? File::open(path, locking) : File();
+      same = same && has_attribute(file, "filetype") && read_text(file, "filetype") == filetype;
+    }
+  } catch (const IoError&) {  // HDF5, but damaged
   }
   if (!same)
     throw InputError(fmt::format("{}: exists and is no {}; allowed: a new name, or an older one to replace",
                                  path, filetype));
 }
 
-void File::finish(const std::string& path, bool replace) {
+bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify) {
   close();
-  bytes_->rename(path, replace);
+  {
+    Handle written = open_in(bytes_, H5F_ACC_RDONLY);
+    verify(written);
+    written.close(bytes_->path() + ": cannot be read");
+  }
+  bytes_->seal();
+  const bool durable = bytes_->rename(path, replace);
   bytes_.reset();
+  return durable;
 }
 
 void File::discard() {
-  ::unlink(bytes_->path().c_str());  // while it is still ours
+  if (bytes_) bytes_->unlink();  // while it is still ours
   abandon();
 }
 
 void File::abandon() {
   if (!bytes_) return;
   bytes_->abandon();
-  static_cast<void>(handle_.close());  // nothing reaches the file any more, so that nothing can go wrong
+  handle_ = {};  // nothing reaches the file any more, so that nothing can go wrong
   bytes_.reset();
 }
 

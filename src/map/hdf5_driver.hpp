@@ -2,7 +2,9 @@
 /// An HDF5 file that is always found as of its last flush: HDF5 reads and writes it through a JournaledFile.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,14 +18,16 @@ class File {
   File() = default;
   /// A new file, emptying an old one, in a folder made if need be: V18 format, link and attribute creation
   /// order tracked (netCDF readers need it). Throws InputError if somebody else holds it, IoError.
-  static File create(const std::string& path);
-  /// An existing file, read-only. Throws as create does, and BrokenFile if it is not HDF5 or not whole.
-  static File open(const std::string& path);
-  /// An existing file, to be changed.
-  static File change(const std::string& path);
+  static File create(const std::string& path, Locking locking = Locking::required);
+  /// An existing file, read-only, that holds nothing but what a file of ours may (hdf5_trust.hpp). Throws as
+  /// create does, and BrokenFile if it is not HDF5 or not whole.
+  static File open(const std::string& path, Locking locking = Locking::required);
+  /// The same, to be changed.
+  static File change(const std::string& path, Locking locking = Locking::required);
   /// A copy of a file, to be changed. Until it is closed it is blank: no journal, nothing to go on with.
-  /// Throws as both of these do.
-  static File copy(const std::string& from, const std::string& to);
+  /// Throws as these do, and BrokenFile if the original's seal is broken. Nothing: stop_requested said so.
+  static std::optional<File> copy(const JournaledFile& original, const std::string& to, Locking locking,
+                                  const std::function<bool()>& stop_requested);
   File(File&&) = default;
   File& operator=(File&& other) noexcept;
   /// Abandons what was not flushed.
@@ -35,23 +39,29 @@ class File {
   void flush();
   /// Flushes and closes the file, which stays locked while this lives. Throws IoError.
   void close();
-  /// Closes the file and gives it its name, in place of an older file if `replace`. Throws IoError.
-  void finish(const std::string& path, bool replace = true);
+  /// Closes the file, opens it again for `verify`, which throws if what it finds is not what was written,
+  /// seals it and gives it its name, in place of an older file if `replace`. Returns false if a power cut may
+  /// undo the renaming (JournaledFile::rename). Throws IoError, and what verify throws: nothing is replaced
+  /// then.
+  [[nodiscard]] bool finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify);
   /// Drops what was not flushed and closes the file.
   void abandon();
   /// Abandons and removes the file.
   void discard();
   /// True if nothing was ever flushed: whoever created it was killed before that.
-  static bool blank(const std::string& path);
+  static bool blank(const std::string& path, Locking locking = Locking::required);
+  /// The file's bytes.
+  const JournaledFile& bytes() const { return *bytes_; }
 
  private:
-  explicit File(std::unique_ptr<JournaledFile> bytes) : bytes_(std::move(bytes)) {}
-  std::unique_ptr<JournaledFile> bytes_;
+  explicit File(std::shared_ptr<JournaledFile> bytes) : bytes_(std::move(bytes)) {}
+  std::shared_ptr<JournaledFile> bytes_;
   Handle handle_;  // after bytes_, as closing it writes there
 };
 
 /// What was made before may be made again, but no other file is ours to replace: throws InputError if path is
-/// there and no file of that type.
-void refuse_other_file(const std::string& path, std::string_view filetype);
+/// there and neither a file of that type, nor empty, nor HDF5 that is too damaged to say what it is.
+void refuse_other_file(const std::string& path, std::string_view filetype,
+                       Locking locking = Locking::required);
 
 }  // namespace leapmap::hdf5

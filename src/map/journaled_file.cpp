@@ -16,6 +16,7 @@
 #include <filesystem>
 
 #include "support/errors.hpp"
+#include "support/system_calls.hpp"
 
 namespace leapmap {
 namespace {
@@ -32,52 +33,82 @@ struct Footer {
 };
 static_assert(sizeof(Footer) == 40);
 
-[[noreturn]] void fail(const std::string& path, std::string_view what) {
-  const int reason = errno;
-  throw IoError(fmt::format("{}: {}: {}", path, what, std::strerror(reason)));
-}
+/// Ends a file that is whole. Its checksum is of all bytes before that number.
+struct Seal {
+  std::array<char, 16> magic{'l', 'e', 'a', 'p', 'm', 'a', 'p', ' ', 'c', 'h', 'e', 'c', 'k', 's', 'u', 'm'};
+  std::uint64_t size = 0;  ///< of the file before the seal
+  std::uint32_t reserved = 0;
+  std::uint32_t checksum = 0;  ///< CRC-32
+};
+static_assert(sizeof(Seal) == 32);
 
 void sync(int descriptor, const std::string& path) {
-  if (::fsync(descriptor) != 0) fail(path, "cannot be brought to disk");
+  if (uninterrupted([&] { return ::fsync(descriptor); }) != 0)
+    fail_with_errno(path, "cannot be brought to disk");
 }
 
-/// Brings a file's name to disk. Nothing is to be done if that cannot be: the name is there all the same.
-void sync_folder(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path();
-  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
+void cut(int descriptor, const std::string& path, std::uint64_t size) {
+  if (uninterrupted([&] { return ::ftruncate(descriptor, static_cast<off_t>(size)); }) != 0)
+    fail_with_errno(path, "cannot be written");
 }
 
-std::uint64_t size_on_disk(int descriptor, const std::string& path) {
+/// Brings a file's name to disk. False if that failed: the name is there all the same. Folders that may not
+/// be read, and file systems that cannot sync folders, are as good as it gets.
+bool sync_folder(const std::string& path) {
+  const std::string parent = std::filesystem::path(path).parent_path(),
+                    folder = parent.empty() ? "." : parent;
+  const auto impossible = [] { return errno == EACCES || errno == EINVAL || errno == ENOTSUP; };
+  const int descriptor =
+      uninterrupted([&] { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
+  if (descriptor < 0) return impossible();
+  const bool synced = uninterrupted([&] { return ::fsync(descriptor); }) == 0 || impossible();
+  return ::close(descriptor) == 0 && synced;
+}
+
+struct stat status_of(int descriptor, const std::string& path) {
   struct stat status {};
-  if (::fstat(descriptor, &status) != 0) fail(path, "cannot be read");
-  return static_cast<std::uint64_t>(status.st_size);
+  if (::fstat(descriptor, &status) != 0) fail_with_errno(path, "cannot be read");
+  return status;
 }
 
-/// False at the end of the file.
-bool read_all(int descriptor, const std::string& path, std::uint64_t offset, std::span<std::byte> bytes) {
+/// Throws IoError if the file ends before.
+void read_all(int descriptor, const std::string& path, std::uint64_t offset, std::span<std::byte> bytes) {
   while (!bytes.empty()) {
-    const ssize_t count = ::pread(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, "cannot be read");
-    if (count == 0) return false;
+    const ssize_t count = uninterrupted(
+        [&] { return ::pread(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset)); });
+    if (count < 0) fail_with_errno(path, "cannot be read");
+    if (count == 0) throw IoError(path + ": cannot be read: it ends too early");
     bytes = bytes.subspan(static_cast<std::size_t>(count));
     offset += static_cast<std::uint64_t>(count);
   }
-  return true;
 }
 
 void write_all(int descriptor, const std::string& path, std::uint64_t offset,
                std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const ssize_t count = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, "cannot be written");
+    const ssize_t count = uninterrupted(
+        [&] { return ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset)); });
+    if (count < 0) fail_with_errno(path, "cannot be written");
+    if (count == 0) throw IoError(path + ": cannot be written: the system takes no bytes");
     bytes = bytes.subspan(static_cast<std::size_t>(count));
     offset += static_cast<std::uint64_t>(count);
   }
+}
+
+/// CRC-32 of a stretch of the file, going on from `sum`.
+std::uint32_t checksum_of(int descriptor, const std::string& path, std::uint64_t begin, std::uint64_t end,
+                          std::uint32_t sum = 0) {
+  std::vector<std::byte> block(std::min<std::uint64_t>(std::size_t{1} << 18, end - begin));
+  for (std::uint64_t offset = begin; offset < end; offset += block.size()) {
+    block.resize(std::min<std::uint64_t>(block.size(), end - offset));
+    read_all(descriptor, path, offset, block);
+    sum = libdeflate_crc32(sum, block.data(), block.size());
+  }
+  return sum;
+}
+
+std::uint32_t checksum_of(int descriptor, const std::string& path, const Seal& seal) {
+  return libdeflate_crc32(checksum_of(descriptor, path, 0, seal.size), &seal, offsetof(Seal, checksum));
 }
 
 template <class T>
@@ -86,91 +117,142 @@ void append(std::vector<std::byte>& bytes, const T& value) {
   bytes.insert(bytes.end(), first, first + sizeof value);
 }
 
-std::uint32_t checksum_of(std::span<const std::byte> journal) {
-  return libdeflate_crc32(0, journal.data(), journal.size() - sizeof(Footer::checksum));
-}
-
 }  // namespace
 
-JournaledFile::JournaledFile(const std::string& path, Access access) : path_(path), access_(access) {
+template <class F>
+void JournaledFile::attempt(const F& f) const {
+  if (failed_) throw IoError(failure_.empty() ? path_ + ": failed before" : failure_);
+  try {
+    f();
+  } catch (const std::exception& error) {
+    failed_ = true;
+    failure_ = error.what();
+    throw;
+  }
+}
+
+JournaledFile::JournaledFile(const std::string& path, Access access, Locking locking)
+    : path_(path), access_(access) {
   const int flags = access == Access::read     ? O_RDONLY
                     : access == Access::change ? O_RDWR | O_NOFOLLOW
                                                : O_RDWR | O_NOFOLLOW | O_CREAT;
-  descriptor_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail(path, access == Access::create ? "cannot be created" : "cannot be opened");
+  // Not blocking: to open a pipe would wait for whoever writes to it.
+  descriptor_ = uninterrupted([&] { return ::open(path.c_str(), flags | O_NONBLOCK | O_CLOEXEC, 0666); });
+  if (descriptor_ < 0)
+    fail_with_errno(path, access == Access::create ? "cannot be created" : "cannot be opened");
   try {
-    lock();
-    if (access == Access::create) {
-      if (::ftruncate(descriptor_, 0) != 0) fail(path, "cannot be created");
-    } else {
-      committed_ = stored_ = size_on_disk(descriptor_, path);
-      read_journal();
-      size_ = committed_;
-      if (access == Access::change && journal_valid_) make_waiting_writes();
-    }
+    open(locking);
   } catch (...) {
     ::close(descriptor_);
     throw;
   }
 }
 
-JournaledFile::~JournaledFile() {
-  abandon();
-  ::close(descriptor_);
+void JournaledFile::open(Locking locking) {
+  if (!S_ISREG(status_of(descriptor_, path_).st_mode))
+    throw InputError(path_ + ": is a device, a pipe or a folder; allowed: a file");
+  lock(locking);
+  if (access_ == Access::create) return cut(descriptor_, path_, 0);
+  committed_ = stored_ = static_cast<std::uint64_t>(status_of(descriptor_, path_).st_size);
+  read_seal();
+  if (!seal_) read_journal();
+  size_ = committed_;
+  if (access_ == Access::change && journal_valid_) make_waiting_writes();
 }
 
-void JournaledFile::lock() const {
+JournaledFile::~JournaledFile() {
+  abandon();
+  ::close(descriptor_);  // can lose nothing: what was committed was synced
+}
+
+bool JournaledFile::is_named(const std::string& path) const {
+  const struct stat opened = status_of(descriptor_, path_);
+  struct stat named {};
+  if (::stat(path.c_str(), &named) != 0) {
+    if (errno == ENOENT) return false;
+    fail_with_errno(path, "cannot be looked at");
+  }
+  return opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+void JournaledFile::lock(Locking locking) const {
   const bool reads = access_ == Access::read;
-  const bool unlocked = ::flock(descriptor_, (reads ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0;
-  const bool busy = unlocked && errno == EWOULDBLOCK;  // any other reason: the file system knows no locks
-  struct stat opened {
-  }, named{};
-  const bool same = ::fstat(descriptor_, &opened) == 0 && ::stat(path_.c_str(), &named) == 0 &&
-                    opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
-  if (busy || !same)  // not the same: renamed by whoever held it, between our opening and our locking
+  const bool locked =
+      uninterrupted([&] { return ::flock(descriptor_, (reads ? LOCK_SH : LOCK_EX) | LOCK_NB); }) == 0;
+  const bool busy = !locked && errno == EWOULDBLOCK;
+  if (!locked && !busy && locking == Locking::required)
+    throw IoError(
+        fmt::format("{}: cannot be locked: {}; allowed: a file system with locks, or --no-lock if no other "
+                    "program uses it",
+                    path_, std::strerror(errno)));
+  if (busy ||
+      !is_named(path_))  // the latter: renamed by whoever held it, between our opening and our locking
     throw InputError(fmt::format("{}: another program is {} it; allowed: once that has ended", path_,
                                  reads ? "writing" : "using"));
 }
 
 void JournaledFile::read(std::uint64_t offset, std::span<std::byte> bytes) const {
-  const std::uint64_t end = offset + bytes.size();
-  std::ranges::fill(bytes, std::byte{0});
-  if (offset < stored_)
-    read_all(descriptor_, path_, offset,
-             bytes.first(std::min<std::uint64_t>(bytes.size(), stored_ - offset)));
-  for (const Write& write : waiting_) {
-    const std::uint64_t first = std::max(offset, write.offset),
-                        last = std::min(end, write.offset + write.bytes.size());
-    if (first < last)
-      std::memcpy(bytes.data() + (first - offset), write.bytes.data() + (first - write.offset), last - first);
-  }
+  attempt([&] {
+    const std::uint64_t end = offset + bytes.size();
+    const std::size_t there = offset < stored_ ? std::min<std::uint64_t>(bytes.size(), stored_ - offset) : 0;
+    read_all(descriptor_, path_, offset, bytes.first(there));
+    std::ranges::fill(bytes.subspan(there), std::byte{0});
+    for (const Write& write : waiting_) {
+      const std::uint64_t first = std::max(offset, write.offset),
+                          last = std::min(end, write.offset + write.bytes.size());
+      if (first < last)
+        std::memcpy(bytes.data() + (first - offset), write.bytes.data() + (first - write.offset),
+                    last - first);
+    }
+  });
 }
 
 void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (abandoned_) return;
-  const std::uint64_t guarded = std::max(committed_, signature_bytes);
-  if (offset < guarded) {
-    const auto waits = bytes.first(std::min<std::uint64_t>(bytes.size(), guarded - offset));
-    waiting_.push_back({offset, {waits.begin(), waits.end()}});
-    bytes = bytes.subspan(waits.size());
-    offset += waits.size();
-  }
-  if (bytes.empty()) return;
-  write_all(descriptor_, path_, offset, bytes);
-  stored_ = std::max(stored_, offset + bytes.size());
+  attempt([&] {
+    const std::uint64_t guarded = std::max(committed_, signature_bytes);
+    if (offset < guarded) {
+      const auto waits = bytes.first(std::min<std::uint64_t>(bytes.size(), guarded - offset));
+      waiting_.push_back({offset, {waits.begin(), waits.end()}});
+      bytes = bytes.subspan(waits.size());
+      offset += waits.size();
+    }
+    if (bytes.empty()) return;
+    seal_.reset();  // it is overwritten
+    write_all(descriptor_, path_, offset, bytes);
+    stored_ = std::max(stored_, offset + bytes.size());
+  });
 }
 
 void JournaledFile::commit() {
   if (abandoned_) return;
-  sync(descriptor_, path_);  // what was appended has to be there before anything refers to it
-  const bool first = committed_ == 0;
-  if (!waiting_.empty()) {
-    write_journal();
-    journal_valid_ = true;
-  }
-  committed_ = size_;
-  make_waiting_writes();
-  if (first) sync_folder(path_);  // else a power cut may take the file's name away
+  attempt([&] {
+    sync(descriptor_, path_);  // what was appended has to be there before anything refers to it
+    const bool first = committed_ == 0;
+    if (!waiting_.empty()) {
+      write_journal();
+      journal_valid_ = true;
+    }
+    committed_ = size_;
+    make_waiting_writes();
+    if (first && !sync_folder(path_)) throw IoError(path_ + ": its folder cannot be brought to disk");
+  });
+}
+
+void JournaledFile::seal() {
+  if (abandoned_) return;
+  attempt([&] {
+    Seal seal{.size = committed_};
+    seal.checksum = checksum_of(descriptor_, path_, seal);
+    write_all(descriptor_, path_, committed_, std::as_bytes(std::span(&seal, 1)));
+    sync(descriptor_, path_);
+    seal_ = seal.checksum;
+  });
+}
+
+std::optional<bool> JournaledFile::seal_holds() const {
+  if (!seal_) return std::nullopt;
+  return checksum_of(descriptor_, path_, Seal{.size = committed_}) == *seal_;
 }
 
 void JournaledFile::write_journal() {
@@ -182,7 +264,8 @@ void JournaledFile::write_journal() {
     journal.insert(journal.end(), write.bytes.begin(), write.bytes.end());
   }
   append(journal, footer);
-  const std::uint32_t checksum = checksum_of(journal);
+  const std::uint32_t checksum =
+      libdeflate_crc32(0, journal.data(), journal.size() - sizeof(Footer::checksum));
   std::memcpy(journal.data() + journal.size() - sizeof checksum, &checksum, sizeof checksum);
   write_all(descriptor_, path_, footer.begin, journal);
   sync(descriptor_, path_);
@@ -191,49 +274,83 @@ void JournaledFile::write_journal() {
 void JournaledFile::make_waiting_writes() {
   for (const Write& write : waiting_) write_all(descriptor_, path_, write.offset, write.bytes);
   if (!waiting_.empty()) sync(descriptor_, path_);
-  if (::ftruncate(descriptor_, static_cast<off_t>(committed_)) != 0) fail(path_, "cannot be written");
+  cut(descriptor_, path_, committed_);
+  seal_.reset();
   journal_valid_ = false;
   waiting_.clear();
   stored_ = committed_;
 }
 
 void JournaledFile::read_journal() {
+  constexpr std::uint64_t most = std::uint64_t{1} << 30;  // of changed metadata between two commits
   Footer footer;
   if (stored_ < sizeof footer) return;
   read_all(descriptor_, path_, stored_ - sizeof footer, std::as_writable_bytes(std::span(&footer, 1)));
   if (footer.magic != Footer{}.magic || footer.begin > stored_ - sizeof footer) return;
-  std::vector<std::byte> journal(stored_ - footer.begin);
+  if (checksum_of(descriptor_, path_, footer.begin, stored_ - sizeof(Footer::checksum)) != footer.checksum)
+    return;
+  const auto refuse_unless = [&](bool sense) {
+    if (!sense) throw BrokenFile(path_ + ": is damaged: its journal makes no sense");
+  };
+  refuse_unless(footer.size <= footer.begin && stored_ - footer.begin <= most);
+  std::vector<std::byte> journal(stored_ - sizeof footer - footer.begin);
   read_all(descriptor_, path_, footer.begin, journal);
-  if (checksum_of(journal) != footer.checksum) return;
-  const std::byte* next = journal.data();
-  const std::byte* const last = journal.data() + journal.size() - sizeof footer;
-  while (next < last) {  // whole, by its checksum, and so written by us
-    std::array<std::uint64_t, 2> head{};
-    std::memcpy(head.data(), next, sizeof head);
-    next += sizeof head;
-    waiting_.push_back({head[0], {next, next + head[1]}});
-    next += head[1];
+  for (std::span<const std::byte> left = journal; !left.empty();) {
+    std::array<std::uint64_t, 2> head{};  // offset, length
+    refuse_unless(left.size() >= sizeof head);
+    std::memcpy(head.data(), left.data(), sizeof head);
+    left = left.subspan(sizeof head);
+    refuse_unless(head[1] <= left.size() && head[0] <= footer.begin && head[1] <= footer.begin - head[0]);
+    waiting_.push_back({head[0], {left.begin(), left.begin() + static_cast<std::ptrdiff_t>(head[1])}});
+    left = left.subspan(head[1]);
   }
   journal_valid_ = true;
   committed_ = footer.size;
   stored_ = footer.begin;
 }
 
+void JournaledFile::read_seal() {
+  Seal seal;
+  if (stored_ < sizeof seal) return;
+  read_all(descriptor_, path_, stored_ - sizeof seal, std::as_writable_bytes(std::span(&seal, 1)));
+  if (seal.magic != Seal{}.magic || seal.size != stored_ - sizeof seal) return;
+  seal_ = seal.checksum;
+  committed_ = stored_ = seal.size;
+}
+
 void JournaledFile::abandon() {
   if (abandoned_ || access_ == Access::read) return;
   abandoned_ = true;
   // Gives the space back; if it cannot, what lies beyond the committed end is ignored all the same.
-  if (!journal_valid_) static_cast<void>(::ftruncate(descriptor_, static_cast<off_t>(committed_)) != 0);
+  if (!journal_valid_ && !seal_)
+    static_cast<void>(::ftruncate(descriptor_, static_cast<off_t>(committed_)) != 0);
 }
 
-void JournaledFile::rename(const std::string& path, bool replace) {
+bool JournaledFile::rename(const std::string& path, bool replace) {
+  const auto refuse_other = [&](bool ours, const std::string& name) {
+    if (!ours) throw IoError(name + ": another program has replaced or removed it meanwhile");
+  };
+  refuse_other(is_named(path_), path_);
   int failed = -1;
   if (!replace) failed = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);
   const bool unknown = !replace && failed != 0 && (errno == EINVAL || errno == ENOSYS);  // to the file system
   if (replace || unknown) failed = std::rename(path_.c_str(), path.c_str());
-  if (failed != 0) fail(path, "cannot be given its name");
+  if (failed != 0) fail_with_errno(path, "cannot be given its name");
+  bool ours = true;
+  try {
+    ours = is_named(path);
+  } catch (const IoError&) {  // it was renamed, only looking fails
+  }
+  refuse_other(ours, path);
   path_ = path;
-  sync_folder(path);
+  return sync_folder(path);
+}
+
+void JournaledFile::unlink() const {
+  try {
+    if (is_named(path_)) ::unlink(path_.c_str());
+  } catch (const IoError&) {  // what stays was never committed, or is begun anew
+  }
 }
 
 std::uint64_t JournaledFile::end() const {

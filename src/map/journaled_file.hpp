@@ -7,15 +7,25 @@
 /// them, then cuts the journal off. Whoever opens the file next finds a whole journal and makes its writes
 /// again, or none, and all is as before. The first bytes, an HDF5 file's signature, always wait, so that a
 /// file never committed is told from one that was.
+///
+/// The first call that fails is remembered: from then on every write and commit fails as well, so that what a
+/// caller overlooked never reaches a commit. A file that is whole ends with a seal, a checksum of all of it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace leapmap {
+
+/// What to do where the file system cannot lock a file.
+enum class Locking {
+  required,     ///< an error
+  if_possible,  ///< go on without; a file that somebody else holds is refused all the same
+};
 
 class JournaledFile {
  public:
@@ -25,9 +35,10 @@ class JournaledFile {
     create,  ///< anew; an existing file is emptied, once nobody else holds it
   };
 
-  /// Opens and locks the file: several readers, or one writer. Throws InputError if somebody else holds it,
-  /// IoError if it cannot be opened.
-  JournaledFile(const std::string& path, Access access);
+  /// Opens and locks the file: several readers, or one writer. Throws InputError if somebody else holds it or
+  /// it is a device, a pipe or a folder, BrokenFile if its journal makes no sense, IoError if it cannot be
+  /// opened or locked.
+  JournaledFile(const std::string& path, Access access, Locking locking = Locking::required);
   /// Abandons what was not committed.
   ~JournaledFile();
   JournaledFile(const JournaledFile&) = delete;
@@ -42,10 +53,21 @@ class JournaledFile {
   std::uint64_t size() const { return size_; }
   /// All writes so far take effect, on disk when this returns, in a file size() bytes long. Throws IoError.
   void commit();
+  /// Ends a file whose writes are all committed with a checksum of its bytes. Throws IoError.
+  void seal();
+  /// Whether the bytes are those that were sealed; unset: the file has no seal, or was changed since by
+  /// another program that knows none. Reads the whole file. Throws IoError.
+  std::optional<bool> seal_holds() const;
   /// Drops what was not committed and gives its space back; from now on writes and commits do nothing.
   void abandon();
-  /// Gives the file another name, still locked, in place of an older file there if `replace`. Throws IoError.
-  void rename(const std::string& path, bool replace);
+  /// Gives this very file another name, still locked, in place of an older file there if `replace`. Returns
+  /// false if the folder could not be synced: the file is in its place, but a power cut may undo that. Throws
+  /// IoError, also if another program has taken this file's name.
+  [[nodiscard]] bool rename(const std::string& path, bool replace);
+  /// Removes the file's name, if it is still this file's.
+  void unlink() const;
+  /// Whether `path` names this very file. Throws IoError.
+  bool is_named(const std::string& path) const;
 
   /// Where the bytes written so far end.
   std::uint64_t end() const;
@@ -59,20 +81,29 @@ class JournaledFile {
     std::uint64_t offset;
     std::vector<std::byte> bytes;
   };
-  void lock() const;
+  void open(Locking locking);
+  void lock(Locking locking) const;
   void read_journal();
+  void read_seal();
   void write_journal();
   void make_waiting_writes();
 
   std::string path_;
   Access access_;
   int descriptor_ = -1;
-  std::uint64_t committed_ = 0;  ///< bytes below it are not overwritten in place
-  std::uint64_t stored_ = 0;     ///< bytes the file has on disk, a journal not counted
-  std::uint64_t size_ = 0;       ///< bytes it is to have after the next commit
-  std::vector<Write> waiting_;   ///< in the order they came
+  std::uint64_t committed_ = 0;        ///< bytes below it are not overwritten in place
+  std::uint64_t stored_ = 0;           ///< bytes the file has on disk, a journal not counted
+  std::uint64_t size_ = 0;             ///< bytes it is to have after the next commit
+  std::vector<Write> waiting_;         ///< in the order they came
+  std::optional<std::uint32_t> seal_;  ///< the checksum that ends the file on disk
   bool abandoned_ = false;
   bool journal_valid_ = false;  ///< the journal on disk is whole and must not be cut off
+  mutable bool failed_ = false;
+  mutable std::string failure_;  ///< the first one, in words
+
+  /// Runs f unless a call failed before; remembers if it fails.
+  template <class F>
+  void attempt(const F& f) const;
 };
 
 }  // namespace leapmap

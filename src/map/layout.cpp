@@ -46,6 +46,10 @@ std::vector<Handle> write_scales(hid_t file, const MapLayout& layout, std::size_
   return scales;
 }
 
+void close(std::vector<Handle>& handles, const std::string& what) {
+  for (Handle& handle : handles) handle.close(what);
+}
+
 void attach(hid_t dataset, const std::vector<Handle>& scales) {
   for (std::size_t i = 0; i < scales.size(); ++i)
     check(H5DSattach_scale(dataset, scales[i], static_cast<unsigned>(i)), "attaching a dimension scale");
@@ -63,8 +67,8 @@ Handle create_field(hid_t file, const Field& field, const MapLayout& layout, con
                      : word          ? H5T_STD_U64LE
                      : layout.single ? H5T_IEEE_F32LE
                                      : H5T_IEEE_F64LE;
-  Handle dataset = hdf5::create_dataset(
-      file, {std::string(field.name), type, shape, chunk, fill_value(layout, field), layout.compression});
+  Handle dataset = hdf5::create_dataset(file, {std::string(field.name), type, shape, chunk,
+                                               fill_value(layout, field), layout.compression, true});
   describe(dataset, field.unit, field.long_name);
   if (word) return dataset;
   if (!code) {
@@ -130,9 +134,15 @@ std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
 }
 
 void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling) {
-  const std::vector<Handle> scales = write_scales(file, layout, tiling.designs());
-  for (const MapAxis& column : layout.columns) write_axis(file, column, &scales[0]);
-  for (const Field* field : layout.fields) attach(create_field(file, *field, layout, tiling), scales);
+  std::vector<Handle> scales = write_scales(file, layout, tiling.designs());
+  for (const MapAxis& column : layout.columns)
+    write_axis(file, column, &scales[0]).close("writing " + column.name);
+  for (const Field* field : layout.fields) {
+    Handle dataset = create_field(file, *field, layout, tiling);
+    attach(dataset, scales);
+    dataset.close("creating " + std::string(field->name));
+  }
+  close(scales, "writing a dimension");
   write_nexus(file, layout);
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "map/hdf5_trust.hpp"
 #include "map/schema.hpp"
 #include "support/errors.hpp"
 
@@ -20,18 +21,27 @@ herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
-std::vector<double> read_all(hid_t dataset, const std::string& name) {
+constexpr std::size_t most_axis_values = 1'000'000;  // what a spec takes
+
+MapReader::Dimension read_dimension(hid_t dataset, const std::string& name) {
   const std::vector<hsize_t> shape = hdf5::shape_of(dataset);
   if (shape.size() != 1 || shape[0] == 0)
     throw IoError(name + ": a dimension of a map has one row of values, at least one");
-  std::vector<double> values(shape[0]);
-  check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "reading " + name);
-  return values;
+  hdf5::bytes_in_memory(dataset, name);
+  MapReader::Dimension dimension{name, hdf5::read_text(dataset, "units"), shape[0], {}};
+  if (name == "design") return dimension;
+  if (shape[0] > most_axis_values)
+    throw IoError(fmt::format("{}: has {} values; allowed: at most {}", name, shape[0], most_axis_values));
+  dimension.values.resize(shape[0]);
+  check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, dimension.values.data()),
+        "reading " + name);
+  return dimension;
 }
 
 }  // namespace
 
-MapReader::MapReader(const std::string& path) : path_(path), own_(hdf5::File::open(path)), file_(own_) {
+MapReader::MapReader(const std::string& path, Locking locking)
+    : path_(path), own_(hdf5::File::open(path, locking)), file_(own_) {
   survey();
 }
 
@@ -53,15 +63,20 @@ void MapReader::survey() {
     check(H5Oget_info_by_name(file_, name.c_str(), &info, H5P_DEFAULT), path_ + ": listing datasets");
     if (info.type != H5O_TYPE_DATASET) continue;  // the group that tells viewers what to plot
     const Handle dataset = open(name);
-    if (H5DSis_scale(dataset) > 0) {
-      dimensions_.push_back({name, hdf5::read_text(dataset, "units"), read_all(dataset, name)});
+    const htri_t scale = H5DSis_scale(dataset);
+    if (scale < 0) hdf5::fail(path_ + ": reading " + name);
+    if (scale > 0) {
+      dimensions_.push_back(read_dimension(dataset, name));
     } else {
       fields_.push_back(name);
     }
   }
   if (dimensions_.empty()) throw IoError(path_ + ": has no dimensions");
+  if (dimensions_.size() > 1 &&
+      std::ranges::any_of(dimensions_, [](const Dimension& d) { return d.values.empty(); }))
+    throw IoError(path_ + ": is a list and has other dimensions than design");
   std::vector<hsize_t> expected;
-  for (const Dimension& dimension : dimensions_) expected.push_back(dimension.values.size());
+  for (const Dimension& dimension : dimensions_) expected.push_back(dimension.size);
   for (const std::string& name : fields_)
     if (hdf5::shape_of(open(name)) != expected)
       throw IoError(fmt::format("{}: {} does not lie along the map's dimensions", path_, name));
@@ -69,8 +84,26 @@ void MapReader::survey() {
 
 std::vector<std::size_t> MapReader::shape() const {
   std::vector<std::size_t> shape;
-  for (const Dimension& dimension : dimensions_) shape.push_back(dimension.values.size());
+  for (const Dimension& dimension : dimensions_) shape.push_back(dimension.size);
   return shape;
+}
+
+Tiling MapReader::blocks(const std::string& field) const {
+  constexpr std::size_t most_values = std::size_t{1} << 22;
+  const Handle dataset = open(field);
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, field);
+  std::vector<hsize_t> chunk(dimensions_.size());
+  const std::vector<std::size_t> whole = shape();
+  if (H5Pget_layout(creation) != H5D_CHUNKED ||
+      H5Pget_chunk(creation, static_cast<int>(chunk.size()), chunk.data()) != static_cast<int>(chunk.size()))
+    return Tiling(whole);
+  std::vector<std::size_t> block;
+  std::size_t values = 1;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    block.push_back(std::min<std::size_t>(chunk[i], whole[i]));
+    values *= block.back();
+  }
+  return values <= most_values ? Tiling(whole, block) : Tiling(whole);
 }
 
 std::string MapReader::unit(const std::string& field) const { return hdf5::read_text(open(field), "units"); }
@@ -96,6 +129,11 @@ std::string MapReader::attribute(const std::string& name) const {
 
 std::vector<double> MapReader::read(const std::string& field, const Tile& block) const {
   return hdf5::read_block(open(field), block.start, block.extent,
+                          fmt::format("{}: reading {}", path_, field));
+}
+
+std::vector<std::uint64_t> MapReader::read_words(const std::string& field, const Tile& block) const {
+  return hdf5::read_words(open(field), block.start, block.extent,
                           fmt::format("{}: reading {}", path_, field));
 }
 

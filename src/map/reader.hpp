@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,19 +16,24 @@ namespace leapmap {
 
 class MapReader {
  public:
-  /// Opens a map (or the .part of one). Throws IoError if it is no leapmap map, or of a newer major version,
-  /// InputError while a sweep is writing it.
-  explicit MapReader(const std::string& path);
+  /// Opens a map (or the .part of one). Throws IoError if it is no leapmap map, of a newer major version, or
+  /// holds what no map does (hdf5_trust.hpp), InputError while a sweep is writing it.
+  explicit MapReader(const std::string& path, Locking locking = Locking::required);
   /// Reads a file that is open already and stays so; path is for messages.
   MapReader(const std::string& path, hid_t file);
 
-  /// A dimension: its name, unit and values.
+  /// A dimension: its name, unit and length, and the values of an axis. A list's one dimension, `design`,
+  /// counts from 0 and has no values here.
   struct Dimension {
     std::string name, unit;
+    std::size_t size = 0;
     std::vector<double> values;
   };
   const std::vector<Dimension>& dimensions() const { return dimensions_; }
   std::vector<std::size_t> shape() const;
+  bool is_list() const { return dimensions_[0].name == "design"; }
+  /// The blocks in which a field is stored: its chunks, or some of a size that memory bears.
+  Tiling blocks(const std::string& field) const;
 
   /// The datasets that lie along all dimensions, in file order: the fields and, in a list, its parameters.
   const std::vector<std::string>& fields() const { return fields_; }
@@ -49,10 +55,13 @@ class MapReader {
 
   /// A block of a field, C order; codes as numbers. Throws IoError.
   std::vector<double> read(const std::string& field, const Tile& block) const;
+  /// The same of a field of words, of which a double would not hold every bit.
+  std::vector<std::uint64_t> read_words(const std::string& field, const Tile& block) const;
+  /// Opens a dataset of the root. Throws IoError.
+  hdf5::Handle open(const std::string& dataset) const;
 
  private:
   void survey();
-  hdf5::Handle open(const std::string& dataset) const;
 
   std::string path_;
   hdf5::File own_;

@@ -16,8 +16,9 @@ namespace leapmap {
 inline constexpr std::string_view map_filetype = "leapmap map";
 inline constexpr std::string_view trace_filetype = "leapmap trace";
 inline constexpr int format_major = 1;  ///< readers refuse a newer one
-inline constexpr int format_minor =
-    3;  ///< 1: f4; 2: compression, status_counts, the NeXus group; 3: Coulomb friction's fields
+/// 1: f4; 2: compression, status_counts, the NeXus group; 3: Coulomb friction's fields; 4: a checksum of each
+/// chunk and of the file, the audit's state.
+inline constexpr int format_minor = 4;
 
 /// A measured quantity, stored as f8, NaN where it does not apply.
 struct Quantity {
@@ -37,6 +38,7 @@ inline std::size_t designs_in(const StatusCounts& counts) {
 /// A small code, stored as u1.
 struct Code {
   std::uint8_t (*value)(const Outcome&);
+  void (*put)(Outcome&, std::uint8_t);      ///< the inverse
   std::uint8_t fill;                        ///< what a design not computed shows
   std::span<const std::string_view> names;  ///< flag_meanings of 0, 1, 2, ...; empty: a count
 };

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A table of a study on disk: columns of numbers or texts along one dimension, `row`.
+/// Tables on disk, as the studies and a traced motion make them: columns along one dimension.
 #pragma once
 
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "map/hdf5.hpp"
+#include "map/journaled_file.hpp"
 
 namespace leapmap {
 
@@ -15,12 +15,20 @@ struct TableColumn {
   std::string name;
   std::string unit;  ///< as UDUNITS reads it; "1": a pure number, or a text
   std::string long_name;
-  std::variant<std::vector<double>, std::vector<std::string>> values;
+  hdf5::SeriesValues values;
 };
 
-/// Writes the columns, all equally long, as a netCDF-readable HDF5 file, replacing path only once it is
-/// whole. Throws InputError if path is a file of another type, IoError if it cannot be written.
-void write_table(const std::string& path, const std::string& filetype, std::span<const TableColumn> columns,
-                 std::span<const hdf5::Attribute> attributes);
+/// Columns, all equally long, along the first one, which is their dimension.
+using Table = std::vector<TableColumn>;
+
+/// The dimension of a table whose rows have nothing but a number.
+TableColumn numbered_rows(std::size_t count);
+
+/// Writes the tables as a netCDF-readable HDF5 file, replacing path only once it is whole and was read again.
+/// Returns false if a power cut may undo that (JournaledFile::rename). Throws InputError if path is a file of
+/// another type, IoError if it cannot be written.
+[[nodiscard]] bool write_tables(const std::string& path, const std::string& filetype,
+                                std::span<const Table> tables, std::span<const hdf5::Attribute> attributes,
+                                Locking locking);
 
 }  // namespace leapmap

@@ -25,7 +25,39 @@ void gather_as(std::span<const Outcome> outcomes, std::byte* to, const Value& va
   }
 }
 
+void append_checksum(std::vector<std::byte>& bytes) {
+  const std::uint32_t checksum = fletcher32(bytes);
+  const auto* first = reinterpret_cast<const std::byte*>(&checksum);
+  bytes.insert(bytes.end(), first, first + sizeof checksum);
+}
+
 }  // namespace
+
+std::uint32_t fletcher32(std::span<const std::byte> bytes) {
+  constexpr std::size_t most_words = 256;  // of which the weighted sum fits 32 bits: 256 * 257 / 2 * 65535
+  // Modulo 65535, with 65535 for a multiple of it, as folding the carries back in leaves it.
+  const auto folded = [](std::uint64_t sum) { return sum == 0 ? sum : (sum - 1) % 65535 + 1; };
+  std::uint64_t sum = 0, sum_of_sums = 0;
+  const std::size_t words = bytes.size() / 2;
+  for (std::size_t first = 0; first < words; first += most_words) {
+    const auto count = static_cast<std::uint32_t>(std::min(most_words, words - first));
+    std::uint32_t plain = 0, weighted = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::uint16_t word = 0;
+      std::memcpy(&word, bytes.data() + 2 * (first + i), sizeof word);
+      const std::uint32_t high_first = (word & 0xffu) << 8 | word >> 8;
+      plain += high_first;
+      weighted += (count - i) * high_first;
+    }
+    sum_of_sums = folded(sum_of_sums + count * sum + weighted);
+    sum = folded(sum + plain);
+  }
+  if (bytes.size() % 2 != 0) {
+    sum = folded(sum + (std::to_integer<std::uint64_t>(bytes.back()) << 8));
+    sum_of_sums = folded(sum_of_sums + sum);
+  }
+  return static_cast<std::uint32_t>(sum_of_sums << 16 | sum);
+}
 
 void TileEncoder::Free::operator()(libdeflate_compressor* compressor) const {
   libdeflate_free_compressor(compressor);
@@ -45,8 +77,10 @@ EncodedTile TileEncoder::encode(std::size_t number, std::span<const Outcome> out
   encoded.number = number;
   for (const Outcome& outcome : outcomes) ++encoded.statuses[static_cast<std::size_t>(outcome.status)];
   gather(outcomes);
-  for (std::size_t f = 0; f < columns_.size(); ++f)
-    encoded.chunks.push_back(filter(spread(tile, f), value_bytes(*layout_, *layout_->fields[f])));
+  for (std::size_t f = 0; f < columns_.size(); ++f) {
+    encoded.chunks.push_back(deflate(spread(tile, f), value_bytes(*layout_, *layout_->fields[f])));
+    append_checksum(encoded.chunks.back().bytes);
+  }
   return encoded;
 }
 
@@ -96,8 +130,9 @@ std::span<const std::byte> TileEncoder::spread(const Tile& tile, std::size_t fie
   return chunk_;
 }
 
-/// HDF5's filters: first bytes of equal rank together (for values of more than one byte), then zlib's format.
-EncodedChunk TileEncoder::filter(std::span<const std::byte> values, std::size_t size) {
+/// HDF5's filters before the checksum: first bytes of equal rank together (for values of more than one byte),
+/// then zlib's format.
+EncodedChunk TileEncoder::deflate(std::span<const std::byte> values, std::size_t size) {
   if (!compressor_) return {{values.begin(), values.end()}};
   const bool shuffles = size > 1;
   if (shuffles) {
@@ -107,13 +142,11 @@ EncodedChunk TileEncoder::filter(std::span<const std::byte> values, std::size_t 
       for (std::size_t i = 0; i < count; ++i) shuffled_[rank * count + i] = values[i * size + rank];
     values = shuffled_;
   }
-  EncodedChunk chunk{std::vector<std::byte>(values.size())};
+  packed_.resize(values.size());
   const std::size_t packed = libdeflate_zlib_compress(compressor_.get(), values.data(), values.size(),
-                                                      chunk.bytes.data(), chunk.bytes.size());
+                                                      packed_.data(), packed_.size());
   if (packed == 0) return {{values.begin(), values.end()}, shuffles ? 2u : 1u};  // it would not get smaller
-  chunk.bytes.resize(packed);
-  chunk.bytes.shrink_to_fit();
-  return chunk;
+  return {{packed_.begin(), packed_.begin() + static_cast<std::ptrdiff_t>(packed)}};
 }
 
 }  // namespace leapmap

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A tile's outcomes as the chunks of the file: typed, shuffled and deflated. The expensive half of writing,
-/// done by each thread for itself.
+/// A tile's outcomes as the chunks of the file: typed, shuffled, deflated and given a checksum. The expensive
+/// half of writing, done by each thread for itself.
 #pragma once
 
 #include <array>
@@ -35,6 +35,10 @@ struct EncodedTile {
   }
 };
 
+/// The checksum of HDF5's filter fletcher32: Fletcher's sums, modulo 65535, over 16-bit words, high byte
+/// first.
+std::uint32_t fletcher32(std::span<const std::byte> bytes);
+
 /// Encodes tile after tile. One a thread.
 class TileEncoder {
  public:
@@ -49,13 +53,13 @@ class TileEncoder {
   };
   void gather(std::span<const Outcome> outcomes);
   std::span<const std::byte> spread(const Tile& tile, std::size_t field);
-  EncodedChunk filter(std::span<const std::byte> values, std::size_t size);
+  EncodedChunk deflate(std::span<const std::byte> values, std::size_t size);
 
   const MapLayout* layout_;
   const Tiling* tiling_;
   std::unique_ptr<libdeflate_compressor, Free> compressor_;
   std::vector<std::vector<std::byte>> columns_;  ///< a field's values each, in the tile's order
-  std::vector<std::byte> chunk_, shuffled_;
+  std::vector<std::byte> chunk_, shuffled_, packed_;
 };
 
 }  // namespace leapmap

@@ -19,11 +19,12 @@ using hdf5::check;
 constexpr const char *tiles_attribute = "tiles_done", *checksum_attribute = "tiles_checksum",
                      *statuses_attribute = "status_counts", *seconds_attribute = "wall_time";
 
-void refuse_existing_map(const std::string& path, bool overwrite) {
+void refuse_existing_map(const std::string& path, bool overwrite, Locking locking) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw InputError(path + ": is a folder; allowed: a file's name");
   if (!overwrite && fs::exists(path, ignored))
     throw InputError(path + ": exists already; allowed: another -o, or --overwrite");
+  if (overwrite) hdf5::refuse_other_file(path, map_filetype, locking);
 }
 
 std::uint32_t checksum_of(std::uint32_t before, std::span<const std::byte> bytes,
@@ -36,27 +37,41 @@ std::vector<hsize_t> place_of(const Tile& tile) { return {tile.start.begin(), ti
 
 }  // namespace
 
-bool has_part(const std::string& path) {
+bool has_part(const std::string& path, Locking locking) {
   std::error_code ignored;  // of a folder that may not be entered: creating the file there tells
-  return fs::exists(part_of(path), ignored) && !hdf5::File::blank(part_of(path));
+  return fs::exists(part_of(path), ignored) && !hdf5::File::blank(part_of(path), locking);
+}
+
+std::uint32_t tiles_checksum(std::span<const hdf5::Handle> datasets, const Tiling& tiling, std::size_t tiles,
+                             const std::string& path) {
+  std::uint32_t sum = 0;
+  std::vector<std::byte> bytes;
+  for (std::size_t t = 0; t < tiles; ++t) {
+    const std::vector<hsize_t> place = place_of(tiling.tile(t));
+    for (const hdf5::Handle& dataset : datasets) {
+      const std::uint32_t skipped = hdf5::read_chunk(dataset, place, bytes, path + ": reading a tile");
+      sum = checksum_of(sum, bytes, skipped);
+    }
+  }
+  return sum;
 }
 
 MapWriter::MapWriter(const std::string& path, const MapLayout& layout, const Tiling& tiling)
     : path_(path), part_(part_of(path)), layout_(&layout), tiling_(&tiling) {}
 
 MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, const Tiling& tiling,
-                           std::span<const hdf5::Attribute> attributes, bool overwrite) {
-  refuse_existing_map(path, overwrite);
+                           std::span<const hdf5::Attribute> attributes, bool overwrite, Locking locking) {
+  refuse_existing_map(path, overwrite, locking);
   MapWriter writer(path, layout, tiling);
-  if (!overwrite && has_part(path))
+  if (!overwrite && has_part(path, locking))
     throw InputError(fmt::format(
         "{}: is what an interrupted sweep left; allowed: --resume to go on with it, another -o, or "
         "--overwrite to start anew",
         writer.part_));
-  writer.file_ = hdf5::File::create(writer.part_);
+  writer.file_ = hdf5::File::create(writer.part_, locking);
   writer.begun_ = true;
   writer.replace_ = overwrite;
-  refuse_existing_map(path, overwrite);  // again, now that nobody else can make it
+  refuse_existing_map(path, overwrite, locking);  // again, now that nobody else can make it
   hdf5::annotate(writer.file_, attributes);
   lay_out(writer.file_, layout, tiling);
   writer.datasets_ = open_fields(writer.file_, layout);
@@ -66,11 +81,11 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
 }
 
 MapWriter MapWriter::resume(const std::string& path, const MapLayout& layout, const Tiling& tiling,
-                            bool overwrite) {
-  refuse_existing_map(path, overwrite);
+                            bool overwrite, Locking locking) {
+  refuse_existing_map(path, overwrite, locking);
   MapWriter writer(path, layout, tiling);
   writer.replace_ = overwrite;
-  writer.file_ = hdf5::File::change(writer.part_);
+  writer.file_ = hdf5::File::change(writer.part_, locking);
   return writer;
 }
 
@@ -98,19 +113,7 @@ void MapWriter::verify() {
   progress_.seconds = hdf5::read_number(file_, seconds_attribute);
   datasets_ = open_fields(file_, *layout_);
 
-  std::vector<std::byte> bytes;
-  for (std::size_t t = 0; t < progress_.tiles; ++t) {
-    const std::vector<hsize_t> place = place_of(tiling_->tile(t));
-    for (const hdf5::Handle& dataset : datasets_) {
-      hsize_t size = 0;
-      std::uint32_t skipped_filters = 0;
-      check(H5Dget_chunk_storage_size(dataset, place.data(), &size), part_ + ": reading a tile");
-      bytes.resize(size);
-      check(H5Dread_chunk(dataset, H5P_DEFAULT, place.data(), &skipped_filters, bytes.data()),
-            part_ + ": reading a tile");
-      checksum_ = checksum_of(checksum_, bytes, skipped_filters);
-    }
-  }
+  checksum_ = tiles_checksum(datasets_, *tiling_, progress_.tiles, part_);
   if (checksum_ != one(checksum_attribute)) throw BrokenFile(part_ + ": its tiles are not what was written");
   committed_ = progress_.designs();
 }
@@ -139,24 +142,34 @@ void MapWriter::write_progress() {
   hdf5::annotate(file_, progress);
 }
 
-void MapWriter::commit() {
+void MapWriter::close_datasets() {
+  for (hdf5::Handle& dataset : datasets_) dataset.close(part_ + ": cannot be written");
+  datasets_.clear();
+}
+
+void MapWriter::commit(std::span<const hdf5::Attribute> attributes) {
   write_progress();
+  hdf5::annotate(file_, attributes);
   file_.flush();
   committed_ = progress_.designs();
 }
 
-void MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
+bool MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
   assert(progress_.tiles == tiling_->size());
   write_progress();
   hdf5::annotate(file_, attributes);
   hdf5::remove_attribute(file_, tiles_attribute);
-  datasets_.clear();
-  file_.finish(path_, replace_);
+  close_datasets();
+  return file_.finish(path_, replace_, [&](hid_t written) {
+    check_layout(written, *layout_, *tiling_);
+    if (tiles_checksum(open_fields(written, *layout_), *tiling_, tiling_->size(), part_) != checksum_)
+      throw BrokenFile(part_ + ": its tiles are not what was written");
+  });
 }
 
 void MapWriter::keep() {
   commit();
-  datasets_.clear();
+  close_datasets();
   file_.close();
   file_ = {};
 }

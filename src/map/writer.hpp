@@ -28,14 +28,15 @@ struct MapProgress {
 class MapWriter {
  public:
   /// Creates FILE.part and everything in it but the values. Refuses (InputError) to replace FILE or FILE.part
-  /// unless overwrite is set, and while another program holds FILE.part; throws IoError if it cannot be
-  /// written.
+  /// unless overwrite is set, any file but a map even then, and while another program holds FILE.part; throws
+  /// IoError if it cannot be written.
   static MapWriter begin(const std::string& path, const MapLayout& layout, const Tiling& tiling,
-                         std::span<const hdf5::Attribute> attributes, bool overwrite);
+                         std::span<const hdf5::Attribute> attributes, bool overwrite,
+                         Locking locking = Locking::required);
   /// Opens FILE.part, as of its last commit, to go on with it after verify. Throws as begin does, and
   /// BrokenFile if it is not whole.
   static MapWriter resume(const std::string& path, const MapLayout& layout, const Tiling& tiling,
-                          bool overwrite);
+                          bool overwrite, Locking locking = Locking::required);
   /// Without finish or keep before it: FILE.part is left as of its last commit, or removed if it is new and
   /// that holds no tile.
   ~MapWriter();
@@ -45,15 +46,18 @@ class MapWriter {
   void verify();
   /// Stores the next tile. One thread at a time.
   void write(const EncodedTile& tile);
-  /// Brings all tiles so far to disk at once. Throws IoError if the disk is full: what was committed stays.
-  void commit();
+  /// Brings all tiles so far to disk at once, and attributes of the root that go with them. Throws IoError if
+  /// the disk is full: what was committed stays.
+  void commit(std::span<const hdf5::Attribute> attributes = {});
   /// Designs that FILE.part keeps whatever happens.
   std::size_t committed() const { return committed_; }
   /// What was written so far; `seconds` is for the caller to count.
   const MapProgress& progress() const { return progress_; }
   void set_seconds(double seconds) { progress_.seconds = seconds; }
-  /// Adds closing attributes, brings everything to disk and gives the file its name.
-  void finish(std::span<const hdf5::Attribute> attributes);
+  /// Adds closing attributes, brings everything to disk, reads it again and gives the file its name. Returns
+  /// false if a power cut may undo the latter (JournaledFile::rename). Throws BrokenFile if what is read is
+  /// not what was written, IoError.
+  [[nodiscard]] bool finish(std::span<const hdf5::Attribute> attributes);
   /// Commits and closes the unfinished file, which stays FILE.part.
   void keep();
 
@@ -63,6 +67,7 @@ class MapWriter {
  private:
   MapWriter(const std::string& path, const MapLayout& layout, const Tiling& tiling);
   void write_progress();
+  void close_datasets();
 
   std::string path_, part_;
   const MapLayout* layout_;
@@ -81,6 +86,11 @@ inline std::string part_of(const std::string& path) { return path + ".part"; }
 
 /// Whether FILE.part is there with something in it: what an interrupted sweep left. Throws InputError while a
 /// sweep is writing it.
-bool has_part(const std::string& path);
+bool has_part(const std::string& path, Locking locking = Locking::required);
+
+/// CRC-32 of the first `tiles` tiles as stored, by tile and then by field, each chunk followed by the mask of
+/// the filters skipped for it. Throws IoError, which begins with `path`.
+std::uint32_t tiles_checksum(std::span<const hdf5::Handle> datasets, const Tiling& tiling, std::size_t tiles,
+                             const std::string& path);
 
 }  // namespace leapmap

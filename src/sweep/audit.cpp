@@ -2,13 +2,13 @@
 #include "sweep/audit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <mutex>
 
 #include "map/schema.hpp"
-#include "sweep/designs.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
@@ -111,85 +111,160 @@ std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, c
   return samples;
 }
 
-std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
-                                       const Solver& solve) {
+std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, double share,
+                                       const Tiling& tiling, const Tile& tile, const Solver& solve) {
+  const std::vector<std::size_t> drawn = audit_draw(share, tiling, tile);
   std::vector<AuditSample> samples;
   const DesignSpace space(spec);
-  for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile)) {
-    samples.push_back({tiling.number(tile, drawn), {}});
+  for (const std::size_t index : drawn) {
+    samples.push_back({tiling.number(tile, index), {}});
     const Design design = space.at(samples.back().number);
     solve({&design, 1}, {&samples.back().outcome, 1});
   }
-  return samples;
-}
-
-void take_quantities(const MapReader& map, const Spec& spec, const Tiling& tiling, const Tile& tile,
-                     std::span<AuditSample> samples) {
-  if (samples.empty()) return;
-  const std::vector<std::size_t> drawn = audit_draw(spec.numerics.audit, tiling, tile);
   for (const Field& field : map_fields()) {
-    const auto* quantity = std::get_if<Quantity>(&field.source);
-    if (!quantity || !stores(spec, field)) continue;
+    if (samples.empty() || !map.has(std::string(field.name))) continue;
+    const auto place = [&](const auto& values, const auto& put) {
+      for (std::size_t i = 0; i < samples.size(); ++i) put(samples[i].outcome, values[drawn[i]]);
+    };
+    if (const auto* word = std::get_if<Word>(&field.source)) {
+      place(map.read_words(std::string(field.name), tile),
+            [&](Outcome& outcome, std::uint64_t value) { outcome.*word->member = value; });
+      continue;
+    }
     const std::vector<double> values = map.read(std::string(field.name), tile);
-    const double unit = quantity->unit(time_unit(spec.scene));
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      samples[i].outcome.*quantity->member = values[drawn[i]] / unit;
+    if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
+      const double unit = quantity->unit(time_unit(spec.scene));
+      place(values, [&](Outcome& outcome, double value) { outcome.*quantity->member = value / unit; });
+    } else {
+      const auto& code = std::get<Code>(field.source);
+      place(values,
+            [&](Outcome& outcome, double value) { code.put(outcome, static_cast<std::uint8_t>(value)); });
+    }
   }
+  return samples;
 }
 
 std::string audit_method(const Numerics& numerics) {
   return resolved_method(numerics) == "exact" ? "gsl-rk8pd" : "exact";
 }
 
-AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
-                  const std::function<bool()>& stop_requested) {
-  const DesignSpace space(spec);
+void merge(AuditReport& report, const AuditReport& other) {
+  const auto least = [](std::optional<std::size_t>& mine, const std::optional<std::size_t>& theirs) {
+    if (theirs) mine = std::min(mine.value_or(*theirs), *theirs);
+  };
+  report.designs += other.designs;
+  report.max_abs_height_error = std::max(report.max_abs_height_error, other.max_abs_height_error);
+  report.max_rel_time_error = std::max(report.max_rel_time_error, other.max_rel_time_error);
+  report.failed += other.failed;
+  report.flag_mismatches += other.flag_mismatches;
+  report.undecided += other.undecided;
+  report.beyond_tolerance += other.beyond_tolerance;
+  least(report.first_mismatch, other.first_mismatch);
+  least(report.first_inaccurate, other.first_inaccurate);
+}
+
+namespace {
+
+/// The attributes that count designs, each with its member.
+constexpr std::array counts{std::pair{"audit_designs", &AuditReport::designs},
+                            std::pair{"audit_flag_mismatches", &AuditReport::flag_mismatches},
+                            std::pair{"audit_undecided", &AuditReport::undecided},
+                            std::pair{"audit_beyond_tolerance", &AuditReport::beyond_tolerance},
+                            std::pair{"audit_failed", &AuditReport::failed}};
+constexpr std::array errors{std::pair{"audit_max_abs_height_error", &AuditReport::max_abs_height_error},
+                            std::pair{"audit_max_rel_time_error", &AuditReport::max_rel_time_error},
+                            std::pair{"audit_allowed_error", &AuditReport::allowed_error}};
+constexpr std::array firsts{std::pair{"audit_first_mismatch", &AuditReport::first_mismatch},
+                            std::pair{"audit_first_inaccurate", &AuditReport::first_inaccurate}};
+
+}  // namespace
+
+std::vector<hdf5::Attribute> audit_attributes(const AuditReport& report) {
+  std::vector<hdf5::Attribute> attributes;
+  for (const auto& [name, member] : counts)
+    attributes.emplace_back(name, static_cast<std::int64_t>(report.*member));
+  for (const auto& [name, member] : errors) attributes.emplace_back(name, report.*member);
+  for (const auto& [name, member] : firsts)
+    attributes.emplace_back(
+        name, (report.*member) ? static_cast<std::int64_t>(*(report.*member)) : std::int64_t{-1});
+  return attributes;
+}
+
+AuditReport read_audit(const MapReader& map) {
+  AuditReport report;
+  report.method = map.attribute("audit_method");
+  for (const auto& [name, member] : counts)
+    report.*member = static_cast<std::size_t>(hdf5::read_integers(map.file(), name)[0]);
+  for (const auto& [name, member] : errors) report.*member = hdf5::read_number(map.file(), name);
+  for (const auto& [name, member] : firsts)
+    if (const std::int64_t design = hdf5::read_integers(map.file(), name)[0]; design >= 0)
+      report.*member = static_cast<std::size_t>(design);
+  return report;
+}
+
+Auditor::Auditor(const Spec& spec)
+    : spec_(spec),
+      space_(spec),
+      second_(make_solver(spec, audit_method(spec.numerics), audit_tolerance)),
+      exact_(make_solver(spec, "exact", audit_tolerance)) {
   const bool integrates = audit_method(spec.numerics) != "exact";
   const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
-  const double allowed =
-      std::max(spec.numerics.tolerance * (integrates ? 1.0 : adaptive_slack), own_error) + rounding;
+  allowed_ = std::max(spec.numerics.tolerance * (integrates ? 1.0 : adaptive_slack), own_error) + rounding;
+}
+
+AuditReport Auditor::begin() const {
   AuditReport report;
-  report.method = audit_method(spec.numerics);
-  report.allowed_error = allowed;
+  report.method = audit_method(spec_.numerics);
+  report.allowed_error = allowed_;
+  return report;
+}
+
+void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
+  const auto& [number, ours] = sample;
+  ++report.designs;
+  if (ours.status == Status::failed) {
+    ++report.failed;
+    return;
+  }
+  const Design design = space_.at(number);
+  Outcome theirs;
+  second_({&design, 1}, {&theirs, 1});
+  const Difference d = difference(ours, theirs, spec_.output);
+  const double height_allowed = allowed_ * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
+  bool inaccurate = !d.flags && (d.height > height_allowed || d.time > allowed_);
+  bool undecided = theirs.status == Status::failed;
+  if ((d.flags || inaccurate) && !undecided) {
+    const Difference ulp = sensitivity(exact_, design, spec_);
+    undecided = ulp.flags;
+    inaccurate = inaccurate && (d.height > std::max(height_allowed, 10.0 * ulp.height) ||
+                                d.time > std::max(allowed_, 10.0 * ulp.time));
+  }
+  if (undecided) {
+    ++report.undecided;
+    return;
+  }
+  if (d.flags) {
+    ++report.flag_mismatches;
+    report.first_mismatch = std::min(report.first_mismatch.value_or(number), number);
+    return;
+  }
+  report.max_abs_height_error = std::max(report.max_abs_height_error, d.height);
+  report.max_rel_time_error = std::max(report.max_rel_time_error, d.time);
+  if (!inaccurate) return;
+  ++report.beyond_tolerance;
+  report.first_inaccurate = std::min(report.first_inaccurate.value_or(number), number);
+}
+
+AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
+                  const std::function<bool()>& stop_requested) {
+  AuditReport report = Auditor(spec).begin();
   std::mutex reporting;
   parallel_for_each(samples.size(), threads, [&] {
-    return [&, second = make_solver(spec, report.method, audit_tolerance),
-            exact = make_solver(spec, "exact", audit_tolerance)](std::size_t i) {
-      const auto& [number, ours] = samples[i];
-      if (ours.status == Status::failed) {
-        const std::lock_guard lock(reporting);
-        ++report.designs, ++report.failed;
-        return !(stop_requested && stop_requested());
-      }
-      const Design design = space.at(number);
-      Outcome theirs;
-      second({&design, 1}, {&theirs, 1});
-      const Difference d = difference(ours, theirs, spec.output);
-      const double height_allowed = allowed * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
-      bool inaccurate = !d.flags && (d.height > height_allowed || d.time > allowed);
-      bool undecided = theirs.status == Status::failed && ours.status != Status::failed;
-      if ((d.flags || inaccurate) && !undecided) {
-        const Difference ulp = sensitivity(exact, design, spec);
-        undecided = ulp.flags;
-        inaccurate = inaccurate && (d.height > std::max(height_allowed, 10.0 * ulp.height) ||
-                                    d.time > std::max(allowed, 10.0 * ulp.time));
-      }
-      inaccurate = inaccurate && !undecided;
+    return [&, auditor = Auditor(spec)](std::size_t i) {
+      AuditReport one;
+      auditor.look_at(samples[i], one);
       const std::lock_guard lock(reporting);
-      ++report.designs;
-      if (undecided) {
-        ++report.undecided;
-      } else if (d.flags) {
-        ++report.flag_mismatches;
-        report.first_mismatch = std::min(report.first_mismatch.value_or(number), number);
-      } else {
-        report.max_abs_height_error = std::max(report.max_abs_height_error, d.height);
-        report.max_rel_time_error = std::max(report.max_rel_time_error, d.time);
-      }
-      if (inaccurate) {
-        ++report.beyond_tolerance;
-        report.first_inaccurate = std::min(report.first_inaccurate.value_or(number), number);
-      }
+      merge(report, one);
       return !(stop_requested && stop_requested());
     };
   });

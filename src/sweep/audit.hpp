@@ -12,6 +12,7 @@
 
 #include "map/reader.hpp"
 #include "map/tile.hpp"
+#include "sweep/designs.hpp"
 #include "sweep/solver.hpp"
 #include "sweep/spec.hpp"
 #include "trajectory/outcome.hpp"
@@ -24,21 +25,18 @@ struct AuditSample {
   Outcome outcome;
 };
 
-/// The designs of a tile that the audit looks at, by their place in it; which ones depends on the spec alone.
-/// Over all tiles, ceil(share * designs).
+/// The designs of a tile that the audit looks at, by their place in it; which ones depends on share and map
+/// alone. Over all tiles, ceil(share * designs).
 std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile);
 
 /// The samples drawn from a tile's outcomes, rounded as the map rounds them.
 std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
                                        std::span<const Outcome> outcomes);
 
-/// The samples of a tile that is in the map already: its designs solved again, for the flags, which are the
-/// same alone and among others. The quantities, whose last bits may not be, are then to be taken from the
-/// map.
-std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
-                                       const Solver& solve);
-void take_quantities(const MapReader& map, const Spec& spec, const Tiling& tiling, const Tile& tile,
-                     std::span<AuditSample> samples);
+/// The samples of a tile of a finished map: the outcomes are the solver's, but all that the map stores is the
+/// map's.
+std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, double share,
+                                       const Tiling& tiling, const Tile& tile, const Solver& solve);
 
 /// What the two methods disagree on.
 struct AuditReport {
@@ -61,12 +59,38 @@ struct AuditReport {
 /// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact.
 std::string audit_method(const Numerics& numerics);
 
-/// Solves the samples again and compares. An error is beyond the tolerance if it is larger than
-/// numerics.tolerance (a hundred times that for an adaptive stepper, whose tolerance is per step; no less
-/// than 1e-11, the audit's own error), and larger than 10 times what one unit in the last place of the inputs
-/// makes of it.
-/// A map in f4 is allowed a rounding of f4 on top. stop_requested is asked after each design; once true, the
-/// report covers what was done until then.
+/// Whether the two methods disagree on some design, by flags or beyond the tolerance.
+inline bool disagree(const AuditReport& report) { return report.first_mismatch || report.first_inaccurate; }
+
+/// Adds what was found on other designs of the same sweep. The order does not matter.
+void merge(AuditReport& report, const AuditReport& other);
+
+/// A report as a map's attributes, and back. The latter throws IoError if they are not there.
+std::vector<hdf5::Attribute> audit_attributes(const AuditReport& report);
+AuditReport read_audit(const MapReader& map);
+
+/// Solves samples again, one after the other, and compares. One a thread.
+class Auditor {
+ public:
+  /// Keeps a reference to spec.
+  explicit Auditor(const Spec& spec);
+  /// Adds what a sample comes to. An error is beyond the tolerance if it is larger than numerics.tolerance (a
+  /// hundred times that for an adaptive stepper, whose tolerance is per step; no less than 1e-11, the audit's
+  /// own error), and larger than 10 times what one unit in the last place of the inputs makes of it. A map in
+  /// f4 is allowed a rounding of f4 on top.
+  void look_at(const AuditSample& sample, AuditReport& report) const;
+  /// A report on no design yet.
+  AuditReport begin() const;
+
+ private:
+  const Spec& spec_;
+  DesignSpace space_;
+  Solver second_, exact_;
+  double allowed_;
+};
+
+/// Looks at all samples on all threads. stop_requested is asked after each design; once true, the report
+/// covers what was done until then.
 AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
                   const std::function<bool()>& stop_requested = {});
 

@@ -57,6 +57,10 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
         space.fill(tile, designs);
         solve(designs, outcomes);
         Prepared prepared = prepare(number, tile, outcomes);
+        if (!prepared.take) {
+          delivery.close();
+          return false;
+        }
         const std::size_t bytes = prepared.bytes;
         const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
         return wanted && !(options.stop_requested && options.stop_requested());

@@ -22,7 +22,8 @@ struct EngineOptions {
 };
 
 /// What is left to do with a tile once a thread has prepared it: `take` is called in the order of the tiles'
-/// numbers, from one thread that does nothing else; until then it holds `bytes` of memory.
+/// numbers, from one thread that does nothing else; until then it holds `bytes` of memory. No `take`: the
+/// tile was given up as a stop was requested, and no tile after it is taken.
 struct Prepared {
   std::function<void()> take;
   std::size_t bytes = 0;

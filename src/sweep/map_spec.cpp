@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "map/hdf5_trust.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/options.hpp"
 
@@ -48,7 +49,9 @@ Spec spec_of(const MapReader& map, const std::string& origin) {
   const Tile all{{0}, {spec.list.count}, spec.list.count};
   for (const Option* parameter : design_parameters()) {
     const std::string name(parameter->key);
-    if (map.has(name)) spec.list.columns.push_back({name, map.read(name, all)});
+    if (!map.has(name)) continue;
+    hdf5::bytes_in_memory(map.open(name), fmt::format("{}: {}", origin, name));
+    spec.list.columns.push_back({name, map.read(name, all)});
   }
   return spec;
 }

@@ -26,7 +26,7 @@ class OrderedDelivery {
   /// Abandons what still waits.
   ~OrderedDelivery() { end(State::abandoned); }
 
-  /// Brings item `number`. False: the delivery has been abandoned, bring no more.
+  /// Brings item `number`. False: the delivery has been closed or abandoned, bring no more.
   bool bring(std::size_t number, Item item, std::size_t bytes) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock,
@@ -43,6 +43,13 @@ class OrderedDelivery {
   void finish() {
     end(State::finished);
     if (failure_) std::rethrow_exception(failure_);
+  }
+
+  /// Takes nothing more that is not due already: an item before it will never come.
+  void close() {
+    const std::lock_guard lock(mutex_);
+    if (state_ == State::open) state_ = State::finished;
+    changed_.notify_all();
   }
 
   /// Ends the delivery: whoever waits is let go.

@@ -4,14 +4,20 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
 
 namespace leapmap {
 
+/// As many as --threads takes; OMP_NUM_THREADS may ask for more than the machine can bear.
+inline constexpr int most_threads = 4096;
+
 /// The number of threads that will be used: threads, or OpenMP's own number if 0.
-inline int thread_count(int threads) { return threads > 0 ? threads : omp_get_max_threads(); }
+inline int thread_count(int threads) {
+  return std::min(threads > 0 ? threads : omp_get_max_threads(), most_threads);
+}
 
 /// Calls make_worker() once on each thread, then the worker it returns with 0, 1, ..., count - 1: numbers are
 /// begun in order, each by whichever thread is free. A worker that returns false ends its thread's part. An
@@ -20,7 +26,9 @@ template <class MakeWorker>
 void parallel_for_each(std::size_t count, int threads, const MakeWorker& make_worker) {
   std::atomic<std::size_t> next{0};
   std::exception_ptr failure;
-#pragma omp parallel num_threads(thread_count(threads))
+  const auto team =
+      static_cast<int>(std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(thread_count(threads))));
+#pragma omp parallel num_threads(team)
   {
     try {
       auto worker = make_worker();

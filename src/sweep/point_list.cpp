@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <string_view>
 
 #include "support/errors.hpp"
+#include "support/system_calls.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap {
@@ -45,16 +45,13 @@ const Option* column_option(const std::string& place, std::string_view name,
 }  // namespace
 
 PointList read_points(const std::string& path, const std::string& origin) {
-  std::ifstream file(path);
-  if (!file)
-    throw InputError(
-        fmt::format("{}: design.points = \"{}\": cannot be read; allowed: a CSV file", origin, path));
+  TextFile file(path, fmt::format("a CSV file as design.points of {}", origin));
   PointList list;
   list.path = path;
   list.count = 0;
   std::vector<const Option*> columns;
   std::string line;
-  for (long number = 1; std::getline(file, line); ++number) {
+  for (long number = 1; file.next_line(line); ++number) {
     std::string_view text = line;
     if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.ends_with('\r')) text.remove_suffix(1);
@@ -80,7 +77,6 @@ PointList read_points(const std::string& path, const std::string& origin) {
     }
     ++list.count;
   }
-  if (file.bad()) throw IoError(fmt::format("{}: reading failed", path));
   if (list.count == 0)
     throw InputError(fmt::format("{}: no designs; allowed: a header and at least one line", path));
   return list;

@@ -65,16 +65,21 @@ void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Faile
   for (const Field& field : map_fields()) {
     if (!stores(spec, field)) continue;
     const std::string name(field.name), what = "retrying failed designs in " + name;
-    const hdf5::Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, what);
+    hdf5::Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, what);
     if (const auto* word = std::get_if<Word>(&field.source)) {
       store_words(dataset, *word, tile, designs, what);
-      continue;
+    } else {
+      std::vector<double> values = hdf5::read_block(dataset, tile.start, tile.extent, what);
+      for (const Failed& design : designs)
+        values[design.index] = stored_value(field, design.outcome, time_unit(spec.scene));
+      hdf5::write_block(dataset, tile.start, tile.extent, values, what);
     }
-    std::vector<double> values = hdf5::read_block(dataset, tile.start, tile.extent, what);
-    for (const Failed& design : designs)
-      values[design.index] = stored_value(field, design.outcome, time_unit(spec.scene));
-    hdf5::write_block(dataset, tile.start, tile.extent, values, what);
+    dataset.close(what);  // which writes the chunk
   }
+}
+
+std::uint32_t checksum_of(hid_t file, const Spec& spec, const Tiling& tiling, const std::string& path) {
+  return tiles_checksum(open_fields(file, layout_of(spec)), tiling, tiling.size(), path);
 }
 
 /// Settles every failed design of the copy and says so in it. Nothing: a stop was requested.
@@ -113,7 +118,7 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
     if (stop_requested && stop_requested()) return std::nullopt;
   }
   report.still_failed = static_cast<std::size_t>(report.statuses[static_cast<std::size_t>(Status::failed)]);
-  hdf5::remove_attribute(file, "tiles_checksum");  // of the tiles as they were
+  hdf5::write_attribute(file, "tiles_checksum", std::int64_t{checksum_of(file, spec, tiling, path)});
   hdf5::write_attribute(file, "status_counts", report.statuses);
   const std::int64_t before =
       hdf5::has_attribute(file, "retry_designs") ? hdf5::read_integers(file, "retry_designs")[0] : 0;
@@ -137,17 +142,26 @@ Numerics retry_numerics(const Numerics& there, const Numerics& here) {
 }
 
 std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spec, int threads,
-                                        const std::function<bool()>& stop_requested) {
-  const std::string copy = part_of(path);
-  if (has_part(path))
-    throw InputError(copy + ": is what an interrupted sweep left; allowed: first --resume, or remove it");
-  hdf5::File file = hdf5::File::copy(path, copy);
+                                        Locking locking, const std::function<bool()>& stop_requested) {
+  const JournaledFile original(path, JournaledFile::Access::read, locking);
+  std::optional<hdf5::File> file = hdf5::File::copy(original, path + ".retry", locking, stop_requested);
+  if (!file) return std::nullopt;
   try {
-    const auto report = settle_all(file, path, spec, threads, stop_requested);
-    report && report->retried > 0 ? file.finish(path) : file.discard();
+    auto report = settle_all(*file, path, spec, threads, stop_requested);
+    if (!report || report->retried == 0) {
+      file->discard();
+      return report;
+    }
+    if (!original.is_named(path))
+      throw IoError(path + ": another program has replaced or removed it meanwhile");
+    report->durable = file->finish(path, true, [&](hid_t written) {
+      const Tiling tiling(shape_of(spec));
+      if (checksum_of(written, spec, tiling, path) != hdf5::read_integers(written, "tiles_checksum")[0])
+        throw BrokenFile(path + ".retry: its tiles are not what was written");
+    });
     return report;
   } catch (...) {
-    file.discard();
+    file->discard();
     throw;
   }
 }

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <sstream>
 
 #include "support/errors.hpp"
+#include "support/system_calls.hpp"
 #include "sweep/options.hpp"
 #include "sweep/point_list.hpp"
 
@@ -229,15 +229,6 @@ void override_with(std::vector<Entry>& entries, const Entry& entry) {
   found == entries.end() ? entries.push_back(entry) : void(*found = entry);
 }
 
-std::string read_text(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  if (!file.is_open() || file.bad() || text.bad() || std::filesystem::is_directory(path))
-    throw InputError(fmt::format("{}: cannot be read; allowed: a spec in TOML", path));
-  return text.str();
-}
-
 /// A points file is looked for beside the spec first, then from the working folder.
 std::string find_points(const Spec& spec) {
   namespace fs = std::filesystem;
@@ -251,7 +242,7 @@ std::string find_points(const Spec& spec) {
 std::string origin_of(const Spec& spec) { return spec.origin.empty() ? "command line" : spec.origin; }
 
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {
-  Spec spec = parse_spec(path.empty() ? "" : read_text(path), path, overrides);
+  Spec spec = parse_spec(path.empty() ? "" : TextFile(path, "a spec in TOML").rest(), path, overrides);
   if (spec.points.empty()) return spec;
   spec.points =
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere

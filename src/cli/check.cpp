@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap check: whether a map is what was written, and right.
+#include "sweep/check.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/spoken.hpp"
+#include "support/errors.hpp"
+#include "support/printable.hpp"
+#include "support/system_calls.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct CheckArguments {
+  std::string path;
+  CheckOptions options;
+};
+
+/// Prints what check_map finds. Returns whether that is nothing.
+bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
+  for (const std::string& finding : report.findings) say("WRONG    {}\n", printable(finding));
+  if (!report.findings.empty()) return false;
+  say("read     {} designs in {} tiles{}: every one is what was written\n", grouped(report.designs),
+      grouped(report.tiles), report.whole ? "" : ", all that the stopped sweep left");
+  if (report.sample)
+    say("sample   {} designs again by {}: height within {:.1e} diameters, time within {:.1e}{}\n",
+        grouped(report.sample->designs), report.sample->method, report.sample->max_abs_height_error,
+        report.sample->max_rel_time_error,
+        report.sample->undecided > 0 ? fmt::format("; {} nobody can decide", report.sample->undecided) : "");
+  say("right    {}\n", printable(arguments.path));
+  return true;
+}
+
+/// Looks for what is wrong with a file whose bytes are known to have changed, in a process of its own: HDF5
+/// itself crashes on some damaged files.
+void tell_damage(const CheckArguments& arguments) {
+  flush_out();
+  const pid_t child = ::fork();
+  if (child < 0) return;
+  if (child == 0) {
+    try {
+      tell_findings(arguments, check_map(arguments.path, arguments.options));
+      flush_out();
+    } catch (const std::exception& error) {
+      ::dprintf(STDOUT_FILENO, "WRONG    %s\n", printable(error.what()).c_str());
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  if (uninterrupted([&] { return ::waitpid(child, &status, 0); }) != child || !WIFEXITED(status))
+    say("WRONG    HDF5 cannot make sense of it\n");
+}
+
+int run(const CheckArguments& arguments) {
+  note_signals();
+  if (const auto holds = seal_holds(arguments.path, arguments.options.locking); holds && !*holds) {
+    say("WRONG    the bytes of {} are not those that were written; where:\n", printable(arguments.path));
+    tell_damage(arguments);
+    return 1;
+  } else if (!holds && !arguments.path.ends_with(".part")) {
+    say("note     {} has no checksum of all of it: it is older than format 1.4, or another program changed "
+        "it\n",
+        printable(arguments.path));
+  }
+  try {
+    const CheckReport report = check_map(arguments.path, arguments.options);
+    if (noted_signal() != 0) return 128 + noted_signal();
+    return tell_findings(arguments, report) ? 0 : 1;
+  } catch (const BrokenFile& error) {
+    say("WRONG    {}\n", printable(error.what()));
+    return 1;
+  }
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "check", "read all of a map and tell what is wrong in it, and where; exit status 1 if anything is");
+  auto arguments = std::make_shared<CheckArguments>();
+  CheckOptions& options = arguments->options;
+  options.stop_requested = [] { return noted_signal() != 0; };
+  command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")->required();
+  command->add_option("--sample", options.sample,
+                      "solve so many designs again by another method and compare; default: 200; 0: none");
+  command->add_option("--threads", options.threads, "threads to use; default: all")
+      ->check(CLI::Range(1, 4096));
+  add_no_lock(*command, options.locking);
+  command->footer(
+      "Each chunk has a checksum, the tiles together have one, and so has the file. Quantities are compared "
+      "with "
+      "what\ntheir fields may hold, designs by status with their count, axes and texts with the spec.\n"
+      "Examples:\n"
+      "  leapmap check maps/slope_mass_ratio.h5\n"
+      "  leapmap check maps/slope_mass_ratio.h5 --sample 10000");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/output.hpp"
+
+#include <cstdio>
+
+#include "support/printable.hpp"
+#include "support/system_calls.hpp"
+
+namespace leapmap::cli {
+
+void write_out(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+    fail_with_errno("standard output", "cannot be written");
+}
+
+void flush_out() {
+  if (std::fflush(stdout) != 0) fail_with_errno("standard output", "cannot be written");
+}
+
+void tell(const std::string& line) { std::fputs(("leapmap: " + printable(line) + "\n").c_str(), stderr); }
+
+void tell_of_folder(const std::string& path) {
+  tell(path +
+       ": is whole and in its place, but its folder cannot be brought to disk: a power cut may undo that");
+}
+
+}  // namespace leapmap::cli

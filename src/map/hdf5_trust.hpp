@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What an HDF5 file may hold before anything of it is read. A file that somebody sent may refer to other
+/// files of the machine: what leads there, or wants more memory than the file has bytes for, is refused.
+#pragma once
+
+#include <string>
+
+#include "map/hdf5.hpp"
+
+namespace leapmap::hdf5 {
+
+/// Throws IoError, naming the part, if the file holds an external link, external storage, a virtual dataset,
+/// a dataset of references, a filter other than shuffle, deflate and fletcher32, a chunk beyond all use, or
+/// more objects than any file of ours. `path` is for messages.
+void refuse_foreign_parts(hid_t file, const std::string& path);
+
+/// The bytes of a dataset's values. Throws IoError if the bytes stored for it could not hold so many: to be
+/// asked before memory is taken for all of them. `what` is for messages.
+std::size_t bytes_in_memory(hid_t dataset, const std::string& what);
+
+}  // namespace leapmap::hdf5

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Texts that come from files, as a terminal may show them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace leapmap {
+
+/// The text with every control character and every byte that is not UTF-8 written as \x1b, so that no text
+/// can give a terminal orders. `kept`: control characters that stay, for example "\n\t".
+std::string printable(std::string_view text, std::string_view kept = "");
+
+}  // namespace leapmap

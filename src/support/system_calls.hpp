@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What every use of the system's calls has in common: interrupted calls are made again, and every failure is
+/// told with the file and the reason.
+#pragma once
+
+#include <cerrno>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace leapmap {
+
+/// Makes a call again while a signal interrupts it, but not for ever: a file system that answers nothing but
+/// EINTR is broken, and its error is told like any other.
+template <class Call>
+auto uninterrupted(const Call& call) {
+  constexpr int most_trials = 100;
+  auto result = call();
+  for (int trial = 1; trial < most_trials && result == -1 && errno == EINTR; ++trial) result = call();
+  return result;
+}
+
+/// Throws IoError with path, `what` and errno's reason.
+[[noreturn]] void fail_with_errno(const std::string& path, std::string_view what);
+
+/// Opens /dev/null in place of each of the descriptors 0 to 2 that is closed: a file opened later would take
+/// its number, and what is printed would go into that file. False if that cannot be done.
+bool open_standard_streams();
+
+/// Reads a text file from its beginning to its end.
+class TextFile {
+ public:
+  /// Throws InputError, saying what is `allowed`, if there is no such file that may be read, IoError if the
+  /// system fails.
+  TextFile(const std::string& path, std::string_view allowed);
+  ~TextFile();
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+
+  /// The next line without its end; false after the last one. Throws IoError.
+  bool next_line(std::string& line);
+  /// All that was not read yet. Throws IoError.
+  std::string rest();
+
+ private:
+  /// False at the end of the file.
+  bool read_more();
+
+  std::string path_;
+  int descriptor_;
+  std::string buffer_;
+  std::size_t next_ = 0;  ///< the first character of buffer_ that was not handed out
+};
+
+}  // namespace leapmap

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "map/layout.hpp"
+#include "map/reader.hpp"
+#include "map/writer.hpp"
+#include "support/errors.hpp"
+#include "sweep/map_layout.hpp"
+#include "sweep/map_spec.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t most_findings = 20;
+constexpr double beyond = 1e100;  // no quantity of a hoop is as large
+
+/// A map being read through; findings are counted on past those that are told.
+struct Check {
+  const MapReader& map;
+  const Spec& spec;
+  const Tiling& tiling;
+  const CheckOptions& options;
+  CheckReport& report;
+  StatusCounts statuses{};
+
+  void find(const std::string& finding) {
+    if (report.findings.size() < most_findings) report.findings.push_back(finding);
+    if (report.findings.size() == most_findings) report.findings.push_back("and perhaps more");
+  }
+  bool stopped() const { return options.stop_requested && options.stop_requested(); }
+  std::string place(const Field& field, std::size_t tile) const {
+    const Tile block = tiling.tile(tile);
+    return fmt::format("{} in tile {} ({} designs from number {})", field.name, tile, block.count,
+                       tiling.number(block, 0));
+  }
+};
+
+/// What is wrong with a field's values in a tile; empty: nothing.
+std::string wrong_value(const Field& field, const std::vector<double>& values) {
+  const auto* code = std::get_if<Code>(&field.source);
+  if (!code && !std::holds_alternative<Quantity>(field.source)) return {};
+  for (const double value : values) {
+    const bool right = code ? code->names.empty() || value == code->fill ||
+                                  (value >= 0.0 && value < static_cast<double>(code->names.size()))
+                            : std::isnan(value) || std::abs(value) < beyond;
+    if (!right) return fmt::format("holds {}, which it never does", value);
+  }
+  return {};
+}
+
+void check_tile(Check& check, const Field& field, std::size_t tile) {
+  try {
+    const std::vector<double> values = check.map.read(std::string(field.name), check.tiling.tile(tile));
+    if (const std::string wrong = wrong_value(field, values); !wrong.empty())
+      return check.find(fmt::format("{}: {}", check.place(field, tile), wrong));
+    if (field.name == "status")
+      for (const double value : values) ++check.statuses[static_cast<std::size_t>(value)];
+  } catch (const IoError& error) {
+    check.find(fmt::format("{}: {}", check.place(field, tile), error.what()));
+  }
+}
+
+void check_tiles(Check& check, const MapLayout& layout) {
+  for (std::size_t t = 0; t < check.report.tiles && !check.stopped(); ++t)
+    for (const Field* field : layout.fields) check_tile(check, *field, t);
+  const bool counted = std::ranges::any_of(layout.fields, [](const Field* f) { return f->name == "status"; });
+  if (check.stopped() || !check.report.findings.empty()) return;
+  if (counted && check.statuses != check.map.status_counts())
+    check.find("status: there are not as many designs of each as the map says");
+  const std::string checksum = "tiles_checksum";
+  if (hdf5::has_attribute(check.map.file(), checksum) &&
+      tiles_checksum(open_fields(check.map.file(), layout), check.tiling, check.report.tiles, "tiles") !=
+          hdf5::read_integers(check.map.file(), checksum)[0])
+    check.find("the tiles are not those that were written: their checksum is another");
+}
+
+/// A sample of the finished tiles against another method.
+void check_sample(Check& check) {
+  if (check.options.sample == 0 || check.report.designs == 0) return;
+  const double share =
+      std::min(1.0, static_cast<double>(check.options.sample) / static_cast<double>(check.tiling.designs()));
+  const Solver solve = make_solver(check.spec);
+  std::vector<AuditSample> samples;
+  for (std::size_t t = 0; t < check.report.tiles && !check.stopped(); ++t)
+    std::ranges::move(audit_samples(check.map, check.spec, share, check.tiling, check.tiling.tile(t), solve),
+                      std::back_inserter(samples));
+  const AuditReport audited = audit(check.spec, samples, check.options.threads, check.options.stop_requested);
+  const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
+    if (design)
+      check.find(fmt::format("design {}: {} than {} does; see it by: {}", *design, what, audited.method,
+                             hop_command(check.spec, DesignSpace(check.spec).at(*design))));
+  };
+  tell(audited.first_mismatch, "the map says another status, flag, number of candidates or sequence");
+  tell(audited.first_inaccurate,
+       fmt::format("the map differs by more than {:.1e}, that is more", audited.allowed_error));
+  check.report.sample = audited;
+}
+
+}  // namespace
+
+std::optional<bool> seal_holds(const std::string& path, Locking locking) {
+  return JournaledFile(path, JournaledFile::Access::read, locking).seal_holds();
+}
+
+CheckReport check_map(const std::string& path, const CheckOptions& options) {
+  const MapReader map(path, options.locking);
+  const Spec spec = spec_of(map, path);
+  const MapLayout layout = layout_of(spec);
+  if (shape_of(spec) != map.shape()) throw BrokenFile(path + ": its spec is of other designs than it holds");
+  const Tiling tiling(map.shape());
+  CheckReport report;
+  report.whole = map.is_whole();
+  report.designs = designs_in(map.status_counts());
+  report.tiles = tiling.size();
+  if (!report.whole) {
+    const std::int64_t done = hdf5::read_integers(map.file(), "tiles_done")[0];
+    if (done < 0 || static_cast<std::size_t>(done) > tiling.size())
+      throw BrokenFile(path + ": it says that more tiles are done than it has");
+    report.tiles = static_cast<std::size_t>(done);
+  }
+  Check check{map, spec, tiling, options, report};
+  try {
+    check_layout(map.file(), layout, tiling);
+    check_tiles(check, layout);
+    if (report.findings.empty() && !check.stopped()) check_sample(check);
+  } catch (const IoError& error) {
+    check.find(error.what());
+  }
+  return report;
+}
+
+}  // namespace leapmap
