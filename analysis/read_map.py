@@ -7,11 +7,14 @@
     m.fields["jump_height"]    # an array along all axes, NaN where there is no jump
     m.code("status", "jumped") # where a code has a meaning, as a boolean array
 """
-import os
+import math
+import re
 from dataclasses import dataclass, field
 
 import h5py
 import numpy as np
+
+from open_file import Refused, opened
 
 FORMAT_MAJOR = 1  # the newest format this reader knows
 
@@ -86,21 +89,23 @@ class Map:
         return found
 
 
-def _read(path, filetype):
-    if not os.path.exists(path):
-        raise NotAMap(f"{path}: does not exist")
+def _read(path, filetype, most_designs=math.inf):
     try:
-        file = h5py.File(path, "r")
+        with opened(path) as file:
+            return _read_open(path, file, filetype, most_designs)
+    except Refused as error:
+        raise NotAMap(f"{path}: {error}") from None
+    except FileNotFoundError:
+        raise NotAMap(f"{path}: does not exist") from None
+    except MemoryError:
+        raise NotAMap(f"{path}: holds more than this machine has memory for") from None
     except OSError as error:
         raise NotAMap(f"{path}: cannot be read as HDF5 ({error})") from None
-    with file:
-        try:
-            return _read_open(path, file, filetype)
-        except (AttributeError, IndexError, KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
-            raise NotAMap(f"{path}: is damaged, or not written by leapmap ({str(error).strip()})") from None
+    except (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError) as error:
+        raise NotAMap(f"{path}: is damaged, or not written by leapmap ({str(error).strip()})") from None
 
 
-def _read_open(path, file, filetype):
+def _read_open(path, file, filetype, most_designs):
     attributes = dict(file.attrs)
     if attributes.get("filetype") != filetype:
         raise NotAMap(f'{path}: is not a {filetype} (its attribute filetype is {attributes.get("filetype")!r})')
@@ -108,9 +113,13 @@ def _read_open(path, file, filetype):
         raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
                       "use a newer leapmap")
     result = Map(str(path), attributes, fields=Fields(str(path)))
-    for name, dataset in file.items():
-        if not isinstance(dataset, h5py.Dataset):  # the group that tells viewers what to plot
-            continue
+    datasets = {name: dataset for name, dataset in file.items() if isinstance(dataset, h5py.Dataset)}  # the group is for viewers
+    for name, dataset in datasets.items():
+        if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name):
+            raise NotAMap(f"{path}: is damaged: it has a dataset of the name {name!r}")
+        if dataset.size > most_designs:
+            raise NotAMap(f"{path}: holds {dataset.size} designs, too many for this (at most {most_designs}); sweep fewer")
+    for name, dataset in datasets.items():
         result.about[name] = dict(dataset.attrs)
         if h5py.h5ds.is_scale(dataset.id):
             continue
@@ -118,12 +127,13 @@ def _read_open(path, file, filetype):
         result.fields[name] = dataset.asstr()[()] if texts else dataset[()]
         result.tile = dataset.chunks or result.tile
         for dimension in dataset.dims:  # the order of dimensions is the fields' own
-            scale = dimension[0]
-            result.dims.setdefault(scale.name.lstrip("/"), scale[()])
+            axis = dimension[0].name.lstrip("/")
+            result.dims.setdefault(axis, datasets[axis][()])
     return result
 
 
 BEYOND = 1e100  # no quantity of a hoop is as large
+BEYOND_SPEC = 1e15  # nor any number of a spec
 
 
 def _check_numbers(m, name, values, dimensions):
@@ -139,14 +149,18 @@ def _check_scene(m):
     if not isinstance(m.attributes.get("spec"), str):
         raise NotAMap(f"{m.path}: is damaged: its attribute spec is no text")
     numbers = m.numbers()
+    for key, value in numbers.items():
+        if not abs(value) < BEYOND_SPEC:
+            raise NotAMap(f"{m.path}: is damaged: its spec says {key} = {value}")
     for key, least in (("radius", 0.0), ("gravity", 0.0), ("runway", 0.0), ("tolerance", 0.0), ("hop_height", -1e-300)):
         if not least < numbers.get(key, np.nan) < np.inf:
             raise NotAMap(f"{m.path}: is damaged: its spec says {key} = {numbers.get(key, 'nothing')}")
 
 
-def read_map(path):
-    """A map, as `leapmap sweep` writes it. Raises NotAMap with one clear line for anything else."""
-    m = _read(path, "leapmap map")
+def read_map(path, most_designs=math.inf):
+    """A map, as `leapmap sweep` writes it. Raises NotAMap with one clear line for anything else, and for a map of more than
+    most_designs before it is read."""
+    m = _read(path, "leapmap map", most_designs)
     _check_scene(m)
     for name, values in m.dims.items():
         _check_numbers(m, name, values, 1)

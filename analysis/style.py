@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One look for all charts: fonts, colours, and how a figure is saved."""
 import argparse
+import contextlib
+import io
 import os
 import sys
 
@@ -32,16 +34,38 @@ def stem(output):
     return output.removesuffix(".png").removesuffix(".svg").removesuffix(".pdf")
 
 
+def replace_file(path, content):
+    """Writes bytes to a file, in a folder made if need be. An older file, also one behind a link, is replaced once the new one is
+    on disk; whatever fails before that leaves it as it was. Raises OSError."""
+    path = os.path.realpath(path)
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise OSError(f"{path}: is a folder, a device or a pipe; allowed: a file's name")
+    folder = os.path.dirname(path)
+    os.makedirs(folder, exist_ok=True)
+    unfinished = f"{path}.{os.getpid()}.part"
+    try:
+        with open(unfinished, "xb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        with open(unfinished, "rb") as file:
+            if file.read() != content:
+                raise OSError(f"{path}: what was written cannot be read again")
+        os.replace(unfinished, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(unfinished)
+        raise
+
+
 def save(figure, output):
     """Writes PNG, SVG and PDF, the same bytes for the same map, and says where they are."""
     output = stem(output)
-    folder = os.path.dirname(output)
-    if folder:
-        os.makedirs(folder, exist_ok=True)
     for ending, metadata in (("png", None), ("svg", {"Date": None}), ("pdf", {"CreationDate": None})):
-        path = f"{output}.{ending}"
-        figure.savefig(path, metadata=metadata)
-        print(path)
+        drawn = io.BytesIO()
+        figure.savefig(drawn, format=ending, metadata=metadata)
+        replace_file(f"{output}.{ending}", drawn.getvalue())
+        print(f"{output}.{ending}")
     plt.close(figure)
 
 
@@ -90,9 +114,17 @@ def legend_above(figure, handles):
 
 
 def run(main, *errors):
-    """Runs a chart's main; the errors named end it with one line and status 2."""
+    """Runs a chart's main; the errors named end it with one line and status 2, a lack of memory with status 1."""
     try:
         main()
+        sys.stdout.flush()
     except errors as error:
-        print(f"{os.path.basename(sys.argv[0])}: {error}", file=sys.stderr)
-        sys.exit(2)
+        status, text = 2, str(error)
+    except MemoryError:
+        status, text = 1, "out of memory"
+    else:
+        return
+    text = "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)  # no text gives a terminal orders
+    with contextlib.suppress(OSError, AttributeError):  # a stream that is full, or closed
+        print(f"{os.path.basename(sys.argv[0])}: {text}", file=sys.stderr, flush=True)
+    os._exit(status)  # and not by HDF5's handler at exit, which crashes on a file that it could not close

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 #include "support/errors.hpp"
 
@@ -13,9 +14,13 @@ namespace leapmap::hdf5 {
 namespace {
 
 /// HDF5's reasons go from the call that was made to what really went wrong; the last one is worth telling.
-herr_t keep_description(unsigned, const H5E_error2_t* error, void* reason) {
-  if (error->desc && *error->desc) *static_cast<std::string*>(reason) = error->desc;
-  return 0;
+herr_t keep_description(unsigned, const H5E_error2_t* error, void* reason) noexcept {
+  try {
+    if (error->desc && *error->desc) *static_cast<std::string*>(reason) = error->desc;
+    return 0;
+  } catch (const std::bad_alloc&) {  // none may pass through C: HDF5 would stay locked
+    return -1;
+  }
 }
 
 Handle scalar() { return {H5Screate(H5S_SCALAR), H5Sclose, "creating a dataspace"}; }

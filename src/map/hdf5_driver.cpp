@@ -135,16 +135,20 @@ Handle creation_of(const std::string& path) {
   return creation;
 }
 
-Handle open_in(const std::shared_ptr<JournaledFile>& file, unsigned flags) {
+enum class Mode { read, change };
+
+/// The mode is no flag of HDF5's: those are macros that initialise the library, with its handler at exit,
+/// before initialise() can keep it away.
+Handle open_in(const std::shared_ptr<JournaledFile>& file, Mode mode) {
   const Handle access = access_to(file);
   const std::string& path = file->path();
   try {
-    Handle opened(H5Fopen(path.c_str(), flags, access), H5Fclose, path + ": cannot be read as HDF5");
+    Handle opened(H5Fopen(path.c_str(), mode == Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR, access), H5Fclose,
+                  path + ": cannot be read as HDF5");
     refuse_foreign_parts(opened, path);
     return opened;
-  } catch (const BrokenFile&) {
-    throw;
   } catch (const IoError& error) {
+    file->rethrow_failure();  // it is the system that failed
     throw BrokenFile(error.what());
   }
 }
@@ -174,13 +178,13 @@ File File::create(const std::string& path, Locking locking) {
 
 File File::open(const std::string& path, Locking locking) {
   File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::read, locking));
-  file.handle_ = open_in(file.bytes_, H5F_ACC_RDONLY);
+  file.handle_ = open_in(file.bytes_, Mode::read);
   return file;
 }
 
 File File::change(const std::string& path, Locking locking) {
   File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::change, locking));
-  file.handle_ = open_in(file.bytes_, H5F_ACC_RDWR);
+  file.handle_ = open_in(file.bytes_, Mode::change);
   file.flush();  // cuts off what was written after the last one
   return file;
 }
@@ -205,7 +209,7 @@ std::optional<File> File::copy(const JournaledFile& original, const std::string&
     std::error_code ignored;
     std::filesystem::permissions(to, std::filesystem::status(original.path(), ignored).permissions(),
                                  ignored);
-    file.handle_ = open_in(file.bytes_, H5F_ACC_RDWR);
+    file.handle_ = open_in(file.bytes_, Mode::change);
   } catch (...) {
     file.discard();
     throw;
@@ -255,7 +259,7 @@ void refuse_other_file(const std::string& path, std::string_view filetype, Locki
 bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify) {
   close();
   {
-    Handle written = open_in(bytes_, H5F_ACC_RDONLY);
+    Handle written = open_in(bytes_, Mode::read);
     verify(written);
     written.close(bytes_->path() + ": cannot be read");
   }

@@ -5,8 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <numeric>
+#include <exception>
 
 #include "support/errors.hpp"
 #include "support/printable.hpp"
@@ -21,6 +20,7 @@ constexpr std::size_t most_deflation = 1032;  // of zlib's format: 258 bytes a c
 struct Survey {
   std::string refusal;  ///< empty: nothing found
   std::size_t objects = 0;
+  std::exception_ptr failure;  ///< what looking at it threw
 };
 
 bool is_known_filter(const Handle& creation, unsigned number) {
@@ -77,7 +77,8 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* link, void* contex
     if (refusal.empty()) return 0;
     survey.refusal = fmt::format("{} {}", printable(name), refusal);
     return 1;
-  } catch (const std::exception&) {  // none may pass through C
+  } catch (...) {  // none may pass through C: HDF5 would stay locked
+    survey.failure = std::current_exception();
     return -1;
   }
 }
@@ -86,7 +87,9 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* link, void* contex
 
 void refuse_foreign_parts(hid_t file, const std::string& path) {
   Survey survey;
-  check(H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &survey), path + ": cannot be surveyed");
+  const herr_t visited = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &survey);
+  if (survey.failure) std::rethrow_exception(survey.failure);
+  check(visited, path + ": cannot be surveyed");
   if (!survey.refusal.empty()) throw IoError(fmt::format("{}: is refused: {}", path, survey.refusal));
 }
 

@@ -65,6 +65,11 @@ bool sync_folder(const std::string& path) {
   return ::close(descriptor) == 0 && synced;
 }
 
+std::string folder_of(const std::string& path) {
+  const std::string parent = std::filesystem::path(path).parent_path();
+  return parent.empty() ? "." : parent;
+}
+
 struct stat status_of(int descriptor, const std::string& path) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) fail_with_errno(path, "cannot be read");
@@ -121,7 +126,7 @@ void append(std::vector<std::byte>& bytes, const T& value) {
 
 template <class F>
 void JournaledFile::attempt(const F& f) const {
-  if (failed_) throw IoError(failure_.empty() ? path_ + ": failed before" : failure_);
+  rethrow_failure();
   try {
     f();
   } catch (const std::exception& error) {
@@ -129,6 +134,10 @@ void JournaledFile::attempt(const F& f) const {
     failure_ = error.what();
     throw;
   }
+}
+
+void JournaledFile::rethrow_failure() const {
+  if (failed_) throw IoError(failure_.empty() ? path_ + ": failed before" : failure_);
 }
 
 JournaledFile::JournaledFile(const std::string& path, Access access, Locking locking)
@@ -235,7 +244,8 @@ void JournaledFile::commit() {
     }
     committed_ = size_;
     make_waiting_writes();
-    if (first && !sync_folder(path_)) throw IoError(path_ + ": its folder cannot be brought to disk");
+    if (first && !sync_folder(folder_of(path_)))
+      throw IoError(path_ + ": its folder cannot be brought to disk");
   });
 }
 
@@ -331,6 +341,8 @@ bool JournaledFile::rename(const std::string& path, bool replace) {
     if (!ours) throw IoError(name + ": another program has replaced or removed it meanwhile");
   };
   refuse_other(is_named(path_), path_);
+  const std::string folder = folder_of(path);
+  std::string name = path;  // once it is renamed nothing may fail for want of memory
   int failed = -1;
   if (!replace) failed = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);
   const bool unknown = !replace && failed != 0 && (errno == EINVAL || errno == ENOSYS);  // to the file system
@@ -342,8 +354,8 @@ bool JournaledFile::rename(const std::string& path, bool replace) {
   } catch (const IoError&) {  // it was renamed, only looking fails
   }
   refuse_other(ours, path);
-  path_ = path;
-  return sync_folder(path);
+  path_.swap(name);
+  return sync_folder(folder);
 }
 
 void JournaledFile::unlink() const {

@@ -44,6 +44,8 @@ class JournaledFile {
   JournaledFile(const JournaledFile&) = delete;
   JournaledFile& operator=(const JournaledFile&) = delete;
 
+  /// Throws the first failure again, if there was one: for a reader that took it for the file's.
+  void rethrow_failure() const;
   /// Bytes from offset on, as last written; beyond the end: 0. Throws IoError.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
   /// Throws IoError, for instance on a full disk; what was committed stays.

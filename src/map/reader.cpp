@@ -5,6 +5,7 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
+#include <new>
 
 #include "map/hdf5_trust.hpp"
 #include "map/schema.hpp"
@@ -16,9 +17,13 @@ namespace {
 using hdf5::check;
 using hdf5::Handle;
 
-herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
+herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) noexcept {
+  try {
+    static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+    return 0;
+  } catch (const std::bad_alloc&) {  // none may pass through C: HDF5 would stay locked
+    return -1;
+  }
 }
 
 constexpr std::size_t most_axis_values = 1'000'000;  // what a spec takes

@@ -62,6 +62,7 @@ void check_tile(Check& check, const Field& field, std::size_t tile) {
     if (field.name == "status")
       for (const double value : values) ++check.statuses[static_cast<std::size_t>(value)];
   } catch (const IoError& error) {
+    check.map.rethrow_failure();
     check.find(fmt::format("{}: {}", check.place(field, tile), error.what()));
   }
 }
@@ -130,6 +131,7 @@ CheckReport check_map(const std::string& path, const CheckOptions& options) {
     check_tiles(check, layout);
     if (report.findings.empty() && !check.stopped()) check_sample(check);
   } catch (const IoError& error) {
+    map.rethrow_failure();
     check.find(error.what());
   }
   return report;

@@ -22,6 +22,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 constexpr Range non_negative{0.0, inf, true, false};
 constexpr Range positive{1e-9, 1e9};  // a length or an acceleration
 constexpr Range ratio{0.0, 1e12};
+constexpr Range coefficient{0.0, 1e6};  // of friction: more than any pair of materials has
 constexpr Range fraction{0.0, 1.0};
 
 std::vector<std::string_view> frictions() { return {"sticking", "coulomb"}; }
@@ -49,11 +50,11 @@ const std::array options{
            {},
            frictions},
     Option{"scene", "mu_static", ParameterSlot{&Design::mu_static}, "1",
-           "static friction coefficient; no effect when sticking", non_negative},
+           "static friction coefficient; no effect when sticking", coefficient},
     Option{"scene", "mu_kinetic", ParameterSlot{&Design::mu_kinetic}, "1",
            "kinetic friction coefficient, mu_static unless given; a lower mu_static counts as much; no "
            "effect when sticking",
-           non_negative},
+           coefficient},
     Option{"scene", "restitution", ParameterSlot{&Design::restitution}, "1",
            "Poisson restitution; no effect when sticking", fraction},
     Option{"scene", "rest_speed", NumberSlot{[](Spec& s) -> double& { return s.scene.rest_speed; }},

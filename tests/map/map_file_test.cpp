@@ -27,7 +27,7 @@ TEST(MapFile, WhatIsWrittenTileByTileIsReadBackInPlace) {
     testing::write_rest(writer, layout, tiling);
     EXPECT_FALSE(fs::exists(folder / "map.h5")) << "until it is whole it has no name";
     writer.set_seconds(1.5);
-    writer.finish(std::vector<hdf5::Attribute>{{"audit_designs", std::int64_t{7}}});
+    EXPECT_TRUE(writer.finish(std::vector<hdf5::Attribute>{{"audit_designs", std::int64_t{7}}}));
   }
   EXPECT_FALSE(fs::exists(folder / "map.h5.part"));
   const MapReader map(folder / "map.h5");
@@ -59,7 +59,7 @@ TEST(MapFile, AListHasOneDimensionAndItsParametersAlongIt) {
   const Tiling tiling({2}, {2});
   MapWriter writer = MapWriter::begin(folder / "list.h5", layout, tiling, small_attributes, false);
   testing::write_rest(writer, layout, tiling);
-  writer.finish({});
+  EXPECT_TRUE(writer.finish({}));
   const MapReader map(folder / "list.h5");
   ASSERT_EQ(map.dimensions().size(), 1u);
   EXPECT_EQ(map.dimensions()[0].name, "design");
@@ -105,7 +105,7 @@ TEST(MapFile, ExistingFilesAreRefusedAndLeftAlone) {
   };
   EXPECT_THROW(create(existing, false), InputError);
   EXPECT_EQ(fs::file_size(existing), 8u);
-  create(existing, true);  // not finished: the old file stays
+  EXPECT_THROW(create(existing, true), InputError) << "--overwrite is for maps";
   EXPECT_EQ(fs::file_size(existing), 8u);
   folder.write("other.h5.part", "left by an interrupted sweep");
   EXPECT_THROW(create(folder / "other.h5", false), InputError);
@@ -138,7 +138,7 @@ TEST(MapFile, FilesOfAnotherTypeOrANewerVersionAreRefusedWithAReason) {
   };
   EXPECT_NE(complaint(folder / "nowhere.h5").find("No such file"), std::string::npos);
   EXPECT_NE(complaint(folder.write("text.h5", "not HDF5")).find("cannot be read as HDF5"), std::string::npos);
-  hdf5::File::create(folder / "other.h5").finish(folder / "other.h5");
+  EXPECT_TRUE(hdf5::File::create(folder / "other.h5").finish(folder / "other.h5", true, [](hid_t) {}));
   EXPECT_NE(complaint(folder / "other.h5").find("not a leapmap map"), std::string::npos);
   {
     auto newer = small_attributes;
@@ -147,7 +147,7 @@ TEST(MapFile, FilesOfAnotherTypeOrANewerVersionAreRefusedWithAReason) {
     const Tiling tiling({3, 5}, {3, 5});
     MapWriter writer = MapWriter::begin(folder / "newer.h5", layout, tiling, newer, false);
     testing::write_rest(writer, layout, tiling);
-    writer.finish({});
+    EXPECT_TRUE(writer.finish({}));
   }
   EXPECT_NE(complaint(folder / "newer.h5").find("newer leapmap"), std::string::npos);
 }

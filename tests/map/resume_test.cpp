@@ -29,7 +29,7 @@ MapWriter begin(const std::string& path) {
 void sweep(const std::string& path) {
   MapWriter writer = begin(path);
   testing::write_rest(writer, layout, tiling, [&] { writer.commit(); });
-  writer.finish({});
+  EXPECT_TRUE(writer.finish({}));
 }
 
 /// Expects the first `tiles` tiles as they were written, and holes after them.
@@ -53,7 +53,7 @@ std::size_t resume(const std::string& path) {
   const std::size_t tiles = writer.progress().tiles;
   expect_values(writer.reader(), tiles);
   testing::write_rest(writer, layout, tiling);
-  writer.finish({});
+  EXPECT_TRUE(writer.finish({}));
   const MapReader map(path);
   expect_values(map, tiling.size());
   EXPECT_TRUE(map.is_whole());

@@ -31,7 +31,7 @@ Spec sweep(const std::string& path, std::vector<std::string> settings) {
       {"spec", resolved_text(spec)}};
   MapWriter writer = MapWriter::begin(path, layout, tiling, attributes, false);
   testing::sweep_into(writer, spec, layout, tiling);
-  writer.finish({});
+  EXPECT_TRUE(writer.finish({}));
   return spec;
 }
 
@@ -93,7 +93,7 @@ TEST(Retry, StoppedItLeavesTheMapAsItWas) {
   const Tile all{{0, 0}, {20, 30}, 600};
   const auto before = MapReader(folder / "map.h5").read("status", all);
   spec.numerics = retry_numerics(spec.numerics, spec.numerics);
-  EXPECT_FALSE(retry_failed(folder / "map.h5", spec, 1, [] { return true; }));
+  EXPECT_FALSE(retry_failed(folder / "map.h5", spec, 1, Locking::required, [] { return true; }));
   EXPECT_EQ(MapReader(folder / "map.h5").read("status", all), before);
 }
 

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Opens a file of leapmap's as h5py does, and refuses what no such file holds before any of it is read.
+
+A file that somebody sent may refer to other files of the machine, or want more memory than it has bytes for. And a sweep that
+was killed may leave a journal at the end of its .part: writes that are still to be made, which HDF5 itself cannot see."""
+import contextlib
+import fcntl
+import io
+import os
+import stat
+import struct
+import zlib
+
+import h5py
+
+FILTERS = {h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_FLETCHER32}
+MOST_OBJECTS = 4096
+MOST_CHUNK = 2**28
+DEFLATION = 1032  # the most that zlib's format packs into a byte
+HOLES = 2**30  # bytes that an unfinished map may have to be filled up with
+FOOTER = struct.Struct("<16sQQII")  # magic, where the journal begins, the file's size after it, 0, CRC-32
+HEAD = struct.Struct("<QQ")  # offset, length
+
+
+class Refused(Exception):
+    """The file is not what leapmap writes, or somebody is writing it."""
+
+
+def _bytes_at(file, begin, count):
+    file.seek(begin)
+    content = file.read(count)
+    if len(content) != count:
+        raise OSError("it ends too early")
+    return content
+
+
+class WithJournal(io.RawIOBase):
+    """A file as it will be once its journal is made: HDF5 reads it through this."""
+
+    def __init__(self, file, begin, size):
+        super().__init__()
+        self.file, self.size, self.place, self.writes = file, size, 0, []
+        journal = _bytes_at(file, begin, os.fstat(file.fileno()).st_size - FOOTER.size - begin)
+        at = 0
+        while at < len(journal):
+            if at + HEAD.size > len(journal):
+                raise Refused("is damaged: its journal makes no sense")
+            offset, length = HEAD.unpack_from(journal, at)
+            at += HEAD.size
+            if length > len(journal) - at or offset + length > begin:
+                raise Refused("is damaged: its journal makes no sense")
+            self.writes.append((offset, journal[at:at + length]))
+            at += length
+
+    def readable(self):
+        return True
+
+    def seekable(self):
+        return True
+
+    def seek(self, offset, whence=io.SEEK_SET):
+        self.place = {io.SEEK_SET: 0, io.SEEK_CUR: self.place, io.SEEK_END: self.size}[whence] + offset
+        return self.place
+
+    def tell(self):
+        return self.place
+
+    def readinto(self, buffer):
+        view = memoryview(buffer).cast("B")
+        count = max(0, min(len(view), self.size - self.place))
+        view[:count] = _bytes_at(self.file, self.place, count)
+        for offset, data in self.writes:
+            first, last = max(self.place, offset), min(self.place + count, offset + len(data))
+            if first < last:
+                view[first - self.place:last - self.place] = data[first - offset:last - offset]
+        self.place += count
+        return count
+
+
+def _with_journal(file):
+    """The file, or, if it ends with a journal, the file as that leaves it."""
+    size = os.fstat(file.fileno()).st_size
+    if size < FOOTER.size:
+        return file
+    magic, begin, whole, _, checksum = FOOTER.unpack(_bytes_at(file, size - FOOTER.size, FOOTER.size))
+    if magic != b"leapmap journal\n" or begin > size - FOOTER.size:
+        return file
+    found, left = 0, size - 4 - begin
+    while left > 0:
+        block = _bytes_at(file, size - 4 - left, min(left, 2**20))
+        found, left = zlib.crc32(block, found), left - len(block)
+    if found != checksum:
+        return file  # a commit that never came to its end
+    if whole > begin or size - begin > 2**30:
+        raise Refused("is damaged: its journal makes no sense")
+    return WithJournal(file, begin, whole)
+
+
+def _refusal(dataset, holes):
+    """What is wrong with a dataset, before any of its values is read; empty: nothing."""
+    creation = dataset.id.get_create_plist()
+    if creation.get_layout() == h5py.h5d.VIRTUAL:
+        return "is a virtual dataset, made of other files"
+    if creation.get_external_count():
+        return "has its values in another file"
+    if dataset.id.get_type().detect_class(h5py.h5t.REFERENCE):
+        return "holds references"
+    if any(creation.get_filter(i)[0] not in FILTERS for i in range(creation.get_nfilters())):
+        return "is packed by a filter that leapmap does not use"
+    size = dataset.id.get_type().get_size()
+    if creation.get_layout() == h5py.h5d.CHUNKED:
+        chunk = size
+        for extent in creation.get_chunk():
+            chunk *= extent
+        if chunk > MOST_CHUNK:
+            return "has chunks larger than leapmap writes"
+    for extent in dataset.shape or ():
+        size *= extent
+    if size > DEFLATION * dataset.id.get_storage_size() + (HOLES if holes else 0):
+        return "says that it holds more values than the file has bytes for"
+    return ""
+
+
+def _refuse_foreign_parts(file):
+    """Looks at every link and dataset of the file, and reads none."""
+    seen = 0
+    groups, visited = [("", file)], set()
+    holes = "tiles_done" in file.attrs
+    while groups:
+        path, group = groups.pop()
+        for name in group:
+            seen += 1
+            if seen > MOST_OBJECTS:
+                raise Refused("is refused: holds more objects than any file of leapmap's")
+            link = group.get(name, getlink=True)
+            if isinstance(link, h5py.SoftLink):
+                continue  # leads nowhere but into the same file
+            place = repr(f"{path}{name}")[1:-1]
+            if not isinstance(link, h5py.HardLink):
+                raise Refused(f"is refused: {place} is a link into another file")
+            thing = group[name]
+            if isinstance(thing, h5py.Group):
+                address = h5py.h5o.get_info(thing.id).addr
+                if address not in visited:
+                    visited.add(address)
+                    groups.append((f"{path}{name}/", thing))
+            elif not isinstance(thing, h5py.Dataset):
+                raise Refused(f"is refused: {place} is neither a dataset nor a group")
+            elif refusal := _refusal(thing, holes):
+                raise Refused(f"is refused: {place} {refusal}")
+
+
+@contextlib.contextmanager
+def opened(path):
+    """The file as h5py has it, for reading. Raises Refused or OSError."""
+    with contextlib.ExitStack() as stack:
+        # Not blocking: to open a pipe would wait for whoever writes to it.
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        raw = stack.enter_context(os.fdopen(descriptor, "rb"))
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise Refused("is a device, a pipe or a folder")
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Refused("a sweep is writing it; wait until that has ended") from None
+        except OSError:
+            pass  # a file system without locks: nothing is written here
+        content = _with_journal(raw)
+        h5 = stack.enter_context(h5py.File(path if content is raw else content, "r"))
+        _refuse_foreign_parts(h5)
+        yield h5
