@@ -32,6 +32,34 @@ std::size_t print_existing(const SweepArguments& arguments, const std::string& m
   return arguments.resume ? designs : 0;
 }
 
+double file_bytes(const MapLayout& layout, const Tiling& tiling) {
+  return static_cast<double>(map_bytes(layout, tiling)) + 5e4;
+}
+
+/// What the sweep, and what reads its map, take at most. The constants are measured, with room to spare: what
+/// the program or Python takes by itself, and what HDF5 keeps of a file's own structure.
+std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling& tiling, int threads) {
+  constexpr double program = 3e7, python = 1e8, most_structure = 4e7, explorer_per_design = 70.0;
+  constexpr std::size_t most_on_page = 4'000'000;  // analysis/explorer, MOST_DESIGNS
+  const double file = file_bytes(layout, tiling), designs = static_cast<double>(tiling.designs());
+  double axis_values = 0.0;
+  for (const Axis& axis : spec.axes) axis_values += static_cast<double>(axis.values.size());
+  const double held =
+      40.0 * axis_values + (spec.axes.empty() ? 72.0 * static_cast<double>(spec.list.count) : 0.0);
+  const double structure = std::min(0.01 * file, most_structure);
+  const double tile = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
+  const double sweep =
+      program + held + structure + threads * tile + std::min(file, static_cast<double>(most_waiting_bytes));
+  std::string line = fmt::format("about {} for the sweep with its audit; {} for leapmap info",
+                                 spoken_bytes(sweep), spoken_bytes(program + held + structure));
+  if (spec.axes.size() >= 2)
+    line += tiling.designs() > most_on_page
+                ? "; too many designs for the explorer"
+                : fmt::format("; {} for the explorer",
+                              spoken_bytes(python + file + explorer_per_design * designs));
+  return line;
+}
+
 }  // namespace
 
 void print_plan(const SweepArguments& arguments, const Spec& spec, const std::string& map,
@@ -53,19 +81,13 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   say("designs  {} in {} tiles of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
       fmt::join(tiling.tile_shape(), " x "));
   say("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
-  const double tile_bytes = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
-  double axis_values = 0.0;
-  for (const Axis& axis : spec.axes) axis_values += static_cast<double>(axis.values.size());
-  const double file = static_cast<double>(map_bytes(layout, tiling)) + 5e4;
-  const double memory = threads * tile_bytes + std::min(file, static_cast<double>(most_waiting_bytes)) + 2e7 +
-                        40.0 * axis_values +
-                        (spec.axes.empty() ? 64.0 * static_cast<double>(spec.list.count) : 0.0);
   std::vector<std::string_view> fields;
   for (const Field* field : layout.fields) fields.push_back(field->name);
   say("audit    {:g} of them, again by {}\n", spec.numerics.audit, audit_method(spec.numerics));
   say("fields   {} in {}\n", fmt::join(fields, ", "), spec.output.precision);
-  say("memory   about {}, at most\n", spoken_bytes(memory));
-  say("file     about {}{}\n", spoken_bytes(file), layout.compression > 0 ? " before compression" : "");
+  say("memory   {}\n", memory_line(spec, layout, tiling, threads));
+  say("file     about {}{}\n", spoken_bytes(file_bytes(layout, tiling)),
+      layout.compression > 0 ? " before compression" : "");
   const double seconds =
       seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already) / threads;
   say("time     about {} on {} threads\n", spoken_duration(seconds), threads);

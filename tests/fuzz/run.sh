@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Fuzzes the spec's parser and the map's reader, side by side, for so many seconds (default 600) from the corpus
+# Fuzzes the spec's parser, all that reads maps in C++ and read_map in Python, side by side, for so many seconds (default 600) from the corpus
 # here; ends with an error and the input that shows it if there is a finding.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -16,7 +16,10 @@ for subject in spec map; do
     -artifact_prefix="build/fuzz/$subject-" "$work/$subject" "tests/fuzz/corpus/$subject" > "$work/$subject.log" 2>&1 &
   eval "process_$subject=$!"
 done
+# A program of another build will do to make the map that read_map is shown changes of.
+program=$(ls build/release/leapmap build/dev/leapmap 2>/dev/null | head -1)
 failed=0
+[ -z "$program" ] || LEAPMAP=$program /usr/bin/python3 tests/fuzz/read_map_fuzz.py "$seconds" || failed=1
 for subject in spec map; do
   eval "wait \$process_$subject" || failed=1
   echo "$subject: $(grep -E 'stat::number_of_executed_units|stat::new_units_added|SUMMARY|ERROR' "$work/$subject.log" | tr -s ' \n' ' ')"
