@@ -102,13 +102,14 @@ def _read(path, filetype, most_designs=math.inf):
     except OSError as error:
         raise NotAMap(f"{path}: cannot be read as HDF5 ({error})") from None
     except (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError) as error:
-        raise NotAMap(f"{path}: is damaged, or not written by leapmap ({str(error).strip()})") from None
+        raise NotAMap(f"{path}: is damaged, or not written by leapmap ({' '.join(str(error).split())})") from None
 
 
 def _read_open(path, file, filetype, most_designs):
     attributes = dict(file.attrs)
-    if attributes.get("filetype") != filetype:
-        raise NotAMap(f'{path}: is not a {filetype} (its attribute filetype is {attributes.get("filetype")!r})')
+    told = attributes.get("filetype")
+    if not isinstance(told, str) or told != filetype:
+        raise NotAMap(f"{path}: is not a {filetype} (its attribute filetype is {' '.join(repr(told).split())[:80]})")
     if attributes["version"][0] > FORMAT_MAJOR:
         raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
                       "use a newer leapmap")
@@ -126,10 +127,18 @@ def _read_open(path, file, filetype, most_designs):
         texts = h5py.check_string_dtype(dataset.dtype)
         result.fields[name] = dataset.asstr()[()] if texts else dataset[()]
         result.tile = dataset.chunks or result.tile
-        for dimension in dataset.dims:  # the order of dimensions is the fields' own
-            axis = dimension[0].name.lstrip("/")
+        for axis in _axes_of(file, dataset):  # the order of dimensions is the fields' own
             result.dims.setdefault(axis, datasets[axis][()])
     return result
+
+
+def _axes_of(file, dataset):
+    """The names of a dataset's dimension scales. h5py's own way through HDF5 crashes where the attribute is another."""
+    attribute = h5py.h5a.open(dataset.id, b"DIMENSION_LIST")
+    element = h5py.check_vlen_dtype(attribute.dtype)
+    if element is None or h5py.check_ref_dtype(element) is not h5py.Reference or attribute.shape != (dataset.ndim,):
+        raise ValueError(f"{dataset.name} does not say what its dimensions are")
+    return [file[scales[0]].name.lstrip("/") for scales in dataset.attrs["DIMENSION_LIST"]]
 
 
 BEYOND = 1e100  # no quantity of a hoop is as large
@@ -138,7 +147,7 @@ BEYOND_SPEC = 1e15  # nor any number of a spec
 
 def _check_numbers(m, name, values, dimensions):
     """Real numbers of that many dimensions, NaN allowed; of fields, of sizes that can be drawn."""
-    if values.ndim != dimensions or values.dtype.kind not in "fiu":
+    if not isinstance(values, np.ndarray) or values.ndim != dimensions or values.dtype.kind not in "fiu":
         raise NotAMap(f"{m.path}: is damaged: {name} is no array of numbers over its axes")
     if name in m.fields and values.dtype.kind == "f" and (np.abs(values[~np.isnan(values)]) > BEYOND).any():
         raise NotAMap(f"{m.path}: is damaged: {name} holds numbers beyond all bounds")

@@ -11,8 +11,8 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "support/errors.hpp"
+#include "support/posix.hpp"
 #include "support/printable.hpp"
-#include "support/system_calls.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "support/errors.hpp"
-#include "support/system_calls.hpp"
+#include "support/posix.hpp"
 #include "support/version.hpp"
 
 namespace {

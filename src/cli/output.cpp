@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
+#include "support/posix.hpp"
 #include "support/printable.hpp"
-#include "support/system_calls.hpp"
 
 namespace leapmap::cli {
 

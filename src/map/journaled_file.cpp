@@ -16,7 +16,7 @@
 #include <filesystem>
 
 #include "support/errors.hpp"
-#include "support/system_calls.hpp"
+#include "support/posix.hpp"
 
 namespace leapmap {
 namespace {
@@ -323,7 +323,7 @@ void JournaledFile::read_seal() {
   Seal seal;
   if (stored_ < sizeof seal) return;
   read_all(descriptor_, path_, stored_ - sizeof seal, std::as_writable_bytes(std::span(&seal, 1)));
-  if (seal.magic != Seal{}.magic || seal.size != stored_ - sizeof seal) return;
+  if (seal.magic != Seal{}.magic || seal.reserved != 0 || seal.size != stored_ - sizeof seal) return;
   seal_ = seal.checksum;
   committed_ = stored_ = seal.size;
 }

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "support/errors.hpp"
-#include "support/system_calls.hpp"
+#include "support/posix.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap {

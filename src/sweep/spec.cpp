@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "support/errors.hpp"
-#include "support/system_calls.hpp"
+#include "support/posix.hpp"
 #include "sweep/options.hpp"
 #include "sweep/point_list.hpp"
 

@@ -218,5 +218,72 @@ TEST(JournaledFile, KeepsItsLastCommitWhenTheDiskIsFull) {
   EXPECT_EQ(bytes_of(folder / "file"), committed);
 }
 
+TEST(JournaledFile, RemembersItsFirstFailureAndCommitsNothingAfterIt) {
+  const testing::TemporaryFolder folder;
+  const auto states = write_rounds(folder / "file", 1);
+  {
+    JournaledFile file(folder / "file", Access::change);
+    long call = 0;
+    testing::before_system_call = [&](const testing::SystemCall& c) {
+      if (c.kind == testing::SystemCall::Kind::write && call++ == 1) throw IoError("the second write fails");
+    };
+    file.write(file.end(), Bytes(10, std::byte{8}));
+    EXPECT_THROW(file.write(file.end(), Bytes(10, std::byte{8})), IoError);
+    testing::before_system_call = nullptr;  // from here on the disk works again
+    EXPECT_THROW(file.write(file.end(), Bytes(10, std::byte{8})), IoError);
+    EXPECT_THROW(file.commit(), IoError);
+    EXPECT_THROW(file.seal(), IoError);
+    EXPECT_THROW(file.rethrow_failure(), IoError);
+  }
+  EXPECT_EQ(bytes_of(folder / "file"), states.back());
+}
+
+TEST(JournaledFile, IsSealedWithAChecksumThatEveryChangedBitBreaks) {
+  const testing::TemporaryFolder folder;
+  const auto states = write_rounds(folder / "file", 2);
+  {
+    JournaledFile file(folder / "file", Access::change);
+    EXPECT_FALSE(file.seal_holds().has_value()) << "not yet";
+    file.commit();
+    file.seal();
+  }
+  const Bytes sealed = bytes_of(folder / "file");
+  ASSERT_EQ(sealed.size(), states.back().size() + 32);
+  EXPECT_EQ(JournaledFile(folder / "file", Access::read).seal_holds(), true);
+  EXPECT_EQ(JournaledFile(folder / "file", Access::read).end(), states.back().size()) << "it is no content";
+  for (std::size_t i = 0; i < sealed.size(); i += 7) {
+    Bytes changed = sealed;
+    changed[i] ^= std::byte{4};
+    write_bytes(folder / "changed", changed);
+    EXPECT_NE(JournaledFile(folder / "changed", Access::read).seal_holds(), true) << "byte " << i;
+  }
+  {
+    JournaledFile file(folder / "file", Access::change);
+    file.write(file.end(), Bytes(3, std::byte{9}));
+    file.resize(file.end());
+    file.commit();
+  }
+  EXPECT_EQ(bytes_of(folder / "file").size(), states.back().size() + 3) << "a change takes the seal away";
+}
+
+TEST(JournaledFile, RenamesItselfAndNobodyElse) {
+  const testing::TemporaryFolder folder;
+  write_rounds(folder / "file", 1);
+  JournaledFile file(folder / "file", Access::change);
+  fs::remove(folder / "file");
+  folder.write("file", "another's");
+  EXPECT_THROW(static_cast<void>(file.rename(folder / "named", true)), IoError);
+  file.unlink();
+  EXPECT_TRUE(fs::exists(folder / "file")) << "it is another's";
+  EXPECT_FALSE(fs::exists(folder / "named"));
+}
+
+TEST(JournaledFile, IsAFileAndNothingElse) {
+  const testing::TemporaryFolder folder;
+  for (const Access access : {Access::read, Access::change, Access::create})
+    EXPECT_THROW(JournaledFile("/dev/null", access), InputError);
+  EXPECT_THROW(JournaledFile(folder / ".", Access::read), InputError);
+}
+
 }  // namespace
 }  // namespace leapmap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/system_calls.hpp"
+#include "support/posix.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
