@@ -11,11 +11,14 @@ import stat
 import struct
 import zlib
 
-import h5py
+os.environ.setdefault("HDF5_PLUGIN_PRELOAD", "::")  # no file makes HDF5 run other code; read as the library is loaded
+import h5py  # noqa: E402
 
-FILTERS = {h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_FLETCHER32}
+FILTERS = [h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_FLETCHER32]
+MOST_ATTRIBUTES = 256
 MOST_OBJECTS = 4096
 MOST_CHUNK = 2**28
+MOST_WRITES = 1_000_000
 DEFLATION = 1032  # the most that zlib's format packs into a byte
 HOLES = 2**30  # bytes that an unfinished map may have to be filled up with
 FOOTER = struct.Struct("<16sQQII")  # magic, where the journal begins, the file's size after it, 0, CRC-32
@@ -47,7 +50,7 @@ class WithJournal(io.RawIOBase):
                 raise Refused("is damaged: its journal makes no sense")
             offset, length = HEAD.unpack_from(journal, at)
             at += HEAD.size
-            if length > len(journal) - at or offset + length > begin:
+            if not 0 < length <= len(journal) - at or len(self.writes) >= MOST_WRITES or offset + length > begin:
                 raise Refused("is damaged: its journal makes no sense")
             self.writes.append((offset, journal[at:at + length]))
             at += length
@@ -96,7 +99,7 @@ def _with_journal(file):
     return WithJournal(file, begin, whole)
 
 
-def _refusal(dataset, holes):
+def _refusal(dataset, file_size, texts):
     """What is wrong with a dataset, before any of its values is read; empty: nothing."""
     creation = dataset.id.get_create_plist()
     if creation.get_layout() == h5py.h5d.VIRTUAL:
@@ -105,8 +108,15 @@ def _refusal(dataset, holes):
         return "has its values in another file"
     if dataset.id.get_type().detect_class(h5py.h5t.REFERENCE):
         return "holds references"
-    if any(creation.get_filter(i)[0] not in FILTERS for i in range(creation.get_nfilters())):
+    if not texts and h5py.check_vlen_dtype(dataset.dtype) or h5py.check_string_dtype(dataset.dtype) and not texts:
+        return "holds texts, or rows of any length"
+    filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
+    if filters != [f for f in FILTERS if f in filters]:  # each once, in our order: deflated twice, a few bytes would take any memory
         return "is packed by a filter that leapmap does not use"
+    if dataset.id.get_storage_size() > file_size:
+        return "says that it is larger than the file"
+    if len(dataset.attrs) > MOST_ATTRIBUTES:
+        return "has more attributes than any dataset of leapmap's"
     size = dataset.id.get_type().get_size()
     if creation.get_layout() == h5py.h5d.CHUNKED:
         chunk = size
@@ -114,18 +124,24 @@ def _refusal(dataset, holes):
             chunk *= extent
         if chunk > MOST_CHUNK:
             return "has chunks larger than leapmap writes"
-    for extent in dataset.shape or ():
-        size *= extent
-    if size > DEFLATION * dataset.id.get_storage_size() + (HOLES if holes else 0):
-        return "says that it holds more values than the file has bytes for"
     return ""
 
 
-def _refuse_foreign_parts(file):
+def _claimed(dataset):
+    """Bytes that a dataset's values take in memory beyond what its stored bytes could hold."""
+    size = dataset.id.get_type().get_size()
+    for extent in dataset.shape or ():
+        size *= extent
+    return max(0, size - DEFLATION * dataset.id.get_storage_size())
+
+
+def _refuse_foreign_parts(file, file_size, texts):
     """Looks at every link and dataset of the file, and reads none."""
-    seen = 0
+    seen, claimed = 0, 0
     groups, visited = [("", file)], set()
-    holes = "tiles_done" in file.attrs
+    if len(file.attrs) > MOST_ATTRIBUTES:
+        raise Refused("is refused: it has more attributes than any file of leapmap's")
+    holes = HOLES if "tiles_done" in file.attrs else 0
     while groups:
         path, group = groups.pop()
         for name in group:
@@ -146,13 +162,17 @@ def _refuse_foreign_parts(file):
                     groups.append((f"{path}{name}/", thing))
             elif not isinstance(thing, h5py.Dataset):
                 raise Refused(f"is refused: {place} is neither a dataset nor a group")
-            elif refusal := _refusal(thing, holes):
+            elif refusal := _refusal(thing, file_size, texts):
                 raise Refused(f"is refused: {place} {refusal}")
+            else:
+                claimed += _claimed(thing)
+                if claimed > holes:
+                    raise Refused(f"is refused: {place} says that it holds more values than the file has bytes for")
 
 
 @contextlib.contextmanager
-def opened(path):
-    """The file as h5py has it, for reading. Raises Refused or OSError."""
+def opened(path, texts=False):
+    """The file as h5py has it, for reading; texts: it may hold datasets of texts. Raises Refused or OSError."""
     with contextlib.ExitStack() as stack:
         # Not blocking: to open a pipe would wait for whoever writes to it.
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -164,8 +184,8 @@ def opened(path):
         except BlockingIOError:
             raise Refused("a sweep is writing it; wait until that has ended") from None
         except OSError:
-            pass  # a file system without locks: nothing is written here
+            pass  # a file system without locks: nothing is written here, and HDF5 itself refuses what it cannot lock
         content = _with_journal(raw)
         h5 = stack.enter_context(h5py.File(path if content is raw else content, "r"))
-        _refuse_foreign_parts(h5)
+        _refuse_foreign_parts(h5, os.fstat(descriptor).st_size, texts)
         yield h5

@@ -89,9 +89,9 @@ class Map:
         return found
 
 
-def _read(path, filetype, most_designs=math.inf):
+def _read(path, filetype, most_designs=math.inf, texts=False):
     try:
-        with opened(path) as file:
+        with opened(path, texts) as file:
             return _read_open(path, file, filetype, most_designs)
     except Refused as error:
         raise NotAMap(f"{path}: {error}") from None
@@ -124,12 +124,22 @@ def _read_open(path, file, filetype, most_designs):
         result.about[name] = dict(dataset.attrs)
         if h5py.h5ds.is_scale(dataset.id):
             continue
-        texts = h5py.check_string_dtype(dataset.dtype)
-        result.fields[name] = dataset.asstr()[()] if texts else dataset[()]
+        result.fields[name] = _texts_of(dataset) if h5py.check_string_dtype(dataset.dtype) else dataset[()]
         result.tile = dataset.chunks or result.tile
         for axis in _axes_of(file, dataset):  # the order of dimensions is the fields' own
             result.dims.setdefault(axis, datasets[axis][()])
     return result
+
+
+def _texts_of(dataset, most=2**26):
+    """A column of texts, which may all point at the same long one."""
+    found, size = [], 0
+    for i in range(len(dataset)):
+        found.append(dataset.asstr()[i])
+        size += len(found[-1])
+        if size > most:
+            raise ValueError(f"{dataset.name} holds more text than any table")
+    return np.array(found, object)
 
 
 def _axes_of(file, dataset):
@@ -211,4 +221,4 @@ def phases(sequence):
 
 def read_table(path, filetype):
     """A study's table, for example "leapmap precision": fields are its columns, numbers or texts."""
-    return _read(path, filetype)
+    return _read(path, filetype, texts=True)

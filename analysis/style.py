@@ -5,6 +5,7 @@ import contextlib
 import io
 import os
 import sys
+import tempfile
 
 import matplotlib
 
@@ -42,9 +43,13 @@ def replace_file(path, content):
         raise OSError(f"{path}: is a folder, a device or a pipe; allowed: a file's name")
     folder = os.path.dirname(path)
     os.makedirs(folder, exist_ok=True)
-    unfinished = f"{path}.{os.getpid()}.part"
+    umask = os.umask(0)
+    os.umask(umask)
+    mode = os.stat(path).st_mode & 0o7777 if os.path.exists(path) else 0o666 & ~umask
+    descriptor, unfinished = tempfile.mkstemp(dir=folder, prefix=os.path.basename(path)[:100] + ".", suffix=".part")
     try:
-        with open(unfinished, "xb") as file:
+        with open(descriptor, "wb") as file:
+            os.fchmod(descriptor, mode)
             file.write(content)
             file.flush()
             os.fsync(file.fileno())

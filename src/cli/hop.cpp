@@ -8,6 +8,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/provenance.hpp"
+#include "cli/sweep.hpp"
 #include "map/schema.hpp"
 #include "map/trace_file.hpp"
 #include "support/errors.hpp"
@@ -229,7 +230,7 @@ int run(const HopArguments& arguments) {
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
     attributes.emplace_back("status", std::string(name_of(story.outcome.status)));
-    if (!write_trace(arguments.trace, story, spec.scene, attributes, arguments.locking))
+    if (!write_trace(behind_links(arguments.trace), story, spec.scene, attributes, arguments.locking))
       tell_of_folder(arguments.trace);
   }
   if (arguments.json) {

@@ -171,7 +171,7 @@ int run(const InfoArguments& arguments) {
                     arguments.path, part));
   const MapReader map(arguments.path, arguments.locking);
   if (arguments.only_spec) {
-    write_out(printable(map.attribute("spec"), "\n\t"));
+    write_out(map.attribute("spec"));
     return 0;
   }
   if (arguments.failed) return list_failed(map, arguments);

@@ -8,7 +8,8 @@
 
 namespace leapmap::cli {
 
-void write_out(const std::string& text) {
+void write_out(const std::string& raw) {
+  const std::string text = printable(raw, "\n\t");
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
     fail_with_errno("standard output", "cannot be written");
 }

@@ -9,7 +9,8 @@
 
 namespace leapmap::cli {
 
-/// Writes to standard output. Throws IoError if that cannot be done, for instance on a full disk.
+/// Writes to standard output, control characters but line ends and tabs escaped. Throws IoError if that
+/// cannot be done, for instance on a full disk.
 void write_out(const std::string& text);
 /// Brings what was written on its way. Throws as write_out does.
 void flush_out();

@@ -11,6 +11,7 @@
 #include "cli/progress.hpp"
 #include "cli/provenance.hpp"
 #include "cli/spoken.hpp"
+#include "cli/sweep.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
 #include "study/stability.hpp"
@@ -137,7 +138,7 @@ int run(const StabilityArguments& arguments) {
   attributes.emplace_back("wall_time",
                           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   const std::array tables{table_of(rows)};
-  if (!write_tables(arguments.table, filetype, tables, attributes, arguments.locking))
+  if (!write_tables(behind_links(arguments.table), filetype, tables, attributes, arguments.locking))
     tell_of_folder(arguments.table);
   say("table    {} rows in {}\ncharts   /usr/bin/python3 analysis/stability_chart.py {}\n", rows.size(),
       arguments.table, shell_quoted(arguments.table));

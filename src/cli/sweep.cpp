@@ -115,7 +115,9 @@ int fill(const SweepArguments& arguments, const Spec& spec, const MapLayout& lay
   const StatusCounts statuses = writer.progress().statuses;
   if (!writer.finish({})) tell_of_folder(map);
   const int threads = thread_count(arguments.threads);
-  const double solving = course.seconds - course.audit_seconds / threads;
+  const auto team =
+      static_cast<double>(std::min<std::size_t>(static_cast<std::size_t>(threads), tiling.size()));
+  const double solving = course.seconds - course.audit_seconds / team;
   if (!arguments.quiet)
     say("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done - already),
         spoken_duration(solving), static_cast<double>(done - already) / solving, threads,
@@ -166,6 +168,11 @@ int run(const SweepArguments& arguments) {
   }
   try {
     return fill(arguments, spec, layout, tiling, map, writer);
+  } catch (const BrokenFile& error) {
+    throw IoError(
+        fmt::format("{}; the disk or its driver loses what it is given; begin anew by --overwrite, on "
+                    "another disk",
+                    error.what()));
   } catch (const IoError& error) {
     if (writer.committed() == 0) throw IoError(fmt::format("{}; nothing is kept", error.what()));
     throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by: {}",

@@ -122,6 +122,8 @@ void fail(const std::string& what) {
 
 void initialise() {
   [[maybe_unused]] static const herr_t once = H5dont_atexit();
+  [[maybe_unused]] static const herr_t no_plugins =
+      H5PLset_loading_state(0);  // no file makes us run other code
   [[maybe_unused]] thread_local const herr_t quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
@@ -278,7 +280,8 @@ std::uint32_t read_chunk(hid_t dataset, const std::vector<hsize_t>& place, std::
   hsize_t size = 0;
   std::uint32_t skipped_filters = 0;
   check(H5Dget_chunk_storage_size(dataset, place.data(), &size), what);
-  if (size > H5Dget_storage_size(dataset)) throw IoError(what + ": a chunk is larger than its dataset");
+  if (size > H5Dget_storage_size(dataset) || size > file_bytes(dataset))
+    throw IoError(what + ": a chunk is larger than its dataset");
   bytes.resize(size);
   check(H5Dread_chunk(dataset, H5P_DEFAULT, place.data(), &skipped_filters, bytes.data()), what);
   return skipped_filters;
@@ -310,6 +313,13 @@ void write_words(hid_t dataset, const std::vector<std::size_t>& start, const std
                  std::span<const std::uint64_t> values, const std::string& what) {
   const auto [memory, file] = select(dataset, start, extent, what);
   check(H5Dwrite(dataset, H5T_NATIVE_UINT64, memory, file, H5P_DEFAULT, values.data()), what);
+}
+
+std::uint64_t file_bytes(hid_t object) {
+  const Handle file(H5Iget_file_id(object), H5Fclose, "looking at a file");
+  hsize_t bytes = 0;
+  check(H5Fget_filesize(file, &bytes), "looking at a file");
+  return bytes;
 }
 
 std::vector<hsize_t> shape_of(hid_t dataset) {

@@ -127,6 +127,9 @@ std::vector<std::uint64_t> read_words(hid_t dataset, const std::vector<std::size
 void write_words(hid_t dataset, const std::vector<std::size_t>& start, const std::vector<std::size_t>& extent,
                  std::span<const std::uint64_t> values, const std::string& what);
 
+/// How long the file of an object is. Throws IoError.
+std::uint64_t file_bytes(hid_t object);
+
 /// A dataset's number of values along each dimension.
 std::vector<hsize_t> shape_of(hid_t dataset);
 

@@ -13,6 +13,7 @@
 
 #include "map/hdf5_trust.hpp"
 #include "support/errors.hpp"
+#include "support/posix.hpp"
 
 namespace leapmap::hdf5 {
 namespace {
@@ -147,28 +148,68 @@ Handle open_in(const std::shared_ptr<JournaledFile>& file, Mode mode) {
                   path + ": cannot be read as HDF5");
     refuse_foreign_parts(opened, path);
     return opened;
+  } catch (const ForeignFile&) {
+    throw;
   } catch (const IoError& error) {
     file->rethrow_failure();  // it is the system that failed
     throw BrokenFile(error.what());
   }
 }
 
-/// Of HDF5 files, and of those that begin with zeros.
-bool has_signature(const std::string& path) {
+enum class Beginning { other, hdf5, zeros };
+
+/// How a file begins: as HDF5 files do, or with zeros, as an unfinished file does that was never flushed.
+Beginning beginning_of(const std::string& path) {
   constexpr std::array signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   std::array<char, signature.size()> first{};
-  std::ifstream(path, std::ios::binary).read(first.data(), first.size());
-  return first == signature || first == decltype(first){};
+  if (!std::ifstream(path, std::ios::binary).read(first.data(), first.size())) return Beginning::other;
+  return first == signature           ? Beginning::hdf5
+         : first == decltype(first){} ? Beginning::zeros
+                                      : Beginning::other;
+}
+
+std::optional<std::string> filetype_of(const File& file) {
+  return has_attribute(file, "filetype") ? std::optional(read_text(file, "filetype")) : std::nullopt;
+}
+
+/// An unfinished file is emptied only if it is one of ours of that type, or HDF5 too damaged to say what it
+/// is.
+void refuse_other_unfinished(const std::string& path, std::string_view filetype, Locking locking) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) || !std::filesystem::is_regular_file(path, ignored) ||
+      std::filesystem::file_size(path, ignored) == 0)
+    return;
+  const Beginning beginning = beginning_of(path);
+  bool ours = beginning != Beginning::other;
+  try {
+    if (beginning == Beginning::hdf5) ours = filetype_of(File::open(path, locking)) == filetype;
+  } catch (const ForeignFile&) {
+    ours = false;
+  } catch (const BrokenFile&) {
+  }
+  if (!ours)
+    throw InputError(fmt::format(
+        "{}: is in the way, and no unfinished {}; allowed: another name, or remove it", path, filetype));
+}
+
+/// Makes a folder and those above it, and brings the names of new ones to disk.
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> parents;  // of what is new
+  for (auto made = folder; !made.empty() && !std::filesystem::exists(made, error); made = made.parent_path())
+    parents.push_back(made.parent_path());
+  std::filesystem::create_directories(folder, error);
+  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  for (const auto& parent : parents)
+    if (!sync_folder(parent.empty() ? "." : parent.string()))
+      throw IoError(folder.string() + ": cannot be brought to disk");
 }
 
 }  // namespace
 
-File File::create(const std::string& path, Locking locking) {
-  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-  }
+File File::create(const std::string& path, std::string_view filetype, Locking locking) {
+  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) make_folder(folder);
+  refuse_other_unfinished(path, filetype, locking);
   File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::create, locking));
   const Handle access = access_to(file.bytes_), creation = creation_of(path);
   file.handle_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose,
@@ -189,10 +230,12 @@ File File::change(const std::string& path, Locking locking) {
   return file;
 }
 
-std::optional<File> File::copy(const JournaledFile& original, const std::string& to, Locking locking,
+std::optional<File> File::copy(const JournaledFile& original, const std::string& to,
+                               std::string_view filetype, Locking locking,
                                const std::function<bool()>& stop_requested) {
   if (!original.seal_holds().value_or(true))
     throw BrokenFile(original.path() + ": is damaged: its bytes are not those that were written");
+  refuse_other_unfinished(to, filetype, locking);
   File file(std::make_shared<JournaledFile>(to, JournaledFile::Access::create, locking));
   try {
     std::vector<std::byte> bytes(std::size_t{1} << 20);
@@ -244,16 +287,16 @@ void refuse_other_file(const std::string& path, std::string_view filetype, Locki
   if (!std::filesystem::exists(there)) return;
   bool same = std::filesystem::is_regular_file(there);
   try {
-    if (same && std::filesystem::file_size(path, ignored) > 0) {
-      same = has_signature(path);
-      const File file = same ? File::open(path, locking) : File();
-      same = same && has_attribute(file, "filetype") && read_text(file, "filetype") == filetype;
-    }
-  } catch (const IoError&) {  // HDF5, but damaged
+    if (same && std::filesystem::file_size(path, ignored) > 0)
+      same = filetype_of(File::open(path, locking)) == filetype;
+  } catch (const BrokenFile&) {
+    same = false;
   }
   if (!same)
-    throw InputError(fmt::format("{}: exists and is no {}; allowed: a new name, or an older one to replace",
-                                 path, filetype));
+    throw InputError(
+        fmt::format("{}: exists and is no {}, or too damaged to say so; allowed: a new name, an older one to "
+                    "replace, or remove it",
+                    path, filetype));
 }
 
 bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify) {

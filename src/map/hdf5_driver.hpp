@@ -16,17 +16,20 @@ namespace leapmap::hdf5 {
 class File {
  public:
   File() = default;
-  /// A new file, emptying an old one, in a folder made if need be: V18 format, link and attribute creation
-  /// order tracked (netCDF readers need it). Throws InputError if somebody else holds it, IoError.
-  static File create(const std::string& path, Locking locking = Locking::required);
+  /// A new file in a folder made if need be, emptying an older unfinished one of that type: V18 format, link
+  /// and attribute creation order tracked (netCDF readers need it). Throws InputError if somebody else holds
+  /// it or another file is there, IoError.
+  static File create(const std::string& path, std::string_view filetype, Locking locking = Locking::required);
   /// An existing file, read-only, that holds nothing but what a file of ours may (hdf5_trust.hpp). Throws as
   /// create does, and BrokenFile if it is not HDF5 or not whole.
   static File open(const std::string& path, Locking locking = Locking::required);
   /// The same, to be changed.
   static File change(const std::string& path, Locking locking = Locking::required);
   /// A copy of a file, to be changed. Until it is closed it is blank: no journal, nothing to go on with.
-  /// Throws as these do, and BrokenFile if the original's seal is broken. Nothing: stop_requested said so.
-  static std::optional<File> copy(const JournaledFile& original, const std::string& to, Locking locking,
+  /// Throws as these do, and BrokenFile if the original has a seal and it is broken. Returns nullopt if
+  /// stop_requested said so.
+  static std::optional<File> copy(const JournaledFile& original, const std::string& to,
+                                  std::string_view filetype, Locking locking,
                                   const std::function<bool()>& stop_requested);
   File(File&&) = default;
   File& operator=(File&& other) noexcept;
@@ -60,7 +63,7 @@ class File {
 };
 
 /// What was made before may be made again, but no other file is ours to replace: throws InputError if path is
-/// there and neither a file of that type, nor empty, nor HDF5 that is too damaged to say what it is.
+/// there and neither empty nor a file of that type that can be read, IoError if the system fails to read it.
 void refuse_other_file(const std::string& path, std::string_view filetype,
                        Locking locking = Locking::required);
 

@@ -23,12 +23,21 @@ struct Survey {
   std::exception_ptr failure;  ///< what looking at it threw
 };
 
-bool is_known_filter(const Handle& creation, unsigned number) {
-  constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
-  unsigned flags = 0;
-  std::size_t values = 0;
-  const H5Z_filter_t filter = H5Pget_filter2(creation, number, &flags, &values, nullptr, 0, nullptr, nullptr);
-  return std::ranges::find(known, filter) != known.end();
+/// Whether the filters are ours: each at most once, in our order. Deflated twice, a few bytes would take any
+/// memory.
+bool has_our_filters(const Handle& creation) {
+  constexpr std::array ours{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
+  const int filters = H5Pget_nfilters(creation);
+  auto next = ours.begin();
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    next = std::find(
+        next, ours.end(),
+        H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr, nullptr));
+    if (next++ == ours.end()) return false;
+  }
+  return filters >= 0;
 }
 
 /// What is wrong with a dataset; empty: nothing.
@@ -40,11 +49,8 @@ std::string refusal_of_dataset(hid_t dataset) {
   if (layout == H5D_VIRTUAL) return "is a virtual dataset, made of other files";
   if (H5Pget_external_count(creation) != 0) return "has its values in another file";
   if (H5Tdetect_class(type, H5T_REFERENCE) != 0) return "holds references";
-  const int filters = H5Pget_nfilters(creation);
-  for (int i = 0; i < filters; ++i)
-    if (!is_known_filter(creation, static_cast<unsigned>(i)))
-      return "is packed by a filter that leapmap does not use";
-  if (filters < 0) return "has filters that cannot be read";
+  if (!has_our_filters(creation)) return "is packed by a filter that leapmap does not use";
+  if (H5Dget_storage_size(dataset) > file_bytes(dataset)) return "says that it is larger than the file";
   if (layout != H5D_CHUNKED) return {};
   std::array<hsize_t, H5S_MAX_RANK> chunk{};
   const int rank = H5Pget_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
@@ -90,13 +96,13 @@ void refuse_foreign_parts(hid_t file, const std::string& path) {
   const herr_t visited = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &survey);
   if (survey.failure) std::rethrow_exception(survey.failure);
   check(visited, path + ": cannot be surveyed");
-  if (!survey.refusal.empty()) throw IoError(fmt::format("{}: is refused: {}", path, survey.refusal));
+  if (!survey.refusal.empty()) throw ForeignFile(fmt::format("{}: is refused: {}", path, survey.refusal));
 }
 
 std::size_t bytes_in_memory(hid_t dataset, const std::string& what) {
   const Handle type(H5Dget_type(dataset), H5Tclose, what);
   const std::size_t size = H5Tget_size(type);
-  std::size_t most = H5Dget_storage_size(dataset);
+  std::size_t most = std::min<hsize_t>(H5Dget_storage_size(dataset), file_bytes(dataset));
   most = most > SIZE_MAX / most_deflation ? SIZE_MAX : most * most_deflation;
   std::size_t bytes = size;
   for (const hsize_t extent : shape_of(dataset))

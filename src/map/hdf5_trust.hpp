@@ -9,7 +9,7 @@
 
 namespace leapmap::hdf5 {
 
-/// Throws IoError, naming the part, if the file holds an external link, external storage, a virtual dataset,
+/// Throws ForeignFile, naming the part, if the file holds an external link, external storage, a virtual dataset,
 /// a dataset of references, a filter other than shuffle, deflate and fletcher32, a chunk beyond all use, or
 /// more objects than any file of ours. `path` is for messages.
 void refuse_foreign_parts(hid_t file, const std::string& path);

@@ -52,19 +52,6 @@ void cut(int descriptor, const std::string& path, std::uint64_t size) {
     fail_with_errno(path, "cannot be written");
 }
 
-/// Brings a file's name to disk. False if that failed: the name is there all the same. Folders that may not
-/// be read, and file systems that cannot sync folders, are as good as it gets.
-bool sync_folder(const std::string& path) {
-  const std::string parent = std::filesystem::path(path).parent_path(),
-                    folder = parent.empty() ? "." : parent;
-  const auto impossible = [] { return errno == EACCES || errno == EINVAL || errno == ENOTSUP; };
-  const int descriptor =
-      uninterrupted([&] { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
-  if (descriptor < 0) return impossible();
-  const bool synced = uninterrupted([&] { return ::fsync(descriptor); }) == 0 || impossible();
-  return ::close(descriptor) == 0 && synced;
-}
-
 std::string folder_of(const std::string& path) {
   const std::string parent = std::filesystem::path(path).parent_path();
   return parent.empty() ? "." : parent;
@@ -292,7 +279,9 @@ void JournaledFile::make_waiting_writes() {
 }
 
 void JournaledFile::read_journal() {
-  constexpr std::uint64_t most = std::uint64_t{1} << 30;  // of changed metadata between two commits
+  // Of changed metadata between two commits.
+  constexpr std::uint64_t most = std::uint64_t{1} << 30;
+  constexpr std::size_t most_writes = 1'000'000;
   Footer footer;
   if (stored_ < sizeof footer) return;
   read_all(descriptor_, path_, stored_ - sizeof footer, std::as_writable_bytes(std::span(&footer, 1)));
@@ -310,7 +299,8 @@ void JournaledFile::read_journal() {
     refuse_unless(left.size() >= sizeof head);
     std::memcpy(head.data(), left.data(), sizeof head);
     left = left.subspan(sizeof head);
-    refuse_unless(head[1] <= left.size() && head[0] <= footer.begin && head[1] <= footer.begin - head[0]);
+    refuse_unless(head[1] > 0 && waiting_.size() < most_writes && head[1] <= left.size() &&
+                  head[0] <= footer.begin && head[1] <= footer.begin - head[0]);
     waiting_.push_back({head[0], {left.begin(), left.begin() + static_cast<std::ptrdiff_t>(head[1])}});
     left = left.subspan(head[1]);
   }
@@ -345,8 +335,11 @@ bool JournaledFile::rename(const std::string& path, bool replace) {
   std::string name = path;  // once it is renamed nothing may fail for want of memory
   int failed = -1;
   if (!replace) failed = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);
-  const bool unknown = !replace && failed != 0 && (errno == EINVAL || errno == ENOSYS);  // to the file system
-  if (replace || unknown) failed = std::rename(path_.c_str(), path.c_str());
+  if (!replace && failed != 0 && (errno == EINVAL || errno == ENOSYS)) {  // unknown to the file system
+    failed = ::link(path_.c_str(), path.c_str());                         // which spares what is there, too
+    if (failed == 0) ::unlink(path_.c_str());
+  }
+  if (replace) failed = std::rename(path_.c_str(), path.c_str());
   if (failed != 0) fail_with_errno(path, "cannot be given its name");
   bool ours = true;
   try {

@@ -80,6 +80,9 @@ void MapReader::survey() {
   if (dimensions_.size() > 1 &&
       std::ranges::any_of(dimensions_, [](const Dimension& d) { return d.values.empty(); }))
     throw IoError(path_ + ": is a list and has other dimensions than design");
+  double designs = 1.0;
+  for (const Dimension& dimension : dimensions_) designs *= static_cast<double>(dimension.size);
+  if (designs > 1e12) throw IoError(path_ + ": says that it holds more than 10^12 designs");
   std::vector<hsize_t> expected;
   for (const Dimension& dimension : dimensions_) expected.push_back(dimension.size);
   for (const std::string& name : fields_)
@@ -119,6 +122,12 @@ StatusCounts MapReader::status_counts() const {
   StatusCounts counts{};
   const std::vector<std::int64_t> read = hdf5::read_integers(file_, "status_counts");
   std::copy_n(read.begin(), std::min(read.size(), counts.size()), counts.begin());
+  const auto designs = static_cast<std::int64_t>(Tiling(shape()).designs());
+  std::int64_t left = designs;
+  for (const std::int64_t count : counts) {
+    if (count < 0 || count > left) throw BrokenFile(path_ + ": is damaged: its status_counts make no sense");
+    left -= count;
+  }
   return counts;
 }
 

@@ -50,11 +50,6 @@ class MapReader {
   /// A root attribute as text, numbers in their shortest form; empty if it is not there.
   std::string attribute(const std::string& name) const;
 
-  /// Throws IoError if the system failed to read the file, and not the file to make sense.
-  void rethrow_failure() const {
-    if (own_.is_open()) own_.bytes().rethrow_failure();
-  }
-
   /// The root, for attributes of other kinds.
   hid_t file() const { return file_; }
 

@@ -34,7 +34,7 @@ bool write_tables(const std::string& path, const std::string& filetype, std::spa
                   std::span<const hdf5::Attribute> attributes, Locking locking) {
   hdf5::refuse_other_file(path, filetype, locking);
   const std::string part = path + ".part";
-  hdf5::File file = hdf5::File::create(part, locking);
+  hdf5::File file = hdf5::File::create(part, filetype, locking);
   try {
     hdf5::annotate(file, attributes);
     for (const Table& table : tables) write_table(file, table);

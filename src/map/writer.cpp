@@ -68,7 +68,7 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
         "{}: is what an interrupted sweep left; allowed: --resume to go on with it, another -o, or "
         "--overwrite to start anew",
         writer.part_));
-  writer.file_ = hdf5::File::create(writer.part_, locking);
+  writer.file_ = hdf5::File::create(writer.part_, map_filetype, locking);
   writer.begun_ = true;
   writer.replace_ = overwrite;
   refuse_existing_map(path, overwrite, locking);  // again, now that nobody else can make it

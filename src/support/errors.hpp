@@ -22,4 +22,9 @@ struct BrokenFile : IoError {
   using IoError::IoError;
 };
 
+/// A file that holds what no file of ours does: it is somebody else's, or made to deceive.
+struct ForeignFile : BrokenFile {
+  using BrokenFile::BrokenFile;
+};
+
 }  // namespace leapmap

@@ -29,6 +29,15 @@ bool open_standard_streams() {
   return true;
 }
 
+bool sync_folder(const std::string& folder) {
+  const auto impossible = [] { return errno == EACCES || errno == EINVAL || errno == ENOTSUP; };
+  const int descriptor =
+      uninterrupted([&] { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
+  if (descriptor < 0) return impossible();
+  const bool synced = uninterrupted([&] { return ::fsync(descriptor); }) == 0 || impossible();
+  return ::close(descriptor) == 0 && synced;
+}
+
 TextFile::TextFile(const std::string& path, std::string_view allowed)
     : path_(path), descriptor_(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); })) {
   struct stat status {};

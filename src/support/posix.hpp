@@ -27,6 +27,10 @@ auto uninterrupted(const Call& call) {
 /// its number, and what is printed would go into that file. False if that cannot be done.
 bool open_standard_streams();
 
+/// Brings the names in a folder to disk. False if that failed: they are there all the same. Folders that may
+/// not be read, and file systems that cannot sync folders, are as good as it gets.
+bool sync_folder(const std::string& folder);
+
 /// Reads a text file from its beginning to its end.
 class TextFile {
  public:

@@ -22,8 +22,14 @@ std::size_t shown_bytes(std::string_view text, std::size_t i) {
                                                           : 0;
   for (std::size_t k = 1; k < bytes; ++k)
     if ((byte_at(text, i + k) & 0xc0u) != 0x80u) return 0;
-  const bool control = lead == 0xc2 && byte_at(text, i + 1) < 0xa0;  // U+0080 to U+009F, CSI among them
-  return control ? 0 : bytes;
+  const unsigned second = byte_at(text, i + 1), third = byte_at(text, i + 2);
+  const bool control = lead == 0xc2 && second < 0xa0;  // U+0080 to U+009F, CSI among them
+  const bool turns =
+      lead == 0xe2 && ((second == 0x80 && third >= 0xaa && third <= 0xae) ||
+                       (second == 0x81 && third >= 0xa6 && third <= 0xa9));  // the direction of reading
+  const bool ill_formed = (lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f) ||
+                          (lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second > 0x8f);
+  return control || turns || ill_formed ? 0 : bytes;
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sweep/audit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include <mutex>
 
 #include "map/schema.hpp"
+#include "support/errors.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
@@ -193,11 +196,17 @@ std::vector<hdf5::Attribute> audit_attributes(const AuditReport& report) {
 AuditReport read_audit(const MapReader& map) {
   AuditReport report;
   report.method = map.attribute("audit_method");
+  const auto designs = static_cast<std::int64_t>(Tiling(map.shape()).designs());
+  const auto count = [&](const char* name, std::int64_t least, std::int64_t most) {
+    const std::int64_t value = hdf5::read_integers(map.file(), name)[0];
+    if (value < least || value > most) throw BrokenFile(fmt::format("is damaged: its {} is {}", name, value));
+    return value;
+  };
   for (const auto& [name, member] : counts)
-    report.*member = static_cast<std::size_t>(hdf5::read_integers(map.file(), name)[0]);
+    report.*member = static_cast<std::size_t>(count(name, 0, designs));
   for (const auto& [name, member] : errors) report.*member = hdf5::read_number(map.file(), name);
   for (const auto& [name, member] : firsts)
-    if (const std::int64_t design = hdf5::read_integers(map.file(), name)[0]; design >= 0)
+    if (const std::int64_t design = count(name, -1, designs - 1); design >= 0)
       report.*member = static_cast<std::size_t>(design);
   return report;
 }

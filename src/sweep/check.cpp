@@ -18,10 +18,12 @@ namespace leapmap {
 namespace {
 
 constexpr std::size_t most_findings = 20;
+constexpr std::size_t most_samples_held = 10'000;
 constexpr double beyond = 1e100;  // no quantity of a hoop is as large
 
-/// A map being read through; findings are counted on past those that are told.
+/// A map being read through.
 struct Check {
+  const JournaledFile& bytes;
   const MapReader& map;
   const Spec& spec;
   const Tiling& tiling;
@@ -30,8 +32,10 @@ struct Check {
   StatusCounts statuses{};
 
   void find(const std::string& finding) {
-    if (report.findings.size() < most_findings) report.findings.push_back(finding);
-    if (report.findings.size() == most_findings) report.findings.push_back("and perhaps more");
+    if (report.findings.size() < most_findings)
+      report.findings.push_back(finding);
+    else if (report.findings.size() == most_findings)
+      report.findings.push_back("and more");
   }
   bool stopped() const { return options.stop_requested && options.stop_requested(); }
   std::string place(const Field& field, std::size_t tile) const {
@@ -46,7 +50,7 @@ std::string wrong_value(const Field& field, const std::vector<double>& values) {
   const auto* code = std::get_if<Code>(&field.source);
   if (!code && !std::holds_alternative<Quantity>(field.source)) return {};
   for (const double value : values) {
-    const bool right = code ? code->names.empty() || value == code->fill ||
+    const bool right = code ? (code->names.empty() && value >= 0.0 && value < 256.0) || value == code->fill ||
                                   (value >= 0.0 && value < static_cast<double>(code->names.size()))
                             : std::isnan(value) || std::abs(value) < beyond;
     if (!right) return fmt::format("holds {}, which it never does", value);
@@ -62,7 +66,7 @@ void check_tile(Check& check, const Field& field, std::size_t tile) {
     if (field.name == "status")
       for (const double value : values) ++check.statuses[static_cast<std::size_t>(value)];
   } catch (const IoError& error) {
-    check.map.rethrow_failure();
+    check.bytes.rethrow_failure();  // the system failed, and not the file to make sense
     check.find(fmt::format("{}: {}", check.place(field, tile), error.what()));
   }
 }
@@ -87,11 +91,18 @@ void check_sample(Check& check) {
   const double share =
       std::min(1.0, static_cast<double>(check.options.sample) / static_cast<double>(check.tiling.designs()));
   const Solver solve = make_solver(check.spec);
+  AuditReport audited = Auditor(check.spec).begin();
   std::vector<AuditSample> samples;
-  for (std::size_t t = 0; t < check.report.tiles && !check.stopped(); ++t)
+  const auto look_at_samples = [&] {
+    merge(audited, audit(check.spec, samples, check.options.threads, check.options.stop_requested));
+    samples.clear();
+  };
+  for (std::size_t t = 0; t < check.report.tiles && !check.stopped(); ++t) {
     std::ranges::move(audit_samples(check.map, check.spec, share, check.tiling, check.tiling.tile(t), solve),
                       std::back_inserter(samples));
-  const AuditReport audited = audit(check.spec, samples, check.options.threads, check.options.stop_requested);
+    if (samples.size() >= most_samples_held) look_at_samples();
+  }
+  look_at_samples();
   const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
       check.find(fmt::format("design {}: {} than {} does; see it by: {}", *design, what, audited.method,
@@ -103,6 +114,30 @@ void check_sample(Check& check) {
   check.report.sample = audited;
 }
 
+/// How many tiles are there.
+std::size_t tiles_of(const MapReader& map, const Tiling& tiling) {
+  if (map.is_whole()) return tiling.size();
+  const std::int64_t done = hdf5::read_integers(map.file(), "tiles_done")[0];
+  if (done < 0 || static_cast<std::size_t>(done) > tiling.size())
+    throw BrokenFile("it says that more tiles are done than it has");
+  return static_cast<std::size_t>(done);
+}
+
+void check_content(const JournaledFile& bytes, const MapReader& map, const std::string& path,
+                   const CheckOptions& options, CheckReport& report) {
+  const Spec spec = spec_of(map, path);
+  const MapLayout layout = layout_of(spec);
+  if (shape_of(spec) != map.shape()) throw BrokenFile(path + ": its spec is of other designs than it holds");
+  const Tiling tiling(map.shape());
+  report.whole = map.is_whole();
+  report.tiles = tiles_of(map, tiling);
+  report.designs = designs_in(map.status_counts());
+  Check check{bytes, map, spec, tiling, options, report};
+  check_layout(map.file(), layout, tiling);
+  check_tiles(check, layout);
+  if (report.findings.empty() && !check.stopped()) check_sample(check);
+}
+
 }  // namespace
 
 std::optional<bool> seal_holds(const std::string& path, Locking locking) {
@@ -110,29 +145,21 @@ std::optional<bool> seal_holds(const std::string& path, Locking locking) {
 }
 
 CheckReport check_map(const std::string& path, const CheckOptions& options) {
-  const MapReader map(path, options.locking);
-  const Spec spec = spec_of(map, path);
-  const MapLayout layout = layout_of(spec);
-  if (shape_of(spec) != map.shape()) throw BrokenFile(path + ": its spec is of other designs than it holds");
-  const Tiling tiling(map.shape());
   CheckReport report;
-  report.whole = map.is_whole();
-  report.designs = designs_in(map.status_counts());
-  report.tiles = tiling.size();
-  if (!report.whole) {
-    const std::int64_t done = hdf5::read_integers(map.file(), "tiles_done")[0];
-    if (done < 0 || static_cast<std::size_t>(done) > tiling.size())
-      throw BrokenFile(path + ": it says that more tiles are done than it has");
-    report.tiles = static_cast<std::size_t>(done);
-  }
-  Check check{map, spec, tiling, options, report};
+  hdf5::File file;
   try {
-    check_layout(map.file(), layout, tiling);
-    check_tiles(check, layout);
-    if (report.findings.empty() && !check.stopped()) check_sample(check);
+    file = hdf5::File::open(path, options.locking);
+  } catch (const BrokenFile& error) {
+    report.findings.push_back(error.what());
+    return report;
+  }
+  try {
+    check_content(file.bytes(), MapReader(path, file), path, options, report);
+  } catch (const InputError& error) {  // of its spec
+    report.findings.push_back(error.what());
   } catch (const IoError& error) {
-    map.rethrow_failure();
-    check.find(error.what());
+    file.bytes().rethrow_failure();
+    report.findings.push_back(error.what());
   }
   return report;
 }

@@ -34,7 +34,8 @@ std::optional<bool> seal_holds(const std::string& path, Locking locking);
 
 /// Reads everything in a map, or in the .part of one: axes and descriptions against its spec, every chunk
 /// with its checksum, every value against what its field may hold, designs by status against their count, and
-/// a sample against another method. Throws IoError if it is no map, InputError while a sweep is writing it.
+/// a sample against another method. What is no map of ours is a finding too. Throws IoError if the system
+/// fails to read the file, InputError while a sweep is writing it.
 CheckReport check_map(const std::string& path, const CheckOptions& options);
 
 }  // namespace leapmap

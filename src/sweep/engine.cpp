@@ -58,7 +58,7 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
         solve(designs, outcomes);
         Prepared prepared = prepare(number, tile, outcomes);
         if (!prepared.take) {
-          delivery.close();
+          delivery.close(number);
           return false;
         }
         const std::size_t bytes = prepared.bytes;

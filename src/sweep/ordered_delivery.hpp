@@ -2,10 +2,12 @@
 /// Hands on what many threads finish in any order in the order of its numbers, from one thread of its own.
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -29,9 +31,9 @@ class OrderedDelivery {
   /// Brings item `number`. False: the delivery has been closed or abandoned, bring no more.
   bool bring(std::size_t number, Item item, std::size_t bytes) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock,
-                  [&] { return state_ != State::open || number == next_ || bytes_ + bytes <= most_bytes_; });
-    if (state_ != State::open) return false;
+    const auto refused = [&] { return state_ != State::open || number >= end_; };
+    changed_.wait(lock, [&] { return refused() || number == next_ || bytes_ + bytes <= most_bytes_; });
+    if (refused()) return false;
     bytes_ += bytes;
     waiting_.emplace(number, Waiting{std::move(item), bytes});
     changed_.notify_all();
@@ -45,10 +47,10 @@ class OrderedDelivery {
     if (failure_) std::rethrow_exception(failure_);
   }
 
-  /// Takes nothing more that is not due already: an item before it will never come.
-  void close() {
+  /// Item `number` will never come, and so none after it is taken.
+  void close(std::size_t number) {
     const std::lock_guard lock(mutex_);
-    if (state_ == State::open) state_ = State::finished;
+    end_ = std::min(end_, number);
     changed_.notify_all();
   }
 
@@ -104,6 +106,7 @@ class OrderedDelivery {
   std::condition_variable changed_;
   std::map<std::size_t, Waiting> waiting_;
   std::size_t next_, bytes_ = 0;
+  std::size_t end_ = std::numeric_limits<std::size_t>::max();  ///< the first number that will never come
   State state_ = State::open;
   std::exception_ptr failure_;
   std::thread taker_;  // last: it uses all of the above

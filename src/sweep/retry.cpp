@@ -91,6 +91,10 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
   if (!stores(spec.output, "status"))
     throw InputError(path + ": holds no status; allowed: a map with that field");
   const Tiling tiling(map.shape());
+  check_layout(file, layout_of(spec), tiling);
+  if (hdf5::has_attribute(file, "tiles_checksum") &&
+      checksum_of(file, spec, tiling, path) != hdf5::read_integers(file, "tiles_checksum")[0])
+    throw BrokenFile(path + ": is damaged: its tiles are not what was written; leapmap check tells where");
   RetryReport report;
   std::vector<Failed> waiting;
   const auto settle = [&] {
@@ -144,7 +148,8 @@ Numerics retry_numerics(const Numerics& there, const Numerics& here) {
 std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spec, int threads,
                                         Locking locking, const std::function<bool()>& stop_requested) {
   const JournaledFile original(path, JournaledFile::Access::read, locking);
-  std::optional<hdf5::File> file = hdf5::File::copy(original, path + ".retry", locking, stop_requested);
+  std::optional<hdf5::File> file =
+      hdf5::File::copy(original, path + ".retry", map_filetype, locking, stop_requested);
   if (!file) return std::nullopt;
   try {
     auto report = settle_all(*file, path, spec, threads, stop_requested);
@@ -156,6 +161,7 @@ std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spe
       throw IoError(path + ": another program has replaced or removed it meanwhile");
     report->durable = file->finish(path, true, [&](hid_t written) {
       const Tiling tiling(shape_of(spec));
+      check_layout(written, layout_of(spec), tiling);
       if (checksum_of(written, spec, tiling, path) != hdf5::read_integers(written, "tiles_checksum")[0])
         throw BrokenFile(path + ".retry: its tiles are not what was written");
     });

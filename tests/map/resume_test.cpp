@@ -173,7 +173,7 @@ TEST(Resume, WhatTheDiskTookNoMoreIsLeftAsOfTheLastCommit) {
 
 TEST(Resume, AttributesWrittenAgainAndAgainDoNotRunOut) {
   const testing::TemporaryFolder folder;
-  hdf5::File file = hdf5::File::create(folder / "file.h5");
+  hdf5::File file = hdf5::File::create(folder / "file.h5", map_filetype);
   for (std::int64_t i = 0; i < 70'000; ++i) hdf5::write_attribute(file, "count", i);  // HDF5 numbers 65,535
   EXPECT_EQ(hdf5::read_integers(file, "count")[0], 69'999);
 }
