@@ -9,9 +9,9 @@
 
 namespace leapmap::hdf5 {
 
-/// Throws ForeignFile, naming the part, if the file holds an external link, external storage, a virtual dataset,
-/// a dataset of references, a filter other than shuffle, deflate and fletcher32, a chunk beyond all use, or
-/// more objects than any file of ours. `path` is for messages.
+/// Throws ForeignFile, naming the part, if the file holds an external link, external storage, a virtual
+/// dataset, a dataset of references, a filter other than shuffle, deflate and fletcher32, a chunk beyond all
+/// use, or more objects than any file of ours. `path` is for messages.
 void refuse_foreign_parts(hid_t file, const std::string& path);
 
 /// The bytes of a dataset's values. Throws IoError if the bytes stored for it could not hold so many: to be

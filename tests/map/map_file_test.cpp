@@ -138,7 +138,8 @@ TEST(MapFile, FilesOfAnotherTypeOrANewerVersionAreRefusedWithAReason) {
   };
   EXPECT_NE(complaint(folder / "nowhere.h5").find("No such file"), std::string::npos);
   EXPECT_NE(complaint(folder.write("text.h5", "not HDF5")).find("cannot be read as HDF5"), std::string::npos);
-  EXPECT_TRUE(hdf5::File::create(folder / "other.h5", "another").finish(folder / "other.h5", true, [](hid_t) {}));
+  EXPECT_TRUE(
+      hdf5::File::create(folder / "other.h5", "another").finish(folder / "other.h5", true, [](hid_t) {}));
   EXPECT_NE(complaint(folder / "other.h5").find("not a leapmap map"), std::string::npos);
   {
     auto newer = small_attributes;
