@@ -33,6 +33,8 @@ bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
         grouped(report.sample->designs), report.sample->method, report.sample->max_abs_height_error,
         report.sample->max_rel_time_error,
         report.sample->undecided > 0 ? fmt::format("; {} nobody can decide", report.sample->undecided) : "");
+  if (report.whole && !report.sealed)
+    say("note     its format is older than 1.4: it has no checksum of all of it\n");
   say("right    {}\n", printable(arguments.path));
   return true;
 }
@@ -60,7 +62,8 @@ void tell_damage(const CheckArguments& arguments) {
   if (uninterrupted([&] { return ::waitpid(child, &status, 0); }) != child || !WIFEXITED(status))
     say("WRONG    HDF5 cannot make sense of it\n");
   else if (WEXITSTATUS(status) == nothing)
-    say("         in bytes that hold no value: all that is read of it is right\n");
+    say("         none of them holds a value: every design is what was written; the disk or a copy may be at "
+        "fault\n");
 }
 
 int run(const CheckArguments& arguments) {
@@ -71,10 +74,6 @@ int run(const CheckArguments& arguments) {
     tell_damage(arguments);
     return noted_signal() != 0 ? 128 + noted_signal() : 1;
   }
-  if (!holds && !arguments.path.ends_with(".part"))
-    say("note     {} has no checksum of all of it: it is older than format 1.4, or another program changed "
-        "it\n",
-        printable(arguments.path));
   const CheckReport report = check_map(arguments.path, arguments.options);
   if (noted_signal() != 0) return 128 + noted_signal();
   return tell_findings(arguments, report) ? 0 : 1;
@@ -89,8 +88,10 @@ void add_check(CLI::App& app, int& status) {
   CheckOptions& options = arguments->options;
   options.stop_requested = [] { return noted_signal() != 0; };
   command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")->required();
-  command->add_option("--sample", options.sample,
-                      "solve so many designs again by another method and compare; default: 200; 0: none");
+  command
+      ->add_option("--sample", options.sample,
+                   "solve so many designs again by another method and compare; default: 200; 0: none")
+      ->check(CLI::Range(0.0, 1e15));
   command->add_option("--threads", options.threads, "threads to use; default: all")
       ->check(CLI::Range(1, most_threads));
   add_no_lock(*command, options.locking);

@@ -245,7 +245,8 @@ void add_info(CLI::App& app, int& status) {
   command->add_flag("--spec", arguments->only_spec, "print the resolved spec that made it, and nothing else");
   command->add_flag("--failed", arguments->failed,
                     "list the failed designs, each as the command that reproduces it");
-  command->add_option("--limit", arguments->limit, "list at most so many; default: 20");
+  command->add_option("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
+      ->check(CLI::Range(0.0, 1e15));
   add_no_lock(*command, arguments->locking);
   command->callback([arguments, &status] { status = run(*arguments); });
 }

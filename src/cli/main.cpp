@@ -79,7 +79,8 @@ int run(int argc, char** argv) {
 void leapmap::cli::add_no_lock(CLI::App& command, Locking& locking) {
   command.add_flag_callback(
       "--no-lock", [&locking] { locking = Locking::if_possible; },
-      "go on where the file system cannot lock files; only if no other program uses them");
+      "do without locks on a file system that has none; make sure that nothing else uses the file. Elsewhere "
+      "a file in use is refused all the same");
 }
 
 int main(int argc, char** argv) {

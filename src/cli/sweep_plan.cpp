@@ -21,7 +21,7 @@ namespace {
 std::size_t print_existing(const SweepArguments& arguments, const std::string& map) {
   std::error_code ignored;
   if (std::filesystem::exists(map, ignored) && !arguments.overwrite)
-    say("there    {} exists already: it is refused without --overwrite\n", map);
+    say("there    {} exists already: it is refused, without --overwrite or if it is no map\n", map);
   if (!has_part(map, arguments.locking)) return 0;
   const std::string part = part_of(map);
   const std::size_t designs = designs_in(MapReader(part, arguments.locking).status_counts());
@@ -50,7 +50,7 @@ std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling&
   const double tile = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
   const double sweep =
       program + held + structure + threads * tile + std::min(file, static_cast<double>(most_waiting_bytes));
-  std::string line = fmt::format("about {} for the sweep with its audit; {} for leapmap info",
+  std::string line = fmt::format("at most {} for the sweep with its audit; {} for leapmap info",
                                  spoken_bytes(sweep), spoken_bytes(program + held + structure));
   if (spec.axes.size() >= 2)
     line += tiling.designs() > most_on_page

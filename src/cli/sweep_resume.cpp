@@ -69,6 +69,8 @@ MapWriter open_map(const SweepArguments& arguments, const std::string& map, cons
     refuse_other_beginning(writer.reader(), part, spec, opening);
     writer.verify();
     return writer;
+  } catch (const ForeignFile&) {
+    throw;
   } catch (const BrokenFile& error) {
     throw IoError(
         fmt::format("{}; it cannot be gone on with: --overwrite without --resume starts anew", error.what()));

@@ -7,7 +7,6 @@
 #include <array>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <new>
 
@@ -159,37 +158,26 @@ Handle open_in(const std::shared_ptr<JournaledFile>& file, Mode mode) {
 enum class Beginning { other, hdf5, zeros };
 
 /// How a file begins: as HDF5 files do, or with zeros, as an unfinished file does that was never flushed.
-Beginning beginning_of(const std::string& path) {
+Beginning beginning_of(const std::string& path, Locking locking) {
   constexpr std::array signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  const JournaledFile file(path, JournaledFile::Access::read, locking);  // its journal may hold the signature
   std::array<char, signature.size()> first{};
-  if (!std::ifstream(path, std::ios::binary).read(first.data(), first.size())) return Beginning::other;
-  return first == signature           ? Beginning::hdf5
-         : first == decltype(first){} ? Beginning::zeros
-                                      : Beginning::other;
+  const auto size =
+      static_cast<std::size_t>(std::min<std::uint64_t>(first.size(), file.end()));  // it may be cut
+  file.read(0, std::as_writable_bytes(std::span(first).first(size)));
+  if (std::equal(first.data(), first.data() + size, signature.data())) return Beginning::hdf5;
+  return first == decltype(first){} ? Beginning::zeros : Beginning::other;
 }
 
-std::optional<std::string> filetype_of(const File& file) {
-  return has_attribute(file, "filetype") ? std::optional(read_text(file, "filetype")) : std::nullopt;
-}
-
-/// An unfinished file is emptied only if it is one of ours of that type, or HDF5 too damaged to say what it
-/// is.
-void refuse_other_unfinished(const std::string& path, std::string_view filetype, Locking locking) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored) || !std::filesystem::is_regular_file(path, ignored) ||
-      std::filesystem::file_size(path, ignored) == 0)
-    return;
-  const Beginning beginning = beginning_of(path);
-  bool ours = beginning != Beginning::other;
+/// What a file says it is. Throws BrokenFile if that cannot be told, IoError if the system fails.
+std::optional<std::string> filetype_of(const std::string& path, Locking locking) {
+  const File file = File::open(path, locking);
   try {
-    if (beginning == Beginning::hdf5) ours = filetype_of(File::open(path, locking)) == filetype;
-  } catch (const ForeignFile&) {
-    ours = false;
-  } catch (const BrokenFile&) {
+    return has_attribute(file, "filetype") ? std::optional(read_text(file, "filetype")) : std::nullopt;
+  } catch (const IoError& error) {
+    file.bytes().rethrow_failure();
+    throw BrokenFile(fmt::format("{}: is damaged: {}", path, error.what()));
   }
-  if (!ours)
-    throw InputError(fmt::format(
-        "{}: is in the way, and no unfinished {}; allowed: another name, or remove it", path, filetype));
 }
 
 /// Makes a folder and those above it, and brings the names of new ones to disk.
@@ -285,18 +273,36 @@ void refuse_other_file(const std::string& path, std::string_view filetype, Locki
   std::error_code ignored;
   const auto there = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(there)) return;
+  if (std::filesystem::is_directory(there)) throw InputError(path + ": is a folder; allowed: a file's name");
   bool same = std::filesystem::is_regular_file(there);
   try {
-    if (same && std::filesystem::file_size(path, ignored) > 0)
-      same = filetype_of(File::open(path, locking)) == filetype;
+    if (same && std::filesystem::file_size(path, ignored) > 0) same = filetype_of(path, locking) == filetype;
   } catch (const BrokenFile&) {
     same = false;
   }
   if (!same)
     throw InputError(
-        fmt::format("{}: exists and is no {}, or too damaged to say so; allowed: a new name, an older one to "
-                    "replace, or remove it",
+        fmt::format("{}: exists and is no {}, or too damaged to say so; allowed: another name, or that of "
+                    "an older one",
                     path, filetype));
+}
+
+void refuse_other_unfinished(const std::string& path, std::string_view filetype, Locking locking) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored) || std::filesystem::file_size(path, ignored) == 0)
+    return;
+  bool ours = true;
+  try {
+    const Beginning beginning = beginning_of(path, locking);
+    ours = beginning == Beginning::zeros ||
+           (beginning == Beginning::hdf5 && filetype_of(path, locking) == filetype);
+  } catch (const ForeignFile&) {
+    throw;
+  } catch (const BrokenFile&) {  // ours to begin anew
+  }
+  if (!ours)
+    throw InputError(fmt::format(
+        "{}: is in the way, and no unfinished {}; allowed: another name, or remove it", path, filetype));
 }
 
 bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify) {

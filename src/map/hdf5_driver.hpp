@@ -62,6 +62,11 @@ class File {
   Handle handle_;  // after bytes_, as closing it writes there
 };
 
+/// An unfinished file is gone on with or emptied only if it is one of ours of that type, or HDF5 too damaged
+/// to say what it is: throws InputError otherwise.
+void refuse_other_unfinished(const std::string& path, std::string_view filetype,
+                             Locking locking = Locking::required);
+
 /// What was made before may be made again, but no other file is ours to replace: throws InputError if path is
 /// there and neither empty nor a file of that type that can be read, IoError if the system fails to read it.
 void refuse_other_file(const std::string& path, std::string_view filetype,

@@ -183,8 +183,8 @@ void JournaledFile::lock(Locking locking) const {
                     path_, std::strerror(errno)));
   if (busy ||
       !is_named(path_))  // the latter: renamed by whoever held it, between our opening and our locking
-    throw InputError(fmt::format("{}: another program is {} it; allowed: once that has ended", path_,
-                                 reads ? "writing" : "using"));
+    throw InputError(fmt::format("{}: a sweep or another program is {} it; allowed: once that has ended",
+                                 path_, reads ? "writing" : "using"));
 }
 
 void JournaledFile::read(std::uint64_t offset, std::span<std::byte> bytes) const {

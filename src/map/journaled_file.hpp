@@ -60,6 +60,8 @@ class JournaledFile {
   /// Whether the bytes are those that were sealed; unset: the file has no seal, or was changed since by
   /// another program that knows none. Reads the whole file. Throws IoError.
   std::optional<bool> seal_holds() const;
+  /// Whether the file ends with a seal.
+  bool is_sealed() const { return seal_.has_value(); }
   /// Drops what was not committed and gives its space back; from now on writes and commits do nothing.
   void abandon();
   /// Gives this very file another name, still locked, in place of an older file there if `replace`. Returns

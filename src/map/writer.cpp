@@ -21,10 +21,9 @@ constexpr const char *tiles_attribute = "tiles_done", *checksum_attribute = "til
 
 void refuse_existing_map(const std::string& path, bool overwrite, Locking locking) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw InputError(path + ": is a folder; allowed: a file's name");
-  if (!overwrite && fs::exists(path, ignored))
-    throw InputError(path + ": exists already; allowed: another -o, or --overwrite");
-  if (overwrite) hdf5::refuse_other_file(path, map_filetype, locking);
+  if (!fs::exists(path, ignored)) return;
+  hdf5::refuse_other_file(path, map_filetype, locking);
+  if (!overwrite) throw InputError(path + ": exists already; allowed: another -o, or --overwrite");
 }
 
 std::uint32_t checksum_of(std::uint32_t before, std::span<const std::byte> bytes,
@@ -63,6 +62,7 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
                            std::span<const hdf5::Attribute> attributes, bool overwrite, Locking locking) {
   refuse_existing_map(path, overwrite, locking);
   MapWriter writer(path, layout, tiling);
+  hdf5::refuse_other_unfinished(writer.part_, map_filetype, locking);
   if (!overwrite && has_part(path, locking))
     throw InputError(fmt::format(
         "{}: is what an interrupted sweep left; allowed: --resume to go on with it, another -o, or "
@@ -85,6 +85,7 @@ MapWriter MapWriter::resume(const std::string& path, const MapLayout& layout, co
   refuse_existing_map(path, overwrite, locking);
   MapWriter writer(path, layout, tiling);
   writer.replace_ = overwrite;
+  hdf5::refuse_other_unfinished(writer.part_, map_filetype, locking);
   writer.file_ = hdf5::File::change(writer.part_, locking);
   return writer;
 }

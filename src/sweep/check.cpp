@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "map/layout.hpp"
@@ -105,12 +106,13 @@ void check_sample(Check& check) {
   look_at_samples();
   const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
-      check.find(fmt::format("design {}: {} than {} does; see it by: {}", *design, what, audited.method,
+      check.find(fmt::format("design {}: {}; see it by: {}", *design, what,
                              hop_command(check.spec, DesignSpace(check.spec).at(*design))));
   };
-  tell(audited.first_mismatch, "the map says another status, flag, number of candidates or sequence");
+  tell(audited.first_mismatch,
+       "the map has another status, flag, number of candidates or sequence than " + audited.method);
   tell(audited.first_inaccurate,
-       fmt::format("the map differs by more than {:.1e}, that is more", audited.allowed_error));
+       fmt::format("the map differs by more than {:.1e} from {}", audited.allowed_error, audited.method));
   check.report.sample = audited;
 }
 
@@ -136,6 +138,13 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   check_layout(map.file(), layout, tiling);
   check_tiles(check, layout);
   if (report.findings.empty() && !check.stopped()) check_sample(check);
+  constexpr std::array first_sealed{std::int64_t{1}, std::int64_t{4}};
+  report.sealed = bytes.is_sealed();
+  if (report.whole && !report.sealed &&
+      !std::ranges::lexicographical_compare(hdf5::read_integers(map.file(), "version"), first_sealed))
+    check.find(
+        "the checksum at its end is missing: another program changed the file, or its end is damaged or cut "
+        "off");
 }
 
 }  // namespace

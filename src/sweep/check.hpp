@@ -25,6 +25,7 @@ struct CheckReport {
   std::vector<std::string> findings;   ///< what is wrong and where, a line each; empty: nothing
   std::size_t tiles = 0, designs = 0;  ///< that were read
   bool whole = true;                   ///< false: the .part of a sweep that was stopped
+  bool sealed = true;                  ///< the file ends with a checksum of all of it, which holds
   std::optional<AuditReport> sample;   ///< unset: not solved again, as the map is damaged or does not want it
 };
 

@@ -288,14 +288,15 @@ def test_every_flipped_bit_of_a_finished_map_is_found_and_told(original, tmp_pat
 
 def test_check_finds_wrong_numbers_whose_checksums_are_right(original, tmp_path):
     path = tmp_path / "map.h5"
-    for name, value in (("jump_height", 0.7), ("status", 2), ("candidates", 9), ("jump_height", 2e303), ("status", 77)):
+    for name, value, told in (("jump_height", 0.7, "differs by more"), ("status", 2, "not as many designs"), ("candidates", 9, "another status, flag"),
+                              ("jump_height", 2e303, "2e+303"), ("status", 77, "holds 77")):
         shutil.copy(original, path)
         with h5py.File(path, "r+") as m:
             del m.attrs["tiles_checksum"]
             place = tuple(int(i[0]) for i in np.nonzero(m["status"][()] == 1))
             m[name][place] = value
         done = leapmap("check", path, "--sample", 1000)
-        assert done.returncode == 1 and "WRONG" in done.stdout, (name, value, done.stdout)
+        assert done.returncode == 1 and told in done.stdout, (name, done.stdout)
 
 
 def test_memory_stays_within_what_the_dry_run_promises(tmp_path):
@@ -306,7 +307,7 @@ def test_memory_stays_within_what_the_dry_run_promises(tmp_path):
     for line in plan.splitlines():
         if line.startswith("memory"):
             for promise in line.removeprefix("memory").split(";"):
-                number, unit = promise.strip().removeprefix("about ").split(" ")[:2]
+                number, unit = promise.strip().removeprefix("at most ").split(" ")[:2]
                 promised[promise.split("for ")[1].strip()] = float(number) * {"MB": 1e6, "GB": 1e9}[unit]
     assert set(promised) == {"the sweep with its audit", "leapmap info", "the explorer"}, plan
     for name, words in (("the sweep with its audit", [PROGRAM, "sweep", spec, "-o", tmp_path / "map.h5", "--quiet"]),
@@ -349,7 +350,7 @@ def test_other_files_are_neither_replaced_nor_emptied(kind, original, tmp_path):
             continue  # so begins an unfinished file that was never flushed
         (tmp_path / place).write_bytes(content)
         done = leapmap(*words)
-        assert done.returncode == 2 and done.stderr.count("\n") == 1, (place, done.stderr)
+        assert done.returncode in (2, 3) and done.stderr.count("\n") == 1, (place, done.stderr)
         assert (tmp_path / place).read_bytes() == content, place
         (tmp_path / place).unlink()
     if kind in ("text", "zeros", "bare"):
@@ -414,7 +415,7 @@ def test_counts_that_make_no_sense_are_damage(original, tmp_path):
             m.attrs[name] = np.array(value, "i8")
         done = leapmap("info", path) if name == "status_counts" else leapmap("sweep", original.parent / "spec.toml", "-o", path, "--resume")
         assert (done.returncode in (0, 3)) if name == "status_counts" else done.returncode == 3, (name, value, done.stdout)
-        assert leapmap("check", path).returncode == (1 if name == "status_counts" else 0)
+        assert leapmap("check", path).returncode == 1
 
 
 def test_check_says_where_or_that_no_value_is_touched(original, tmp_path):
@@ -423,7 +424,7 @@ def test_check_says_where_or_that_no_value_is_touched(original, tmp_path):
     damaged[-1] ^= 1  # of the seal itself
     (tmp_path / "map.h5").write_bytes(damaged)
     done = leapmap("check", tmp_path / "map.h5")
-    assert done.returncode == 1 and "hold no value" in done.stdout and "right    " not in done.stdout, done.stdout
+    assert done.returncode == 1 and "holds a value" in done.stdout and "right    " not in done.stdout, done.stdout
     with h5py.File(tmp_path / "bare.h5", "w") as file:
         file.attrs["filetype"] = "leapmap map"
     done = leapmap("check", tmp_path / "bare.h5")
