@@ -17,12 +17,18 @@ template <class T>
 typename ExactSolver<T>::LoadedIntervals ExactSolver<T>::load_intervals(
     const std::vector<Interval>& intervals, std::size_t first) const {
   Index index;
-  LaneArray<T> from, to, turn;
+  LaneArray<T> from, to, turn, from_side, to_side;
   for (std::size_t i = 0; i < width; ++i) {
     const Interval& interval = intervals[first + i < intervals.size() ? first + i : first];
     index[i] = interval.design, from[i] = interval.from, to[i] = interval.to, turn[i] = interval.turn;
+    from_side[i] = interval.from_side, to_side[i] = interval.to_side;
   }
-  return {index, Lanes<T>::load(from.data()), Lanes<T>::load(to.data()), Lanes<T>::load(turn.data())};
+  return {index,
+          Lanes<T>::load(from.data()),
+          Lanes<T>::load(to.data()),
+          Lanes<T>::load(turn.data()),
+          Lanes<T>::load(from_side.data()),
+          Lanes<T>::load(to_side.data())};
 }
 
 template <class T>
@@ -126,7 +132,7 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
         search.release = release[i], search.end = end[i], search.first_turn = first_turn[i];
         search.turned_back = turns_back[i];
         search.turn = search.node = search.halvings = 0, search.part = 0;
-        search.stalls = false;
+        search.stalls = false, search.is_first_scan = true;
         searching_.push_back(design);
         if (stalling >> i & 1u) {
           const S stall = stall_angle(rows_.template load_roll<S>(&design), minima[i], crests[i]);
@@ -147,9 +153,58 @@ void ExactSolver<T>::scan(const List& designs) {
       while (turns < turns_a_scan && search.end > S(2) * pi_of<S> * (search.first_turn + S(turns))) ++turns;
     }
     std::array<ScanFlags, 8> flags;
+    NodeSigns signs;
     scan_turns(nodes_, rows_.template load_motion<T>(index.data()), gather(index, &Search::first_turn), turns,
-               flags.data());
-    for (std::size_t i = 0; i < width; ++i) searches_[index[i]].flags = flags[i];
+               flags.data(), signs);
+    const std::size_t count = std::min(width, designs.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      searches_[index[i]].flags = flags[i];
+      searches_[index[i]].first_above = searches_[index[i]].last_above;
+      hand_on_signs(searches_[index[i]], signs, i, turns);
+    }
+  }
+}
+
+/// At the release the hoop is on the plane, or it would not have set out; at a scan's first node G has the
+/// sign that the scan before found there. Where this scan's sign differs by rounding, the interval from there
+/// on is looked at.
+template <class T>
+void ExactSolver<T>::hand_on_signs(Search& search, const NodeSigns& signs, std::size_t lane,
+                                   int turns) const {
+  constexpr auto nodes = static_cast<std::size_t>(nodes_a_turn);
+  const S step = S(2) * pi_of<S> / S(nodes_a_turn), origin = search.first_turn * S(nodes_a_turn);
+  const auto angle_of_node = [&](std::size_t k) { return (origin + S(static_cast<int>(k))) * step; };
+  const auto scanned = static_cast<std::size_t>(turns) * nodes;  // of all turns, the last node not counted
+  const auto above_at = [&](std::size_t k) {
+    return k < scanned ? is_above(signs, k / nodes, k % nodes, lane)
+                       : is_above(signs, static_cast<std::size_t>(turns) - 1, nodes, lane);
+  };
+  const auto look_at = [&](std::size_t k, bool left) {
+    const auto put = [&](IntervalBits& bits, bool value) {
+      const std::uint64_t bit = std::uint64_t{1} << k % nodes;
+      bits[k / nodes] = value ? bits[k / nodes] | bit : bits[k / nodes] & ~bit;
+    };
+    put(search.flags.looks, true), put(search.flags.falls, false);
+    put(search.flags.above_left, left), put(search.flags.above_right, above_at(k + 1));
+  };
+  search.last_above = above_at(scanned);
+  if (search.is_first_scan) {
+    search.is_first_scan = false;
+    std::size_t k = 0;  // the first node past the release
+    while (k < scanned && !(angle_of_node(k) > search.release)) ++k;
+    // A node no farther from the release than rounding is the same place, and has its sign.
+    const S same_place = S(8) * std::numeric_limits<S>::epsilon() * std::max(S(1), std::abs(search.release));
+    const bool at_release = angle_of_node(k) - search.release <= same_place;
+    if (at_release && k == scanned) {
+      search.last_above = true;
+    } else if (at_release) {
+      if (k > 0) search.flags.looks[(k - 1) / nodes] &= ~(std::uint64_t{1} << (k - 1) % nodes);
+      if (!above_at(k)) look_at(k, true);
+    } else if (k > 0 && !above_at(k)) {
+      look_at(k - 1, above_at(k - 1));
+    }
+  } else if (search.first_above != above_at(0)) {
+    look_at(0, search.first_above);
   }
 }
 
@@ -170,13 +225,21 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
     const S part = part_length_[static_cast<std::size_t>(search.halvings)], at = node + S(search.part) * part;
     const S from = std::max(at * step, search.release), to = std::min((at + part) * step, search.end);
     if (from < to) {
-      const bool falls = search.flags.falls[static_cast<std::size_t>(search.turn)] >> search.node & 1u;
+      const auto flagged = [&](const IntervalBits& bits) -> bool {
+        return bits[static_cast<std::size_t>(search.turn)] >> search.node & 1u;
+      };
+      const S left_node = node * step, right_node = (node + S(1)) * step;
+      const auto side = [](bool is_above) { return is_above ? above : below; };
       interval = {design,
                   turn,
                   from,
                   to,
                   (from + to) * S(0.5),
-                  falls && from == at * step && to == (at + part) * step};
+                  from == search.release ? above
+                  : from == left_node    ? side(flagged(search.flags.above_left))
+                                         : ask,
+                  to == right_node ? side(flagged(search.flags.above_right)) : ask,
+                  flagged(search.flags.falls) && from == left_node && to == right_node};
       return true;
     }
     if (from >= search.end) {
@@ -203,13 +266,16 @@ template <class T>
 void ExactSolver<T>::classify_intervals() {
   for (std::size_t first = 0; first < intervals_.size(); first += width) {
     const std::size_t count = std::min(width, intervals_.size() - first);
-    const auto [index, a, b, turn] = load_intervals(intervals_, first);
+    const auto [index, a, b, turn, side_a, side_b] = load_intervals(intervals_, first);
     const Roll<T> roll = rows_.template load_motion<T>(index.data());
     const CurvedSample<T> at_a = lift(roll, a), at_b = lift(roll, b);
-    const IntervalKind<T> kind = classify(at_a, at_b, lift_bounds(roll, turn), b - a);
-    const MaskOf<T> falls_through = (at_b.value < T(0)) | ((at_b.value == T(0)) & (at_b.rate < T(0)));
+    const auto is_up = [](const T& side, const T& value) {
+      return (side > T(0)) | ((side == T(0)) & (value > T(0)));
+    };
+    const MaskOf<T> up_a = is_up(side_a, at_a.value), up_b = is_up(side_b, at_b.value);
+    const IntervalKind<T> kind = classify(at_a, at_b, up_a, up_b, lift_bounds(roll, turn), b - a);
     const unsigned falls = Lanes<T>::bits(kind.fall), unclear = Lanes<T>::bits(kind.unclear),
-                   sinking = Lanes<T>::bits((at_a.value > T(0)) & falls_through);
+                   sinking = Lanes<T>::bits(up_a & !up_b);
     const auto guess = lanes_of(a + (b - a) * at_a.value / (at_a.value - at_b.value));
     for (std::size_t i = 0; i < count; ++i) {
       Search& search = searches_[index[i]];
@@ -241,7 +307,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
   const T epsilon(std::numeric_limits<S>::epsilon());
   for (std::size_t first = 0; first < falls_.size(); first += width) {
     const std::size_t count = std::min(width, falls_.size() - first);
-    const auto [index, a, b, turn] = load_intervals(falls_, first);
+    const auto [index, a, b, turn, side_a, side_b] = load_intervals(falls_, first);
     LaneArray<T> guess;
     for (std::size_t i = 0; i < width; ++i) guess[i] = falls_[first + (i < count ? i : 0)].guess;
     const Roll<T> roll = rows_.template load_motion<T>(index.data());

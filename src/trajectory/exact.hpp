@@ -52,6 +52,9 @@ class ExactSolver {
     S turned_back;   // whole turns by which all angles here are less than they are
     S first_turn;    // of the scan
     ScanFlags flags;
+    bool is_first_scan;
+    bool first_above,
+        last_above;  // whether G > 0 at the scan's first node, as the scan before says, and at its last
     int turn, node, halvings;
     std::uint64_t part;
     S first_angle, jump_angle;  // of the lift-offs found
@@ -61,10 +64,13 @@ class ExactSolver {
     S panel_time;
     int panel_nodes, rest_nodes;
   };
+  /// An end at the release or at a node has a sign of G that was decided before; `ask` it elsewhere.
+  static constexpr S above{1}, ask{0}, below{-1};
   struct Interval {
     std::uint32_t design;
     S turn;  // the revolution it lies in
     S from, to, guess;
+    S from_side, to_side;
     bool falls;  // surely once, and nothing else
   };
   struct Part {
@@ -73,12 +79,13 @@ class ExactSolver {
   };
   struct LoadedIntervals {
     Index index;
-    T from, to, turn;
+    T from, to, turn, from_side, to_side;
   };
 
   void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   void prepare(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   void scan(const List& designs);
+  void hand_on_signs(Search& search, const NodeSigns& signs, std::size_t lane, int turns) const;
   bool next_interval(std::uint32_t design, Interval& interval);
   void advance(Search& search) const;
   void classify_intervals();

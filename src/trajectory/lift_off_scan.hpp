@@ -27,9 +27,18 @@ inline constexpr int turns_a_scan = 3;  ///< each further one costs a third of t
 using IntervalBits = std::array<std::uint64_t, turns_a_scan>;
 
 struct ScanFlags {
-  IntervalBits looks;  ///< intervals that may hold a fall
-  IntervalBits falls;  ///< those of them that surely hold one, and nothing else
+  IntervalBits looks;                    ///< intervals that may hold a fall
+  IntervalBits falls;                    ///< those of them that surely hold one, and nothing else
+  IntervalBits above_left, above_right;  ///< of those looked at: whether G > 0 at either end
 };
+
+/// Whether G > 0 at the nodes of each revolution, the first of the next one included: a byte a node, a bit a
+/// lane. The sign at a node is computed once, and decides for the intervals on both sides of it: were it
+/// computed twice, a root on a node could be lost by rounding, or counted twice.
+using NodeSigns = std::array<std::array<std::uint64_t, nodes_a_turn / 8 + 1>, turns_a_scan>;
+inline bool is_above(const NodeSigns& signs, std::size_t turn, std::size_t node, std::size_t lane) {
+  return signs[turn][node / 8] >> (8 * (node % 8) + lane) & 1u;
+}
 
 /// The nodes 0 to 24; the others mirror them.
 template <class S>
@@ -44,10 +53,10 @@ ScanNodes<S> scan_nodes() {
 }
 
 /// Flags the intervals of `turns` <= turns_a_scan revolutions that may hold a fall of G, one ScanFlags a
-/// lane.
+/// lane, and tells the signs at their nodes.
 template <class T>
 void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const T& first_turn, int turns,
-                ScanFlags* flags) {
+                ScanFlags* flags, NodeSigns& signs) {
   using std::abs;
   using S = ScalarOf<T>;
   const Hoop<T>& h = roll.hoop;
@@ -71,14 +80,17 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
     more[k] = more[mirrored] = rho_K * gain;
   }
 
+  std::array<T, turns_a_scan + 1> start;  // G at the first node of each revolution
+  for (std::size_t u = 0; u < start.size(); ++u) start[u] = first[0] + T(S(u)) * more[0];
+
   for (std::size_t i = 0; i < Lanes<T>::count; ++i) flags[i] = {};
   for (std::size_t u = 0; u < static_cast<std::size_t>(turns); ++u) {
     const T turn = T(S(u)), margin = lift_bounds(roll, first_turn + turn).second * T(step * step / S(8));
-    T G = first[0] + turn * more[0];
+    T G = start[u];
     for (std::size_t k = 0; k < nodes_a_turn; k += 8) {
       std::uint64_t positive = 0, plain = 0;  // one byte a node, one bit a lane
       for (std::size_t j = 0; j < 8; ++j) {
-        const T next = first[k + j + 1] + turn * more[k + j + 1];
+        const T next = k + j + 1 == nodes_a_turn ? start[u + 1] : first[k + j + 1] + turn * more[k + j + 1];
         positive |= std::uint64_t{Lanes<T>::bits(G > T(0))} << (8 * j);
         plain |= std::uint64_t{Lanes<T>::bits(larger(abs(G) - margin, abs(next - G)) > T(4) * margin)}
                  << (8 * j);
@@ -86,11 +98,15 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
       }
       const std::uint64_t next_positive = positive >> 8 | std::uint64_t{Lanes<T>::bits(G > T(0))} << 56;
       const std::uint64_t sinks = positive & ~next_positive;
+      signs[u][k / 8] = positive;
+      signs[u][k / 8 + 1] = Lanes<T>::bits(G > T(0));
       constexpr std::uint64_t lanes = ((std::uint64_t{1} << Lanes<T>::count) - 1) * 0x0101010101010101u;
       for (std::uint64_t look = (~plain | sinks) & lanes; look != 0; look &= look - 1) {
         const auto bit = static_cast<std::size_t>(std::countr_zero(look)), lane = bit % 8;
         flags[lane].looks[u] |= std::uint64_t{1} << (k + bit / 8);
         flags[lane].falls[u] |= (sinks & plain) >> bit << 63 >> (63 - k - bit / 8);
+        flags[lane].above_left[u] |= positive >> bit << 63 >> (63 - k - bit / 8);
+        flags[lane].above_right[u] |= next_positive >> bit << 63 >> (63 - k - bit / 8);
       }
     }
   }
@@ -105,13 +121,12 @@ struct IntervalKind {
 
 /// G' is monotone, or has no root, where its values at both ends are beyond |G'''| length^2 / 8 and on one
 /// side; then G is monotone too. Without a change of sign between the ends, a zero needs a turning point that
-/// comes within |G''| length^2 / 8 of zero.
+/// comes within |G''| length^2 / 8 of zero. up_a, up_b: whether G > 0 at the ends, as was decided for them.
 template <class T>
-IntervalKind<T> classify(const CurvedSample<T>& a, const CurvedSample<T>& b, const LiftBounds<T>& bounds,
-                         const T& length) {
+IntervalKind<T> classify(const CurvedSample<T>& a, const CurvedSample<T>& b, const MaskOf<T>& up_a,
+                         const MaskOf<T>& up_b, const LiftBounds<T>& bounds, const T& length) {
   using std::abs;
   const T square = length * length * T(0.125);
-  const MaskOf<T> up_a = a.value > T(0), up_b = b.value > T(0);
   const MaskOf<T> down_a = a.rate < T(0), down_b = b.rate < T(0);
   // neither != nor ^, which xsimd 8 gets wrong for SSE2's and AVX-512's masks
   const MaskOf<T> changes = (up_a & !up_b) | (up_b & !up_a);

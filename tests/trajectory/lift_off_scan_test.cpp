@@ -71,7 +71,8 @@ TEST(Scan, FlagsEveryFallThatDenseSamplingSeesAndCallsNoOtherOneSure) {
     const Roll<double> roll = random_roll(random);
     const double first_turn = std::floor(testing::uniform(random, -1.0, 4.0));
     ScanFlags flags;
-    scan_turns(nodes, roll, first_turn, turns_a_scan, &flags);
+    NodeSigns signs;
+    scan_turns(nodes, roll, first_turn, turns_a_scan, &flags, signs);
     for (int t = 0; t < turns_a_scan; ++t)
       for (int k = 0; k < nodes_a_turn; ++k) {
         const auto u = static_cast<std::size_t>(t);
@@ -121,20 +122,39 @@ TEST(Scan, LanesSeeWhatOneNumberSees) {
                   lanes([](const auto& r) { return r.hoop.Ic; }),
                   lanes([](const auto& r) { return r.hoop.J_min; })};
     std::array<ScanFlags, 8> together;
-    scan_turns(scan_nodes<double>(), batch, Batch(1.0), turns_a_scan, together.data());
+    NodeSigns signs;
+    scan_turns(scan_nodes<double>(), batch, Batch(1.0), turns_a_scan, together.data(), signs);
     for (std::size_t k = 0; k < width; ++k) {
       ScanFlags alone;
-      scan_turns(scan_nodes<double>(), rolls[k], 1.0, turns_a_scan, &alone);
+      scan_turns(scan_nodes<double>(), rolls[k], 1.0, turns_a_scan, &alone, signs);
       EXPECT_EQ(together[k].looks, alone.looks);
       EXPECT_EQ(together[k].falls, alone.falls);
     }
   }
 }
 
+TEST(Scan, SignsAtNodesAreThoseOfEveryLaneAndJoinRevolutions) {
+  std::mt19937_64 random(15);
+  for (int i = 0; i < 500; ++i) {
+    const Roll<double> roll = random_roll(random);
+    ScanFlags flags;
+    NodeSigns signs;
+    scan_turns(scan_nodes<double>(), roll, 0.0, turns_a_scan, &flags, signs);
+    for (std::size_t t = 0; t + 1 < turns_a_scan; ++t)
+      EXPECT_EQ(is_above(signs, t, nodes_a_turn, 0), is_above(signs, t + 1, 0, 0));
+    for (std::size_t t = 0; t < turns_a_scan; ++t)
+      for (std::size_t k = 0; k < nodes_a_turn; ++k)
+        if (flags.looks[t] >> k & 1u) {
+          EXPECT_EQ(flags.above_left[t] >> k & 1u, std::uint64_t{is_above(signs, t, k, 0)});
+          EXPECT_EQ(flags.above_right[t] >> k & 1u, std::uint64_t{is_above(signs, t, k + 1, 0)});
+        }
+  }
+}
+
 TEST(Classify, TellsOneFallNothingAndUnclear) {
   const LiftBounds<double> bounds{1.0, 1.0};
   const auto kind = [&](double a, double a_rate, double b, double b_rate) {
-    return classify<double>({a, a_rate, 0, 0}, {b, b_rate, 0, 0}, bounds, 0.1);
+    return classify<double>({a, a_rate, 0, 0}, {b, b_rate, 0, 0}, a > 0.0, b > 0.0, bounds, 0.1);
   };
   EXPECT_TRUE(kind(0.05, -1.0, -0.05, -1.0).fall);
   EXPECT_FALSE(kind(-0.05, 1.0, 0.05, 1.0).fall);
