@@ -171,8 +171,8 @@ def _refuse_foreign_parts(file, file_size, texts):
 
 
 @contextlib.contextmanager
-def opened(path, texts=False):
-    """The file as h5py has it, for reading; texts: it may hold datasets of texts. Raises Refused or OSError."""
+def opened(path, filetype, texts=False):
+    """A file of that type as h5py has it, for reading; texts: it may hold datasets of texts. Raises Refused or OSError."""
     with contextlib.ExitStack() as stack:
         # Not blocking: to open a pipe would wait for whoever writes to it.
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -187,5 +187,8 @@ def opened(path, texts=False):
             pass  # a file system without locks: nothing is written here, and HDF5 itself refuses what it cannot lock
         content = _with_journal(raw)
         h5 = stack.enter_context(h5py.File(path if content is raw else content, "r"))
+        told = h5.attrs.get("filetype")
+        if not isinstance(told, str) or told != filetype:
+            raise Refused(f"is not a {filetype} (its attribute filetype is {' '.join(repr(told).split())[:80]})")
         _refuse_foreign_parts(h5, os.fstat(descriptor).st_size, texts)
         yield h5

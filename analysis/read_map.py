@@ -91,8 +91,8 @@ class Map:
 
 def _read(path, filetype, most_designs=math.inf, texts=False):
     try:
-        with opened(path, texts) as file:
-            return _read_open(path, file, filetype, most_designs)
+        with opened(path, filetype, texts) as file:
+            return _read_open(path, file, most_designs)
     except Refused as error:
         raise NotAMap(f"{path}: {error}") from None
     except FileNotFoundError:
@@ -105,11 +105,8 @@ def _read(path, filetype, most_designs=math.inf, texts=False):
         raise NotAMap(f"{path}: is damaged, or not written by leapmap ({' '.join(str(error).split())})") from None
 
 
-def _read_open(path, file, filetype, most_designs):
+def _read_open(path, file, most_designs):
     attributes = dict(file.attrs)
-    told = attributes.get("filetype")
-    if not isinstance(told, str) or told != filetype:
-        raise NotAMap(f"{path}: is not a {filetype} (its attribute filetype is {' '.join(repr(told).split())[:80]})")
     if attributes["version"][0] > FORMAT_MAJOR:
         raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
                       "use a newer leapmap")
