@@ -16,6 +16,9 @@ void add_precision(CLI::App& app, int& status);
 void add_stability(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 
+/// Refuses an empty file name.
+CLI::Validator named_file();
+
 /// --no-lock, of every command that opens files of ours.
 void add_no_lock(CLI::App& command, Locking& locking);
 

@@ -259,7 +259,8 @@ void add_hop(CLI::App& app, int& status) {
   command->add_option("--set", arguments->overrides, "KEY=VALUE: override a key of the spec")
       ->expected(1)
       ->take_all();
-  command->add_option("--trace", arguments->trace, "write the motion over time to this HDF5 file");
+  command->add_option("--trace", arguments->trace, "write the motion over time to this HDF5 file")
+      ->check(named_file());
   command
       ->add_option("--trace-interval", arguments->trace_interval,
                    "seconds between its samples; default 0.001")

@@ -76,6 +76,13 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
+CLI::Validator leapmap::cli::named_file() {
+  return {[](const std::string& name) {
+            return name.empty() ? std::string("is empty; allowed: a file's name") : "";
+          },
+          ""};
+}
+
 void leapmap::cli::add_no_lock(CLI::App& command, Locking& locking) {
   command.add_flag_callback(
       "--no-lock", [&locking] { locking = Locking::if_possible; },

@@ -139,8 +139,8 @@ void add_precision(CLI::App& app, int& status) {
       "precision",
       "measure speed against accuracy: every method at every setting on the same designs, in one run");
   auto arguments = std::make_shared<PrecisionArguments>();
-  command->add_option("-o,--output", arguments->table,
-                      "the table to write, HDF5; default: maps/precision.h5");
+  command->add_option("-o,--output", arguments->table, "the table to write, HDF5; default: maps/precision.h5")
+      ->check(named_file());
   auto* designs =
       command
           ->add_option("--designs", arguments->options.designs, "random designs; default: 200, 40 if quick")

@@ -213,8 +213,10 @@ void add_sweep(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("sweep", "solve the designs of a spec into a map (HDF5)");
   auto arguments = std::make_shared<SweepArguments>();
   command->add_option("SPEC", arguments->spec, "the sweep's spec, TOML")->required();
-  command->add_option("-o,--output", arguments->map,
-                      "the map to write, in a folder made if need be; default: output.file of the spec");
+  command
+      ->add_option("-o,--output", arguments->map,
+                   "the map to write, in a folder made if need be; default: output.file of the spec")
+      ->check(named_file());
   command
       ->add_option("--set", arguments->overrides,
                    "KEY=VALUE: override a key of the spec, for example --set tolerance=1e-12")

@@ -88,9 +88,13 @@ inline std::string part_of(const std::string& path) { return path + ".part"; }
 /// sweep is writing it.
 bool has_part(const std::string& path, Locking locking = Locking::required);
 
-/// CRC-32 of the first `tiles` tiles as stored, by tile and then by field, each chunk followed by the mask of
-/// the filters skipped for it. Throws IoError, which begins with `path`.
-std::uint32_t tiles_checksum(std::span<const hdf5::Handle> datasets, const Tiling& tiling, std::size_t tiles,
-                             const std::string& path);
+/// Whether the first `tiles` tiles are as they were written: a CRC-32 of them as stored, by tile and then by
+/// field, each chunk followed by the mask of the filters skipped for it, is the one that the map tells. True
+/// of a map that tells none. Throws IoError, which begins with `path`.
+bool tiles_are_as_written(hid_t file, const MapLayout& layout, const Tiling& tiling, std::size_t tiles,
+                          const std::string& path);
+
+/// Tells in the map the checksum of all its tiles as they are now. Throws IoError.
+void write_tiles_checksum(hid_t file, const MapLayout& layout, const Tiling& tiling, const std::string& path);
 
 }  // namespace leapmap

@@ -78,10 +78,6 @@ void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Faile
   }
 }
 
-std::uint32_t checksum_of(hid_t file, const Spec& spec, const Tiling& tiling, const std::string& path) {
-  return tiles_checksum(open_fields(file, layout_of(spec)), tiling, tiling.size(), path);
-}
-
 /// Settles every failed design of the copy and says so in it. Nothing: a stop was requested.
 std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string& path, const Spec& spec,
                                       int threads, const std::function<bool()>& stop_requested) {
@@ -91,9 +87,9 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
   if (!stores(spec.output, "status"))
     throw InputError(path + ": holds no status; allowed: a map with that field");
   const Tiling tiling(map.shape());
-  check_layout(file, layout_of(spec), tiling);
-  if (hdf5::has_attribute(file, "tiles_checksum") &&
-      checksum_of(file, spec, tiling, path) != hdf5::read_integers(file, "tiles_checksum")[0])
+  const MapLayout layout = layout_of(spec);
+  check_layout(file, layout, tiling);
+  if (!tiles_are_as_written(file, layout, tiling, tiling.size(), path))
     throw BrokenFile(path + ": is damaged: its tiles are not what was written; leapmap check tells where");
   RetryReport report;
   std::vector<Failed> waiting;
@@ -122,7 +118,7 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
     if (stop_requested && stop_requested()) return std::nullopt;
   }
   report.still_failed = static_cast<std::size_t>(report.statuses[static_cast<std::size_t>(Status::failed)]);
-  hdf5::write_attribute(file, "tiles_checksum", std::int64_t{checksum_of(file, spec, tiling, path)});
+  write_tiles_checksum(file, layout, tiling, path);
   hdf5::write_attribute(file, "status_counts", report.statuses);
   const std::int64_t before =
       hdf5::has_attribute(file, "retry_designs") ? hdf5::read_integers(file, "retry_designs")[0] : 0;
@@ -161,8 +157,9 @@ std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spe
       throw IoError(path + ": another program has replaced or removed it meanwhile");
     report->durable = file->finish(path, true, [&](hid_t written) {
       const Tiling tiling(shape_of(spec));
-      check_layout(written, layout_of(spec), tiling);
-      if (checksum_of(written, spec, tiling, path) != hdf5::read_integers(written, "tiles_checksum")[0])
+      const MapLayout layout = layout_of(spec);
+      check_layout(written, layout, tiling);
+      if (!tiles_are_as_written(written, layout, tiling, tiling.size(), path))
         throw BrokenFile(path + ".retry: its tiles are not what was written");
     });
     return report;

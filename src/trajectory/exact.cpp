@@ -17,18 +17,12 @@ template <class T>
 typename ExactSolver<T>::LoadedIntervals ExactSolver<T>::load_intervals(
     const std::vector<Interval>& intervals, std::size_t first) const {
   Index index;
-  LaneArray<T> from, to, turn, from_side, to_side;
+  LaneArray<T> from, to, turn;
   for (std::size_t i = 0; i < width; ++i) {
     const Interval& interval = intervals[first + i < intervals.size() ? first + i : first];
     index[i] = interval.design, from[i] = interval.from, to[i] = interval.to, turn[i] = interval.turn;
-    from_side[i] = interval.from_side, to_side[i] = interval.to_side;
   }
-  return {index,
-          Lanes<T>::load(from.data()),
-          Lanes<T>::load(to.data()),
-          Lanes<T>::load(turn.data()),
-          Lanes<T>::load(from_side.data()),
-          Lanes<T>::load(to_side.data())};
+  return {index, Lanes<T>::load(from.data()), Lanes<T>::load(to.data()), Lanes<T>::load(turn.data())};
 }
 
 template <class T>
@@ -114,10 +108,19 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
     const T at_edge = vis_viva_past_release(roll, RollingTime<T>::first_panel(roll) * pi - roll.release);
     rows_.store(roll, Quiet<T>{smaller(least, at_edge), minimum - roll.release}, index.data(), count);
 
-    const unsigned in_the_air = Lanes<T>::bits(airborne), not_off = Lanes<T>::bits(uphill),
+    // The scan's first node past the release. One no farther than rounding is the same place, and has its
+    // sign.
+    const T release_turn = floor(roll.release / two_pi), step = two_pi / T(S(nodes_a_turn));
+    const auto angle_of_node = [&](const T& k) { return (release_turn * T(S(nodes_a_turn)) + k) * step; };
+    T past = floor((roll.release - two_pi * release_turn) / step) + T(1);
+    past = select((past > T(1)) & (angle_of_node(past - T(1)) > roll.release), past - T(1), past);
+    const T same_place = T(S(8) * std::numeric_limits<S>::epsilon()) * larger(T(1), abs(roll.release));
+
+    const unsigned on_node = Lanes<T>::bits(angle_of_node(past) - roll.release <= same_place),
+                   in_the_air = Lanes<T>::bits(airborne), not_off = Lanes<T>::bits(uphill),
                    stalling = Lanes<T>::bits(is_real & !(least > T(0)));
     const auto release = lanes_of(roll.release), end = lanes_of(roll.release + two_pi * T(S(scene.runway))),
-               first_turn = lanes_of(floor(roll.release / two_pi)),
+               first_turn = lanes_of(release_turn), past_release = lanes_of(past),
                turns_back = lanes_of(release_angle - nearest), minima = lanes_of(minimum),
                crests = lanes_of(crest);
     for (std::size_t i = 0; i < count; ++i) {
@@ -132,7 +135,9 @@ void ExactSolver<T>::prepare(std::span<const Design> designs, const Scene& scene
         search.release = release[i], search.end = end[i], search.first_turn = first_turn[i];
         search.turned_back = turns_back[i];
         search.turn = search.node = search.halvings = 0, search.part = 0;
-        search.stalls = false, search.is_first_scan = true;
+        search.stalls = false;
+        search.node_past_release = static_cast<std::uint32_t>(past_release[i]);
+        search.released_on_node = on_node >> i & 1u;
         searching_.push_back(design);
         if (stalling >> i & 1u) {
           const S stall = stall_angle(rows_.template load_roll<S>(&design), minima[i], crests[i]);
@@ -159,7 +164,6 @@ void ExactSolver<T>::scan(const List& designs) {
     const std::size_t count = std::min(width, designs.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       searches_[index[i]].flags = flags[i];
-      searches_[index[i]].first_above = searches_[index[i]].last_above;
       hand_on_signs(searches_[index[i]], signs, i, turns);
     }
   }
@@ -172,8 +176,6 @@ template <class T>
 void ExactSolver<T>::hand_on_signs(Search& search, const NodeSigns& signs, std::size_t lane,
                                    int turns) const {
   constexpr auto nodes = static_cast<std::size_t>(nodes_a_turn);
-  const S step = S(2) * pi_of<S> / S(nodes_a_turn), origin = search.first_turn * S(nodes_a_turn);
-  const auto angle_of_node = [&](std::size_t k) { return (origin + S(static_cast<int>(k))) * step; };
   const auto scanned = static_cast<std::size_t>(turns) * nodes;  // of all turns, the last node not counted
   const auto above_at = [&](std::size_t k) {
     return k < scanned ? is_above(signs, k / nodes, k % nodes, lane)
@@ -187,24 +189,19 @@ void ExactSolver<T>::hand_on_signs(Search& search, const NodeSigns& signs, std::
     put(search.flags.looks, true), put(search.flags.falls, false);
     put(search.flags.above_left, left), put(search.flags.above_right, above_at(k + 1));
   };
+  const bool first_above = search.last_above;
   search.last_above = above_at(scanned);
-  if (search.is_first_scan) {
-    search.is_first_scan = false;
-    std::size_t k = 0;  // the first node past the release
-    while (k < scanned && !(angle_of_node(k) > search.release)) ++k;
-    // A node no farther from the release than rounding is the same place, and has its sign.
-    const S same_place = S(8) * std::numeric_limits<S>::epsilon() * std::max(S(1), std::abs(search.release));
-    const bool at_release = angle_of_node(k) - search.release <= same_place;
-    if (at_release && k == scanned) {
-      search.last_above = true;
-    } else if (at_release) {
-      if (k > 0) search.flags.looks[(k - 1) / nodes] &= ~(std::uint64_t{1} << (k - 1) % nodes);
-      if (!above_at(k)) look_at(k, true);
-    } else if (k > 0 && !above_at(k)) {
-      look_at(k - 1, above_at(k - 1));
-    }
-  } else if (search.first_above != above_at(0)) {
-    look_at(0, search.first_above);
+  const std::size_t k = search.node_past_release;
+  search.node_past_release = 0;
+  if (k == 0) {
+    if (first_above != above_at(0)) look_at(0, first_above);
+  } else if (!search.released_on_node) {
+    if (!above_at(k)) look_at(k - 1, above_at(k - 1));
+  } else if (k == scanned) {
+    search.last_above = true;
+  } else {
+    search.flags.looks[(k - 1) / nodes] &= ~(std::uint64_t{1} << (k - 1) % nodes);
+    if (!above_at(k)) look_at(k, true);
   }
 }
 
@@ -229,17 +226,16 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
         return bits[static_cast<std::size_t>(search.turn)] >> search.node & 1u;
       };
       const S left_node = node * step, right_node = (node + S(1)) * step;
-      const auto side = [](bool is_above) { return is_above ? above : below; };
-      interval = {design,
-                  turn,
-                  from,
-                  to,
-                  (from + to) * S(0.5),
-                  from == search.release ? above
-                  : from == left_node    ? side(flagged(search.flags.above_left))
-                                         : ask,
-                  to == right_node ? side(flagged(search.flags.above_right)) : ask,
-                  flagged(search.flags.falls) && from == left_node && to == right_node};
+      const auto side = [](bool is_above) { return is_above ? Side::above : Side::below; };
+      const bool falls = flagged(search.flags.falls) && from == left_node && to == right_node;
+      interval = {design, turn, from, to, (from + to) * S(0.5), falls, Side::asked, Side::asked};
+      if (falls) return true;
+      if (from == search.release) {
+        interval.from_side = Side::above;
+      } else if (from == left_node) {
+        interval.from_side = side(flagged(search.flags.above_left) || flagged(search.flags.falls));
+      }
+      if (to == right_node) interval.to_side = side(flagged(search.flags.above_right));
       return true;
     }
     if (from >= search.end) {
@@ -266,13 +262,18 @@ template <class T>
 void ExactSolver<T>::classify_intervals() {
   for (std::size_t first = 0; first < intervals_.size(); first += width) {
     const std::size_t count = std::min(width, intervals_.size() - first);
-    const auto [index, a, b, turn, side_a, side_b] = load_intervals(intervals_, first);
+    const auto [index, a, b, turn] = load_intervals(intervals_, first);
     const Roll<T> roll = rows_.template load_motion<T>(index.data());
     const CurvedSample<T> at_a = lift(roll, a), at_b = lift(roll, b);
-    const auto is_up = [](const T& side, const T& value) {
-      return (side > T(0)) | ((side == T(0)) & (value > T(0)));
+    const auto is_up = [&](Side Interval::*side, const T& value) {
+      LaneArray<T> sides;
+      for (std::size_t i = 0; i < width; ++i)
+        sides[i] = S(static_cast<int>(intervals_[first + (i < count ? i : 0)].*side));
+      const T decided = Lanes<T>::load(sides.data());
+      return (decided > T(0)) | ((decided == T(0)) & (value > T(0)));
     };
-    const MaskOf<T> up_a = is_up(side_a, at_a.value), up_b = is_up(side_b, at_b.value);
+    const MaskOf<T> up_a = is_up(&Interval::from_side, at_a.value),
+                    up_b = is_up(&Interval::to_side, at_b.value);
     const IntervalKind<T> kind = classify(at_a, at_b, up_a, up_b, lift_bounds(roll, turn), b - a);
     const unsigned falls = Lanes<T>::bits(kind.fall), unclear = Lanes<T>::bits(kind.unclear),
                    sinking = Lanes<T>::bits(up_a & !up_b);
@@ -307,7 +308,7 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
   const T epsilon(std::numeric_limits<S>::epsilon());
   for (std::size_t first = 0; first < falls_.size(); first += width) {
     const std::size_t count = std::min(width, falls_.size() - first);
-    const auto [index, a, b, turn, side_a, side_b] = load_intervals(falls_, first);
+    const auto [index, a, b, turn] = load_intervals(falls_, first);
     LaneArray<T> guess;
     for (std::size_t i = 0; i < width; ++i) guess[i] = falls_[first + (i < count ? i : 0)].guess;
     const Roll<T> roll = rows_.template load_motion<T>(index.data());

@@ -52,9 +52,9 @@ class ExactSolver {
     S turned_back;   // whole turns by which all angles here are less than they are
     S first_turn;    // of the scan
     ScanFlags flags;
-    bool is_first_scan;
-    bool first_above,
-        last_above;  // whether G > 0 at the scan's first node, as the scan before says, and at its last
+    std::uint32_t node_past_release;  // the first one of the first scan; 0 in later scans
+    bool released_on_node;            // on that one, but for rounding
+    bool last_above;                  // whether G > 0 at the last node of the scan
     int turn, node, halvings;
     std::uint64_t part;
     S first_angle, jump_angle;  // of the lift-offs found
@@ -64,14 +64,14 @@ class ExactSolver {
     S panel_time;
     int panel_nodes, rest_nodes;
   };
-  /// An end at the release or at a node has a sign of G that was decided before; `ask` it elsewhere.
-  static constexpr S above{1}, ask{0}, below{-1};
+  /// An end at the release or at a node has a sign of G that was decided before; elsewhere it is asked.
+  enum class Side : std::int8_t { below = -1, asked = 0, above = 1 };
   struct Interval {
     std::uint32_t design;
     S turn;  // the revolution it lies in
     S from, to, guess;
-    S from_side, to_side;
     bool falls;  // surely once, and nothing else
+    Side from_side, to_side;
   };
   struct Part {
     long number;  // of the part of a panel in which the lift-off lies, from angle 0 on
@@ -79,7 +79,7 @@ class ExactSolver {
   };
   struct LoadedIntervals {
     Index index;
-    T from, to, turn, from_side, to_side;
+    T from, to, turn;
   };
 
   void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);

@@ -29,7 +29,7 @@ using IntervalBits = std::array<std::uint64_t, turns_a_scan>;
 struct ScanFlags {
   IntervalBits looks;                    ///< intervals that may hold a fall
   IntervalBits falls;                    ///< those of them that surely hold one, and nothing else
-  IntervalBits above_left, above_right;  ///< of those looked at: whether G > 0 at either end
+  IntervalBits above_left, above_right;  ///< of those that only may hold one: whether G > 0 at either end
 };
 
 /// Whether G > 0 at the nodes of each revolution, the first of the next one included: a byte a node, a bit a
@@ -99,16 +99,20 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
       const std::uint64_t next_positive = positive >> 8 | std::uint64_t{Lanes<T>::bits(G > T(0))} << 56;
       const std::uint64_t sinks = positive & ~next_positive;
       signs[u][k / 8] = positive;
-      signs[u][k / 8 + 1] = Lanes<T>::bits(G > T(0));
+      signs[u][k / 8 + 1] = next_positive >> 56;
       constexpr std::uint64_t lanes = ((std::uint64_t{1} << Lanes<T>::count) - 1) * 0x0101010101010101u;
-      for (std::uint64_t look = (~plain | sinks) & lanes; look != 0; look &= look - 1) {
+      for (std::uint64_t fall = plain & sinks & lanes; fall != 0; fall &= fall - 1) {
+        const auto bit = static_cast<std::size_t>(std::countr_zero(fall)), lane = bit % 8;
+        flags[lane].falls[u] |= std::uint64_t{1} << (k + bit / 8);
+      }
+      for (std::uint64_t look = ~plain & lanes; look != 0; look &= look - 1) {
         const auto bit = static_cast<std::size_t>(std::countr_zero(look)), lane = bit % 8;
         flags[lane].looks[u] |= std::uint64_t{1} << (k + bit / 8);
-        flags[lane].falls[u] |= (sinks & plain) >> bit << 63 >> (63 - k - bit / 8);
         flags[lane].above_left[u] |= positive >> bit << 63 >> (63 - k - bit / 8);
         flags[lane].above_right[u] |= next_positive >> bit << 63 >> (63 - k - bit / 8);
       }
     }
+    for (std::size_t i = 0; i < Lanes<T>::count; ++i) flags[i].looks[u] |= flags[i].falls[u];
   }
 }
 

@@ -39,7 +39,7 @@ def test_a_bad_spec_ends_with_status_2_one_line_and_no_file(kind, tmp_path):
 
 @pytest.mark.parametrize("arguments", [
     [], ["swep"], ["sweep"], ["sweep", "/nowhere.toml"], ["hop", "--slope", "91deg"], ["hop", "--slope"], ["hop", "--sloop", "1"],
-    ["hop", "--slope", "steep"], ["hop", "--trace-interval", "-1"], ["sweep", "x.toml", "--threads", "0"], ["info"],
+    ["hop", "--slope", "steep"], ["hop", "--trace", ""], ["sweep", "x.toml", "-o", ""], ["stability", "-o", ""], ["hop", "--trace-interval", "-1"], ["sweep", "x.toml", "--threads", "0"], ["info"],
     ["hop", "--set", "design.slope={values=[0.1,0.2]}"], ["hop", "--set", "tolerance=1e-3\nslope=9"],
     ["hop", "--set", 'method="a\\nb"'], ["hop", "--slope", "0.4raddeg"], ["hop", "--trace-interval", "nan", "--trace", "/tmp/x.h5"],
 ])

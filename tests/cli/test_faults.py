@@ -24,8 +24,9 @@ def test_interrupted_short_and_empty_transfers_are_made_again_or_told():
     assert runs > 50 and findings == []
 
 
-def test_a_lack_of_memory_is_a_line_and_loses_nothing():
-    runs, findings = walk.walk(["sweep", "trace"], ["ENOMEM"], (False, True), 211, "new")
+@pytest.mark.parametrize("memory, every", [("new", 211), ("malloc", 499)])
+def test_a_lack_of_memory_is_a_line_and_loses_nothing(memory, every):
+    runs, findings = walk.walk(["sweep", "trace"], ["ENOMEM"], (False, True), every, memory)
     assert runs > 30 and findings == []
 
 

@@ -33,7 +33,6 @@ audit = 0.03
 FAILING = SPEC.replace("audit = 0.03", 'method = "gsl-rk8pd"\nmax_steps = 40\naudit = 0')
 POINTS = "slope,mass_ratio\n0.4,2.4\n0.3,3\n0.5,1\n"
 LIST = '[design]\npoints = "points.csv"\n'
-BEFORE_MAIN = 100  # allocations that the libraries' own globals make; CLI11's end by std::terminate if there is no memory for them
 SECONDS = 60  # a run that takes longer hangs: the longest takes two
 
 
@@ -174,9 +173,8 @@ def walk(names, errors, sticky, every, memory="", report=print):
     with tempfile.TemporaryDirectory(prefix="leapmap-faults-", dir=place) as name, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for number, command in enumerate(COMMANDS[n] for n in names):
             each = begin(command, Path(name), memory)
-            first = BEFORE_MAIN if memory else 0
             faults = [{"number": i, "error": e, **({"sticky": 1} if s else {}), **({"memory": memory} if memory else {})}
-                      for e in errors for s in sticky for i in range(first + number % every, each.calls, every)
+                      for e in errors for s in sticky for i in range(number % every, each.calls, every)
                       if not (e == "EINTR" and s and command.name == "explorer")]  # Python tries again for ever, as it should
             found = [f for f in pool.map(each.fail, faults) if f]
             runs, findings = runs + len(faults), findings + found

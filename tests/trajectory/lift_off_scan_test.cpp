@@ -144,7 +144,9 @@ TEST(Scan, SignsAtNodesAreThoseOfEveryLaneAndJoinRevolutions) {
       EXPECT_EQ(is_above(signs, t, nodes_a_turn, 0), is_above(signs, t + 1, 0, 0));
     for (std::size_t t = 0; t < turns_a_scan; ++t)
       for (std::size_t k = 0; k < nodes_a_turn; ++k)
-        if (flags.looks[t] >> k & 1u) {
+        if (flags.falls[t] >> k & 1u) {
+          EXPECT_TRUE(is_above(signs, t, k, 0) && !is_above(signs, t, k + 1, 0));
+        } else if (flags.looks[t] >> k & 1u) {
           EXPECT_EQ(flags.above_left[t] >> k & 1u, std::uint64_t{is_above(signs, t, k, 0)});
           EXPECT_EQ(flags.above_right[t] >> k & 1u, std::uint64_t{is_above(signs, t, k + 1, 0)});
         }
