@@ -25,7 +25,8 @@ struct SpectralPanel {
   std::array<Values, n>
       running;  ///< integral of the j-th cardinal polynomial from 0 to node i is running[j][i]
   Values barycentric;
-  std::array<Values, 2> last;  ///< rows that give the last two Legendre coefficients
+  std::array<Values, n> coefficient;  ///< rows that give the Legendre coefficients
+  Values fourth;                      ///< fourth derivatives of Legendre's polynomials at 1
 
   SpectralPanel() {
     const GaussRule<long double> rule = gauss_rule<long double>(n);
@@ -40,7 +41,12 @@ struct SpectralPanel {
       }
       return P;
     };
-    for (std::size_t i = 0; i < n; ++i) node[i] = S(rule.node[i]), weight[i] = S(rule.weight[i]);
+    for (std::size_t k = 0; k < n; ++k) {
+      node[k] = S(rule.node[k]), weight[k] = S(rule.weight[k]);
+      long double product = k < 4 ? 0 : 1;  // (k + 4)! / (k - 4)!
+      for (std::size_t m = k < 4 ? 0 : k - 3; m <= k + 4; ++m) product *= static_cast<long double>(m);
+      fourth[k] = S(product / 24);
+    }
     for (std::size_t j = 0; j < n; ++j) {
       const auto at_j = legendre(rule.node[j]);
       for (std::size_t i = 0; i < n; ++i) {
@@ -49,8 +55,8 @@ struct SpectralPanel {
         for (std::size_t k = 1; k < n; ++k) sum += at_j[k] * (at_i[k + 1] - at_i[k - 1]) / 2;
         running[j][i] = S(rule.weight[j] * sum);
       }
-      for (std::size_t k = 0; k < 2; ++k)
-        last[k][j] = S(rule.weight[j] * at_j[n - 2 + k] * static_cast<long double>(2 * (n - 2 + k) + 1));
+      for (std::size_t k = 0; k < n; ++k)
+        coefficient[k][j] = S(rule.weight[j] * at_j[k] * static_cast<long double>(2 * k + 1));
       const long double x = rule.node[j];
       barycentric[j] = S((j % 2 == 0 ? 1 : -1) * std::sqrt(x * (1 - x) * rule.weight[j]));
     }
@@ -83,11 +89,20 @@ struct SpectralPanel {
     }
     return sum(above) / sum(below);
   }
+  /// The longest way between neighbours among the nodes and both ends.
+  S longest_spacing() const { return node[n / 2] - node[n / 2 - 1]; }
+  /// A bound of f's fourth derivative: that of a Legendre polynomial is largest at the panel's ends.
+  S fourth_derivative_bound(const Values& f) const {
+    using std::abs;
+    S bound(0);
+    for (std::size_t k = 4; k < n; ++k) bound += abs(dot(coefficient[k], f)) * fourth[k];
+    return bound;
+  }
   /// The larger of f's last two Legendre coefficients: about the error of values between the nodes, and the
   /// square root of that of the integral, both where f is of size 1.
   S tail(const Values& f) const {
     using std::abs, std::max;
-    return max(abs(dot(last[0], f)), abs(dot(last[1], f)));
+    return max(abs(dot(coefficient[n - 2], f)), abs(dot(coefficient[n - 1], f)));
   }
 
  private:

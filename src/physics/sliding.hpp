@@ -45,11 +45,10 @@ struct SlidingMotion {
   T slip;          ///< v' = x'' - phi''
 };
 
-/// at: sliding_coefficients there.
+/// at: sliding_coefficients there; n0: free_normal_force there.
 template <class T>
 SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared,
-                                const T& friction, const SlidingCoefficients<T>& at) {
-  const T n0 = free_normal_force(hoop, phi, spin_squared);
+                                const T& friction, const SlidingCoefficients<T>& at, const T& n0) {
   const T N = at.push * n0, F = -friction * N, angular = at.turn * n0;
   const T arm = hoop.clearance + hoop.rho * phi.versine;
   return {N, F, angular, F + hoop.sin_slope - arm * angular - hoop.rho * phi.sin * spin_squared};
@@ -57,7 +56,8 @@ SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T
 template <class T>
 SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared,
                                 const T& friction) {
-  return sliding_motion(hoop, phi, spin_squared, friction, sliding_coefficients(hoop, phi, friction));
+  return sliding_motion(hoop, phi, spin_squared, friction, sliding_coefficients(hoop, phi, friction),
+                        free_normal_force(hoop, phi, spin_squared));
 }
 
 }  // namespace leapmap

@@ -6,43 +6,12 @@
 #include <limits>
 #include <numbers>
 
-#include "numerics/events.hpp"
+#include "numerics/first_fall.hpp"
 
 namespace leapmap {
-namespace {
-
-/// A smooth function on an interval: where it first falls from above to below zero. Its ends' values and
-/// rates tell; where they leave a minimum near zero in doubt, it is asked. NaN: it does not fall.
-template <class S, class F>
-S first_fall(const F& f, const S& a, const S& b, const Sample<S>& at_a, const Sample<S>& at_b) {
-  const S none = std::numeric_limits<S>::quiet_NaN(), h = b - a;
-  const S resolution = S(2) * std::numeric_limits<S>::epsilon() * (std::abs(a) + std::abs(b));
-  if (has_fallen(at_a)) return a;
-  if (has_fallen(at_b)) return polish_root(f, a, b, a + h * S(0.5), false, resolution);
-  if (!(at_a.rate < S(0) && at_b.rate > S(0))) return none;
-  // A minimum, by the cubic's slope; the interval is short, so that it is near there. It is beyond doubt
-  // where the tangents at both ends meet above zero.
-  const S meet = (at_b.value - at_a.value - at_b.rate * h) / (at_a.rate - at_b.rate);
-  if (at_a.value + at_a.rate * meet > S(0)) return none;
-  S left = a, right = b, left_rate = at_a.rate, right_rate = at_b.rate;
-  for (int i = 0; i < 60 && right - left > resolution; ++i) {
-    S x = i % 3 == 2 ? left + (right - left) * S(0.5)
-                     : left + (right - left) * left_rate / (left_rate - right_rate);
-    if (!(x > left && x < right)) x = left + (right - left) * S(0.5);
-    const Sample<S> at = f(x);
-    if (at.value < S(0)) return polish_root(f, a, x, a + (x - a) * S(0.5), false, resolution);
-    // No fall if even the tangents here stay above zero.
-    if (at.value + at.rate * (at.rate > S(0) ? left - x : right - x) > S(0)) return none;
-    at.rate < S(0) ? (left = x, left_rate = at.rate) : (right = x, right_rate = at.rate);
-  }
-  return none;
-}
-
-}  // namespace
-
 template <class S>
 RollingLeg<S>::RollingLeg(double tolerance)
-    : tolerance_(std::max(S(tolerance) * S(1e-3), S(8) * std::numeric_limits<S>::epsilon())) {
+    : tolerance_(std::max(S(tolerance) * S(0.1), S(1000) * std::numeric_limits<S>::epsilon())) {
   for (std::size_t k = 0; k < grid_.sin.size(); ++k) {
     const Trig<S> phi = trig(S(2) * std::numbers::pi_v<S> * S(k % nodes_a_turn) / S(nodes_a_turn));
     grid_.sin[k] = phi.sin, grid_.cos[k] = phi.cos, grid_.versine[k] = phi.versine;
@@ -133,9 +102,15 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
 
 template <class S>
 S RollingLeg<S>::duration(const Roll<S>& roll, const S& length) const {
-  // x = shift + q^2 takes out the nearer zero of E's tangent at the start, where the spin is small and grows.
-  const S tangent_zero = roll.push > S(0) ? -roll.released / (S(2) * roll.push) : -S(1);
-  const S shift = std::max(tangent_zero, -length);
+  // x = shift + q^2 takes out E's zero before the start, where the spin is small and grows. Newton's method
+  // from the start comes to it from above where E is convex; where it does not, any shift will do.
+  S shift = roll.push > S(0) ? -roll.released / (S(2) * roll.push) : -length;
+  for (int k = 0; k < 4 && shift > -length && shift < S(0); ++k) {
+    const S push = torque(roll.hoop, trig(S(roll.release + shift)));
+    if (!(push > S(0))) break;
+    shift -= vis_viva_past_release(roll, shift) / (S(2) * push);
+  }
+  shift = std::clamp(shift, -length, S(0));
   const S begin = std::sqrt(-shift);
   S sum(0), from = begin;
   const S end = std::sqrt(length - shift);
@@ -168,7 +143,9 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
     Lanes<T>::store(T(2) * q * sqrt(J / E), f.data() + i);
   }
   const S whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);
-  if (tail * tail <= tolerance_ * whole * whole) return whole;
+  // The tail itself, and not its square, which the error goes as where f is smooth: a narrow needle of little
+  // weight between the nodes shows in the tail alone.
+  if (tail <= tolerance_ * whole) return whole;
   if (halvings == most_halvings || !(whole > S(0))) return std::numeric_limits<S>::quiet_NaN();
   const S middle = from + (to - from) * S(0.5);
   return duration(roll, shift, from, middle, halvings + 1) + duration(roll, shift, middle, to, halvings + 1);

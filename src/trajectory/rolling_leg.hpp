@@ -21,7 +21,7 @@ class RollingLeg {
 
  private:
   static constexpr std::size_t nodes_a_turn = 48;
-  static constexpr std::size_t nodes = 16;
+  static constexpr std::size_t nodes = 24;
 
   S duration(const Roll<S>& roll, const S& length) const;
   S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, int halvings) const;

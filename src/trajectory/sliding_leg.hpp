@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One sliding phase by quadratures in the angle.
-///
-/// In the angle u = w^2 obeys du/dphi = a u + b with a = 2 rho c turn, b = 2 cos(theta) turn
-/// (physics/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the integral of a; time, slip and
-/// travel are integrals over u's root. All are taken on panels of Gauss-Legendre nodes, short enough that the
-/// nodes resolve them to the tolerance. Where the spin goes through zero, and while it is negative, panels
-/// are in time: angle and spin at their nodes by Picard's iteration.
+/// One sliding phase, panel by panel (trajectory/sliding_panel.hpp), to whatever ends it.
 #pragma once
 
-#include "numerics/spectral.hpp"
-#include "physics/sliding.hpp"
-#include "trajectory/contact_phases.hpp"
+#include "trajectory/sliding_panel.hpp"
 
 namespace leapmap {
 
@@ -30,32 +22,21 @@ class SlidingLeg {
                int direction) const;
 
  private:
-  static constexpr std::size_t nodes = 24;
-  using Values = typename SpectralPanel<S, nodes>::Values;
+  using Panels = SlidingPanels<S>;
+  using Panel = typename Panels::Panel;
+  using Slide = typename Panels::Slide;
 
-  /// What the nodes of a panel hold, in order of time, and its end.
-  struct Panel {
-    Values slip, travel, free_force;
-    ContactState<S> end;
-    S end_force;
-    S excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
-    bool indeterminate, spin_vanishes;
+  /// The first event of a panel: where, what, and whether shorter panels would tell better.
+  struct Event {
+    S place;  ///< in (0, 1]; 2: none
+    PhaseEnd end;
+    bool unsure;
   };
-  /// A panel by angle: phi = from + shift + q^2, q from begin to begin + span.
-  struct Stretch {
-    S shift, begin, span;
-  };
-  static Stretch stretch_of(const S& spin, const S& rise, const S& length);
-  void solve_by_angle(const Hoop<S>& hoop, const S& friction, const ContactState<S>& from,
-                      const Stretch& stretch, Panel& panel) const;
-  void solve_by_time(const Hoop<S>& hoop, const S& friction, const ContactState<S>& from, const S& duration,
-                     Panel& panel) const;
-  /// The first place in (0, 1] of the panel where a guard has fallen, and which; above 1: none has.
-  S first_event(const S& free_force, const ContactState<S>& at, const S& runway, int direction,
-                const Panel& panel, PhaseEnd& end) const;
+  Event first_event(const ContactState<S>& at, const S& runway, int direction, const Panel& panel) const;
+  /// What a slide that has come to Painleve's edge goes on as.
+  static PhaseEnd end_at_edge(const Slide& slide, const ContactState<S>& at);
 
-  S tolerance_;
-  SpectralPanel<S, nodes> panel_;
+  Panels panels_;
 };
 
 }  // namespace leapmap

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Where the polynomial on a panel first falls to zero, told by bounds: no dip is passed over because it lies
+/// between two nodes.
+///
+/// Between neighbouring nodes the polynomial p is its cubic Hermite interpolant but for an error of at most
+/// M x^2 (h - x)^2 / 24, M a bound of |p''''|. In Bernstein's form the cubic's inner coefficients bear that
+/// error: lowered by M h^4 / 288, and still above zero as both ends are, they prove that p has no zero there.
+/// What they do not prove is halved.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "numerics/root.hpp"
+#include "numerics/spectral.hpp"
+
+namespace leapmap {
+
+template <class S>
+struct PanelFall {
+  S place;      ///< in (0, 1]; 2: it does not fall
+  bool unsure;  ///< a dip to about zero is less than `slack` deep or high: finer nodes would tell
+};
+
+/// values, rates: of a function and its derivative by the panel's coordinate at the nodes; first, last: at
+/// its ends, where `first` may be zero but for rounding. slack: what the polynomial may be off by.
+template <class S, std::size_t n>
+PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename SpectralPanel<S, n>::Values& values,
+                        const typename SpectralPanel<S, n>::Values& rates, Sample<S> first,
+                        const Sample<S>& last, const S& slack) {
+  using std::abs, std::max, std::min;
+  constexpr S none(2), shortest(1e-9);
+  // Well above zero everywhere: a third of a spacing on, the tangent of no node comes down to a thousandth.
+  S least = min(first.value, last.value), most = max(first.value, last.value), steepest(0);
+  for (std::size_t i = 0; i < n; ++i) {
+    least = min(least, values[i]), most = max(most, values[i]), steepest = max(steepest, abs(rates[i]));
+  }
+  steepest = max({steepest, abs(first.rate), abs(last.rate)});
+  if (least - steepest * panel.longest_spacing() / S(3) > S(1e-3) * most) return {none, false};
+
+  // A function that starts at zero but for rounding falls at once, or is above zero from the first node on.
+  const bool starts_at_zero = !(first.value > S(0));
+  if (starts_at_zero && (!(values[0] > S(0)) || first.rate * panel.node[0] < -slack))
+    return {std::numeric_limits<S>::epsilon(), false};
+  const S bend = panel.fourth_derivative_bound(values);
+  bool unsure = false;
+  const auto at = [&](const S& x) { return Sample<S>{panel.value(values, x), panel.value(rates, x)}; };
+  // A fall in (a, b], or none; values at a are not below zero.
+  const auto search = [&](const auto& self, const S& a, const Sample<S>& at_a, const S& b,
+                          const Sample<S>& at_b) -> S {
+    const S h = b - a, error = bend * h * h * h * h / S(288);
+    const S inner_a = at_a.value + h * at_a.rate / S(3), inner_b = at_b.value - h * at_b.rate / S(3);
+    if (at_b.value > S(0) && min(inner_a, inner_b) > error + slack) return none;
+    const bool monotone = min({at_a.value - inner_a, inner_a - inner_b, inner_b - at_b.value}) > S(2) * error;
+    if (!(at_b.value > S(0)) && at_a.value > S(0) && (monotone || h < S(1e-4))) {
+      unsure = unsure || (!monotone && at_b.value > -slack);
+      if (at_b.value == S(0)) return b;
+      return polish_root(at, a, b, S(a + h * at_a.value / (at_a.value - at_b.value)), false,
+                         S(4) * std::numeric_limits<S>::epsilon());
+    }
+    if (h < shortest) {
+      unsure = unsure || min(inner_a, inner_b) <= slack;
+      return at_b.value > S(0) ? none : b;
+    }
+    const S middle = a + h * S(0.5);
+    const Sample<S> at_middle = at(middle);
+    const S left = self(self, a, at_a, middle, at_middle);
+    if (left < none) {
+      // A dip to zero or below that does not stay there is a fall all the same, if it is one.
+      if (at_b.value > S(0) && at_middle.value > -slack) unsure = true;
+      return left;
+    }
+    return self(self, middle, at_middle, b, at_b);
+  };
+  S a = starts_at_zero ? panel.node[0] : S(0);
+  Sample<S> at_a = starts_at_zero ? Sample<S>{values[0], rates[0]} : first;
+  for (std::size_t i = starts_at_zero ? 1 : 0; i <= n; ++i) {
+    const S b = i < n ? panel.node[i] : S(1);
+    const Sample<S> at_b = i < n ? Sample<S>{values[i], rates[i]} : last;
+    if (const S place = search(search, a, at_a, b, at_b); place < none) return {place, unsure};
+    a = b, at_a = at_b;
+  }
+  return {none, unsure};
+}
+
+}  // namespace leapmap

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/sliding_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace leapmap {
+namespace {
+
+constexpr int most_iterations = 60;
+
+}  // namespace
+
+template <class S>
+auto SlidingPanels<S>::stretch_of(const S& spin, const S& rise, const S& length) -> Stretch {
+  // x = shift + q^2 takes out u's zero just before the start, where the spin is small and grows.
+  const S shift = rise > S(0) ? std::max(-spin * spin / (S(2) * rise), -length) : -length;
+  const S begin = std::sqrt(-shift);
+  return {shift, begin, std::sqrt(length - shift) - begin};
+}
+
+template <class S>
+void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                                      Panel& panel) const {
+  // The nodes in lanes.
+  using T = typename Grid::T;
+  using std::exp, std::sqrt;
+  constexpr std::size_t width = Lanes<T>::count;
+  const auto get = [](const Values& values, std::size_t i) { return Lanes<T>::load(values.data() + i); };
+  const auto put = [](const T& value, Values& values, std::size_t i) {
+    Lanes<T>::store(value, values.data() + i);
+  };
+  const Hoop<S>& hoop = slide.hoop;
+  const S& friction = slide.friction;
+  const Hoop<T> hoops = widened<T>(hoop);
+  const T m(friction);
+  const S way = from.spin < S(0) ? S(-1) : S(1), length = stretch.length();
+  panel.indeterminate = panel.spin_vanishes = false;
+  panel.excess = std::numeric_limits<S>::infinity();
+  panel.end.angle = from.angle + way * length;
+  const Trig<S> start_phi = trig(from.angle), end_phi = trig(panel.end.angle);
+
+  const auto coefficients_at = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& phi, const R& x) {
+    const R f(friction);
+    SlidingCoefficients<R> at = sliding_coefficients(hoop_at, phi, f);
+    if (slide.edge) {
+      const R pivot = slide.edge->pivot(hoop_at, f, R(slide.left) - x);
+      at = {pivot, at.turn * at.pivot / pivot, hoop_at.Ic / pivot};
+    }
+    return at;
+  };
+  const SlidingCoefficients<S> end = coefficients_at(hoop, end_phi, length);
+  panel.indeterminate = !(end.pivot > S(0));
+  // With n0 in place of u, where the cosine stays away from zero.
+  const S farthest = S(-0.2);
+  const bool by_force = slide.edge && start_phi.cos < farthest && end_phi.cos < farthest;
+
+  Values a, b, weight, angle;
+  std::array<Trig<T>, nodes / width> phi;
+  std::array<SlidingCoefficients<T>, nodes / width> coefficients;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const T q = T(stretch.begin) + T(stretch.span) * get(grid_.node, i);
+    const T w = q * T(S(2) * stretch.span), x = T(stretch.shift) + q * q;
+    const Trig<T> at_node = phi[i / width] = trig(T(from.angle) + T(way) * x);
+    const SlidingCoefficients<T> at = coefficients[i / width] = coefficients_at(hoops, at_node, x);
+    panel.indeterminate = panel.indeterminate || !all(at.pivot > T(S(0)));
+    const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoops.rho * at_node.cos;
+    if (by_force) {
+      const T tangent = at_node.sin / at_node.cos;
+      put(turned * (grows - tangent), a, i);
+      put(turned * tangent * hoops.cos_slope, b, i);
+    } else {
+      put(turned * grows, a, i);
+      put(turned * T(S(2)) * at.turn * hoops.cos_slope, b, i);
+    }
+    put(w, weight, i);
+    put(x, angle, i);
+  }
+  if (panel.indeterminate) return;
+
+  const Values A = grid_.integrals(a);
+  Values growth, driven;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const T grown = exp(get(A, i));
+    put(grown, growth, i);
+    put(get(b, i) / grown, driven, i);
+  }
+  const Values B = grid_.integrals(driven);
+  const S start_u = from.spin * from.spin,
+          start_force = slide.free_force;
+  const S start_y = by_force ? start_force : start_u;
+  const S end_y = std::exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
+  const auto spin_squared = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
+    return by_force ? (y - hoop_at.cos_slope) / (hoop_at.rho * at.cos) : y;
+  };
+  const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
+    return by_force ? y : free_normal_force(hoop_at, at, y);
+  };
+  const auto force_rate = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& u, const R& n0,
+                                       const R& turn) {
+    return hoop_at.rho * (R(S(2)) * at.cos * turn * n0 - at.sin * u);
+  };
+  const S end_u = spin_squared(hoop, end_phi, end_y);
+  bool moves = end_u > S(0);
+  Values time_rate;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const Trig<T>& at = phi[i / width];
+    const SlidingCoefficients<T>& there = coefficients[i / width];
+    const T y = get(growth, i) * (T(start_y) + get(B, i));
+    const T u = spin_squared(hoops, at, y), n0 = force(hoops, at, y);
+    moves = moves && all(u > T(S(0)));
+    const T w = get(weight, i), rate = w / sqrt(u);
+    put(rate, time_rate, i);
+    put(sliding_motion(hoops, at, u, m, there, n0).slip * rate, panel.slip.rate, i);
+    put(n0, panel.free_force.value, i);
+    put(T(way) * w * force_rate(hoops, at, u, n0, there.turn), panel.free_force.rate, i);
+  }
+  panel.spin_vanishes = !moves;
+  if (!moves) return;
+
+  const S end_force = force(hoop, end_phi, end_y);
+  const S end_weight = S(2) * stretch.span * (stretch.begin + stretch.span), end_rate = end_weight / std::sqrt(end_u);
+  const S start_weight = S(2) * stretch.span * stretch.begin;
+  const SlidingCoefficients<S> start = coefficients_at(hoop, start_phi, S(0));
+  panel.end.spin = way * std::sqrt(end_u);
+  panel.free_force.end = {end_force, way * end_weight * force_rate(hoop, end_phi, end_u, end_force, end.turn)};
+  panel.free_force_start = {start_force,
+                            way * start_weight * force_rate(hoop, start_phi, start_u, start_force, start.turn)};
+  // At rest weight over spin has a limit.
+  const S start_rate = start_u > S(0) ? start_weight / std::sqrt(start_u) : time_rate[0];
+  panel.slip_rate_start =
+      start_rate * sliding_motion(hoop, start_phi, start_u, friction, start, start_force).slip;
+
+  const Values slipped = grid_.integrals(panel.slip.rate);
+  Values slip_time;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    panel.slip.value[i] = from.slip + slipped[i];
+    slip_time[i] = panel.slip.value[i] * time_rate[i];
+    panel.travel.rate[i] = way * weight[i] + slip_time[i];
+  }
+  panel.travel_rate_start = way * start_weight + from.slip * start_rate;
+  const Values carried = grid_.integrals(slip_time);
+  for (std::size_t i = 0; i < nodes; ++i) panel.travel.value[i] = from.travel + way * angle[i] + carried[i];
+  const S duration = grid_.integral(time_rate);
+  panel.end.time = from.time + duration;
+  panel.end.slip = from.slip + grid_.integral(panel.slip.rate);
+  panel.end.travel = from.travel + way * length + grid_.integral(slip_time);
+  panel.slip.end = {panel.end.slip,
+                    end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
+  panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
+  const S noise = rounding_of(hoop, friction, slide.edge ? S(1) : end.pivot);
+  panel.excess = std::max({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
+                           S(0.1) * grid_.tail(time_rate) / duration,
+                           grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
+                 (tolerance_ + noise);
+}
+
+template <class S>
+void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration,
+                                     Panel& panel) const {
+  using T = typename Grid::T;
+  constexpr std::size_t width = Lanes<T>::count;
+  const Hoop<S>& hoop = slide.hoop;
+  const S& friction = slide.friction;
+  panel.indeterminate = panel.spin_vanishes = false;
+  panel.excess = std::numeric_limits<S>::infinity();
+  Values angle, spin, angular;
+  for (std::size_t i = 0; i < nodes; ++i)
+    spin[i] = from.spin, angle[i] = from.angle + from.spin * duration * grid_.node[i];
+  bool settled = false;
+  const Hoop<T> hoops = widened<T>(hoop);
+  const T m(friction), length(duration), rho(hoop.rho);
+  for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
+    for (std::size_t i = 0; i < nodes; i += width) {
+      const Trig<T> phi = trig(Lanes<T>::load(angle.data() + i));
+      if (!all(sliding_coefficients(hoops, phi, m).pivot > T(S(0)))) {
+        panel.indeterminate = true;
+        return;
+      }
+      const T w = Lanes<T>::load(spin.data() + i), u = w * w;
+      const SlidingMotion<T> motion = sliding_motion(hoops, phi, u, m);
+      Lanes<T>::store(length * motion.angular, angular.data() + i);
+      Lanes<T>::store(length * motion.slip, panel.slip.rate.data() + i);
+      Lanes<T>::store(free_normal_force(hoops, phi, u), panel.free_force.value.data() + i);
+      Lanes<T>::store(length * rho * w * (T(S(2)) * phi.cos * motion.angular - phi.sin * u),
+                      panel.free_force.rate.data() + i);
+    }
+    const Values gained = grid_.integrals(angular);
+    S change(0);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      change = std::max(change, std::abs(from.spin + gained[i] - spin[i]));
+      spin[i] = from.spin + gained[i];
+    }
+    const Values turned = grid_.integrals(spin);
+    for (std::size_t i = 0; i < nodes; ++i) angle[i] = from.angle + duration * turned[i];
+    settled = change <= S(4) * std::numeric_limits<S>::epsilon() * (S(1) + std::abs(from.spin));
+  }
+  panel.end.spin = from.spin + grid_.integral(angular);
+  panel.end.angle = from.angle + duration * grid_.integral(spin);
+  const Trig<S> end_phi = trig(panel.end.angle);
+  const S end_pivot = sliding_coefficients(hoop, end_phi, friction).pivot;
+  panel.indeterminate = !(end_pivot > S(0));
+  if (panel.indeterminate) return;
+  const auto sample_force = [&](const Trig<S>& phi, const S& w, const SlidingMotion<S>& motion) {
+    return Sample<S>{free_normal_force(hoop, phi, S(w * w)),
+                     duration * hoop.rho * w * (S(2) * phi.cos * motion.angular - phi.sin * w * w)};
+  };
+  const Trig<S> start_phi = trig(from.angle);
+  const SlidingMotion<S> start = sliding_motion(hoop, start_phi, S(from.spin * from.spin), friction),
+                         end = sliding_motion(hoop, end_phi, S(panel.end.spin * panel.end.spin), friction);
+  panel.free_force_start = sample_force(start_phi, from.spin, start);
+  panel.free_force.end = sample_force(end_phi, panel.end.spin, end);
+  panel.slip_rate_start = duration * start.slip;
+  panel.travel_rate_start = duration * (from.slip + from.spin);
+  const Values slipped = grid_.integrals(panel.slip.rate);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    panel.slip.value[i] = from.slip + slipped[i];
+    panel.travel.rate[i] = duration * (panel.slip.value[i] + spin[i]);
+  }
+  const Values travelled = grid_.integrals(panel.travel.rate);
+  for (std::size_t i = 0; i < nodes; ++i) panel.travel.value[i] = from.travel + travelled[i];
+  panel.end.time = from.time + duration;
+  panel.end.slip = from.slip + grid_.integral(panel.slip.rate);
+  panel.end.travel = from.travel + grid_.integral(panel.travel.rate);
+  panel.slip.end = {panel.end.slip, duration * end.slip};
+  panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
+  if (settled)
+    panel.excess = std::max(grid_.tail(angular) / (S(1) + std::abs(from.spin)),
+                            grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))) /
+                   (tolerance_ + rounding_of(hoop, friction, end_pivot));
+}
+
+template class SlidingPanels<double>;
+template class SlidingPanels<long double>;
+
+}  // namespace leapmap

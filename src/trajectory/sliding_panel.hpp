@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A stretch of one sliding phase, solved at the nodes of a panel.
+///
+/// In the angle u = w^2 obeys du/dphi = a u + b with a = 2 rho c turn, b = 2 cos(theta) turn
+/// (physics/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the integral of a; time, slip and
+/// travel are integrals over u's root. Near Painleve's edge n0 takes the place of u: it obeys an equation of
+/// the same kind, with -tan(phi) + 2 rho c turn and tan(phi) cos(theta), and keeps its digits where it
+/// vanishes with the pivot. Where the spin goes through zero panels are in time: angle and spin at their nodes
+/// by Picard's iteration.
+#pragma once
+
+#include <optional>
+
+#include "numerics/spectral.hpp"
+#include "physics/painleve.hpp"
+#include "trajectory/contact_phases.hpp"
+
+namespace leapmap {
+
+template <class S>
+class SlidingPanels {
+ public:
+  static constexpr std::size_t nodes = 24;
+  using Grid = SpectralPanel<S, nodes>;
+  using Values = typename Grid::Values;
+
+  /// A function at the nodes and at the panel's end, and its derivative by the panel's coordinate.
+  struct Course {
+    Values value, rate;
+    Sample<S> end;
+  };
+  /// What the nodes of a panel hold, in order of time, and its end.
+  struct Panel {
+    Course slip, travel, free_force;
+    Sample<S> free_force_start;
+    S slip_rate_start, travel_rate_start;
+    ContactState<S> end;
+    S excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    bool indeterminate, spin_vanishes;
+  };
+  /// A panel by angle: |phi - from| = shift + q^2, q from begin to begin + span.
+  struct Stretch {
+    S shift, begin, span;
+    S length() const { return shift + (begin + span) * (begin + span); }
+  };
+  /// What a slide is about.
+  struct Slide {
+    Hoop<S> hoop;
+    S friction;                           ///< mu_kinetic sign(v)
+    std::optional<PainleveEdge<S>> edge;  ///< the nearest on the way, if it is near
+    S left;                               ///< angle from a panel's start to it
+    S free_force;                         ///< n0 at a panel's start
+  };
+
+  explicit SlidingPanels(const S& tolerance) : tolerance_(tolerance) {}
+
+  /// The stretch of that length, its nodes closer where the spin is small and grows. rise: of w^2 / 2, an
+  /// angle.
+  static Stretch stretch_of(const S& spin, const S& rise, const S& length);
+  void solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                      Panel& panel) const;
+  void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
+
+  const Grid& grid() const { return grid_; }
+
+ private:
+  S tolerance_;
+  Grid grid_;
+};
+
+/// Relative rounding of the accelerations: Ic + rho s q comes of terms that may cancel.
+template <class S>
+S rounding_of(const Hoop<S>& hoop, const S& friction, const S& pivot) {
+  return S(16) * std::numeric_limits<S>::epsilon() *
+         (hoop.Ic + hoop.rho * (hoop.rho + S(2) * std::abs(friction))) / pivot;
+}
+
+}  // namespace leapmap
