@@ -22,8 +22,7 @@ template <class S>
 CurvedSample<S> pivot_by_angle(const Hoop<S>& hoop, const Trig<S>& phi, const S& friction) {
   const S s = phi.sin, c = phi.cos, rho = hoop.rho, m = friction;
   const S sine_2 = S(2) * s * c, cosine_2 = c * c - s * s;
-  return {sliding_coefficients(hoop, phi, friction).pivot,
-          rho * (rho * sine_2 - m * c + m * rho * cosine_2),
+  return {sliding_coefficients(hoop, phi, friction).pivot, rho * (rho * sine_2 - m * c + m * rho * cosine_2),
           rho * (S(2) * rho * cosine_2 + m * s - S(2) * m * rho * sine_2),
           rho * (S(-4) * rho * sine_2 + m * c - S(4) * m * rho * cosine_2)};
 }

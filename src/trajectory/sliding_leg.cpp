@@ -17,20 +17,43 @@ constexpr double longest_time = 1.0, first_time = 0.25,
                  shortest_time = 1e-12;  // of a panel by time [sqrt(R/g)]
 constexpr double near_edge = 0.3;        // the edge matters for rounding from here on [rad]
 constexpr double share_of_edge = 0.6;    // a panel goes over so much of the way to the edge
-constexpr double at_edge = 1e-13;        // the edge is reached [rad]
+constexpr double at_edge = 1e-13;        // what is left changes nothing that is bounded [rad]
+constexpr double nearest_edge = 1e-290;  // nor anything else
 constexpr int most_panels = 10'000;
 
-/// The nearest edge on the way of a slide, and how far it is; NaN: none within a turn.
+/// The edges on either side of a slide, and how far they are; NaN: none within a turn.
 template <class S>
-struct EdgeAhead {
-  PainleveEdge<S> edge;
-  S left;
+struct EdgesAround {
+  struct Side {
+    bool known = false;
+    PainleveEdge<S> edge{};
+    S left{};
+  };
+  Side behind, ahead;  // at lesser and at greater angles
+
+  Side& on(const S& way) { return way > S(0) ? ahead : behind; }
+  /// Looks where nobody has yet.
+  void find(const Hoop<S>& hoop, const S& friction, const S& angle, const S& way) {
+    Side& side = on(way);
+    if (side.known) return;
+    side.known = true;
+    side.left = left_to_edge(hoop, friction, angle, way);
+    const S there = angle + way * side.left;
+    side.edge = {trig(there), trig(S(S(2) * there)), way};
+  }
+  void turn(const S& by) {
+    ahead.left -= by;
+    behind.left += by;
+  }
+  /// The nearer of those known, or nothing if it is far.
+  const Side* near() const {
+    const Side* nearest = nullptr;
+    for (const Side* side : {&ahead, &behind})
+      if (side->known && side->left < S(near_edge) && !(nearest && nearest->left < side->left))
+        nearest = side;
+    return nearest;
+  }
 };
-template <class S>
-EdgeAhead<S> edge_ahead(const Hoop<S>& hoop, const S& friction, const S& angle, const S& way) {
-  const S left = left_to_edge(hoop, friction, angle, way), there = angle + way * left;
-  return {{trig(there), trig(S(S(2) * there)), way}, left};
-}
 
 }  // namespace
 
@@ -73,14 +96,19 @@ auto SlidingLeg<S>::first_event(const ContactState<S>& at, const S& runway, int 
 }
 
 template <class S>
-PhaseEnd SlidingLeg<S>::end_at_edge(const Slide& slide, const ContactState<S>& at) {
+std::optional<PhaseEnd> SlidingLeg<S>::end_at_edge(const Slide& slide, const ContactState<S>& at,
+                                                   const SlidingMotion<S>& motion) {
+  if (!(slide.left < S(at_edge))) return {};
   const Trig<S> phi = trig(at.angle);
-  const CurvedSample<S> pivot = pivot_by_angle(slide.hoop, phi, slide.friction);
   const S arm = slide.hoop.clearance + slide.hoop.rho * phi.versine;
   const S q = slide.hoop.rho * phi.sin - slide.friction * arm;
-  const S power = S(2) * slide.hoop.rho * phi.cos * q / pivot.rate;
-  return power > S(1) && slide.free_force < S(1e-3) * slide.hoop.cos_slope ? PhaseEnd::lifts_off
-                                                                         : PhaseEnd::indeterminate;
+  const S power = S(2) * slide.hoop.rho * phi.cos * q / pivot_by_angle(slide.hoop, phi, slide.friction).rate;
+  if (power > S(1) && slide.free_force < S(1e-3) * slide.hoop.cos_slope) return PhaseEnd::lifts_off;
+  // The forces grow as left^(power - 1): the slip that they take away until the edge is bounded if power > 0.
+  const S taken = std::abs(motion.slip / at.spin) * slide.left / power;
+  if (slide.left < S(nearest_edge) || (power > S(0) && std::abs(at.slip) > S(2) * taken))
+    return PhaseEnd::indeterminate;
+  return {};
 }
 
 template <class S>
@@ -92,7 +120,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   const Trig<S> released = trig(at.angle);
   if (!(sliding_coefficients(hoop, released, friction).pivot > S(0))) return PhaseEnd::indeterminate;
   slide.free_force = free_normal_force(hoop, released, S(at.spin * at.spin));
-  std::optional<EdgeAhead<S>> ahead;
+  EdgesAround<S> edges;
   Panel panel;
   S length(first_angle), duration(first_time);
   // The tails go about with the length's power `nodes`: a length that just meets the tolerance, with some
@@ -106,16 +134,19 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   bool refined = false;
   for (int taken = 0; taken < most_panels; ++taken) {
     // By angle while the hoop turns and its spin does not vanish soon; else by time.
-    const Trig<S> phi = trig(at.angle);
-    const SlidingMotion<S> start = sliding_motion(hoop, phi, S(at.spin * at.spin), friction);
-    const S way = at.spin < S(0) || (at.spin == S(0) && start.angular < S(0)) ? S(-1) : S(1);
-    if (has_edges && (!ahead || ahead->edge.way != way)) ahead = edge_ahead(hoop, friction, at.angle, way);
-    S longest(longest_angle);
     slide.edge.reset();
-    if (ahead && !std::isnan(ahead->left)) {
-      if (ahead->left < S(near_edge)) slide.edge = ahead->edge, slide.left = ahead->left;
-      if (ahead->left < S(at_edge)) return end_at_edge(slide, at);
-      longest = std::min(longest, S(share_of_edge) * ahead->left);
+    if (const auto* near = edges.near()) slide.edge = near->edge, slide.left = near->left;
+    const Trig<S> phi = trig(at.angle);
+    const SlidingMotion<S> start = sliding_motion(hoop, phi, S(at.spin * at.spin), friction,
+                                                  slide.coefficients(hoop, phi, S(0)), slide.free_force);
+    const S way = at.spin < S(0) || (at.spin == S(0) && start.angular < S(0)) ? S(-1) : S(1);
+    S longest(longest_angle);
+    if (has_edges) {
+      edges.find(hoop, friction, at.angle, way);
+      if (slide.edge && slide.edge->way == way)
+        if (const auto end = end_at_edge(slide, at, start)) return *end;
+      const S left = edges.on(way).left;
+      if (!std::isnan(left)) longest = std::min(longest, S(share_of_edge) * left);
     }
     typename Panels::Stretch stretch{};
     bool by_angle = at.spin > S(0) || (at.spin == S(0) && start.angular > S(0)) || at.spin < S(0);
@@ -147,7 +178,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
     }
     refined = false;
     if (event.place > S(1)) {
-      if (ahead) ahead->left -= by_angle ? stretch.length() : way * (panel.end.angle - at.angle);
+      edges.turn(panel.turned);
       at = panel.end;
       slide.free_force = panel.free_force.end.value;
       (by_angle ? length : duration) *=

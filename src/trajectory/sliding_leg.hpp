@@ -33,8 +33,9 @@ class SlidingLeg {
     bool unsure;
   };
   Event first_event(const ContactState<S>& at, const S& runway, int direction, const Panel& panel) const;
-  /// What a slide that has come to Painleve's edge goes on as.
-  static PhaseEnd end_at_edge(const Slide& slide, const ContactState<S>& at);
+  /// How a slide ends that has come to Painleve's edge; nothing: it has not, or something may happen yet.
+  static std::optional<PhaseEnd> end_at_edge(const Slide& slide, const ContactState<S>& at,
+                                             const SlidingMotion<S>& motion);
 
   Panels panels_;
 };

@@ -38,19 +38,11 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S way = from.spin < S(0) ? S(-1) : S(1), length = stretch.length();
   panel.indeterminate = panel.spin_vanishes = false;
   panel.excess = std::numeric_limits<S>::infinity();
-  panel.end.angle = from.angle + way * length;
+  panel.turned = way * length;
+  panel.end.angle = from.angle + panel.turned;
   const Trig<S> start_phi = trig(from.angle), end_phi = trig(panel.end.angle);
 
-  const auto coefficients_at = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& phi, const R& x) {
-    const R f(friction);
-    SlidingCoefficients<R> at = sliding_coefficients(hoop_at, phi, f);
-    if (slide.edge) {
-      const R pivot = slide.edge->pivot(hoop_at, f, R(slide.left) - x);
-      at = {pivot, at.turn * at.pivot / pivot, hoop_at.Ic / pivot};
-    }
-    return at;
-  };
-  const SlidingCoefficients<S> end = coefficients_at(hoop, end_phi, length);
+  const SlidingCoefficients<S> end = slide.coefficients(hoop, end_phi, S(way * length));
   panel.indeterminate = !(end.pivot > S(0));
   // With n0 in place of u, where the cosine stays away from zero.
   const S farthest = S(-0.2);
@@ -63,7 +55,8 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     const T q = T(stretch.begin) + T(stretch.span) * get(grid_.node, i);
     const T w = q * T(S(2) * stretch.span), x = T(stretch.shift) + q * q;
     const Trig<T> at_node = phi[i / width] = trig(T(from.angle) + T(way) * x);
-    const SlidingCoefficients<T> at = coefficients[i / width] = coefficients_at(hoops, at_node, x);
+    const SlidingCoefficients<T> at = coefficients[i / width] =
+        slide.coefficients(hoops, at_node, T(way) * x);
     panel.indeterminate = panel.indeterminate || !all(at.pivot > T(S(0)));
     const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoops.rho * at_node.cos;
     if (by_force) {
@@ -87,8 +80,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     put(get(b, i) / grown, driven, i);
   }
   const Values B = grid_.integrals(driven);
-  const S start_u = from.spin * from.spin,
-          start_force = slide.free_force;
+  const S start_u = from.spin * from.spin, start_force = slide.free_force;
   const S start_y = by_force ? start_force : start_u;
   const S end_y = std::exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
   const auto spin_squared = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
@@ -120,13 +112,15 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   if (!moves) return;
 
   const S end_force = force(hoop, end_phi, end_y);
-  const S end_weight = S(2) * stretch.span * (stretch.begin + stretch.span), end_rate = end_weight / std::sqrt(end_u);
+  const S end_weight = S(2) * stretch.span * (stretch.begin + stretch.span),
+          end_rate = end_weight / std::sqrt(end_u);
   const S start_weight = S(2) * stretch.span * stretch.begin;
-  const SlidingCoefficients<S> start = coefficients_at(hoop, start_phi, S(0));
+  const SlidingCoefficients<S> start = slide.coefficients(hoop, start_phi, S(0));
   panel.end.spin = way * std::sqrt(end_u);
-  panel.free_force.end = {end_force, way * end_weight * force_rate(hoop, end_phi, end_u, end_force, end.turn)};
-  panel.free_force_start = {start_force,
-                            way * start_weight * force_rate(hoop, start_phi, start_u, start_force, start.turn)};
+  panel.free_force.end = {end_force,
+                          way * end_weight * force_rate(hoop, end_phi, end_u, end_force, end.turn)};
+  panel.free_force_start = {
+      start_force, way * start_weight * force_rate(hoop, start_phi, start_u, start_force, start.turn)};
   // At rest weight over spin has a limit.
   const S start_rate = start_u > S(0) ? start_weight / std::sqrt(start_u) : time_rate[0];
   panel.slip_rate_start =
@@ -165,50 +159,59 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   const S& friction = slide.friction;
   panel.indeterminate = panel.spin_vanishes = false;
   panel.excess = std::numeric_limits<S>::infinity();
-  Values angle, spin, angular;
+  Values turned, spin, angular;
   for (std::size_t i = 0; i < nodes; ++i)
-    spin[i] = from.spin, angle[i] = from.angle + from.spin * duration * grid_.node[i];
+    spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
   bool settled = false;
   const Hoop<T> hoops = widened<T>(hoop);
   const T m(friction), length(duration), rho(hoop.rho);
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     for (std::size_t i = 0; i < nodes; i += width) {
-      const Trig<T> phi = trig(Lanes<T>::load(angle.data() + i));
-      if (!all(sliding_coefficients(hoops, phi, m).pivot > T(S(0)))) {
+      const T x = Lanes<T>::load(turned.data() + i);
+      const Trig<T> phi = trig(T(from.angle) + x);
+      const SlidingCoefficients<T> at = slide.coefficients(hoops, phi, x);
+      if (!all(at.pivot > T(S(0)))) {
         panel.indeterminate = true;
         return;
       }
       const T w = Lanes<T>::load(spin.data() + i), u = w * w;
-      const SlidingMotion<T> motion = sliding_motion(hoops, phi, u, m);
+      const T n0 = free_normal_force(hoops, phi, u);
+      const SlidingMotion<T> motion = sliding_motion(hoops, phi, u, m, at, n0);
       Lanes<T>::store(length * motion.angular, angular.data() + i);
       Lanes<T>::store(length * motion.slip, panel.slip.rate.data() + i);
-      Lanes<T>::store(free_normal_force(hoops, phi, u), panel.free_force.value.data() + i);
+      Lanes<T>::store(n0, panel.free_force.value.data() + i);
       Lanes<T>::store(length * rho * w * (T(S(2)) * phi.cos * motion.angular - phi.sin * u),
                       panel.free_force.rate.data() + i);
     }
     const Values gained = grid_.integrals(angular);
-    S change(0);
+    S change(0), most(1);
     for (std::size_t i = 0; i < nodes; ++i) {
       change = std::max(change, std::abs(from.spin + gained[i] - spin[i]));
+      most = std::max({most, std::abs(from.spin), std::abs(angular[i])});
       spin[i] = from.spin + gained[i];
     }
-    const Values turned = grid_.integrals(spin);
-    for (std::size_t i = 0; i < nodes; ++i) angle[i] = from.angle + duration * turned[i];
-    settled = change <= S(4) * std::numeric_limits<S>::epsilon() * (S(1) + std::abs(from.spin));
+    const Values spun = grid_.integrals(spin);
+    for (std::size_t i = 0; i < nodes; ++i) turned[i] = duration * spun[i];
+    settled = change <= S(8) * std::numeric_limits<S>::epsilon() * most;
   }
   panel.end.spin = from.spin + grid_.integral(angular);
-  panel.end.angle = from.angle + duration * grid_.integral(spin);
-  const Trig<S> end_phi = trig(panel.end.angle);
-  const S end_pivot = sliding_coefficients(hoop, end_phi, friction).pivot;
-  panel.indeterminate = !(end_pivot > S(0));
+  panel.turned = duration * grid_.integral(spin);
+  panel.end.angle = from.angle + panel.turned;
+  const Trig<S> start_phi = trig(from.angle), end_phi = trig(panel.end.angle);
+  const SlidingCoefficients<S> at_start = slide.coefficients(hoop, start_phi, S(0)),
+                               at_end = slide.coefficients(hoop, end_phi, panel.turned);
+  panel.indeterminate = !(at_end.pivot > S(0));
   if (panel.indeterminate) return;
   const auto sample_force = [&](const Trig<S>& phi, const S& w, const SlidingMotion<S>& motion) {
     return Sample<S>{free_normal_force(hoop, phi, S(w * w)),
                      duration * hoop.rho * w * (S(2) * phi.cos * motion.angular - phi.sin * w * w)};
   };
-  const Trig<S> start_phi = trig(from.angle);
-  const SlidingMotion<S> start = sliding_motion(hoop, start_phi, S(from.spin * from.spin), friction),
-                         end = sliding_motion(hoop, end_phi, S(panel.end.spin * panel.end.spin), friction);
+  const auto motion_at = [&](const Trig<S>& phi, const S& w, const SlidingCoefficients<S>& at) {
+    const S u = w * w;
+    return sliding_motion(hoop, phi, u, friction, at, free_normal_force(hoop, phi, u));
+  };
+  const SlidingMotion<S> start = motion_at(start_phi, from.spin, at_start),
+                         end = motion_at(end_phi, panel.end.spin, at_end);
   panel.free_force_start = sample_force(start_phi, from.spin, start);
   panel.free_force.end = sample_force(end_phi, panel.end.spin, end);
   panel.slip_rate_start = duration * start.slip;
@@ -228,7 +231,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   if (settled)
     panel.excess = std::max(grid_.tail(angular) / (S(1) + std::abs(from.spin)),
                             grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))) /
-                   (tolerance_ + rounding_of(hoop, friction, end_pivot));
+                   (tolerance_ + rounding_of(hoop, friction, slide.edge ? S(1) : at_end.pivot));
 }
 
 template class SlidingPanels<double>;

@@ -5,8 +5,8 @@
 /// (physics/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the integral of a; time, slip and
 /// travel are integrals over u's root. Near Painleve's edge n0 takes the place of u: it obeys an equation of
 /// the same kind, with -tan(phi) + 2 rho c turn and tan(phi) cos(theta), and keeps its digits where it
-/// vanishes with the pivot. Where the spin goes through zero panels are in time: angle and spin at their nodes
-/// by Picard's iteration.
+/// vanishes with the pivot. Where the spin goes through zero panels are in time: angle and spin at their
+/// nodes by Picard's iteration.
 #pragma once
 
 #include <optional>
@@ -35,6 +35,7 @@ class SlidingPanels {
     Sample<S> free_force_start;
     S slip_rate_start, travel_rate_start;
     ContactState<S> end;
+    S turned;  ///< from start to end
     S excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
     bool indeterminate, spin_vanishes;
   };
@@ -47,9 +48,19 @@ class SlidingPanels {
   struct Slide {
     Hoop<S> hoop;
     S friction;                           ///< mu_kinetic sign(v)
-    std::optional<PainleveEdge<S>> edge;  ///< the nearest on the way, if it is near
+    std::optional<PainleveEdge<S>> edge;  ///< the nearest, if it is near
     S left;                               ///< angle from a panel's start to it
     S free_force;                         ///< n0 at a panel's start
+
+    /// What sliding says at an angle, `turned` past the panel's start.
+    template <class T>
+    SlidingCoefficients<T> coefficients(const Hoop<T>& hoops, const Trig<T>& phi, const T& turned) const {
+      const T m(friction);
+      const SlidingCoefficients<T> at = sliding_coefficients(hoops, phi, m);
+      if (!edge) return at;
+      const T pivot = edge->pivot(hoops, m, T(left) - T(edge->way) * turned);
+      return {pivot, at.turn * at.pivot / pivot, hoops.Ic / pivot};
+    }
   };
 
   explicit SlidingPanels(const S& tolerance) : tolerance_(tolerance) {}
