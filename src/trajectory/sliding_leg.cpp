@@ -166,7 +166,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       for (;; duration *= shrink(panel)) {
         panels_.solve_by_time(slide, at, duration, panel);
         if (panel.excess <= S(1)) break;
-        if (duration < S(shortest_time))
+        if (duration < S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1)))
           return panel.indeterminate ? PhaseEnd::indeterminate : PhaseEnd::failed;
       }
     }

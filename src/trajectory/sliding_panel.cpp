@@ -44,9 +44,10 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
 
   const SlidingCoefficients<S> end = slide.coefficients(hoop, end_phi, S(way * length));
   panel.indeterminate = !(end.pivot > S(0));
-  // With n0 in place of u, where the cosine stays away from zero.
+  // With n0 in place of u, where it is the one that vanishes, and the cosine stays away from zero.
   const S farthest = S(-0.2);
-  const bool by_force = slide.edge && start_phi.cos < farthest && end_phi.cos < farthest;
+  const bool by_force = slide.edge && slide.free_force < S(0.5) * hoop.cos_slope &&
+                        start_phi.cos < farthest && end_phi.cos < farthest;
 
   Values a, b, weight, angle;
   std::array<Trig<T>, nodes / width> phi;
@@ -94,22 +95,24 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     return hoop_at.rho * (R(S(2)) * at.cos * turn * n0 - at.sin * u);
   };
   const S end_u = spin_squared(hoop, end_phi, end_y);
-  bool moves = end_u > S(0);
+  T least_u(std::min(start_u > S(0) ? start_u : end_u, end_u));
   Values time_rate;
   for (std::size_t i = 0; i < nodes; i += width) {
     const Trig<T>& at = phi[i / width];
     const SlidingCoefficients<T>& there = coefficients[i / width];
     const T y = get(growth, i) * (T(start_y) + get(B, i));
     const T u = spin_squared(hoops, at, y), n0 = force(hoops, at, y);
-    moves = moves && all(u > T(S(0)));
+    least_u = smaller(least_u, u);
     const T w = get(weight, i), rate = w / sqrt(u);
     put(rate, time_rate, i);
     put(sliding_motion(hoops, at, u, m, there, n0).slip * rate, panel.slip.rate, i);
     put(n0, panel.free_force.value, i);
     put(T(way) * w * force_rate(hoops, at, u, n0, there.turn), panel.free_force.rate, i);
   }
-  panel.spin_vanishes = !moves;
-  if (!moves) return;
+  const auto least = lanes_of(least_u);
+  const S slowest = *std::min_element(least.begin(), least.end());
+  panel.spin_vanishes = !(slowest > S(0));
+  if (panel.spin_vanishes) return;
 
   const S end_force = force(hoop, end_phi, end_y);
   const S end_weight = S(2) * stretch.span * (stretch.begin + stretch.span),
@@ -143,7 +146,8 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.slip.end = {panel.end.slip,
                     end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
   panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
-  const S noise = rounding_of(hoop, friction, slide.edge ? S(1) : end.pivot);
+  const S noise = rounding_of(hoop, friction, slide.edge ? S(1) : end.pivot) +
+                  S(16) * std::numeric_limits<S>::epsilon() * std::min(S(1) / slowest, S(1e6));
   panel.excess = std::max({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
                            S(0.1) * grid_.tail(time_rate) / duration,
                            grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
@@ -166,11 +170,14 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   const Hoop<T> hoops = widened<T>(hoop);
   const T m(friction), length(duration), rho(hoop.rho);
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
+    S least_pivot(hoop.Ic + S(2));
     for (std::size_t i = 0; i < nodes; i += width) {
       const T x = Lanes<T>::load(turned.data() + i);
       const Trig<T> phi = trig(T(from.angle) + x);
       const SlidingCoefficients<T> at = slide.coefficients(hoops, phi, x);
-      if (!all(at.pivot > T(S(0)))) {
+      const auto pivots = lanes_of(at.pivot);
+      least_pivot = std::min(least_pivot, *std::min_element(pivots.begin(), pivots.end()));
+      if (!(least_pivot > S(0))) {
         panel.indeterminate = true;
         return;
       }
@@ -192,7 +199,10 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
     }
     const Values spun = grid_.integrals(spin);
     for (std::size_t i = 0; i < nodes; ++i) turned[i] = duration * spun[i];
-    settled = change <= S(8) * std::numeric_limits<S>::epsilon() * most;
+    // Near the edge, or a needle of the spin, accelerations are known to some roundings more.
+    const S noise =
+        std::min(rounding_of(hoop, friction, least_pivot), S(1e4) * std::numeric_limits<S>::epsilon());
+    settled = change <= (S(8) * std::numeric_limits<S>::epsilon() + noise) * most;
   }
   panel.end.spin = from.spin + grid_.integral(angular);
   panel.turned = duration * grid_.integral(spin);
