@@ -47,6 +47,21 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
   const S bend = panel.fourth_derivative_bound(values);
   bool unsure = false;
   const auto at = [&](const S& x) { return Sample<S>{panel.value(values, x), panel.value(rates, x)}; };
+  // Whether the dip that is entered between a and b turns before it is deeper than the slack.
+  const auto is_shallow = [&](S a, S b, Sample<S> at_b) {
+    const S h = b - a;
+    while (b < S(1) && S(0) > at_b.rate && at_b.value > -slack) {
+      a = b, b = min(S(1), b + h), at_b = at(b);
+    }
+    if (at_b.rate < S(0)) return at_b.value > -slack;  // it does not turn on this panel
+    for (int k = 0; k < 50 && at_b.value > -slack; ++k) {
+      const S middle = a + (b - a) * S(0.5);
+      const Sample<S> at_middle = at(middle);
+      if (at_middle.value <= -slack) return false;
+      at_middle.rate < S(0) ? a = middle : b = middle;
+    }
+    return at_b.value > -slack;
+  };
   // A fall in (a, b], or none; values at a are not below zero.
   const auto search = [&](const auto& self, const S& a, const Sample<S>& at_a, const S& b,
                           const Sample<S>& at_b) -> S {
@@ -55,23 +70,18 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
     if (at_b.value > S(0) && min(inner_a, inner_b) > error + slack) return none;
     const bool monotone = min({at_a.value - inner_a, inner_a - inner_b, inner_b - at_b.value}) > S(2) * error;
     if (!(at_b.value > S(0)) && at_a.value > S(0) && (monotone || h < S(1e-4))) {
-      unsure = unsure || (!monotone && at_b.value > -slack);
+      if (at_b.value > -slack) unsure = unsure || is_shallow(a, b, at_b);
       if (at_b.value == S(0)) return b;
       return polish_root(at, a, b, S(a + h * at_a.value / (at_a.value - at_b.value)), false,
                          S(4) * std::numeric_limits<S>::epsilon());
     }
     if (h < shortest) {
-      unsure = unsure || min(inner_a, inner_b) <= slack;
+      unsure = unsure || (slack > S(0) && min(inner_a, inner_b) <= slack);
       return at_b.value > S(0) ? none : b;
     }
     const S middle = a + h * S(0.5);
     const Sample<S> at_middle = at(middle);
-    const S left = self(self, a, at_a, middle, at_middle);
-    if (left < none) {
-      // A dip to zero or below that does not stay there is a fall all the same, if it is one.
-      if (at_b.value > S(0) && at_middle.value > -slack) unsure = true;
-      return left;
-    }
+    if (const S left = self(self, a, at_a, middle, at_middle); left < none) return left;
     return self(self, middle, at_middle, b, at_b);
   };
   S a = starts_at_zero ? panel.node[0] : S(0);

@@ -15,8 +15,9 @@
 ///               |                                     |   rebounds or n0 <= 0, S if v is not zero,
 ///               |                                     |   else as where v comes back to zero
 ///   R, S, F     | the centre has travelled the runway | no_jump
-///   at release  |                                     | airborne_at_release if n0 <= 0, stalled if
-///               |                                     |   the spin is below zero, else as v = 0
+///   at release  |                                     | R if N > 0 and |F| <= mu_s N, else
+///               |                                     |   airborne_at_release if n0 <= 0, else S;
+///               |                                     |   stalled if the spin is below zero
 // clang-format on
 ///
 /// A hoop that slides may turn backwards for a while. At v = 0 the forces decide, never the sign of a rounded

@@ -15,16 +15,27 @@ namespace leapmap {
 /// What a contact with v = 0 or v != 0 goes on as.
 enum class ContactPhase { rolls, slides_forwards, slides_backwards, leaves };
 
+/// Whether a contact with n0 <= 0, which would leave the plane were it not held, does.
+enum class Leaving {
+  unless_it_sticks,  ///< rolling on is consistent there too, and what rolls goes on rolling
+  always,
+  never
+};
+
 /// At v != 0 it slides; at v = 0 the forces of rolling decide.
 template <class S>
 ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const ContactState<S>& at,
-                           bool may_leave = true) {
+                           Leaving leaving) {
   const Trig<S> phi = trig(at.angle);
-  if (may_leave && free_normal_force(hoop, phi, at.spin * at.spin) <= S(0)) return ContactPhase::leaves;
+  const bool would_leave =
+      leaving != Leaving::never && free_normal_force(hoop, phi, at.spin * at.spin) <= S(0);
+  if (would_leave && (leaving == Leaving::always || at.slip != S(0))) return ContactPhase::leaves;
   if (at.slip != S(0)) return at.slip > S(0) ? ContactPhase::slides_forwards : ContactPhase::slides_backwards;
   const auto guards =
       stick_guards(hoop, phi, S(at.spin * at.spin * contact_inertia(hoop, phi)), contact.mu_static);
-  if (guards.downhill.value >= S(0) && guards.uphill.value >= S(0)) return ContactPhase::rolls;
+  const S N = normal_force(hoop, phi, at.spin, angular_acceleration(hoop, phi, at.spin));
+  if (N > S(0) && guards.downhill.value >= S(0) && guards.uphill.value >= S(0)) return ContactPhase::rolls;
+  if (would_leave) return ContactPhase::leaves;
   return guards.uphill.value > guards.downhill.value ? ContactPhase::slides_backwards  // F points downhill
                                                      : ContactPhase::slides_forwards;
 }
@@ -69,7 +80,7 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
     if (observer.phase) observer.phase(phase, state(), direction);
   };
 
-  ContactPhase next = contact_phase(hoop, contact, at);
+  ContactPhase next = contact_phase(hoop, contact, at, Leaving::unless_it_sticks);
   if (next == ContactPhase::leaves) return end(Status::airborne_at_release);
   if (at.spin < S(0)) return end(Status::stalled);
 
@@ -95,7 +106,7 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
                                                    : ContactPhase::slides_backwards;
         continue;
       case PhaseEnd::slip_ends:
-        next = contact_phase(hoop, contact, at);
+        next = contact_phase(hoop, contact, at, Leaving::unless_it_sticks);
         continue;
       case PhaseEnd::stalls:
         return end(Status::stalled);
@@ -140,8 +151,9 @@ Outcome go_through_phases(const Design& design, const Scene& scene, const Coulom
     at.spin = landing.after.spin, at.slip = landing.after.slip;
     at.normal = landing.after.normal;
     // A flight that rounding made of n0 = 0 takes no time; it is contact.
-    next =
-        at.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop, contact, at, flight.flight_time > S(0));
+    next = at.normal > S(0) ? ContactPhase::leaves
+                            : contact_phase(hoop, contact, at,
+                                            flight.flight_time > S(0) ? Leaving::always : Leaving::never);
   }
   return end(Status::failed, "more phases than a design may go through");
 }

@@ -243,7 +243,7 @@ TEST(Coulomb, PainleveIsAStatusNotANumber) {
   std::mt19937_64 random(15);
   CoulombSolver<double> solver(1e-9);
   int met = 0;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 4000; ++i) {
     const Outcome outcome = solver.solve(any_design(random), coulomb);
     if (outcome.status != Status::indeterminate) continue;
     ++met;

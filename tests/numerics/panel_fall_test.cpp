@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "numerics/panel_fall.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t n = 24;
+using Panel = SpectralPanel<double, n>;
+
+template <class F>
+PanelFall<double> fall_of(const F& f, double slack = 0.0) {
+  static const Panel panel;
+  Panel::Values values, rates;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Sample<double> at = f(panel.node[i]);
+    values[i] = at.value, rates[i] = at.rate;
+  }
+  return first_fall(panel, values, rates, f(0.0), f(1.0), slack);
+}
+
+/// Dips as narrow as one likes, anywhere between the nodes, are found if they go below zero, and only then.
+TEST(PanelFall, DipsBetweenNodesAreFoundIfAndOnlyIfTheyReachZero) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double at = 0.01 + 0.98 * uniform(random), depth = std::pow(10.0, -13.0 * uniform(random));
+    for (const double sign : {1.0, -1.0}) {
+      // (x - at)^2 plus or minus a depth, and something smooth that keeps both
+      const auto f = [&](double x) {
+        const double d = x - at, g = d * d + sign * depth, wave = 2.0 + std::sin(3.0 * x);
+        return Sample<double>{g * wave, 2.0 * d * wave + g * 3.0 * std::cos(3.0 * x)};
+      };
+      const PanelFall<double> fall = fall_of(f);
+      const double enters = at - std::sqrt(depth);
+      if (sign > 0.0) {
+        EXPECT_GT(fall.place, 1.0) << at << " " << depth;
+      } else if (enters > 1e-3) {
+        EXPECT_NEAR(fall.place, enters, 1e-13 / std::sqrt(depth) + 1e-14) << "rounding over the slope there";
+      }
+    }
+  }
+}
+
+TEST(PanelFall, TheFirstOfSeveralIsFound) {
+  const auto f = [](double x) { return Sample<double>{std::cos(20.0 * x), -20.0 * std::sin(20.0 * x)}; };
+  EXPECT_NEAR(fall_of(f).place, std::acos(0.0) / 20.0, 1e-8);  // what 24 nodes make of three waves
+}
+
+TEST(PanelFall, AGuardThatStartsAtZeroIsAboveItFromThere) {
+  EXPECT_GT(fall_of([](double x) { return Sample<double>{x, 1.0}; }).place, 1.0);
+  EXPECT_GT(fall_of([](double x) { return Sample<double>{x * x, 2.0 * x}; }).place, 1.0);
+  EXPECT_NEAR(fall_of([](double x) {
+                return Sample<double>{x * (0.5 - x), 0.5 - 2.0 * x};
+              }).place,
+              0.5, 1e-14);
+  EXPECT_LT(fall_of([](double x) { return Sample<double>{-x, -1.0}; }).place, 1e-12);
+}
+
+TEST(PanelFall, WhatTheSlackCannotTellIsUnsure) {
+  const auto dip = [](double depth) {
+    return [depth](double x) { return Sample<double>{(x - 0.37) * (x - 0.37) + depth, 2.0 * (x - 0.37)}; };
+  };
+  EXPECT_TRUE(fall_of(dip(1e-12), 1e-11).unsure);
+  EXPECT_TRUE(fall_of(dip(-1e-12), 1e-11).unsure);
+  EXPECT_FALSE(fall_of(dip(1e-9), 1e-11).unsure);
+  EXPECT_FALSE(fall_of(dip(-1e-9), 1e-11).unsure);
+}
+
+TEST(Spectral, TheFourthDerivativeIsBounded) {
+  static const Panel panel;
+  Panel::Values values;
+  for (const double k : {0.5, 2.0, 6.0}) {
+    for (std::size_t i = 0; i < n; ++i) values[i] = std::sin(k * panel.node[i] + 0.3);
+    const double bound = panel.fourth_derivative_bound(values);
+    EXPECT_GT(bound, std::pow(k, 4) * 0.3) << "no less than the largest there is";
+    EXPECT_LT(bound, std::pow(k, 4) * 30.0 + 1e-3) << "and of use";
+  }
+}
+
+}  // namespace
+}  // namespace leapmap
