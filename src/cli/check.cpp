@@ -29,9 +29,10 @@ bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
   say("read     {} designs in {} tiles{}: every one is what was written\n", grouped(report.designs),
       grouped(report.tiles), report.whole ? "" : ", all that the stopped sweep left");
   if (report.sample)
-    say("sample   {} designs again by {}: height within {:.1e} diameters, time within {:.1e}{}\n",
+    say("sample   {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, motion within "
+        "{:.1e}{}\n",
         grouped(report.sample->designs), report.sample->method, report.sample->max_abs_height_error,
-        report.sample->max_rel_time_error,
+        report.sample->max_rel_time_error, report.sample->max_rel_motion_error,
         report.sample->undecided > 0 ? fmt::format("; {} nobody can decide", report.sample->undecided) : "");
   if (report.whole && !report.sealed)
     say("note     its format is older than 1.4: it has no checksum of all of it\n");

@@ -62,8 +62,11 @@ std::string check_line(const Spec& spec, const Story& story, const Outcome& b) {
   if (!same_flags(a, b))
     return fmt::format("Check: {} DISAGREES: {}, {} lift-offs.", by, name_of(b.status), b.candidates);
   if (a.status != Status::jumped) return fmt::format("Check: {} agrees.", by);
-  return fmt::format("Check: {} agrees, height within {:.1e} diameters, time within {:.1e}.", by,
-                     std::abs(a.jump_height - b.jump_height), std::abs(a.jump_time / b.jump_time - 1.0));
+  AuditReport report;
+  Auditor(spec).look_at({0, a}, report);
+  return fmt::format("Check: {} {}, height within {:.1e} diameters, time within {:.1e}.", by,
+                     disagree(report) ? "DISAGREES" : "agrees", std::abs(a.jump_height - b.jump_height),
+                     std::abs(a.jump_time / b.jump_time - 1.0));
 }
 
 void print_jump(const Spec& spec, const Story& story, const Outcome& checked) {

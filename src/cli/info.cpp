@@ -188,12 +188,12 @@ int run(const InfoArguments& arguments) {
   if (!map.is_whole()) print_incomplete(map, arguments.path);
   say("method {}, tolerance {}\n", told("method"), told("tolerance"));
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
-    say("audit{}: {} designs again by {}: height within {} diameters, time within {} relative, {} flags "
-        "differ, {} errors beyond the tolerance, {} designs nobody can decide\n",
+    say("audit{}: {} designs again by {}: height within {} diameters, time within {} relative, motion within "
+        "{}, {} flags differ, {} errors beyond the tolerance, {} designs nobody can decide\n",
         hdf5::has_attribute(map.file(), "retry_designs") ? " (before failed designs were retried)" : "",
         audited, told("audit_method"), short_form("audit_max_abs_height_error", ".1e"),
-        short_form("audit_max_rel_time_error", ".1e"), told("audit_flag_mismatches"),
-        told("audit_beyond_tolerance"), told("audit_undecided"));
+        short_form("audit_max_rel_time_error", ".1e"), short_form("audit_max_rel_motion_error", ".1e"),
+        told("audit_flag_mismatches"), told("audit_beyond_tolerance"), told("audit_undecided"));
   if (hdf5::has_attribute(map.file(), "retry_designs"))
     say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),
         told("retry_tolerance"));

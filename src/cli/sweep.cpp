@@ -185,10 +185,10 @@ int run(const SweepArguments& arguments) {
 
 int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditReport& report) {
   if (!arguments.quiet)
-    say("audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
-        "differ{}{}\n",
+    say("audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, motion within "
+        "{:.1e}, {} flags differ{}{}\n",
         grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
-        report.flag_mismatches,
+        report.max_rel_motion_error, report.flag_mismatches,
         report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "",
         report.failed > 0 ? fmt::format("; {} failed, not compared", report.failed) : "");
   const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {

@@ -19,7 +19,9 @@
 namespace leapmap {
 namespace {
 
-constexpr double audit_tolerance = 1e-13;
+constexpr double audit_tolerance = 1e-13, coarser_tolerance = 1e-12;
+constexpr double audit_reach =
+    1e-11;  // relative: how far off an integration at that tolerance may see a flag flip
 constexpr double own_error = 1e-11;  // an integration's at that tolerance, over a few revolutions
 constexpr double adaptive_slack = 100.0;
 
@@ -31,56 +33,71 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-struct Difference {
-  bool flags = false;
-  double height = 0.0, time = 0.0;
+using Difference = AuditDifference;
+
+Difference larger(const Difference& a, const Difference& b, double weight) {
+  return {a.flags || b.flags, std::max(a.height, weight * b.height), std::max(a.time, weight * b.time),
+          std::max(a.motion, weight * b.motion)};
+}
+
+/// How each quantity is compared: heights as they are, times relative, the rest relative to one more than
+/// their size.
+enum class Measure { height, time, motion };
+struct Compared {
+  std::string_view field;
+  double Outcome::*member;
+  Measure measure;
 };
+constexpr std::array compared{Compared{"jump_height", &Outcome::jump_height, Measure::height},
+                              Compared{"first_jump_height", &Outcome::first_jump_height, Measure::height},
+                              Compared{"dip", &Outcome::dip, Measure::height},
+                              Compared{"jump_time", &Outcome::jump_time, Measure::time},
+                              Compared{"first_jump_time", &Outcome::first_jump_time, Measure::time},
+                              Compared{"apex_time", &Outcome::apex_time, Measure::time},
+                              Compared{"flight_time", &Outcome::flight_time, Measure::time},
+                              Compared{"jump_angle", &Outcome::jump_angle, Measure::motion},
+                              Compared{"jump_spin", &Outcome::jump_spin, Measure::motion},
+                              Compared{"jump_distance", &Outcome::jump_distance, Measure::motion},
+                              Compared{"slip_distance", &Outcome::slip_distance, Measure::motion},
+                              Compared{"landing_spin", &Outcome::landing_spin, Measure::motion},
+                              Compared{"energy_lost", &Outcome::energy_lost, Measure::motion}};
 
 /// `ours` may lack what its sweep was not asked to store.
 Difference difference(const Outcome& ours, const Outcome& theirs, const Output& output = {}) {
   Difference d;
   d.flags = !same_flags(ours, theirs);
   if (d.flags) return d;
-  const auto compare = [&](std::string_view field, double Outcome::*member, double& most, bool is_relative) {
+  for (const auto& [field, member, measure] : compared) {
     const double a = ours.*member, b = theirs.*member;
-    if (std::isnan(a) && std::isnan(b)) return;
-    const double error = is_relative && b != 0.0 ? std::abs(a / b - 1.0) : std::abs(a - b);
+    if (std::isnan(a) && std::isnan(b)) continue;
+    double& most = measure == Measure::height ? d.height : measure == Measure::time ? d.time : d.motion;
+    double error = std::abs(a - b);
+    if (measure == Measure::time && b != 0.0) error = std::abs(a / b - 1.0);
+    if (measure == Measure::motion) error /= 1.0 + std::abs(b);
     if (!std::isnan(error)) {
       most = std::max(most, error);
     } else if (stores(output, field)) {
       most = std::numeric_limits<double>::infinity();
     }
-  };
-  compare("jump_height", &Outcome::jump_height, d.height, false);
-  compare("first_jump_height", &Outcome::first_jump_height, d.height, false);
-  compare("dip", &Outcome::dip, d.height, false);
-  compare("jump_time", &Outcome::jump_time, d.time, true);
-  compare("first_jump_time", &Outcome::first_jump_time, d.time, true);
-  compare("apex_time", &Outcome::apex_time, d.time, true);
-  compare("flight_time", &Outcome::flight_time, d.time, true);
+  }
   return d;
 }
 
-/// What one unit in the last place of each parameter changes.
-Difference sensitivity(const Solver& exact, const Design& design, const Spec& spec) {
-  std::vector<Design> designs{design};
+/// The design with each parameter some relative distance away, either way; 0: one unit in the last place.
+std::vector<Design> beside(const Design& design, const Spec& spec, double distance) {
+  std::vector<Design> designs;
   for (const Option* parameter : design_parameters(spec)) {
     const auto member = std::get<ParameterSlot>(parameter->slot).member;
-    if (design.*member == 0.0) continue;  // as written, and the number beside it is no rounding of it
-    for (const double towards : {-1e300, 1e300}) {
+    const double value = design.*member;
+    if (value == 0.0) continue;  // as written, and the number beside it is no rounding of it
+    for (const double way : {-1.0, 1.0}) {
       Design nudged = design;
-      nudged.*member = std::nextafter(design.*member, towards);
+      nudged.*member =
+          distance > 0.0 ? value * (1.0 + way * distance) : std::nextafter(value, way * HUGE_VAL);
       if (in_range(*parameter, nudged.*member)) designs.push_back(nudged);
     }
   }
-  std::vector<Outcome> outcomes(designs.size());
-  exact(designs, outcomes);
-  Difference most;
-  for (const Outcome& outcome : outcomes) {
-    const Difference d = difference(outcomes[0], outcome);
-    most = {most.flags || d.flags, std::max(most.height, d.height), std::max(most.time, d.time)};
-  }
-  return most;
+  return designs;
 }
 
 }  // namespace
@@ -158,6 +175,7 @@ void merge(AuditReport& report, const AuditReport& other) {
   report.designs += other.designs;
   report.max_abs_height_error = std::max(report.max_abs_height_error, other.max_abs_height_error);
   report.max_rel_time_error = std::max(report.max_rel_time_error, other.max_rel_time_error);
+  report.max_rel_motion_error = std::max(report.max_rel_motion_error, other.max_rel_motion_error);
   report.failed += other.failed;
   report.flag_mismatches += other.flag_mismatches;
   report.undecided += other.undecided;
@@ -176,6 +194,7 @@ constexpr std::array counts{std::pair{"audit_designs", &AuditReport::designs},
                             std::pair{"audit_failed", &AuditReport::failed}};
 constexpr std::array errors{std::pair{"audit_max_abs_height_error", &AuditReport::max_abs_height_error},
                             std::pair{"audit_max_rel_time_error", &AuditReport::max_rel_time_error},
+                            std::pair{"audit_max_rel_motion_error", &AuditReport::max_rel_motion_error},
                             std::pair{"audit_allowed_error", &AuditReport::allowed_error}};
 constexpr std::array firsts{std::pair{"audit_first_mismatch", &AuditReport::first_mismatch},
                             std::pair{"audit_first_inaccurate", &AuditReport::first_inaccurate}};
@@ -204,7 +223,8 @@ AuditReport read_audit(const MapReader& map) {
   };
   for (const auto& [name, member] : counts)
     report.*member = static_cast<std::size_t>(count(name, 0, designs));
-  for (const auto& [name, member] : errors) report.*member = hdf5::read_number(map.file(), name);
+  for (const auto& [name, member] : errors)
+    if (hdf5::has_attribute(map.file(), name)) report.*member = hdf5::read_number(map.file(), name);
   for (const auto& [name, member] : firsts)
     if (const std::int64_t design = count(name, -1, designs - 1); design >= 0)
       report.*member = static_cast<std::size_t>(design);
@@ -215,7 +235,7 @@ Auditor::Auditor(const Spec& spec)
     : spec_(spec),
       space_(spec),
       second_(make_solver(spec, audit_method(spec.numerics), audit_tolerance)),
-      exact_(make_solver(spec, "exact", audit_tolerance)) {
+      coarser_(make_solver(spec, audit_method(spec.numerics), coarser_tolerance)) {
   const bool integrates = audit_method(spec.numerics) != "exact";
   const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
   allowed_ = std::max(spec.numerics.tolerance * (integrates ? 1.0 : adaptive_slack), own_error) + rounding;
@@ -226,6 +246,21 @@ AuditReport Auditor::begin() const {
   report.method = audit_method(spec_.numerics);
   report.allowed_error = allowed_;
   return report;
+}
+
+/// What the second method itself is in doubt about: what one unit in the last place of the inputs makes of
+/// its answer, and what a coarser tolerance does, ten times either; for flags, whether they flip within its
+/// own error. The solver under audit has no say in it.
+Difference Auditor::doubt_of(const Design& design, const Outcome& theirs, bool of_flags) const {
+  std::vector<Design> designs = beside(design, spec_, 0.0);
+  if (of_flags) std::ranges::copy(beside(design, spec_, audit_reach), std::back_inserter(designs));
+  std::vector<Outcome> outcomes(designs.size());
+  second_(designs, outcomes);
+  outcomes.emplace_back();
+  coarser_({&design, 1}, {&outcomes.back(), 1});
+  Difference doubt;
+  for (const Outcome& outcome : outcomes) doubt = larger(doubt, difference(outcome, theirs), 10.0);
+  return doubt;
 }
 
 void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
@@ -240,13 +275,16 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
   second_({&design, 1}, {&theirs, 1});
   const Difference d = difference(ours, theirs, spec_.output);
   const double height_allowed = allowed_ * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
-  bool inaccurate = !d.flags && (d.height > height_allowed || d.time > allowed_);
+  const auto exceeds = [&](const Difference& doubt) {
+    return d.height > std::max(height_allowed, doubt.height) || d.time > std::max(allowed_, doubt.time) ||
+           d.motion > std::max(allowed_, doubt.motion);
+  };
+  bool inaccurate = !d.flags && exceeds({});
   bool undecided = theirs.status == Status::failed;
   if ((d.flags || inaccurate) && !undecided) {
-    const Difference ulp = sensitivity(exact_, design, spec_);
-    undecided = ulp.flags;
-    inaccurate = inaccurate && (d.height > std::max(height_allowed, 10.0 * ulp.height) ||
-                                d.time > std::max(allowed_, 10.0 * ulp.time));
+    const Difference doubt = doubt_of(design, theirs, d.flags);
+    undecided = doubt.flags;
+    inaccurate = inaccurate && exceeds(doubt);
   }
   if (undecided) {
     ++report.undecided;
@@ -259,6 +297,7 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
   }
   report.max_abs_height_error = std::max(report.max_abs_height_error, d.height);
   report.max_rel_time_error = std::max(report.max_rel_time_error, d.time);
+  report.max_rel_motion_error = std::max(report.max_rel_motion_error, d.motion);
   if (!inaccurate) return;
   ++report.beyond_tolerance;
   report.first_inaccurate = std::min(report.first_inaccurate.value_or(number), number);

@@ -45,15 +45,22 @@ struct AuditReport {
   double max_abs_height_error =
       0.0;  ///< [hoop diameters], of jump, first lift-off and dip, where the flags agree
   double max_rel_time_error = 0.0;  ///< of the times to lift-off, apex and landing
+  double max_rel_motion_error =
+      0.0;                 ///< of angles, spins, distances and energies, relative to one more than their size
   std::size_t failed = 0;  ///< designs the sweep gave up on: their status says so, nothing is compared
   std::size_t flag_mismatches = 0;  ///< designs whose status, spurious flag or number of candidates differ
-  /// Designs on which the audit's method gave up, or whose flags one unit in the last place of the inputs
-  /// decides.
+  /// Designs on which the audit's method gave up, or whose flags it cannot tell within its own error.
   std::size_t undecided = 0;
   double allowed_error = 0.0;                   ///< see audit; for heights, relative to 1 + height
   std::size_t beyond_tolerance = 0;             ///< designs whose error is larger
   std::optional<std::size_t> first_mismatch;    ///< the least design number whose flags differ
   std::optional<std::size_t> first_inaccurate;  ///< the least design number beyond the tolerance
+};
+
+/// How far two outcomes are apart.
+struct AuditDifference {
+  bool flags = false;
+  double height = 0.0, time = 0.0, motion = 0.0;
 };
 
 /// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact.
@@ -76,8 +83,8 @@ class Auditor {
   explicit Auditor(const Spec& spec);
   /// Adds what a sample comes to. An error is beyond the tolerance if it is larger than numerics.tolerance (a
   /// hundred times that for an adaptive stepper, whose tolerance is per step; no less than 1e-11, the audit's
-  /// own error), and larger than 10 times what one unit in the last place of the inputs makes of it. A map in
-  /// f4 is allowed a rounding of f4 on top.
+  /// own error), and larger than 10 times what one unit in the last place of the inputs, or a coarser
+  /// tolerance, makes of the second method's own answer. A map in f4 is allowed a rounding of f4 on top.
   void look_at(const AuditSample& sample, AuditReport& report) const;
   /// A report on no design yet.
   AuditReport begin() const;
@@ -85,7 +92,9 @@ class Auditor {
  private:
   const Spec& spec_;
   DesignSpace space_;
-  Solver second_, exact_;
+  AuditDifference doubt_of(const Design& design, const Outcome& theirs, bool of_flags) const;
+
+  Solver second_, coarser_;
   double allowed_;
 };
 

@@ -102,6 +102,61 @@ TEST(Audit, AllowsForWhatTheInputsRoundingsDo) {
   EXPECT_EQ(report.beyond_tolerance, 0u);
 }
 
+/// One design's report, after `spoil` has put an answer that was once given in place of the right one.
+template <class Spoil>
+AuditReport report_on(std::vector<std::string> words, const Spoil& spoil) {
+  words.insert(words.end(), {"audit=1", "radius=1", "gravity=1"});
+  const Spec spec = read_spec("", words);
+  std::vector<AuditSample> samples = drawn_from(spec, 1);
+  const AuditReport right = audit(spec, samples, 1);
+  EXPECT_FALSE(disagree(right));
+  EXPECT_EQ(right.undecided, 0u);
+  spoil(samples[0].outcome);
+  return audit(spec, samples, 1);
+}
+
+/// The solver's own neighbours would have excused these: it was wrong at one design and right beside it, or
+/// wrong at all of them alike.
+TEST(Audit, ConvictsAnswersThatTheSolverOnceGave) {
+  const AuditReport lost =
+      report_on({"slope=0.7869897210165152", "mass_ratio=55.09232137250197", "inertia_factor=0.5",
+                 "release_angle=2.0925220780510614", "release_spin=1.0270156691322998"},
+                [](Outcome& o) { o.jump_height = o.first_jump_height = 3.64638, o.jump_time = 2.4657; });
+  EXPECT_EQ(lost.beyond_tolerance, 1u);
+  EXPECT_GT(lost.max_abs_height_error, 3.0);
+
+  const AuditReport flag = report_on({"slope=0.2735491205258086", "mass_ratio=0.391937962544061",
+                                      "inertia_factor=0.5", "release_spin=0.5070788833416867"},
+                                     [](Outcome& o) { o.spurious_first_jump = 0, o.candidates = 1; });
+  EXPECT_EQ(flag.flag_mismatches, 1u);
+  EXPECT_EQ(flag.undecided, 0u);
+
+  const AuditReport edge =
+      report_on({"friction=coulomb", "slope=0.4097929865924131", "mass_ratio=188.0803499182982",
+                 "offset_ratio=0.6728761363187696", "inertia_factor=0.5", "mu_static=0.7295130111149761",
+                 "mu_kinetic=0.6099718925469745"},
+                [](Outcome& o) { o.jump_height = o.first_jump_height = 0.230810; });
+  EXPECT_EQ(edge.beyond_tolerance, 1u);
+
+  const AuditReport slow =
+      report_on({"friction=coulomb", "slope=0.5647115957240031", "mass_ratio=4.246058805451686",
+                 "offset_ratio=0.978398993194525", "release_angle=1.9485688953985996",
+                 "release_spin=0.0005557048838113033", "mu_static=0.8376440911782836"},
+                [](Outcome& o) { o.jump_time = 9.85683577353; });
+  EXPECT_EQ(slow.beyond_tolerance, 1u);
+}
+
+TEST(Audit, LooksAtEveryQuantity) {
+  for (double Outcome::*member :
+       {&Outcome::jump_angle, &Outcome::jump_spin, &Outcome::jump_distance, &Outcome::slip_distance,
+        &Outcome::landing_spin, &Outcome::energy_lost, &Outcome::dip, &Outcome::flight_time,
+        &Outcome::apex_time, &Outcome::first_jump_time}) {
+    const AuditReport report =
+        report_on({"friction=coulomb"}, [&](Outcome& o) { o.*member = o.*member * (1.0 + 1e-7) + 1e-7; });
+    EXPECT_EQ(report.beyond_tolerance, 1u);
+  }
+}
+
 TEST(Audit, DoesNotDependOnTheNumberOfThreads) {
   const Spec spec = grid("exact", "1e-5", "0.3");
   const AuditReport one = audit(spec, drawn_from(spec, 1), 1), four = audit(spec, drawn_from(spec, 4), 4);
