@@ -150,16 +150,16 @@ void expect_right(Design (*aim)(std::mt19937_64&), unsigned seed, std::size_t co
   EXPECT_GT(jumped, static_cast<std::size_t>(jumps * static_cast<double>(count)));
 }
 
-TEST(AimedCoulomb, AtTheStickLimit) { expect_right(at_stick_limit, 1, how_many(400), 0.5); }
-TEST(AimedCoulomb, WhereFreeFallBegins) { expect_right(at_free_fall, 2, how_many(400), 0.2); }
-TEST(AimedCoulomb, SlowReleases) { expect_right(slow_release, 3, how_many(400), 0.5); }
-TEST(AimedCoulomb, HeavyMassesNearPainlevesEdge) { expect_right(near_painleve, 4, how_many(400), 0.2); }
-TEST(AimedCoulomb, WherePainlevesRegionBegins) { expect_right(touching_painleve, 5, how_many(200), 0.05); }
+TEST(AimedCoulomb, AtTheStickLimit) { expect_right(at_stick_limit, 1, how_many(120), 0.5); }
+TEST(AimedCoulomb, WhereFreeFallBegins) { expect_right(at_free_fall, 2, how_many(120), 0.2); }
+TEST(AimedCoulomb, SlowReleases) { expect_right(slow_release, 3, how_many(120), 0.5); }
+TEST(AimedCoulomb, HeavyMassesNearPainlevesEdge) { expect_right(near_painleve, 4, how_many(120), 0.2); }
+TEST(AimedCoulomb, WherePainlevesRegionBegins) { expect_right(touching_painleve, 5, how_many(60), 0.05); }
 
 /// Heavy masses from rest: neither the tolerance nor some units in the last place decide flags.
 TEST(AimedCoulomb, FlagsDoNotHangOnTheTolerance) {
   std::mt19937_64 random(6);
-  for (std::size_t i = 0; i < how_many(600); ++i) {
+  for (std::size_t i = 0; i < how_many(150); ++i) {
     const Design design = near_painleve(random);
     Design beside = design;
     beside.slope *= 1.0 + 2e-15, beside.mass_ratio *= 1.0 - 2e-15;
