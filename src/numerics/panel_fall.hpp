@@ -32,7 +32,8 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
                         const Sample<S>& last, const S& slack) {
   using std::abs, std::max, std::min;
   constexpr S none(2), shortest(1e-9);
-  // Well above zero everywhere: a third of a spacing on, the tangent of no node comes down to a thousandth.
+  // Well above zero everywhere: a third of a spacing on, the tangent of no node comes down to a thousandth,
+  // which is more than the cubics are off by where the nodes resolve the function.
   S least = min(first.value, last.value), most = max(first.value, last.value), steepest(0);
   for (std::size_t i = 0; i < n; ++i) {
     least = min(least, values[i]), most = max(most, values[i]), steepest = max(steepest, abs(rates[i]));
@@ -40,13 +41,21 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
   steepest = max({steepest, abs(first.rate), abs(last.rate)});
   if (least - steepest * panel.longest_spacing() / S(3) > S(1e-3) * most) return {none, false};
 
-  // A function that starts at zero but for rounding falls at once, or is above zero from the first node on.
+  const auto at = [&](const S& x) { return Sample<S>{panel.value(values, x), panel.value(rates, x)}; };
+  const auto polish = [&](const S& a, const S& b, const S& guess) {
+    return polish_root(at, a, b, guess, false, S(4) * std::numeric_limits<S>::epsilon());
+  };
+  // A function that starts at zero but for rounding falls at once, or before the first node, or is above zero
+  // from there on.
   const bool starts_at_zero = !(first.value > S(0));
+  if (starts_at_zero && first.rate > S(0))
+    for (S b = panel.node[0]; b > S(1e-12) && !(at(b).value > S(0)); b *= S(0.5))
+      if (at(b * S(0.5)).value > S(0)) return {polish(b * S(0.5), b, b * S(0.75)), false};
   if (starts_at_zero && (!(values[0] > S(0)) || first.rate * panel.node[0] < -slack))
     return {std::numeric_limits<S>::epsilon(), false};
   const S bend = panel.fourth_derivative_bound(values);
   bool unsure = false;
-  const auto at = [&](const S& x) { return Sample<S>{panel.value(values, x), panel.value(rates, x)}; };
+  int looks_left = 2'000;  // a function that keeps within the slack of zero is never told for sure
   // Whether the dip that is entered between a and b turns before it is deeper than the slack.
   const auto is_shallow = [&](S a, S b, Sample<S> at_b) {
     const S h = b - a;
@@ -72,10 +81,9 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
     if (!(at_b.value > S(0)) && at_a.value > S(0) && (monotone || h < S(1e-4))) {
       if (at_b.value > -slack) unsure = unsure || is_shallow(a, b, at_b);
       if (at_b.value == S(0)) return b;
-      return polish_root(at, a, b, S(a + h * at_a.value / (at_a.value - at_b.value)), false,
-                         S(4) * std::numeric_limits<S>::epsilon());
+      return polish(a, b, S(a + h * at_a.value / (at_a.value - at_b.value)));
     }
-    if (h < shortest) {
+    if (h < shortest || --looks_left < 0) {
       unsure = unsure || (slack > S(0) && min(inner_a, inner_b) <= slack);
       return at_b.value > S(0) ? none : b;
     }

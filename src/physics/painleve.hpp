@@ -3,10 +3,11 @@
 ///
 /// A slide that comes near the edge does one of three things (F. Genot and B. Brogliato, New results on
 /// Painleve paradoxes, Eur. J. Mech. A/Solids 18 (1999) 653-677, for a rod; the equations are the same). With
-/// x the angle left to the edge, n0 goes about as C x^k plus a multiple of x, k = 2 rho c q / pivot', both at
-/// the edge and pivot' by x. For C < 0 the hoop lifts off before the edge. For C > 0 and k < 1 the normal
-/// force grows beyond all bounds: indeterminate. For k > 1 it does not: n0 and the pivot come to zero
-/// together, and there the hoop lifts off.
+/// x the angle left to the edge, n0 goes about as C x^k plus a multiple of x, k = -2 rho c q / pivot' at the
+/// edge. For C < 0 the hoop lifts off before the edge. For C > 0 and k < 1 the normal force grows beyond all
+/// bounds: indeterminate, unless slip or spin is used up before, as they are for k <= 0. For k > 1 it does
+/// not: n0 and the pivot come to zero together, and there the hoop lifts off. All this for c < 0; else n0
+/// cannot vanish, and the spin is used up before the edge.
 #pragma once
 
 #include <cmath>
@@ -25,6 +26,13 @@ CurvedSample<S> pivot_by_angle(const Hoop<S>& hoop, const Trig<S>& phi, const S&
   return {sliding_coefficients(hoop, phi, friction).pivot, rho * (rho * sine_2 - m * c + m * rho * cosine_2),
           rho * (S(2) * rho * cosine_2 + m * s - S(2) * m * rho * sine_2),
           rho * (S(-4) * rho * sine_2 + m * c - S(4) * m * rho * cosine_2)};
+}
+
+/// k, above, at an edge.
+template <class S>
+S power_at_edge(const Hoop<S>& hoop, const Trig<S>& phi, const S& friction) {
+  return S(-2) * hoop.rho * phi.cos * sliding_lever(hoop, phi, friction) /
+         pivot_by_angle(hoop, phi, friction).rate;
 }
 
 /// Whether the pivot is above zero at every angle, as a bound tells at once: |s| (1 - rho c) is at most

@@ -21,13 +21,22 @@ struct SlidingCoefficients {
   T push;   ///< N = push n0
 };
 
-/// friction: m = mu_kinetic sign(v).
+/// q; friction: m = mu_kinetic sign(v).
+template <class T>
+T sliding_lever(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction) {
+  return hoop.rho * phi.sin - friction * (hoop.clearance + hoop.rho * phi.versine);
+}
+
+/// pivot: Ic + rho s q, where somebody knows it better.
+template <class T>
+SlidingCoefficients<T> sliding_coefficients(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction,
+                                            const T& pivot) {
+  return {pivot, -sliding_lever(hoop, phi, friction) / pivot, hoop.Ic / pivot};
+}
 template <class T>
 SlidingCoefficients<T> sliding_coefficients(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction) {
-  const T arm = hoop.clearance + hoop.rho * phi.versine;  // 1 - rho c
-  const T q = hoop.rho * phi.sin - friction * arm;
-  const T pivot = hoop.Ic + hoop.rho * phi.sin * q;
-  return {pivot, -q / pivot, hoop.Ic / pivot};
+  const T q = sliding_lever(hoop, phi, friction), pivot = hoop.Ic + hoop.rho * phi.sin * q;
+  return sliding_coefficients(hoop, phi, friction, pivot);
 }
 
 /// n0: the hoop leaves the plane where this falls through zero.

@@ -118,14 +118,14 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& length) const {
   while (from < end) {
     S to = std::sqrt(from * from + S(0.7));
     if (to > end || S(1.15) * to > end) to = end;
-    sum += duration(roll, shift, from, to, 0);
+    sum += duration(roll, shift, from, to, S(0), 0);
     from = to;
   }
   return sum;
 }
 
 template <class S>
-S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, const S& to,
+S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, const S& enough,
                           int halvings) const {
   constexpr int most_halvings = 50;
   // The nodes in lanes.
@@ -145,10 +145,13 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
   const S whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);
   // The tail itself, and not its square, which the error goes as where f is smooth: a narrow needle of little
   // weight between the nodes shows in the tail alone.
-  if (tail <= tolerance_ * whole) return whole;
+  if (tail <= std::max(tolerance_ * whole, enough)) return whole;
   if (halvings == most_halvings || !(whole > S(0))) return std::numeric_limits<S>::quiet_NaN();
-  const S middle = from + (to - from) * S(0.5);
-  return duration(roll, shift, from, middle, halvings + 1) + duration(roll, shift, middle, to, halvings + 1);
+  // Parts need be no better than a tenth of that of the whole, so that roundings are not halved for ever.
+  const S allowed = halvings == 0 ? S(0.1) * tolerance_ * whole : enough,
+          middle = from + (to - from) * S(0.5);
+  const S first = duration(roll, shift, from, middle, allowed, halvings + 1);
+  return std::isnan(first) ? first : first + duration(roll, shift, middle, to, allowed, halvings + 1);
 }
 
 template class RollingLeg<double>;

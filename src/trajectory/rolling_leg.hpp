@@ -24,7 +24,9 @@ class RollingLeg {
   static constexpr std::size_t nodes = 24;
 
   S duration(const Roll<S>& roll, const S& length) const;
-  S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, int halvings) const;
+  /// enough: an error that does not matter.
+  S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, const S& enough,
+             int halvings) const;
 
   S tolerance_;
   SpectralPanel<S, nodes> panel_;

@@ -19,7 +19,7 @@ constexpr double near_edge = 0.3;        // the edge matters for rounding from h
 constexpr double share_of_edge = 0.6;    // a panel goes over so much of the way to the edge
 constexpr double at_edge = 1e-13;        // what is left changes nothing that is bounded [rad]
 constexpr double nearest_edge = 1e-290;  // nor anything else
-constexpr int most_panels = 10'000;
+constexpr int most_panels = 100'000;     // some slides rock against the edge, some 1e-100 deep
 
 /// The edges on either side of a slide, and how far they are; NaN: none within a turn.
 template <class S>
@@ -100,9 +100,8 @@ std::optional<PhaseEnd> SlidingLeg<S>::end_at_edge(const Slide& slide, const Con
                                                    const SlidingMotion<S>& motion) {
   if (!(slide.left < S(at_edge))) return {};
   const Trig<S> phi = trig(at.angle);
-  const S arm = slide.hoop.clearance + slide.hoop.rho * phi.versine;
-  const S q = slide.hoop.rho * phi.sin - slide.friction * arm;
-  const S power = S(2) * slide.hoop.rho * phi.cos * q / pivot_by_angle(slide.hoop, phi, slide.friction).rate;
+  if (phi.cos >= S(0)) return {};  // its spin will be used up before
+  const S power = power_at_edge(slide.hoop, phi, slide.friction);
   if (power > S(1) && slide.free_force < S(1e-3) * slide.hoop.cos_slope) return PhaseEnd::lifts_off;
   // The forces grow as left^(power - 1): the slip that they take away until the edge is bounded if power > 0.
   const S taken = std::abs(motion.slip / at.spin) * slide.left / power;
@@ -131,7 +130,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   const auto shrink = [&](const Panel& tried) {
     return std::isfinite(tried.excess) ? change(tried, S(0.85)) : S(0.5);
   };
-  bool refined = false;
+  int refined = 0;
   for (int taken = 0; taken < most_panels; ++taken) {
     // By angle while the hoop turns and its spin does not vanish soon; else by time.
     slide.edge.reset();
@@ -171,12 +170,12 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       }
     }
     const Event event = first_event(at, runway, direction, panel);
-    if (event.unsure && !refined) {  // a shorter panel's polynomial is right to rounding
+    if (event.unsure && refined < 2) {  // the polynomials of shorter panels are right to rounding
       (by_angle ? length : duration) *= S(0.5);
-      refined = true;
+      ++refined;
       continue;
     }
-    refined = false;
+    refined = 0;
     if (event.place > S(1)) {
       edges.turn(panel.turned);
       at = panel.end;

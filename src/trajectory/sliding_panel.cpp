@@ -3,12 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 namespace leapmap {
 namespace {
 
 constexpr int most_iterations = 60;
+
+/// The largest, and infinity if any is no number: such a panel is not resolved.
+template <class S>
+S largest(std::initializer_list<S> values) {
+  S most(0);
+  for (const S& value : values) most = std::isfinite(value) ? std::max(most, value) : S(HUGE_VAL);
+  return most;
+}
 
 }  // namespace
 
@@ -148,9 +157,9 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
   const S noise = rounding_of(hoop, friction, slide.edge ? S(1) : end.pivot) +
                   S(16) * std::numeric_limits<S>::epsilon() * std::min(S(1) / slowest, S(1e6));
-  panel.excess = std::max({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
-                           S(0.1) * grid_.tail(time_rate) / duration,
-                           grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
+  panel.excess = largest<S>({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
+                             S(0.1) * grid_.tail(time_rate) / duration,
+                             grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
                  (tolerance_ + noise);
 }
 
@@ -193,7 +202,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
     const Values gained = grid_.integrals(angular);
     S change(0), most(1);
     for (std::size_t i = 0; i < nodes; ++i) {
-      change = std::max(change, std::abs(from.spin + gained[i] - spin[i]));
+      change = largest<S>({change, std::abs(from.spin + gained[i] - spin[i])});
       most = std::max({most, std::abs(from.spin), std::abs(angular[i])});
       spin[i] = from.spin + gained[i];
     }
@@ -239,8 +248,8 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   panel.slip.end = {panel.end.slip, duration * end.slip};
   panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
   if (settled)
-    panel.excess = std::max(grid_.tail(angular) / (S(1) + std::abs(from.spin)),
-                            grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))) /
+    panel.excess = largest<S>({grid_.tail(angular) / (S(1) + std::abs(from.spin)),
+                               grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
                    (tolerance_ + rounding_of(hoop, friction, slide.edge ? S(1) : at_end.pivot));
 }
 

@@ -56,10 +56,8 @@ class SlidingPanels {
     template <class T>
     SlidingCoefficients<T> coefficients(const Hoop<T>& hoops, const Trig<T>& phi, const T& turned) const {
       const T m(friction);
-      const SlidingCoefficients<T> at = sliding_coefficients(hoops, phi, m);
-      if (!edge) return at;
-      const T pivot = edge->pivot(hoops, m, T(left) - T(edge->way) * turned);
-      return {pivot, at.turn * at.pivot / pivot, hoops.Ic / pivot};
+      if (!edge) return sliding_coefficients(hoops, phi, m);
+      return sliding_coefficients(hoops, phi, m, edge->pivot(hoops, m, T(left) - T(edge->way) * turned));
     }
   };
 

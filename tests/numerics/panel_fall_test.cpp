@@ -58,6 +58,13 @@ TEST(PanelFall, AGuardThatStartsAtZeroIsAboveItFromThere) {
               }).place,
               0.5, 1e-14);
   EXPECT_LT(fall_of([](double x) { return Sample<double>{-x, -1.0}; }).place, 1e-12);
+  for (const double end : {1e-3, 1e-4, 1e-7})  // before the first node
+    EXPECT_NEAR(fall_of([&](double x) {
+                  return Sample<double>{x * (end - x), end - 2.0 * x};
+                }).place /
+                    end,
+                1.0, 1e-15 / (end * end) + 1e-12)
+        << "rounding of what is about end^2 in size";
 }
 
 TEST(PanelFall, WhatTheSlackCannotTellIsUnsure) {

@@ -245,6 +245,27 @@ TEST(AimedCoulomb, KnownCases) {
   EXPECT_EQ(dip.spurious_first_jump, 1);
 }
 
+/// A slip that begins and ends before the first node of its panel, at release and on the way.
+TEST(AimedCoulomb, ShortSlipsAreGoneThroughOnce) {
+  for (const Design& design : {Design{.slope = 0.46232665277742052,
+                              .mass_ratio = 0.72798621597940216,
+                              .offset_ratio = 0.75157658302844998,
+                              .release_angle = 5.233654068029046,
+                              .release_spin = 1.915602291937937,
+                              .mu_static = 0.45853220716226134},
+                               Design{.slope = 0.2019552905056588,
+                               .mass_ratio = 61.949508636908192,
+                               .offset_ratio = 0.70011268964224893,
+                               .inertia_factor = 0.5,
+                               .release_angle = 4.8458986271553348,
+                               .release_spin = 1.3180981021436946,
+                               .mu_static = 0.61679745334023917}}) {
+    const Outcome ours = solved(design);
+    EXPECT_EQ(ours.status, Status::jumped) << testing::told(design);
+    EXPECT_TRUE(is_right(ours, truth_of(design), design, coulomb)) << testing::told(design);
+  }
+}
+
 /// A hoop that friction holds rolls through states in which a free one would leave the plane; released in
 /// one of them it does the same.
 TEST(AimedCoulomb, ReleasedWhereItWouldRollOnItRollsOn) {
@@ -298,6 +319,12 @@ TEST(Painleve, ThePivotNearItsEdgeKeepsItsDigits) {
         EXPECT_NEAR(pivot, static_cast<double>(direct), 1e-15);
       }
       EXPECT_GT(rate, 0.0);
+      // n0' / n0 by the angle is 2 rho c turn, and goes as the power over the angle left.
+      const long double x = 1e-8L;
+      const Trig<long double> near = trig(there - way * x);
+      const auto grows = 2 * hoop.rho * near.cos * sliding_coefficients(hoop, near, friction).turn;
+      EXPECT_NEAR(static_cast<double>(-way * x * grows / power_at_edge(hoop, trig(there), friction)), 1.0,
+                  1e-5);
     }
   }
   EXPECT_GT(met, 50);
