@@ -162,7 +162,7 @@ std::string json_text(const Spec& spec, const Story& story, const Outcome& check
     if (field.of_coulomb && !slips) continue;
     std::string value;
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
-      value = json_number(story.outcome.*quantity->member * (quantity->is_time ? second : 1.0));
+      value = json_number(story.outcome.*quantity->member * (quantity->unit(second)));
     } else if (std::holds_alternative<Word>(field.source)) {
       value = fmt::format("\"{}\"", phase_letters(story.outcome.phase_sequence));
     } else if (field.name == "status") {

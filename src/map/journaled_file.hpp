@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "map/journal.hpp"
+
 namespace leapmap {
 
 /// What to do where the file system cannot lock a file.
@@ -81,15 +83,8 @@ class JournaledFile {
   Access access() const { return access_; }
 
  private:
-  struct Write {
-    std::uint64_t offset;
-    std::vector<std::byte> bytes;
-  };
   void open(Locking locking);
   void lock(Locking locking) const;
-  void read_journal();
-  void read_seal();
-  void write_journal();
   void make_waiting_writes();
 
   std::string path_;
@@ -98,8 +93,8 @@ class JournaledFile {
   std::uint64_t committed_ = 0;        ///< bytes below it are not overwritten in place
   std::uint64_t stored_ = 0;           ///< bytes the file has on disk, a journal not counted
   std::uint64_t size_ = 0;             ///< bytes it is to have after the next commit
-  std::vector<Write> waiting_;         ///< in the order they came
-  std::optional<std::uint32_t> seal_;  ///< the checksum that ends the file on disk
+  std::vector<WaitingWrite> waiting_;  ///< in the order they came
+  std::optional<Seal> seal_;           ///< what ends the file on disk
   bool abandoned_ = false;
   bool journal_valid_ = false;  ///< the journal on disk is whole and must not be cut off
   mutable bool failed_ = false;

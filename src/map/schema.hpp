@@ -20,13 +20,17 @@ inline constexpr int format_major = 1;  ///< readers refuse a newer one
 /// chunk and of the file, the audit's state.
 inline constexpr int format_minor = 4;
 
+/// What an error of a quantity is: that of a height is absolute, of a time relative, of any other relative to
+/// one more than its size. Times are stored in seconds: multiplied by time_unit(scene).
+enum class Measure { height, time, other };
+
 /// A measured quantity, stored as f8, NaN where it does not apply.
 struct Quantity {
   double Outcome::*member;
-  bool is_time = false;  ///< stored in seconds: multiplied by time_unit(scene)
+  Measure measure = Measure::other;
 
   /// What its values are multiplied by to be stored.
-  double unit(double time_unit) const { return is_time ? time_unit : 1.0; }
+  double unit(double time_unit) const { return measure == Measure::time ? time_unit : 1.0; }
 };
 
 /// Designs by how they ended.

@@ -50,7 +50,8 @@ struct Toss {
 ///   y   = sin(phi) (psi - sin psi) - cos(phi) (1 - cos psi) - gamma psi^2 / 2
 ///   y'  = sin(phi) (1 - cos psi) - cos(phi) sin psi - gamma psi
 ///   y'' = -cos(phi + psi) - gamma
-/// which is physics.md's y term by term, with every difference of near equals carried out.
+/// which is the hoop centre's height in free flight term by term, with every difference of near equals
+/// carried out.
 template <class T>
 CurvedSample<T> toss_height(const Toss<T>& toss, const T& psi) {
   const Trig<T> turned = trig(psi);

@@ -18,14 +18,12 @@
 
 namespace leapmap {
 
-/// pivot and its derivatives by the angle.
+/// pivot and its derivative by the angle.
 template <class S>
-CurvedSample<S> pivot_by_angle(const Hoop<S>& hoop, const Trig<S>& phi, const S& friction) {
+Sample<S> pivot_by_angle(const Hoop<S>& hoop, const Trig<S>& phi, const S& friction) {
   const S s = phi.sin, c = phi.cos, rho = hoop.rho, m = friction;
   const S sine_2 = S(2) * s * c, cosine_2 = c * c - s * s;
-  return {sliding_coefficients(hoop, phi, friction).pivot, rho * (rho * sine_2 - m * c + m * rho * cosine_2),
-          rho * (S(2) * rho * cosine_2 + m * s - S(2) * m * rho * sine_2),
-          rho * (S(-4) * rho * sine_2 + m * c - S(4) * m * rho * cosine_2)};
+  return {sliding_coefficients(hoop, phi, friction).pivot, rho * (rho * sine_2 - m * c + m * rho * cosine_2)};
 }
 
 /// k, above, at an edge.
@@ -71,7 +69,7 @@ S left_to_edge(const Hoop<S>& hoop, const S& friction, const S& angle, const S& 
   constexpr int looks = 48;
   const S step = S(2) * std::numbers::pi_v<S> / S(looks);
   const auto pivot = [&](const S& x) {
-    const CurvedSample<S> at = pivot_by_angle(hoop, trig(S(angle + way * x)), friction);
+    const Sample<S> at = pivot_by_angle(hoop, trig(S(angle + way * x)), friction);
     return Sample<S>{at.value, way * at.rate};
   };
   Sample<S> left = pivot(S(0));

@@ -31,9 +31,9 @@ struct Rule {
   std::function<bool(double t, double y)> arms;
 };
 
-/// Height and duration of a flight simulated sample by sample by physics.md's formula, which ends at the
-/// first sample at or below the plane once the event is armed, the lift-off being the first of all. A flight
-/// that has not risen by then has no height.
+/// Height and duration of a flight simulated sample by sample by the closed form as it stands in
+/// the paper, which ends at the first sample at or below the plane once the event is armed, the lift-off
+/// being the first of all. A flight that has not risen by then has no height.
 Flight<double> simulate(const Subject& subject, const Rule& rule) {
   const auto& [hoop, lift_off] = std::tie(subject.hoop, subject.lift_off);
   const double phi = lift_off.angle, w = lift_off.spin;

@@ -40,43 +40,24 @@ Difference larger(const Difference& a, const Difference& b, double weight) {
           std::max(a.motion, weight * b.motion)};
 }
 
-/// How each quantity is compared: heights as they are, times relative, the rest relative to one more than
-/// their size.
-enum class Measure { height, time, motion };
-struct Compared {
-  std::string_view field;
-  double Outcome::*member;
-  Measure measure;
-};
-constexpr std::array compared{Compared{"jump_height", &Outcome::jump_height, Measure::height},
-                              Compared{"first_jump_height", &Outcome::first_jump_height, Measure::height},
-                              Compared{"dip", &Outcome::dip, Measure::height},
-                              Compared{"jump_time", &Outcome::jump_time, Measure::time},
-                              Compared{"first_jump_time", &Outcome::first_jump_time, Measure::time},
-                              Compared{"apex_time", &Outcome::apex_time, Measure::time},
-                              Compared{"flight_time", &Outcome::flight_time, Measure::time},
-                              Compared{"jump_angle", &Outcome::jump_angle, Measure::motion},
-                              Compared{"jump_spin", &Outcome::jump_spin, Measure::motion},
-                              Compared{"jump_distance", &Outcome::jump_distance, Measure::motion},
-                              Compared{"slip_distance", &Outcome::slip_distance, Measure::motion},
-                              Compared{"landing_spin", &Outcome::landing_spin, Measure::motion},
-                              Compared{"energy_lost", &Outcome::energy_lost, Measure::motion}};
-
 /// `ours` may lack what its sweep was not asked to store.
 Difference difference(const Outcome& ours, const Outcome& theirs, const Output& output = {}) {
   Difference d;
   d.flags = !same_flags(ours, theirs);
   if (d.flags) return d;
-  for (const auto& [field, member, measure] : compared) {
-    const double a = ours.*member, b = theirs.*member;
+  for (const Field& field : map_fields()) {
+    const auto* quantity = std::get_if<Quantity>(&field.source);
+    if (!quantity) continue;
+    const double a = ours.*quantity->member, b = theirs.*quantity->member;
     if (std::isnan(a) && std::isnan(b)) continue;
+    const Measure measure = quantity->measure;
     double& most = measure == Measure::height ? d.height : measure == Measure::time ? d.time : d.motion;
     double error = std::abs(a - b);
     if (measure == Measure::time && b != 0.0) error = std::abs(a / b - 1.0);
-    if (measure == Measure::motion) error /= 1.0 + std::abs(b);
+    if (measure == Measure::other) error /= 1.0 + std::abs(b);
     if (!std::isnan(error)) {
       most = std::max(most, error);
-    } else if (stores(output, field)) {
+    } else if (stores(output, field.name)) {
       most = std::numeric_limits<double>::infinity();
     }
   }
@@ -224,7 +205,8 @@ AuditReport read_audit(const MapReader& map) {
   for (const auto& [name, member] : counts)
     report.*member = static_cast<std::size_t>(count(name, 0, designs));
   for (const auto& [name, member] : errors)
-    if (hdf5::has_attribute(map.file(), name)) report.*member = hdf5::read_number(map.file(), name);
+    if (member != &AuditReport::max_rel_motion_error || hdf5::has_attribute(map.file(), name))
+      report.*member = hdf5::read_number(map.file(), name);  // older maps have no error of the motion
   for (const auto& [name, member] : firsts)
     if (const std::int64_t design = count(name, -1, designs - 1); design >= 0)
       report.*member = static_cast<std::size_t>(design);

@@ -90,10 +90,10 @@ class Auditor {
   AuditReport begin() const;
 
  private:
-  const Spec& spec_;
-  DesignSpace space_;
   AuditDifference doubt_of(const Design& design, const Outcome& theirs, bool of_flags) const;
 
+  const Spec& spec_;
+  DesignSpace space_;
   Solver second_, coarser_;
   double allowed_;
 };

@@ -62,20 +62,16 @@ SlidingLeg<S>::SlidingLeg(double tolerance)
     : panels_(std::max(S(tolerance) * S(0.5), S(100) * std::numeric_limits<S>::epsilon())) {}
 
 template <class S>
-auto SlidingLeg<S>::first_event(const ContactState<S>& at, const S& runway, int direction,
-                                const Panel& panel) const -> Event {
+auto SlidingLeg<S>::first_event(const S& runway, int direction, const Panel& panel) const -> Event {
   using Values = typename Panels::Values;
-  const S sign(direction);
   struct Guard {
     PhaseEnd end;
     S offset, factor;  // of the values that it falls with
     const typename Panels::Course& course;
-    Sample<S> first;
   };
-  const Guard guards[]{
-      {PhaseEnd::lifts_off, S(0), S(1), panel.free_force, panel.free_force_start},
-      {PhaseEnd::slip_ends, S(0), sign, panel.slip, {sign * at.slip, sign * panel.slip_rate_start}},
-      {PhaseEnd::runway_ends, runway, S(-1), panel.travel, {runway - at.travel, -panel.travel_rate_start}}};
+  const Guard guards[]{{PhaseEnd::lifts_off, S(0), S(1), panel.free_force},
+                       {PhaseEnd::slip_ends, S(0), S(direction), panel.slip},
+                       {PhaseEnd::runway_ends, runway, S(-1), panel.travel}};
   Event event{S(2), PhaseEnd::failed, false};
   for (const Guard& guard : guards) {
     Values values, rates;
@@ -85,10 +81,12 @@ auto SlidingLeg<S>::first_event(const ContactState<S>& at, const S& runway, int 
       rates[i] = guard.factor * guard.course.rate[i];
       largest = std::max(largest, std::abs(values[i]));
     }
-    const Sample<S> last{guard.offset + guard.factor * guard.course.end.value,
-                         guard.factor * guard.course.end.rate};
+    const auto sample = [&](const Sample<S>& at) {
+      return Sample<S>{guard.offset + guard.factor * at.value, guard.factor * at.rate};
+    };
     const S slack = S(4) * panels_.grid().tail(values) + S(64) * std::numeric_limits<S>::epsilon() * largest;
-    const PanelFall<S> fall = first_fall(panels_.grid(), values, rates, guard.first, last, slack);
+    const PanelFall<S> fall = first_fall(panels_.grid(), values, rates, sample(guard.course.start),
+                                         sample(guard.course.end), slack);
     event.unsure = event.unsure || fall.unsure;
     if (fall.place < event.place) event.place = fall.place, event.end = guard.end;
   }
@@ -148,7 +146,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       if (!std::isnan(left)) longest = std::min(longest, S(share_of_edge) * left);
     }
     typename Panels::Stretch stretch{};
-    bool by_angle = at.spin > S(0) || (at.spin == S(0) && start.angular > S(0)) || at.spin < S(0);
+    bool by_angle = at.spin != S(0) || start.angular > S(0);
     if (by_angle) {
       length = std::min(length, longest);
       const S shortest = S(shortest_angle) * (slide.edge ? slide.left : S(1) + std::abs(at.angle));
@@ -169,7 +167,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
           return panel.indeterminate ? PhaseEnd::indeterminate : PhaseEnd::failed;
       }
     }
-    const Event event = first_event(at, runway, direction, panel);
+    const Event event = first_event(runway, direction, panel);
     if (event.unsure && refined < 2) {  // the polynomials of shorter panels are right to rounding
       (by_angle ? length : duration) *= S(0.5);
       ++refined;

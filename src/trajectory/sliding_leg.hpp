@@ -32,7 +32,7 @@ class SlidingLeg {
     PhaseEnd end;
     bool unsure;
   };
-  Event first_event(const ContactState<S>& at, const S& runway, int direction, const Panel& panel) const;
+  Event first_event(const S& runway, int direction, const Panel& panel) const;
   /// How a slide ends that has come to Painleve's edge; nothing: it has not, or something may happen yet.
   static std::optional<PhaseEnd> end_at_edge(const Slide& slide, const ContactState<S>& at,
                                              const SlidingMotion<S>& motion);

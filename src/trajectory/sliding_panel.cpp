@@ -131,12 +131,12 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.end.spin = way * std::sqrt(end_u);
   panel.free_force.end = {end_force,
                           way * end_weight * force_rate(hoop, end_phi, end_u, end_force, end.turn)};
-  panel.free_force_start = {
+  panel.free_force.start = {
       start_force, way * start_weight * force_rate(hoop, start_phi, start_u, start_force, start.turn)};
   // At rest weight over spin has a limit.
   const S start_rate = start_u > S(0) ? start_weight / std::sqrt(start_u) : time_rate[0];
-  panel.slip_rate_start =
-      start_rate * sliding_motion(hoop, start_phi, start_u, friction, start, start_force).slip;
+  panel.slip.start = {
+      from.slip, start_rate * sliding_motion(hoop, start_phi, start_u, friction, start, start_force).slip};
 
   const Values slipped = grid_.integrals(panel.slip.rate);
   Values slip_time;
@@ -145,7 +145,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     slip_time[i] = panel.slip.value[i] * time_rate[i];
     panel.travel.rate[i] = way * weight[i] + slip_time[i];
   }
-  panel.travel_rate_start = way * start_weight + from.slip * start_rate;
+  panel.travel.start = {from.travel, way * start_weight + from.slip * start_rate};
   const Values carried = grid_.integrals(slip_time);
   for (std::size_t i = 0; i < nodes; ++i) panel.travel.value[i] = from.travel + way * angle[i] + carried[i];
   const S duration = grid_.integral(time_rate);
@@ -155,8 +155,8 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.slip.end = {panel.end.slip,
                     end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
   panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
-  const S noise = rounding_of(hoop, friction, slide.edge ? S(1) : end.pivot) +
-                  S(16) * std::numeric_limits<S>::epsilon() * std::min(S(1) / slowest, S(1e6));
+  const S noise = slide.rounding_at_end(end.pivot) +
+                  S(16) * std::numeric_limits<S>::epsilon() * std::min(start_u / slowest, S(1e6));
   panel.excess = largest<S>({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
                              S(0.1) * grid_.tail(time_rate) / duration,
                              grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
@@ -209,8 +209,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
     const Values spun = grid_.integrals(spin);
     for (std::size_t i = 0; i < nodes; ++i) turned[i] = duration * spun[i];
     // Near the edge, or a needle of the spin, accelerations are known to some roundings more.
-    const S noise =
-        std::min(rounding_of(hoop, friction, least_pivot), S(1e4) * std::numeric_limits<S>::epsilon());
+    const S noise = std::min(slide.rounding(least_pivot), S(1e4) * std::numeric_limits<S>::epsilon());
     settled = change <= (S(8) * std::numeric_limits<S>::epsilon() + noise) * most;
   }
   panel.end.spin = from.spin + grid_.integral(angular);
@@ -231,10 +230,10 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   };
   const SlidingMotion<S> start = motion_at(start_phi, from.spin, at_start),
                          end = motion_at(end_phi, panel.end.spin, at_end);
-  panel.free_force_start = sample_force(start_phi, from.spin, start);
+  panel.free_force.start = sample_force(start_phi, from.spin, start);
   panel.free_force.end = sample_force(end_phi, panel.end.spin, end);
-  panel.slip_rate_start = duration * start.slip;
-  panel.travel_rate_start = duration * (from.slip + from.spin);
+  panel.slip.start = {from.slip, duration * start.slip};
+  panel.travel.start = {from.travel, duration * (from.slip + from.spin)};
   const Values slipped = grid_.integrals(panel.slip.rate);
   for (std::size_t i = 0; i < nodes; ++i) {
     panel.slip.value[i] = from.slip + slipped[i];
@@ -250,7 +249,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   if (settled)
     panel.excess = largest<S>({grid_.tail(angular) / (S(1) + std::abs(from.spin)),
                                grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
-                   (tolerance_ + rounding_of(hoop, friction, slide.edge ? S(1) : at_end.pivot));
+                   (tolerance_ + slide.rounding_at_end(at_end.pivot));
 }
 
 template class SlidingPanels<double>;

@@ -24,16 +24,15 @@ class SlidingPanels {
   using Grid = SpectralPanel<S, nodes>;
   using Values = typename Grid::Values;
 
-  /// A function at the nodes and at the panel's end, and its derivative by the panel's coordinate.
+  /// A function at the panel's start, nodes and end, and its derivative by the panel's coordinate.
   struct Course {
+    Sample<S> start;
     Values value, rate;
     Sample<S> end;
   };
   /// What the nodes of a panel hold, in order of time, and its end.
   struct Panel {
     Course slip, travel, free_force;
-    Sample<S> free_force_start;
-    S slip_rate_start, travel_rate_start;
     ContactState<S> end;
     S turned;  ///< from start to end
     S excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
@@ -59,6 +58,13 @@ class SlidingPanels {
       if (!edge) return sliding_coefficients(hoops, phi, m);
       return sliding_coefficients(hoops, phi, m, edge->pivot(hoops, m, T(left) - T(edge->way) * turned));
     }
+    /// Relative rounding of the accelerations where the pivot is so large: it comes of terms that may cancel.
+    S rounding(const S& pivot) const {
+      return S(16) * std::numeric_limits<S>::epsilon() *
+             (hoop.Ic + hoop.rho * (hoop.rho + S(2) * std::abs(friction))) / pivot;
+    }
+    /// The same at a panel's end: near the edge the pivot comes without cancellation.
+    S rounding_at_end(const S& pivot) const { return rounding(edge ? S(1) : pivot); }
   };
 
   explicit SlidingPanels(const S& tolerance) : tolerance_(tolerance) {}
@@ -76,12 +82,5 @@ class SlidingPanels {
   S tolerance_;
   Grid grid_;
 };
-
-/// Relative rounding of the accelerations: Ic + rho s q comes of terms that may cancel.
-template <class S>
-S rounding_of(const Hoop<S>& hoop, const S& friction, const S& pivot) {
-  return S(16) * std::numeric_limits<S>::epsilon() *
-         (hoop.Ic + hoop.rho * (hoop.rho + S(2) * std::abs(friction))) / pivot;
-}
 
 }  // namespace leapmap

@@ -125,7 +125,7 @@ TEST(Flight, ApexAndLandingAreWhereTheyShouldBe) {
 TEST(Flight, ThePapersJumpDipsBelowThePlaneBeforeItRises) {
   const Hoop<double> hoop = derive<double>(testing::paper_hoop());
   const Flight<double> flight = fly<double>(hoop, {0.0, 13.948749008421659, 2.3312558443174480});
-  EXPECT_NEAR(flight.dip, -0.0188531, 1e-7);               // 1.9 % of a diameter (physics.md)
+  EXPECT_NEAR(flight.dip, -0.0188531, 1e-7);               // 1.9 % of a diameter
   EXPECT_NEAR(flight.height, 0.98280096607011718, 1e-12);  // the spin above is good to 1e-13
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -12,6 +13,12 @@
 #include "trajectory/lift_off_scan.hpp"
 
 namespace leapmap::testing {
+
+/// How many designs a test aims: LEAPMAP_AIMED if it is set.
+inline std::size_t how_many(std::size_t otherwise) {
+  const char* asked = std::getenv("LEAPMAP_AIMED");
+  return asked ? std::strtoull(asked, nullptr, 10) : otherwise;
+}
 
 /// x moved by so many units in its last place.
 inline double nudged(double x, int ulps) {

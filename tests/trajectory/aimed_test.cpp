@@ -11,12 +11,7 @@
 namespace leapmap {
 namespace {
 
-using testing::nudged;
-
-std::size_t how_many() {
-  const char* asked = std::getenv("LEAPMAP_AIMED");
-  return asked ? std::strtoull(asked, nullptr, 10) : 40'000;
-}
+using testing::how_many, testing::nudged;
 
 bool agree(const Outcome& a, const Outcome& b) {
   // 1e-11: what some units in the last place make of a height far down a long runway
@@ -66,9 +61,9 @@ void expect_right_answers(unsigned seed, std::size_t count) {
   ::testing::Test::RecordProperty("beside", static_cast<int>(beside));
 }
 
-TEST(Aimed, LiftOffsOnNodesAreFoundOnceInLanes) { expect_right_answers<Batch>(1, how_many()); }
+TEST(Aimed, LiftOffsOnNodesAreFoundOnceInLanes) { expect_right_answers<Batch>(1, how_many(40'000)); }
 
-TEST(Aimed, LiftOffsOnNodesAreFoundOnceOneByOne) { expect_right_answers<double>(2, how_many() / 4); }
+TEST(Aimed, LiftOffsOnNodesAreFoundOnceOneByOne) { expect_right_answers<double>(2, how_many(40'000) / 4); }
 
 /// Found by aiming, each of them wrong before the sign at a node was computed once.
 TEST(Aimed, KnownCases) {

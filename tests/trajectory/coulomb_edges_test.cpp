@@ -14,15 +14,10 @@
 namespace leapmap {
 namespace {
 
-using testing::nudged, testing::uniform;
+using testing::how_many, testing::nudged, testing::uniform;
 
 const Scene coulomb{.friction = Friction::coulomb};
 constexpr double tolerance = 1e-10;
-
-std::size_t how_many(std::size_t otherwise) {
-  const char* asked = std::getenv("LEAPMAP_AIMED");
-  return asked ? std::strtoull(asked, nullptr, 10) : otherwise;
-}
 
 Outcome solved(const Design& design, const Scene& scene = coulomb, double asked = tolerance) {
   return CoulombSolver<double>(asked).solve(design, scene);

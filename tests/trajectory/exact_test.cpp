@@ -86,7 +86,7 @@ TYPED_TEST(Exact, IsAsGoodAsItsInputsOnStressedDesigns) {
     EXPECT_EQ(ours.candidates, rows[i].has("candidates") ? rows[i].number("candidates") : ours.candidates)
         << i;
     EXPECT_EQ(ours.spurious_first_jump, rows[i].has("spurious") ? rows[i].number("spurious") : 255) << i;
-    // What one unit in the last place of an input changes, times the 10 that the issue allows; the lift-off's
+    // What one unit in the last place of an input changes, times 10; the lift-off's
     // angle, about 10, is itself a double whose last place is 1e-15.
     const auto check = [&](const std::string& name, double Outcome::*member) {
       if (!rows[i].has(name)) return;

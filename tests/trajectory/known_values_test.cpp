@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The table "What is known to be true" of physics.md, a test for each line that rolling without slip
-/// answers.
+/// Numbers of rolling without slip that are known in closed form or from independent programs.
 #include <gtest/gtest.h>
 
 #include <cmath>
