@@ -34,6 +34,12 @@ bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
         grouped(report.sample->designs), report.sample->method, report.sample->max_abs_height_error,
         report.sample->max_rel_time_error, report.sample->max_rel_motion_error,
         report.sample->undecided > 0 ? fmt::format("; {} nobody can decide", report.sample->undecided) : "");
+  if (report.sample && report.sample->refereed > 0)
+    say("referee  {} designs from the paper's (7) to (9), in SI units: all within {:.1e}{}\n",
+        grouped(report.sample->refereed), report.sample->referee_max_error,
+        report.sample->referee_undecided > 0
+            ? fmt::format("; {} it cannot decide", report.sample->referee_undecided)
+            : "");
   if (report.whole && !report.sealed)
     say("note     its format is older than 1.4: it has no checksum of all of it\n");
   say("right    {}\n", printable(arguments.path));

@@ -63,10 +63,15 @@ std::string check_line(const Spec& spec, const Story& story, const Outcome& b) {
     return fmt::format("Check: {} DISAGREES: {}, {} lift-offs.", by, name_of(b.status), b.candidates);
   if (a.status != Status::jumped) return fmt::format("Check: {} agrees.", by);
   AuditReport report;
-  Auditor(spec).look_at({0, a}, report);
-  return fmt::format("Check: {} {}, height within {:.1e} diameters, time within {:.1e}.", by,
-                     disagree(report) ? "DISAGREES" : "agrees", std::abs(a.jump_height - b.jump_height),
-                     std::abs(a.jump_time / b.jump_time - 1.0));
+  Auditor(spec, 1).look_at({0, a}, report);
+  const bool disagrees = report.first_mismatch || report.first_inaccurate;
+  return fmt::format("Check: {} {}, height within {:.1e} diameters, time within {:.1e}.{}", by,
+                     disagrees ? "DISAGREES" : "agrees", std::abs(a.jump_height - b.jump_height),
+                     std::abs(a.jump_time / b.jump_time - 1.0),
+                     report.first_overruled ? " The paper's (7) to (9) DISAGREE."
+                     : report.referee_undecided
+                         ? ""
+                         : fmt::format(" The paper's (7) to (9): within {:.1e}.", report.referee_max_error));
 }
 
 void print_jump(const Spec& spec, const Story& story, const Outcome& checked) {

@@ -194,6 +194,10 @@ int run(const InfoArguments& arguments) {
         audited, told("audit_method"), short_form("audit_max_abs_height_error", ".1e"),
         short_form("audit_max_rel_time_error", ".1e"), short_form("audit_max_rel_motion_error", ".1e"),
         told("audit_flag_mismatches"), told("audit_beyond_tolerance"), told("audit_undecided"));
+  if (hdf5::has_attribute(map.file(), "audit_referee_designs"))
+    say("referee: {} of them from the paper's (7) to (9): within {}, {} it cannot decide\n",
+        told("audit_referee_designs"), short_form("audit_referee_max_error", ".1e"),
+        told("audit_referee_undecided"));
   if (hdf5::has_attribute(map.file(), "retry_designs"))
     say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),
         told("retry_tolerance"));

@@ -191,6 +191,10 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
         report.max_rel_motion_error, report.flag_mismatches,
         report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "",
         report.failed > 0 ? fmt::format("; {} failed, not compared", report.failed) : "");
+  if (!arguments.quiet && report.refereed > 0)
+    say("referee  {} of them from the paper's (7) to (9), in SI units: all within {:.1e}{}\n",
+        grouped(report.refereed), report.referee_max_error,
+        report.referee_undecided > 0 ? fmt::format("; {} it cannot decide", report.referee_undecided) : "");
   const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
       tell(fmt::format("audit: {} on design {}; see it by: {}", what, *design,
@@ -199,6 +203,8 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
   const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
   complain(report.first_mismatch, both + " disagree on status, flag or candidates");
   complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
+  complain(report.first_overruled,
+           resolved_method(spec.numerics) + " and an integration of the paper's (7) to (9) disagree");
   return disagree(report) ? 1 : 0;
 }
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <variant>
 
-#include "trajectory/outcome.hpp"
+#include "leapmap/outcome.hpp"
 
 namespace leapmap {
 
@@ -17,8 +17,8 @@ inline constexpr std::string_view map_filetype = "leapmap map";
 inline constexpr std::string_view trace_filetype = "leapmap trace";
 inline constexpr int format_major = 1;  ///< readers refuse a newer one
 /// 1: f4; 2: compression, status_counts, the NeXus group; 3: Coulomb friction's fields; 4: a checksum of each
-/// chunk and of the file, the audit's state.
-inline constexpr int format_minor = 4;
+/// chunk and of the file, the audit's state; 5: the referee.
+inline constexpr int format_minor = 5;
 
 /// What an error of a quantity is: that of a height is absolute, of a time relative, of any other relative to
 /// one more than its size. Times are stored in seconds: multiplied by time_unit(scene).

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "leapmap/outcome.hpp"
 #include "map/layout.hpp"
-#include "trajectory/outcome.hpp"
 
 struct libdeflate_compressor;
 

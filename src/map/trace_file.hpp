@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "leapmap/scene.hpp"
 #include "map/hdf5.hpp"
 #include "map/journaled_file.hpp"
 #include "trajectory/story.hpp"

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "trajectory/outcome.hpp"
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
 
 namespace leapmap {
 

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
 #include "study/contestant.hpp"
 
 namespace leapmap {

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <mutex>
 
 #include "map/schema.hpp"
+#include "referee/referee.hpp"
 #include "support/errors.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
@@ -62,6 +64,15 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
     }
   }
   return d;
+}
+
+/// An outcome with its times in seconds, by the same conversion that maps are written with: what the referee
+/// says in seconds by itself checks that, too.
+Outcome as_stored(Outcome outcome, const Scene& scene) {
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source))
+      outcome.*quantity->member *= quantity->unit(time_unit(scene));
+  return outcome;
 }
 
 /// The design with each parameter some relative distance away, either way; 0: one unit in the last place.
@@ -163,61 +174,97 @@ void merge(AuditReport& report, const AuditReport& other) {
   report.beyond_tolerance += other.beyond_tolerance;
   least(report.first_mismatch, other.first_mismatch);
   least(report.first_inaccurate, other.first_inaccurate);
+  report.refereed += other.refereed;
+  report.referee_undecided += other.referee_undecided;
+  report.referee_max_error = std::max(report.referee_max_error, other.referee_max_error);
+  least(report.first_overruled, other.first_overruled);
 }
 
 namespace {
 
-/// The attributes that count designs, each with its member.
-constexpr std::array counts{std::pair{"audit_designs", &AuditReport::designs},
-                            std::pair{"audit_flag_mismatches", &AuditReport::flag_mismatches},
-                            std::pair{"audit_undecided", &AuditReport::undecided},
-                            std::pair{"audit_beyond_tolerance", &AuditReport::beyond_tolerance},
-                            std::pair{"audit_failed", &AuditReport::failed}};
-constexpr std::array errors{std::pair{"audit_max_abs_height_error", &AuditReport::max_abs_height_error},
-                            std::pair{"audit_max_rel_time_error", &AuditReport::max_rel_time_error},
-                            std::pair{"audit_max_rel_motion_error", &AuditReport::max_rel_motion_error},
-                            std::pair{"audit_allowed_error", &AuditReport::allowed_error}};
-constexpr std::array firsts{std::pair{"audit_first_mismatch", &AuditReport::first_mismatch},
-                            std::pair{"audit_first_inaccurate", &AuditReport::first_inaccurate}};
+/// An attribute of a map, and since which minor version of the format it is there.
+template <class Member>
+struct AuditAttribute {
+  const char* name;
+  Member member;
+  int since;
+};
+constexpr std::array counts{AuditAttribute{"audit_designs", &AuditReport::designs, 0},
+                            AuditAttribute{"audit_flag_mismatches", &AuditReport::flag_mismatches, 0},
+                            AuditAttribute{"audit_undecided", &AuditReport::undecided, 1},
+                            AuditAttribute{"audit_beyond_tolerance", &AuditReport::beyond_tolerance, 1},
+                            AuditAttribute{"audit_failed", &AuditReport::failed, 4},
+                            AuditAttribute{"audit_referee_designs", &AuditReport::refereed, 5},
+                            AuditAttribute{"audit_referee_undecided", &AuditReport::referee_undecided, 5}};
+constexpr std::array errors{
+    AuditAttribute{"audit_max_abs_height_error", &AuditReport::max_abs_height_error, 0},
+    AuditAttribute{"audit_max_rel_time_error", &AuditReport::max_rel_time_error, 0},
+    AuditAttribute{"audit_max_rel_motion_error", &AuditReport::max_rel_motion_error, 5},
+    AuditAttribute{"audit_allowed_error", &AuditReport::allowed_error, 4},
+    AuditAttribute{"audit_referee_max_error", &AuditReport::referee_max_error, 5}};
+constexpr std::array firsts{AuditAttribute{"audit_first_mismatch", &AuditReport::first_mismatch, 4},
+                            AuditAttribute{"audit_first_inaccurate", &AuditReport::first_inaccurate, 4},
+                            AuditAttribute{"audit_first_overruled", &AuditReport::first_overruled, 5}};
 
 }  // namespace
 
 std::vector<hdf5::Attribute> audit_attributes(const AuditReport& report) {
   std::vector<hdf5::Attribute> attributes;
-  for (const auto& [name, member] : counts)
-    attributes.emplace_back(name, static_cast<std::int64_t>(report.*member));
-  for (const auto& [name, member] : errors) attributes.emplace_back(name, report.*member);
-  for (const auto& [name, member] : firsts)
-    attributes.emplace_back(
-        name, (report.*member) ? static_cast<std::int64_t>(*(report.*member)) : std::int64_t{-1});
+  for (const auto& row : counts)
+    attributes.emplace_back(row.name, static_cast<std::int64_t>(report.*row.member));
+  for (const auto& row : errors) attributes.emplace_back(row.name, report.*row.member);
+  for (const auto& row : firsts) {
+    const std::optional<std::size_t>& first = report.*row.member;
+    attributes.emplace_back(row.name, first ? static_cast<std::int64_t>(*first) : std::int64_t{-1});
+  }
   return attributes;
 }
 
 AuditReport read_audit(const MapReader& map) {
   AuditReport report;
   report.method = map.attribute("audit_method");
+  const std::vector<std::int64_t> version = hdf5::read_integers(map.file(), "version");
+  const auto has = [&](const auto& row) { return version.at(1) >= row.since; };
   const auto designs = static_cast<std::int64_t>(Tiling(map.shape()).designs());
   const auto count = [&](const char* name, std::int64_t least, std::int64_t most) {
     const std::int64_t value = hdf5::read_integers(map.file(), name)[0];
     if (value < least || value > most) throw BrokenFile(fmt::format("is damaged: its {} is {}", name, value));
     return value;
   };
-  for (const auto& [name, member] : counts)
-    report.*member = static_cast<std::size_t>(count(name, 0, designs));
-  for (const auto& [name, member] : errors)
-    if (member != &AuditReport::max_rel_motion_error || hdf5::has_attribute(map.file(), name))
-      report.*member = hdf5::read_number(map.file(), name);  // older maps have no error of the motion
-  for (const auto& [name, member] : firsts)
-    if (const std::int64_t design = count(name, -1, designs - 1); design >= 0)
-      report.*member = static_cast<std::size_t>(design);
+  for (const auto& row : counts)
+    if (has(row)) report.*row.member = static_cast<std::size_t>(count(row.name, 0, designs));
+  for (const auto& row : errors)
+    if (has(row)) report.*row.member = hdf5::read_number(map.file(), row.name);
+  for (const auto& row : firsts)
+    if (const std::int64_t design = has(row) ? count(row.name, -1, designs - 1) : -1; design >= 0)
+      report.*row.member = static_cast<std::size_t>(design);
   return report;
 }
 
-Auditor::Auditor(const Spec& spec)
+namespace {
+
+Solver solver_by_referee(const Scene& scene, double tolerance) {
+  return [referee = std::make_shared<referee::Referee>(scene, tolerance)](std::span<const Design> designs,
+                                                                          std::span<Outcome> outcomes) {
+    std::ranges::transform(designs, outcomes.begin(), [&](const Design& d) { return referee->solve(d); });
+  };
+}
+
+}  // namespace
+
+Auditor::Auditor(const Spec& spec, std::size_t referee_every)
     : spec_(spec),
       space_(spec),
-      second_(make_solver(spec, audit_method(spec.numerics), audit_tolerance)),
-      coarser_(make_solver(spec, audit_method(spec.numerics), coarser_tolerance)) {
+      second_{make_solver(spec, audit_method(spec.numerics), audit_tolerance),
+              make_solver(spec, audit_method(spec.numerics), coarser_tolerance)},
+      referee_{solver_by_referee(spec.scene, audit_tolerance),
+               solver_by_referee(spec.scene, coarser_tolerance)},
+      referee_every_(referee_every) {
+  constexpr double usual_every = 10.0;
+  if (referee_every == 0) {
+    const double audited = spec.numerics.audit * static_cast<double>(Tiling(shape_of(spec)).designs());
+    referee_every_ = audited <= usual_every ? 1 : static_cast<std::size_t>(usual_every);
+  }
   const bool integrates = audit_method(spec.numerics) != "exact";
   const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
   allowed_ = std::max(spec.numerics.tolerance * (integrates ? 1.0 : adaptive_slack), own_error) + rounding;
@@ -230,19 +277,56 @@ AuditReport Auditor::begin() const {
   return report;
 }
 
-/// What the second method itself is in doubt about: what one unit in the last place of the inputs makes of
-/// its answer, and what a coarser tolerance does, ten times either; for flags, whether they flip within its
-/// own error. The solver under audit has no say in it.
-Difference Auditor::doubt_of(const Design& design, const Outcome& theirs, bool of_flags) const {
+/// What a judge itself makes of the design with one unit in the last place of each input changed, and at a
+/// coarser tolerance; of flags, also with the inputs changed by as much as its own error. The solver under
+/// audit has no say in it.
+std::vector<Outcome> Auditor::outcomes_beside(const Judge& judge, const Design& design, bool of_flags) const {
   std::vector<Design> designs = beside(design, spec_, 0.0);
   if (of_flags) std::ranges::copy(beside(design, spec_, audit_reach), std::back_inserter(designs));
-  std::vector<Outcome> outcomes(designs.size());
-  second_(designs, outcomes);
-  outcomes.emplace_back();
-  coarser_({&design, 1}, {&outcomes.back(), 1});
-  Difference doubt;
-  for (const Outcome& outcome : outcomes) doubt = larger(doubt, difference(outcome, theirs), 10.0);
-  return doubt;
+  std::vector<Outcome> outcomes(designs.size() + 1);
+  judge.solve(designs, std::span(outcomes).first(designs.size()));
+  judge.coarser({&design, 1}, {&outcomes.back(), 1});
+  return outcomes;
+}
+
+auto Auditor::verdict_of(const Judge& judge, const Design& design, const Outcome& ours) const -> Verdict {
+  Outcome theirs;
+  judge.solve({&design, 1}, {&theirs, 1});
+  const double height_allowed = allowed_ * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
+  const auto exceeds = [&](const Difference& d, const Difference& doubt) {
+    return d.height > std::max(height_allowed, doubt.height) || d.time > std::max(allowed_, doubt.time) ||
+           d.motion > std::max(allowed_, doubt.motion);
+  };
+  Verdict verdict;
+  verdict.difference = difference(ours, theirs, spec_.output);
+  verdict.undecided = theirs.status == Status::failed;
+  if (verdict.undecided) return verdict;
+  verdict.wrong_flags = verdict.difference.flags;
+  verdict.inaccurate = !verdict.wrong_flags && exceeds(verdict.difference, {});
+  if (!verdict.wrong_flags && !verdict.inaccurate) return verdict;
+
+  std::vector<Outcome> beside = outcomes_beside(judge, design, verdict.wrong_flags);
+  if (std::ranges::all_of(beside, [&](const Outcome& o) { return same_flags(o, theirs); })) {
+    Difference doubt;
+    for (const Outcome& outcome : beside) doubt = larger(doubt, difference(outcome, theirs), 10.0);
+    verdict.inaccurate = verdict.inaccurate && exceeds(verdict.difference, doubt);
+    return verdict;
+  }
+  // The judge cannot decide. What it is asked about is wrong all the same if it is like none of the answers
+  // nearby.
+  beside.push_back(theirs);
+  std::erase_if(beside, [&](const Outcome& o) { return !same_flags(o, ours); });
+  Difference nearest{true, HUGE_VAL, HUGE_VAL, HUGE_VAL}, spread;
+  for (const Outcome& outcome : beside) {
+    const Difference d = difference(ours, outcome, spec_.output);
+    nearest = {false, std::min(nearest.height, d.height), std::min(nearest.time, d.time),
+               std::min(nearest.motion, d.motion)};
+    spread = larger(spread, difference(outcome, beside.front()), 10.0);
+  }
+  verdict.wrong_flags = nearest.flags;
+  verdict.inaccurate = !nearest.flags && exceeds(nearest, spread);
+  verdict.undecided = !verdict.wrong_flags && !verdict.inaccurate;
+  return verdict;
 }
 
 void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
@@ -252,45 +336,41 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
     ++report.failed;
     return;
   }
-  const Design design = space_.at(number);
-  Outcome theirs;
-  second_({&design, 1}, {&theirs, 1});
-  const Difference d = difference(ours, theirs, spec_.output);
-  const double height_allowed = allowed_ * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
-  const auto exceeds = [&](const Difference& doubt) {
-    return d.height > std::max(height_allowed, doubt.height) || d.time > std::max(allowed_, doubt.time) ||
-           d.motion > std::max(allowed_, doubt.motion);
+  const auto note_first = [&](std::optional<std::size_t>& first) {
+    first = std::min(first.value_or(number), number);
   };
-  bool inaccurate = !d.flags && exceeds({});
-  bool undecided = theirs.status == Status::failed;
-  if ((d.flags || inaccurate) && !undecided) {
-    const Difference doubt = doubt_of(design, theirs, d.flags);
-    undecided = doubt.flags;
-    inaccurate = inaccurate && exceeds(doubt);
-  }
-  if (undecided) {
+  const Design design = space_.at(number);
+  const Verdict verdict = verdict_of(second_, design, ours);
+  if (verdict.undecided) {
     ++report.undecided;
-    return;
-  }
-  if (d.flags) {
+  } else if (verdict.wrong_flags) {
     ++report.flag_mismatches;
-    report.first_mismatch = std::min(report.first_mismatch.value_or(number), number);
+    note_first(report.first_mismatch);
+  } else {
+    report.max_abs_height_error = std::max(report.max_abs_height_error, verdict.difference.height);
+    report.max_rel_time_error = std::max(report.max_rel_time_error, verdict.difference.time);
+    report.max_rel_motion_error = std::max(report.max_rel_motion_error, verdict.difference.motion);
+    if (verdict.inaccurate) ++report.beyond_tolerance, note_first(report.first_inaccurate);
+  }
+  if (mix(number) % referee_every_ != 0) return;
+  const Verdict ruling = verdict_of(referee_, design, as_stored(ours, spec_.scene));
+  ++report.refereed;
+  if (ruling.undecided) {
+    ++report.referee_undecided;
     return;
   }
-  report.max_abs_height_error = std::max(report.max_abs_height_error, d.height);
-  report.max_rel_time_error = std::max(report.max_rel_time_error, d.time);
-  report.max_rel_motion_error = std::max(report.max_rel_motion_error, d.motion);
-  if (!inaccurate) return;
-  ++report.beyond_tolerance;
-  report.first_inaccurate = std::min(report.first_inaccurate.value_or(number), number);
+  if (ruling.wrong_flags || ruling.inaccurate) note_first(report.first_overruled);
+  if (!ruling.wrong_flags)
+    report.referee_max_error = std::max({report.referee_max_error, ruling.difference.height,
+                                         ruling.difference.time, ruling.difference.motion});
 }
 
 AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
-                  const std::function<bool()>& stop_requested) {
+                  const std::function<bool()>& stop_requested, std::size_t referee_every) {
   AuditReport report = Auditor(spec).begin();
   std::mutex reporting;
   parallel_for_each(samples.size(), threads, [&] {
-    return [&, auditor = Auditor(spec)](std::size_t i) {
+    return [&, auditor = Auditor(spec, referee_every)](std::size_t i) {
       AuditReport one;
       auditor.look_at(samples[i], one);
       const std::lock_guard lock(reporting);

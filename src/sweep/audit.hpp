@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "leapmap/outcome.hpp"
 #include "map/reader.hpp"
 #include "map/tile.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/solver.hpp"
 #include "sweep/spec.hpp"
-#include "trajectory/outcome.hpp"
 
 namespace leapmap {
 
@@ -55,6 +55,12 @@ struct AuditReport {
   std::size_t beyond_tolerance = 0;             ///< designs whose error is larger
   std::optional<std::size_t> first_mismatch;    ///< the least design number whose flags differ
   std::optional<std::size_t> first_inaccurate;  ///< the least design number beyond the tolerance
+  // The referee's part (referee/referee.hpp), which solves a tenth of these designs from the paper's (7) to
+  // (9).
+  std::size_t refereed = 0;                    ///< designs it looked at
+  std::size_t referee_undecided = 0;           ///< of those, designs it gave up on or is in doubt about
+  double referee_max_error = 0.0;              ///< the largest of the three errors above, by the referee
+  std::optional<std::size_t> first_overruled;  ///< the least design number that it finds wrong
 };
 
 /// How far two outcomes are apart.
@@ -66,8 +72,10 @@ struct AuditDifference {
 /// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact.
 std::string audit_method(const Numerics& numerics);
 
-/// Whether the two methods disagree on some design, by flags or beyond the tolerance.
-inline bool disagree(const AuditReport& report) { return report.first_mismatch || report.first_inaccurate; }
+/// Whether the second method or the referee disagrees on some design, by flags or beyond the tolerance.
+inline bool disagree(const AuditReport& report) {
+  return report.first_mismatch || report.first_inaccurate || report.first_overruled;
+}
 
 /// Adds what was found on other designs of the same sweep. The order does not matter.
 void merge(AuditReport& report, const AuditReport& other);
@@ -79,8 +87,9 @@ AuditReport read_audit(const MapReader& map);
 /// Solves samples again, one after the other, and compares. One a thread.
 class Auditor {
  public:
-  /// Keeps a reference to spec.
-  explicit Auditor(const Spec& spec);
+  /// Keeps a reference to spec. The referee sees one design in so many; 0: one in ten, or all of an audit of
+  /// ten or fewer.
+  explicit Auditor(const Spec& spec, std::size_t referee_every = 0);
   /// Adds what a sample comes to. An error is beyond the tolerance if it is larger than numerics.tolerance (a
   /// hundred times that for an adaptive stepper, whose tolerance is per step; no less than 1e-11, the audit's
   /// own error), and larger than 10 times what one unit in the last place of the inputs, or a coarser
@@ -90,17 +99,27 @@ class Auditor {
   AuditReport begin() const;
 
  private:
-  AuditDifference doubt_of(const Design& design, const Outcome& theirs, bool of_flags) const;
+  /// A method that judges another, and itself at a coarser tolerance.
+  struct Judge {
+    Solver solve, coarser;
+  };
+  struct Verdict {
+    bool undecided = false, wrong_flags = false, inaccurate = false;
+    AuditDifference difference;
+  };
+  std::vector<Outcome> outcomes_beside(const Judge& judge, const Design& design, bool of_flags) const;
+  Verdict verdict_of(const Judge& judge, const Design& design, const Outcome& ours) const;
 
   const Spec& spec_;
   DesignSpace space_;
-  Solver second_, coarser_;
+  Judge second_, referee_;
+  std::size_t referee_every_;
   double allowed_;
 };
 
 /// Looks at all samples on all threads. stop_requested is asked after each design; once true, the report
 /// covers what was done until then.
 AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
-                  const std::function<bool()>& stop_requested = {});
+                  const std::function<bool()>& stop_requested = {}, std::size_t referee_every = 0);
 
 }  // namespace leapmap

@@ -6,9 +6,9 @@
 #include <functional>
 #include <span>
 
+#include "leapmap/outcome.hpp"
 #include "map/tile.hpp"
 #include "sweep/spec.hpp"
-#include "trajectory/outcome.hpp"
 
 namespace leapmap {
 

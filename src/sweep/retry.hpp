@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
+#include "leapmap/outcome.hpp"
 #include "map/journaled_file.hpp"
 #include "map/schema.hpp"
 #include "sweep/spec.hpp"
-#include "trajectory/outcome.hpp"
 
 namespace leapmap {
 

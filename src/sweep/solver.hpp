@@ -5,8 +5,8 @@
 #include <functional>
 #include <span>
 
+#include "leapmap/outcome.hpp"
 #include "sweep/spec.hpp"
-#include "trajectory/outcome.hpp"
 
 namespace leapmap {
 

@@ -10,8 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
 #include "trajectory/rolling_integration.hpp"
-#include "trajectory/scene.hpp"
 
 namespace leapmap {
 

@@ -31,9 +31,10 @@
 #include <cstdint>
 #include <string_view>
 
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
 #include "physics/rolling.hpp"
-#include "trajectory/outcome.hpp"
-#include "trajectory/scene.hpp"
 
 namespace leapmap {
 

@@ -7,6 +7,9 @@
 
 #include <functional>
 
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
+#include "physics/flight.hpp"
 #include "trajectory/contact_phases.hpp"
 #include "trajectory/rolling_leg.hpp"
 #include "trajectory/sliding_leg.hpp"

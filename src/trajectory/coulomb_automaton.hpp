@@ -4,11 +4,14 @@
 
 #include <cmath>
 
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
 #include "physics/flight_search.hpp"
 #include "physics/landing.hpp"
 #include "physics/sliding.hpp"
 #include "physics/stick.hpp"
 #include "trajectory/coulomb.hpp"
+#include "trajectory/jump_rule.hpp"
 
 namespace leapmap {
 

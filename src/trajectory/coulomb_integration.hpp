@@ -6,6 +6,8 @@
 
 #include <functional>
 
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
 #include "numerics/gsl_integrator.hpp"
 #include "trajectory/contact_phases.hpp"
 #include "trajectory/coulomb.hpp"

@@ -5,9 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "physics/flight.hpp"
 #include "trajectory/exact_rows.hpp"
 #include "trajectory/lift_off_scan.hpp"
-#include "trajectory/outcome.hpp"
 
 namespace leapmap {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "physics/flight_search.hpp"
+#include "trajectory/jump_rule.hpp"
 
 namespace leapmap {
 namespace {

@@ -5,9 +5,12 @@
 #include <functional>
 #include <string_view>
 
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
 #include "numerics/gsl_integrator.hpp"
+#include "physics/flight.hpp"
 #include "trajectory/graze.hpp"
-#include "trajectory/outcome.hpp"
 #include "trajectory/rolling_models.hpp"
 
 namespace leapmap {

@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "physics/flight.hpp"
 #include "trajectory/contact_phases.hpp"
 #include "trajectory/graze.hpp"
-#include "trajectory/outcome.hpp"
 
 namespace leapmap {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "trajectory/outcome.hpp"
+#include "leapmap/outcome.hpp"
 
 namespace leapmap {
 

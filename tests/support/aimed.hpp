@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 
+#include "leapmap/design.hpp"
 #include "physics/rolling_by_angle.hpp"
 #include "support/designs.hpp"
 #include "trajectory/lift_off_scan.hpp"

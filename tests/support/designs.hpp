@@ -4,7 +4,9 @@
 
 #include <random>
 
-#include "trajectory/outcome.hpp"
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
 #include "trajectory/rolling_integration.hpp"
 
 namespace leapmap::testing {

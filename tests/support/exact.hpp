@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
 #include "support/designs.hpp"
 #include "trajectory/exact.hpp"
 

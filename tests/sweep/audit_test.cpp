@@ -137,6 +137,40 @@ TEST(Audit, ConvictsAnswersThatTheSolverOnceGave) {
                  "release_spin=0.0005557048838113033", "mu_static=0.8376440911782836"},
                 [](Outcome& o) { o.jump_time = 9.85683577353; });
   EXPECT_EQ(slow.beyond_tolerance, 1u);
+  for (const AuditReport& report : {lost, flag, slow}) {
+    EXPECT_EQ(report.refereed, 1u);
+    EXPECT_TRUE(report.first_overruled) << "the referee finds by itself what the second method finds";
+  }
+}
+
+/// Within two units in the last place of N = 0 a release is airborne or jumps at once, and both are right.
+/// What is neither is wrong, also where a judge cannot decide.
+TEST(Audit, ConvictsAnAnswerThatIsLikeNoneOfThoseNearbyWhereNobodyCanDecide) {
+  const Spec spec = read_spec(
+      "", {"slope=0.44664999745829187", "mass_ratio=2.205560224989598", "offset_ratio=0.5530702718908482",
+           "inertia_factor=0.5", "release_angle=1.4064306172117094", "release_spin=4.243009454347112",
+           "audit=1", "radius=1", "gravity=1"});
+  std::vector<AuditSample> samples = drawn_from(spec, 1);
+  EXPECT_FALSE(disagree(audit(spec, samples, 1)));
+  samples[0].outcome.status = Status::jumped;
+  samples[0].outcome.spurious_first_jump = 0, samples[0].outcome.candidates = 1;
+  samples[0].outcome.jump_height = samples[0].outcome.first_jump_height = 1.0063;
+  samples[0].outcome.jump_time = samples[0].outcome.first_jump_time = 1.44;
+  const AuditReport report = audit(spec, samples, 1);
+  EXPECT_EQ(report.undecided, 0u);
+  EXPECT_TRUE(report.first_inaccurate || report.first_mismatch);
+  EXPECT_TRUE(report.first_overruled);
+}
+
+TEST(Audit, CallsTheRefereeToATenthOfItsDesigns) {
+  const Spec spec = grid("exact", "1e-12", "0.3");
+  const AuditReport report = audit(spec, drawn_from(spec), 0);
+  EXPECT_GT(report.refereed, 480u / 20);
+  EXPECT_LT(report.refereed, 480u / 5);
+  EXPECT_EQ(report.referee_undecided, 0u);
+  EXPECT_FALSE(report.first_overruled);
+  EXPECT_GT(report.referee_max_error, 0.0);
+  EXPECT_LT(report.referee_max_error, 1e-11);
 }
 
 TEST(Audit, LooksAtEveryQuantity) {
@@ -157,6 +191,8 @@ TEST(Audit, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.max_abs_height_error, four.max_abs_height_error);
   EXPECT_EQ(one.max_rel_time_error, four.max_rel_time_error);
   EXPECT_EQ(one.first_mismatch, four.first_mismatch);
+  EXPECT_EQ(one.refereed, four.refereed);
+  EXPECT_EQ(one.referee_max_error, four.referee_max_error);
 }
 
 TEST(Audit, DoesNotTakeADesignThatFailedForADisagreement) {

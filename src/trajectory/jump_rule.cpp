@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trajectory/outcome.hpp"
+#include "trajectory/jump_rule.hpp"
 
 namespace leapmap {
-
-std::string phase_letters(std::uint64_t sequence) {
-  std::string letters;
-  for (; sequence != 0; sequence >>= 2) letters += "-RSF"[sequence & 3];
-  if (letters.size() == 32) letters += "...";
-  return letters.empty() ? "-" : letters;
-}
 
 bool consider(Outcome& outcome, const Scene& scene, const Design& design, const LiftOff<double>& lift_off,
               const Flight<double>& flight) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The answer for one design, and the rule that picks the jump among its lift-offs.
+/// The answer for one design.
 #pragma once
 
 #include <array>
@@ -8,10 +8,6 @@
 #include <limits>
 #include <string>
 #include <string_view>
-
-#include "physics/flight.hpp"
-#include "physics/parameters.hpp"
-#include "trajectory/scene.hpp"
 
 namespace leapmap {
 
@@ -66,11 +62,6 @@ struct Outcome {
   double energy_lost = none;         ///< from release to the lift-off of the jump, over (m + m_p) g R
   const char* failure = nullptr;     ///< why the status is failed, if that is known
 };
-
-/// Counts a lift-off and its flight, in order of time. True if it is the jump, which ends the search: the
-/// jump is the first lift-off that reaches scene.hop_height.
-bool consider(Outcome& outcome, const Scene& scene, const Design& design, const LiftOff<double>& lift_off,
-              const Flight<double>& flight);
 
 /// Whether two methods see the same: status, spurious flag, number of candidates and phases.
 inline bool same_flags(const Outcome& a, const Outcome& b) {

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "referee/motion.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+namespace leapmap::referee {
+namespace {
+
+using Vector = Eigen::Matrix<double, 5, 1>;  // (x'', y'', phi'', lambda_f, lambda_n)
+using Matrix = Eigen::Matrix<double, 5, 5>;
+
+Matrix equations(const Body& body, const Mode& mode, double phi) {
+  const auto& [m, m_p, R, L, I, g, slope] = body;
+  const double s = std::sin(phi), c = std::cos(phi);
+  Matrix A;
+  A << m + m_p, 0, -m_p * L * c, -1, 0,                  // (7)
+      0, m + m_p, m_p * L * s, 0, -1,                    // (8)
+      -m_p * L * c, m_p * L * s, I + m_p * L * L, R, 0,  // (9)
+      0, 0, 0, 0, 0,                                     //
+      0, 0, 0, 0, 0;
+  if (mode.kind == Mode::rolls) A.row(3) << 1, 0, -R, 0, 0;  // (1), twice differentiated
+  if (mode.kind == Mode::slides) A.row(3) << 0, 0, 0, 1, -mode.drag;
+  if (mode.kind == Mode::flies) A.row(3) << 0, 0, 0, 1, 0;
+  if (mode.kind == Mode::flies)
+    A.row(4) << 0, 0, 0, 0, 1;
+  else
+    A.row(4) << 0, 1, 0, 0, 0;  // (2), twice differentiated
+  return A;
+}
+
+}  // namespace
+
+Body body_of(const Design& design, const Scene& scene) {
+  Body body{};
+  body.m = 1.0;
+  body.m_p = design.mass_ratio * body.m;
+  body.R = scene.radius;
+  body.L = design.offset_ratio * body.R;
+  body.I = design.inertia_factor * body.m * body.R * body.R;
+  body.g = scene.gravity;
+  body.slope = design.slope;
+  return body;
+}
+
+Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
+  const auto& [m, m_p, R, L, I, g, slope] = body;
+  const double s = std::sin(at.phi), c = std::cos(at.phi), w2 = at.spin * at.spin;
+  const Vector loads{(m + m_p) * g * std::sin(slope) - m_p * w2 * L * s,
+                     -(m + m_p) * g * std::cos(slope) - m_p * w2 * L * c,
+                     -m_p * g * L * std::sin(slope + at.phi), 0.0, 0.0};
+  const Vector z = equations(body, mode, at.phi).partialPivLu().solve(loads);
+  return {z[0], z[1], z[2], z[3], z[4]};
+}
+
+double sliding_determinant(const Body& body, const Mode& mode, const Motion& at) {
+  const Mode frictionless{Mode::slides, 0.0};
+  return equations(body, mode, at.phi).determinant() / equations(body, frictionless, at.phi).determinant();
+}
+
+double energy(const Body& body, const Motion& at) {
+  const auto& [m, m_p, R, L, I, g, slope] = body;
+  const double w = at.spin, speed2 = at.x_rate * at.x_rate + at.y_rate * at.y_rate;
+  const double kinetic = 0.5 * m_p *
+                             (speed2 + L * L * w * w +
+                              2.0 * w * L * (at.y_rate * std::sin(at.phi) - at.x_rate * std::cos(at.phi))) +
+                         0.5 * m * speed2 + 0.5 * I * w * w;
+  return kinetic + (m + m_p) * g * (at.y * std::cos(slope) - at.x * std::sin(slope)) -
+         m_p * g * L * std::cos(slope + at.phi);
+}
+
+Motion after_landing(const Body& body, const Motion& before, double mu_kinetic, double restitution,
+                     double rest_speed) {
+  // Masses of (7) to (9), and how the contact's two velocities come of the coordinates' rates.
+  Eigen::Matrix3d masses = equations(body, {}, before.phi).topLeftCorner<3, 3>();
+  Eigen::Matrix<double, 2, 3> contact;
+  contact << 1, 0, -body.R, 0, 1, 0;
+  const Eigen::Matrix<double, 3, 2> answer =
+      masses.inverse() * contact.transpose();  // of the rates, to impulses
+  const Eigen::Matrix2d W = contact * answer;  // of the contact's velocities
+  Eigen::Vector2d velocity{slip_of(body, before), before.y_rate}, impulse{0, 0};
+  const bool can_hold = std::abs(W(0, 1)) <= mu_kinetic * W(0, 0);
+  bool held = velocity[0] == 0.0 && can_hold;
+
+  // Goes on along the path, the normal impulse growing, until `left` gives no more of it.
+  const auto go = [&](const auto& left) {
+    for (;;) {
+      const double away = velocity[0] != 0.0 ? velocity[0] : W(0, 1);
+      Eigen::Vector2d way{held ? -W(0, 1) / W(0, 0) : away > 0.0 ? -mu_kinetic : mu_kinetic, 1.0};
+      const Eigen::Vector2d gained = W * way;
+      double length = left(gained);
+      const bool stops = velocity[0] * gained[0] < 0.0 && -velocity[0] / gained[0] <= length;
+      if (stops) length = -velocity[0] / gained[0];
+      impulse += length * way;
+      velocity += length * gained;
+      if (held || stops) velocity[0] = 0.0;
+      if (!stops) return;
+      held = can_hold;
+    }
+  };
+  go([&](const Eigen::Vector2d& gained) {
+    return gained[1] > 0.0 ? -velocity[1] / gained[1] : std::numeric_limits<double>::infinity();
+  });
+  velocity[1] = 0.0;
+  const double end = (1.0 + restitution) * impulse[1];
+  go([&](const Eigen::Vector2d&) { return end - impulse[1]; });
+
+  const Eigen::Vector3d rates = Eigen::Vector3d{before.x_rate, before.y_rate, before.spin} + answer * impulse;
+  Motion after = before;
+  after.y = body.R;
+  after.spin = rates[2];
+  after.x_rate = velocity[0] + body.R * after.spin;
+  after.y_rate = velocity[1] >= rest_speed ? velocity[1] : 0.0;
+  return after;
+}
+
+}  // namespace leapmap::referee

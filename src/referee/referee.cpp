@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "referee/referee.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace leapmap::referee {
+namespace {
+
+using Y = State<6>;
+constexpr long most_steps = 200'000;
+
+Motion motion_of(const Y& y) { return {y[0], y[1], y[2], y[3], y[4], y[5]}; }
+Y state_of(const Motion& at) { return {at.x, at.y, at.phi, at.x_rate, at.y_rate, at.spin}; }
+
+Y derivative(const Body& body, const Mode& mode, const Motion& at) {
+  const Forces forces = forces_of(body, mode, at);
+  return {at.x_rate, at.y_rate, at.spin, forces.x, forces.y, forces.phi};
+}
+
+/// Errors below the tolerance, relative; components that pass through zero, to that part of the least of
+/// their units.
+StepControl control_of(const Scene& scene, double tolerance) {
+  const double R = scene.radius, g = scene.gravity;
+  return {.relative = tolerance,
+          .absolute = tolerance * std::min({1.0, R, std::sqrt(g * R), std::sqrt(g / R)})};
+}
+
+}  // namespace
+
+Referee::Referee(const Scene& scene, double tolerance)
+    : scene_(scene),
+      second_(std::sqrt(scene.radius / scene.gravity)),
+      integrator_(
+          *find_gsl_stepper("gsl-rk8pd"), control_of(scene, tolerance),
+          {[](double, const double y[], double f[], void* params) -> int {
+             const auto& system = *static_cast<const System*>(params);
+             const Y rates = derivative(system.body, system.mode, {y[0], y[1], y[2], y[3], y[4], y[5]});
+             std::ranges::copy(rates, f);
+             return GSL_SUCCESS;
+           },
+           nullptr, 6, &system_}) {}
+
+bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
+                     const std::function<bool(std::size_t)>& happens) {
+  system_.mode = mode;
+  const double began = time_;
+  // A guard is a function of the state alone: its rate is its change along the motion's straight
+  // continuation.
+  const auto sample = [&](const Guard& guard, const Y& y) {
+    const Motion at = motion_of(y);
+    const Y f = derivative(system_.body, mode, at);
+    const double d = 1e-5 / (std::abs(at.spin) + 1.0 / second_);
+    Y ahead = y, behind = y;
+    for (std::size_t i = 0; i < y.size(); ++i) ahead[i] += d * f[i], behind[i] -= d * f[i];
+    return Sample<double>{guard(at), (guard(motion_of(ahead)) - guard(motion_of(behind))) / (2.0 * d)};
+  };
+  const Y start = state_of(at_);
+  std::vector<Sample<double>> now;
+  for (const Guard& guard : guards) now.push_back(sample(guard, start));
+  if (falls_.size() < guards.size()) falls_.resize(guards.size());
+  if (!integrator_.start(start, 0.01 / (1.0 / second_ + std::abs(at_.spin)))) return false;
+  const auto retake = [&](double tau, Y& y) { return integrator_.retake(tau, y); };
+  struct Event {
+    double tau;
+    std::size_t guard;
+    Motion at;
+  };
+  std::vector<Event> events;
+  for (;;) {
+    if (++steps_ > most_steps || !integrator_.advance()) return false;
+    const Step<6>& step = integrator_.step();
+    const double turned = std::abs(step.y1[2] - step.y0[2]);
+    const int looks = 1 + static_cast<int>(std::min(turned * (16.0 / std::numbers::pi), 1000.0));
+    events.clear();
+    for (std::size_t g = 0; g < guards.size(); ++g) {
+      now[g] = find_falls(
+          step, looks, now[g], [&](const Y& y) { return sample(guards[g], y); }, retake, falls_[g]);
+      if (falls_[g].failed) return false;
+      for (const Fall<6>& fall : falls_[g].falls) events.push_back({fall.tau, g, motion_of(fall.state)});
+    }
+    std::ranges::stable_sort(events, {}, &Event::tau);
+    for (const Event& event : events) {
+      at_ = event.at;
+      at_.y = scene_.radius, at_.y_rate = 0.0;  // but for rounding they are
+      time_ = began + step.t0 + event.tau;
+      if (happens(event.guard)) return true;
+    }
+  }
+}
+
+Outcome Referee::solve(const Design& design) {
+  system_.body = body_of(design, scene_);
+  const double w = design.release_spin / second_;
+  at_ = {0.0, scene_.radius, design.release_angle, scene_.radius * w, 0.0, w};
+  time_ = 0.0;
+  steps_ = 0;
+  outcome_ = {};
+  return scene_.friction == Friction::coulomb ? solve_coulomb(design) : solve_sticking();
+}
+
+bool Referee::count_lift_off(const Flown& flown) {
+  const double diameter = 2.0 * scene_.radius, height = flown.height / diameter;
+  const bool jumps = height >= scene_.hop_height;
+  if (outcome_.candidates < Outcome::most_candidates) ++outcome_.candidates;
+  if (outcome_.spurious_first_jump == Outcome::no_lift_off) {
+    outcome_.spurious_first_jump = jumps ? 0 : 1;
+    outcome_.first_jump_height = height;
+    outcome_.first_jump_time = time_;
+  }
+  if (!jumps) return false;
+  outcome_.status = Status::jumped;
+  outcome_.jump_height = height;
+  outcome_.jump_time = time_;
+  outcome_.jump_angle = at_.phi;
+  outcome_.jump_spin = at_.spin * second_;
+  outcome_.jump_distance = at_.x / scene_.radius;
+  outcome_.apex_time = flown.apex_time;
+  outcome_.flight_time = flown.landing_time;
+  outcome_.dip = flown.dip / diameter;
+  return true;
+}
+
+Outcome Referee::solve_sticking() {
+  const Body& body = system_.body;
+  const Mode rolls{Mode::rolls};
+  const Forces released = forces_of(body, rolls, at_);
+  const auto ended = [&](Status status) {
+    outcome_.status = status;
+    return outcome_;
+  };
+  if (released.normal <= 0.0) return ended(Status::airborne_at_release);
+  if (at_.spin < 0.0 || (at_.spin == 0.0 && released.phi <= 0.0)) return ended(Status::stalled);
+  const double runway = 2.0 * std::numbers::pi * scene_.runway * scene_.radius;
+  const std::vector<Guard> guards{[&](const Motion& at) { return forces_of(body, rolls, at).normal; },
+                                  [&](const Motion& at) { return at.spin; },
+                                  [&](const Motion& at) { return runway - at.x; }};
+  const auto happens = [&](std::size_t guard) {
+    if (guard > 0) outcome_.status = guard == 1 ? Status::stalled : Status::no_jump;
+    return guard > 0 || count_lift_off(fly(body, at_));
+  };
+  return follow(rolls, guards, happens) ? outcome_ : failed_outcome("the referee's integration gave up");
+}
+
+}  // namespace leapmap::referee

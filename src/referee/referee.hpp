@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Solves one design from the paper's equations alone (referee/motion.hpp), by integrating them in SI units:
+/// slow, and right or wrong for reasons of its own. It judges the solvers that are fast.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "numerics/gsl_integrator.hpp"
+#include "referee/motion.hpp"
+
+namespace leapmap::referee {
+
+/// One thread's workspace for one scene.
+class Referee {
+ public:
+  /// tolerance: of each step, relative. A design that takes more steps than that is given up.
+  Referee(const Scene& scene, double tolerance, long most_steps = 20'000);
+  Referee(const Referee&) = delete;
+  Referee& operator=(const Referee&) = delete;
+
+  /// The outcome as maps store it, times in seconds, by the rules of the scene's friction. Failed: the
+  /// integrator gave up, or the design takes too many steps or phases.
+  Outcome solve(const Design& design);
+
+ private:
+  /// Falls through zero where something happens.
+  using Guard = std::function<double(const Motion&)>;
+  struct System {
+    Body body;
+    Mode mode;
+  };
+  /// Moves from `at` on, in one mode, and tells of each fall, in order of time: happens(guard) returns true
+  /// where the mode ends. False: it could not be followed.
+  bool follow(const Mode& mode, const std::vector<Guard>& guards,
+              const std::function<bool(std::size_t)>& happens);
+  Outcome solve_sticking();
+  Outcome solve_coulomb(const Design& design);
+  /// Counts a lift-off; true if it is the jump.
+  bool count_lift_off(const Flown& flown);
+
+  Scene scene_;
+  double second_;  ///< sqrt(R/g) [s], in which spins are given
+  System system_{};
+  GslIntegrator<6> integrator_;
+  std::vector<Falls<6>> falls_;
+  long most_steps_, steps_ = 0;
+  Motion at_{};        ///< where the hoop is
+  double time_ = 0.0;  ///< since release [s]
+  Outcome outcome_;
+};
+
+}  // namespace leapmap::referee

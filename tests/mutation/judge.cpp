@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Solves seeded random designs by every way the library has, and by the referee, which shares none of their
+/// formulas. Ends with status 1 at the first design where they differ.
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "referee/referee.hpp"
+#include "trajectory/coulomb.hpp"
+#include "trajectory/coulomb_integration.hpp"
+#include "trajectory/exact.hpp"
+#include "trajectory/rolling_integration.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr double allowed = 1e-7;  // a planted error is 1e-3; every method here is right to 1e-10
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * std::ldexp(static_cast<double>(random() >> 11), -53);
+}
+
+Design any_design(std::mt19937_64& random, std::size_t number) {
+  Design design{.slope = uniform(random, 0.1, 0.8),
+                .mass_ratio = uniform(random, 0.5, 10.0),
+                .offset_ratio = uniform(random, 0.3, 1.0),
+                .inertia_factor = uniform(random, 0.5, 1.0),
+                .release_angle = number % 2 ? uniform(random, 1.5, 4.7) : std::numbers::pi,
+                .release_spin = number % 2 ? uniform(random, 0.0, 1.0) : 0.0,
+                .mu_static = uniform(random, 0.1, 1.0)};
+  design.mu_kinetic = design.mu_static * uniform(random, 0.7, 1.0);
+  design.restitution = uniform(random, 0.0, 0.7);
+  if (number % 8 == 7) design.mass_ratio = uniform(random, 50.0, 200.0);  // these come near Painleve's edge
+  return design;
+}
+
+/// The largest difference; infinity: of status, flag, candidates or phases. times: of ours, in seconds.
+double difference(const Outcome& ours, const Outcome& right, double second) {
+  if (!same_flags(ours, right)) return HUGE_VAL;
+  double largest = 0.0;
+  const auto look = [&](double Outcome::*member, double unit) {
+    const double a = ours.*member * unit, b = right.*member;
+    if (std::isnan(a) && std::isnan(b)) return;
+    const double error = std::abs(a - b) / (unit + std::abs(b));
+    largest = std::isnan(error) ? HUGE_VAL : std::max(largest, error);
+  };
+  for (const auto member :
+       {&Outcome::jump_time, &Outcome::first_jump_time, &Outcome::apex_time, &Outcome::flight_time})
+    look(member, second);
+  for (const auto member : {&Outcome::jump_height, &Outcome::first_jump_height, &Outcome::dip,
+                            &Outcome::jump_angle, &Outcome::jump_spin, &Outcome::jump_distance,
+                            &Outcome::slip_distance, &Outcome::landing_spin, &Outcome::energy_lost})
+    look(member, 1.0);
+  return largest;
+}
+
+/// The first disagreement's words, or none. undecided: designs where the referee gave up, or is in doubt
+/// itself.
+template <class Solve>
+std::string first_disagreement(const char* method, const Scene& scene, std::size_t count,
+                               const Solve& solve) {
+  referee::Referee referee(scene, 1e-13), coarser(scene, 1e-11);
+  const double second = time_unit(scene);
+  std::mt19937_64 random(14);
+  std::size_t undecided = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Design design = any_design(random, i);
+    const Outcome right = referee.solve(design);
+    if (right.status == Status::failed || difference(coarser.solve(design), right, 1.0) > 0.1 * allowed) {
+      ++undecided;
+      continue;
+    }
+    const double error = difference(solve(design), right, second);
+    if (!(error <= allowed))
+      return std::string(method) + ", design " + std::to_string(i) + ": " + std::to_string(error);
+  }
+  return undecided * 5 > count ? "the referee decides too few designs" : "";
+}
+
+}  // namespace
+}  // namespace leapmap
+
+int main() {
+  using namespace leapmap;
+  constexpr std::size_t few = 24, many = 96;
+  const Scene sticks, slips{.friction = Friction::coulomb};
+  ExactSolver<double> exact(1e-11);
+  CoulombSolver<double> coulomb(1e-11);
+  RollingIntegration rolling(adaptive("gsl-rk8pd", 1e-12));
+  CoulombIntegration sliding(adaptive("gsl-rk8pd", 1e-12));
+  const std::string found[]{
+      first_disagreement("exact, no slip", sticks, many,
+                         [&](const Design& design) {
+                           Outcome outcome;
+                           exact.solve({&design, 1}, sticks, {&outcome, 1});
+                           return outcome;
+                         }),
+      first_disagreement("exact, Coulomb", slips, many,
+                         [&](const Design& design) { return coulomb.solve(design, slips); }),
+      first_disagreement("integration, no slip", sticks, few,
+                         [&](const Design& design) { return rolling.solve(design, sticks); }),
+      first_disagreement("integration, Coulomb", slips, few,
+                         [&](const Design& design) { return sliding.solve(design, slips); })};
+  for (const std::string& disagreement : found)
+    if (!disagreement.empty()) {
+      std::printf("%s\n", disagreement.c_str());
+      return 1;
+    }
+  return 0;
+}

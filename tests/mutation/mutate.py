@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Plants an error of a thousandth in each formula of src/physics, one at a time, and asks the referee to find it.
+
+The solvers are compiled with the error and judged against src/referee, which is of the paper's equations (7) to (9) alone and
+includes nothing of src/physics: that is looked at first. An error that is not found, or a right solver that is found wrong,
+ends this with status 1. Needs a built libleapmap.a in LEAPMAP_BUILD.
+"""
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SOURCES = ["src/trajectory/" + name + ".cpp" for name in
+           ("exact", "exact_times", "rolling_time", "rolling_leg", "sliding_leg", "sliding_panel", "coulomb",
+            "coulomb_integration", "rolling_integration")] + ["tests/mutation/judge.cpp"]
+LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
+OFF = "T(1.001)"
+
+# What is planted: file, what is there, what takes its place. Each text must stand there exactly once.
+MUTATIONS = {
+    "mass of the bare hoop": ("parameters", "T(1) / (T(1) + beta)", f"{OFF} / (T(1) + beta)"),
+    "rho": ("parameters", ".rho = alpha * lambda", f".rho = {OFF} * alpha * lambda"),
+    "1 - rho": ("parameters", ".clearance = hub + alpha * gap", f".clearance = {OFF} * (hub + alpha * gap)"),
+    "Ic": ("parameters", ".Ic = kappa * hub", f".Ic = {OFF} * kappa * hub"),
+    "least J": ("parameters", ".J_min = (kappa + T(1))", ".J_min = (kappa + T(1.001))"),
+    "J": ("rolling", "return hoop.J_min + T(2) * hoop.rho", "return hoop.J_min + T(2.002) * hoop.rho"),
+    "sin(theta + phi)": ("rolling", "hoop.sin_slope * phi.cos + hoop.cos_slope * phi.sin", f"hoop.sin_slope * phi.cos + {OFF} * hoop.cos_slope * phi.sin"),
+    "cos(theta + phi)": ("rolling", "hoop.cos_slope * phi.cos - hoop.sin_slope * phi.sin", f"hoop.cos_slope * phi.cos - {OFF} * hoop.sin_slope * phi.sin"),
+    "phi'' rolling (10)": ("rolling", "(hoop.sin_slope - hoop.rho * (sin_from", f"({OFF} * hoop.sin_slope - hoop.rho * (sin_from"),
+    "N rolling (11)": ("rolling", "return hoop.cos_slope + hoop.rho * (phi.sin * acceleration", f"return hoop.cos_slope + hoop.rho * ({OFF} * phi.sin * acceleration"),
+    "F rolling (12)": ("rolling", "+ hoop.rho * phi.sin * spin * spin - hoop.sin_slope", f"+ {OFF} * hoop.rho * phi.sin * spin * spin - hoop.sin_slope"),
+    "w^2 by angle": ("rolling_by_angle", "T(2) * (roll.push * x +", "T(2.002) * (roll.push * x +"),
+    "level of energy": ("rolling_by_angle", "released - T(2) * (release *", "released - T(2.002) * (release *"),
+    "energy's slope": ("rolling_by_angle", "return hoop.sin_slope - hoop.rho * sin_from", f"return hoop.sin_slope - {OFF} * hoop.rho * sin_from"),
+    "G, rest": ("rolling_by_angle", "h.cos_slope * (h.Ic + q * q) + h.rho * h.sin_slope * s * q;\n  const T bend", f"h.cos_slope * ({OFF} * h.Ic + q * q) + h.rho * h.sin_slope * s * q;\n  const T bend"),
+    "G, energy": ("rolling_by_angle", "const T K = h.J_min * c - h.rho", f"const T K = {OFF} * h.J_min * c - h.rho"),
+    "stick, N": ("stick", "const T K = h.J_min * c - h.rho", f"const T K = {OFF} * h.J_min * c - h.rho"),
+    "stick, F": ("stick", "const T pull = q * tau - h.sin_slope * J", f"const T pull = q * tau - {OFF} * h.sin_slope * J"),
+    "slide, lever": ("sliding", "return hoop.rho * phi.sin - friction", f"return {OFF} * hoop.rho * phi.sin - friction"),
+    "slide, pivot": ("sliding", "pivot = hoop.Ic + hoop.rho", f"pivot = {OFF} * hoop.Ic + hoop.rho"),
+    "slide, N": ("sliding", "phi, friction) / pivot, hoop.Ic / pivot", f"phi, friction) / pivot, {OFF} * hoop.Ic / pivot"),
+    "slide, n0": ("sliding", "return hoop.cos_slope + hoop.rho * phi.cos", f"return hoop.cos_slope + {OFF} * hoop.rho * phi.cos"),
+    "slide, F": ("sliding", "F = -friction * N", f"F = -{OFF} * friction * N"),
+    "slide, v'": ("sliding", "F + hoop.sin_slope - arm * angular", f"F + {OFF} * hoop.sin_slope - arm * angular"),
+    "landing, Wtt": ("landing", "Wtt = S(1) + arm * arm", "Wtt = S(1.001) + arm * arm"),
+    "landing, Wtn": ("landing", "Wtn = arm * lever / hoop.Ic", "Wtn = S(1.001) * arm * lever / hoop.Ic"),
+    "landing, Wnn": ("landing", "Wnn = S(1) + lever", "Wnn = S(1.001) + lever"),
+    "landing, friction": ("landing", "return -mu * sign(", "return S(-1.001) * mu * sign("),
+    "landing, restitution": ("landing", "(S(1) + restitution)", "(S(1.001) + restitution)"),
+    "landing, spin": ("landing", "before.spin - (arm * at.friction_impulse", "before.spin - (S(1.001) * arm * at.friction_impulse"),
+    "flight, y": ("flight", "c * turned.versine - T(0.5) * toss.gravity * psi * psi", "c * turned.versine - T(0.5005) * toss.gravity * psi * psi"),
+    "flight, y'": ("flight", "c * turned.sin - toss.gravity * psi,\n          s * turned.sin - c * turned.cos - toss.gravity, s * turned.cos + c * turned.sin};", f"c * turned.sin - {OFF} * toss.gravity * psi,\n          s * turned.sin - c * turned.cos - toss.gravity, s * turned.cos + c * turned.sin}};"),
+    "flight, gravity": ("flight", "toss.gravity = hoop.cos_slope / (hoop.rho", f"toss.gravity = {OFF} * hoop.cos_slope / (hoop.rho"),
+    "flight, rebound's y": ("flight", "t * (normal_velocity - T(0.5) * hoop.cos_slope * t)", "t * (normal_velocity - T(0.5005) * hoop.cos_slope * t)"),
+    "flight, y' at landing": ("flight", "normal_velocity - hoop.cos_slope * t + hoop.rho", f"normal_velocity - {OFF} * hoop.cos_slope * t + hoop.rho"),
+    "flight, travel": ("flight", "hoop.sin_slope * t * t * T(0.5)", "hoop.sin_slope * t * t * T(0.5005)"),
+    "flight, x' at landing": ("flight", "slip + spin + hoop.sin_slope * t", f"slip + spin + {OFF} * hoop.sin_slope * t"),
+    "near Painleve's edge, pivot": ("painleve", "rho * (T(S(2)) * m *", "rho * (T(S(2.002)) * m *"),
+    "radius and gravity": ("../leapmap/scene", "std::sqrt(scene.radius / scene.gravity)", "1.001 * std::sqrt(scene.radius / scene.gravity)"),
+}
+TWIN = ["N rolling (11)", "landing, Wtn"]
+
+
+def stands_alone():
+    """Whether the referee includes nothing of src/physics."""
+    for source in sorted((ROOT / "src/referee").glob("*.cpp")):
+        headers = subprocess.run(["g++", "-std=c++20", "-MM", "-isystem", "/usr/include/eigen3", "-I", ROOT / "src", source],
+                                 check=True, capture_output=True, text=True).stdout
+        if shared := re.findall(r"\S*src/(?:physics|trajectory)/\S*", headers):
+            print(f"{source.name} includes {shared}")
+            return False
+    return True
+
+
+def judged(name, folder, library):
+    """The judge's words on a library with that error planted; empty: it finds nothing."""
+    include = folder / "src"
+    shutil.copytree(ROOT / "src", include)
+    if name:
+        file, old, new = MUTATIONS[name]
+        header = (include / "physics" / f"{file}.hpp").resolve()
+        text = header.read_text()
+        if text.count(old) != 1:
+            return f"BROKEN: \"{old}\" stands {text.count(old)} times in {file}.hpp"
+        header.write_text(text.replace(old, new))
+    objects = []
+    for source in SOURCES:
+        at = folder / source if source.startswith("src") else ROOT / source
+        objects.append(folder / (at.stem + ".o"))
+        subprocess.run(["g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-I", include, "-c", at, "-o", objects[-1]], check=True)
+    subprocess.run(["g++", "-fopenmp", *objects, library, *LIBRARIES, "-o", folder / "judge"], check=True)
+    try:
+        done = subprocess.run([folder / "judge"], capture_output=True, text=True, timeout=120)
+    except subprocess.TimeoutExpired:
+        return "never ends"
+    return done.stdout.strip() or (f"exit status {done.returncode}" if done.returncode else "")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--twin", action="store_true", help="only two of the errors, beside the solver as it is: for every CI")
+    arguments = parser.parse_args()
+    library = pathlib.Path(os.environ.get("LEAPMAP_BUILD", ROOT / "build/release")) / "libleapmap.a"
+    names = [None, *(TWIN if arguments.twin else MUTATIONS)]
+    if not stands_alone():
+        sys.exit(1)
+    missed = 0
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        places = [pathlib.Path(folder) / str(i) for i in range(len(names))]
+        for name, words in zip(names, pool.map(judged, names, places, [library] * len(names))):
+            right = not words if name is None else words != "" and not words.startswith("BROKEN")
+            missed += not right
+            print(f"{'ok' if right else 'MISSED' if name else 'WRONG':7} {name or 'the solver as it is'}: {words or 'agrees'}", flush=True)
+    print(f"{len(names) - 1} errors planted, {missed} findings")
+    sys.exit(missed > 0)
+
+
+if __name__ == "__main__":
+    main()

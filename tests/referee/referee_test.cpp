@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "referee/referee.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "physics/landing.hpp"
+#include "physics/sliding.hpp"
+#include "support/designs.hpp"
+#include "support/reference_table.hpp"
+
+namespace leapmap::referee {
+namespace {
+
+using leapmap::testing::ReferenceRow, leapmap::testing::uniform;
+
+/// A table's rows, one in so many, by the referee at a tolerance of 1e-13. What it is off by is what its
+/// steps add up to over some revolutions.
+void compare_with(const std::string& table, std::size_t every, const Scene& scene, double allowed) {
+  Referee referee(scene, 1e-13);
+  const double second = std::sqrt(scene.radius / scene.gravity);
+  const auto rows = leapmap::testing::read_reference(table);
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i < rows.size(); i += every) {
+    const ReferenceRow& row = rows[i];
+    Design design = row.design();
+    if (scene.friction == Friction::coulomb)
+      design.mu_static = row.number("mu_static"), design.mu_kinetic = row.number("mu_kinetic"),
+      design.restitution = row.number("restitution");
+    const Outcome outcome = referee.solve(design);
+    const std::string where = table + " row " + std::to_string(i + 1);
+    EXPECT_EQ(name_of(outcome.status), row.cells.at("status")) << where;
+    EXPECT_EQ(outcome.spurious_first_jump, row.has("spurious") ? row.number("spurious") : 255) << where;
+    const auto check = [&](const std::string& name, double value, double unit) {
+      if (!row.has(name)) return;
+      EXPECT_NEAR(value, unit * row.number(name), allowed * unit * (1.0 + std::abs(row.number(name))))
+          << where << " " << name;
+      ++compared;
+    };
+    check("jump_height", outcome.jump_height, 1.0);
+    check("first_jump_height", outcome.first_jump_height, 1.0);
+    check("jump_angle", outcome.jump_angle, 1.0);
+    check("jump_spin", outcome.jump_spin, 1.0);
+    check("jump_time", outcome.jump_time, second);
+    check("first_jump_time", outcome.first_jump_time, second);
+    check("apex_time", outcome.apex_time, second);
+    check("flight_time", outcome.flight_time, second);
+  }
+  EXPECT_GT(compared, 5 * rows.size() / every);
+}
+
+TEST(Referee, AgreesWithTheTables) {
+  compare_with("noslip_general.csv", 5, {}, 1e-11);
+  compare_with("noslip_top_release.csv", 5, {}, 1e-11);
+  Scene coulomb{.friction = Friction::coulomb, .hop_height = 0.0};
+  // of these the tables' times are good to 1e-8 and heights to 1e-8
+  compare_with("coulomb_first_liftoff.csv", 5, coulomb, 1e-8);
+}
+
+TEST(Referee, TellsTimesInSecondsOfWhateverRadiusAndGravityThereAre) {
+  const Design design{.release_angle = 3.3, .mu_static = 0.4};
+  for (const Friction friction : {Friction::sticking, Friction::coulomb}) {
+    const Scene unit{.friction = friction, .radius = 1.0, .gravity = 1.0},
+        moon{.friction = friction, .radius = 3.0, .gravity = 1.62};
+    const Outcome one = Referee(unit, 1e-13).solve(design), other = Referee(moon, 1e-13).solve(design);
+    ASSERT_EQ(one.status, Status::jumped);
+    EXPECT_TRUE(same_flags(one, other));
+    const double second = std::sqrt(3.0 / 1.62);
+    EXPECT_NEAR(other.jump_time, second * one.jump_time, 1e-11 * other.jump_time);
+    EXPECT_NEAR(other.flight_time, second * one.flight_time, 1e-11 * other.flight_time);
+    EXPECT_NEAR(other.jump_height, one.jump_height, 1e-11);
+    EXPECT_NEAR(other.jump_spin, one.jump_spin, 1e-11 * one.jump_spin);
+  }
+}
+
+Motion any_motion(std::mt19937_64& random, const Body& body) {
+  return {0.0,
+          body.R,
+          uniform(random, -4.0, 4.0),
+          uniform(random, -2.0, 2.0),
+          uniform(random, -2.0, 0.0),
+          uniform(random, -20.0, 20.0)};
+}
+
+TEST(Referee, ItsForcesDoNoWorkThatItsEnergyDoesNotShow) {
+  std::mt19937_64 random(3);
+  const Body body = body_of({.mass_ratio = 3.0, .offset_ratio = 0.8}, {});
+  for (int i = 0; i < 50; ++i) {
+    Motion at = any_motion(random, body);
+    // Rolling and in flight energy is kept; sliding it falls by the friction force's power.
+    for (const Mode mode : {Mode{Mode::rolls}, Mode{Mode::slides, -0.3}, Mode{Mode::flies}}) {
+      if (mode.kind != Mode::flies) at.y_rate = 0.0;
+      if (mode.kind == Mode::rolls) at.x_rate = body.R * at.spin;
+      const Forces forces = forces_of(body, mode, at);
+      const auto later = [&](double t) {
+        return Motion{at.x + t * at.x_rate,     at.y + t * at.y_rate,     at.phi + t * at.spin,
+                      at.x_rate + t * forces.x, at.y_rate + t * forces.y, at.spin + t * forces.phi};
+      };
+      constexpr double h = 1e-6;
+      const double power = (energy(body, later(h)) - energy(body, later(-h))) / (2.0 * h);
+      const double friction = mode.kind == Mode::slides ? forces.friction * slip_of(body, at) : 0.0;
+      // differences of energies of some joules, an h apart
+      EXPECT_NEAR(power, friction, 1e-6 * (1.0 + std::abs(energy(body, at)) + std::abs(friction)));
+    }
+  }
+}
+
+TEST(Referee, LandsAsTheSolversDoAndSlidesIntoTheSameEdge) {
+  std::mt19937_64 random(4);
+  const Scene scene{.radius = 1.0, .gravity = 1.0};
+  for (int i = 0; i < 300; ++i) {
+    const Design design{.mass_ratio = uniform(random, 0.5, 20.0), .offset_ratio = uniform(random, 0.3, 1.0)};
+    const Body body = body_of(design, scene);
+    const Hoop<double> hoop = derive<double>(design);
+    const Motion before = any_motion(random, body);
+    const double mu = uniform(random, 0.0, 1.5), restitution = uniform(random, 0.0, 0.9);
+    const Motion after = after_landing(body, before, mu, restitution, 0.0);
+    const Landing<double> landing =
+        land<double>(hoop, trig(before.phi), {before.x_rate - before.spin, before.y_rate, before.spin}, mu,
+                     restitution, 0.0);
+    const double rounding = 1e-12 * (1.0 + std::abs(before.spin)) * (1.0 + 1.0 / hoop.Ic);
+    EXPECT_NEAR(after.spin, landing.after.spin, rounding);
+    EXPECT_NEAR(after.y_rate, landing.after.normal, rounding);
+    EXPECT_NEAR(slip_of(body, after), landing.after.slip, rounding);
+
+    const double D =
+        1.0 + hoop.rho * std::sin(before.phi) / hoop.Ic * sliding_lever(hoop, trig(before.phi), mu);
+    const double D0 = 1.0 + std::pow(hoop.rho * std::sin(before.phi), 2) / hoop.Ic;
+    EXPECT_NEAR(sliding_determinant(body, {Mode::slides, -mu}, before), D / D0,
+                1e-12 * (1.0 + 1.0 / hoop.Ic));
+  }
+}
+
+TEST(Referee, GivesUpWithAWordWhereItsIntegrationDoes) {
+  Scene scene;
+  scene.runway = 1e9;
+  scene.hop_height = 1e9;
+  const Outcome outcome = Referee(scene, 1e-13).solve({.slope = 0.01});
+  EXPECT_EQ(outcome.status, Status::failed);
+  EXPECT_NE(outcome.failure, nullptr);
+}
+
+}  // namespace
+}  // namespace leapmap::referee
