@@ -10,7 +10,6 @@ namespace leapmap::referee {
 namespace {
 
 using Y = State<6>;
-constexpr long most_steps = 200'000;
 
 Motion motion_of(const Y& y) { return {y[0], y[1], y[2], y[3], y[4], y[5]}; }
 Y state_of(const Motion& at) { return {at.x, at.y, at.phi, at.x_rate, at.y_rate, at.spin}; }
@@ -30,7 +29,7 @@ StepControl control_of(const Scene& scene, double tolerance) {
 
 }  // namespace
 
-Referee::Referee(const Scene& scene, double tolerance)
+Referee::Referee(const Scene& scene, double tolerance, long most_steps)
     : scene_(scene),
       second_(std::sqrt(scene.radius / scene.gravity)),
       integrator_(
@@ -41,7 +40,8 @@ Referee::Referee(const Scene& scene, double tolerance)
              std::ranges::copy(rates, f);
              return GSL_SUCCESS;
            },
-           nullptr, 6, &system_}) {}
+           nullptr, 6, &system_}),
+      most_steps_(most_steps) {}
 
 bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
                      const std::function<bool(std::size_t)>& happens) {
@@ -70,7 +70,7 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
   };
   std::vector<Event> events;
   for (;;) {
-    if (++steps_ > most_steps || !integrator_.advance()) return false;
+    if (++steps_ > most_steps_ || !integrator_.advance()) return false;
     const Step<6>& step = integrator_.step();
     const double turned = std::abs(step.y1[2] - step.y0[2]);
     const int looks = 1 + static_cast<int>(std::min(turned * (16.0 / std::numbers::pi), 1000.0));
