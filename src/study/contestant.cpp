@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "numerics/game_steppers.hpp"
+#include "trajectory/coulomb.hpp"
+#include "trajectory/coulomb_integration.hpp"
 #include "trajectory/exact.hpp"
 #include "trajectory/rolling_integration.hpp"
 
@@ -65,7 +67,27 @@ std::string_view name_of(RollingModel model) {
   return names[static_cast<std::size_t>(model)];
 }
 
+namespace {
+
+/// Of anything that solves one design, one after another.
+template <class One>
+auto one_by_one(std::shared_ptr<One> one, const Scene& scene) {
+  return [one, scene](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    for (std::size_t i = 0; i < designs.size(); ++i) outcomes[i] = one->solve(designs[i], scene);
+  };
+}
+
+Solving make_slipping(const Contestant& contestant, const Scene& scene, long max_steps) {
+  if (contestant.model == RollingModel::energy_integral)
+    return {one_by_one(std::make_shared<CoulombSolver<double>>(contestant.setting), scene), {}, {}};
+  const auto integration = std::make_shared<CoulombIntegration>(options_of(contestant, max_steps));
+  return {one_by_one(integration, scene), [integration] { return integration->evaluations(); }, {}};
+}
+
+}  // namespace
+
 Solving make_solving(const Contestant& contestant, const Scene& scene, long max_steps) {
+  if (scene.friction == Friction::coulomb) return make_slipping(contestant, scene, max_steps);
   const IntegrationOptions options = options_of(contestant, max_steps);
   switch (contestant.model) {
     case RollingModel::energy_integral: {

@@ -52,7 +52,9 @@ struct Solving {
   std::function<double(const Design&)> drift;
 };
 
-/// max_steps: a design that needs more is given up as failed.
+/// max_steps: a design that needs more is given up as failed. With Coulomb friction there are two models
+/// only: the energy integral and what else exact solves in closed form, and one coordinate and the slip,
+/// integrated.
 Solving make_solving(const Contestant& contestant, const Scene& scene, long max_steps);
 
 }  // namespace leapmap

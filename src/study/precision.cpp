@@ -9,7 +9,7 @@
 
 #include "numerics/game_steppers.hpp"
 #include "numerics/gsl_integrator.hpp"
-#include "trajectory/exact.hpp"
+#include "study/truth.hpp"
 
 namespace leapmap {
 namespace {
@@ -54,7 +54,7 @@ void compare(std::span<const Outcome> outcomes, std::span<const Outcome> truth, 
 
 }  // namespace
 
-std::vector<Contestant> precision_contestants(bool quick) {
+std::vector<Contestant> precision_contestants(bool quick, Friction friction) {
   std::vector<Contestant> contestants;
   const auto add = [&](std::string_view method, bool fixed_step, const std::vector<double>& settings,
                        int order, RollingModel model = RollingModel::one_coordinate) {
@@ -70,6 +70,7 @@ std::vector<Contestant> precision_contestants(bool quick) {
   for (const GslStepper& stepper : gsl_steppers()) add(stepper.name, false, tolerances, 0);
   for (const GslStepper& stepper : gsl_steppers())
     if (stepper.order > 0) add(stepper.name, true, steps, stepper.order);
+  if (friction == Friction::coulomb) return contestants;
   for (const GslStepper& stepper : game_steppers()) add(stepper.name, true, steps, stepper.order);
   for (const RollingModel model : {RollingModel::multipliers, RollingModel::multipliers_projected,
                                    RollingModel::centre_of_mass, RollingModel::centre_of_mass_projected})
@@ -77,7 +78,7 @@ std::vector<Contestant> precision_contestants(bool quick) {
   return contestants;
 }
 
-std::vector<Design> random_designs(std::size_t count, std::uint64_t seed) {
+std::vector<Design> random_designs(std::size_t count, std::uint64_t seed, Friction friction) {
   std::mt19937_64 random(seed);
   const auto uniform = [&](double low, double high) {
     return low +
@@ -88,6 +89,9 @@ std::vector<Design> random_designs(std::size_t count, std::uint64_t seed) {
     design.slope = uniform(0.1, 0.8);
     design.mass_ratio = uniform(0.5, 10.0);
     design.offset_ratio = uniform(0.3, 1.0);
+    if (friction == Friction::sticking) continue;
+    design.mu_static = uniform(0.1, 1.0);
+    design.mu_kinetic = design.mu_static * uniform(0.7, 1.0);
   }
   return designs;
 }
@@ -127,12 +131,12 @@ std::vector<PrecisionRow> study_precision(const PrecisionOptions& options, const
                                           const std::function<bool()>& stop_requested) {
   std::vector<std::pair<std::string, std::vector<Design>>> sets;
   if (options.points.empty()) {
-    sets.emplace_back("random", random_designs(options.designs, options.seed));
+    sets.emplace_back("random", random_designs(options.designs, options.seed, scene.friction));
     sets.emplace_back("paper", std::vector<Design>(1));
   } else {
     sets.emplace_back("given", options.points);
   }
-  std::vector<Contestant> contestants = precision_contestants(options.quick);
+  std::vector<Contestant> contestants = precision_contestants(options.quick, scene.friction);
   if (!options.methods.empty())
     std::erase_if(contestants, [&](const Contestant& contestant) {
       return contestant.model > RollingModel::one_coordinate ||
@@ -140,8 +144,8 @@ std::vector<PrecisionRow> study_precision(const PrecisionOptions& options, const
     });
   std::vector<PrecisionRow> rows;
   for (const auto& [name, designs] : sets) {
-    std::vector<Outcome> truth(designs.size());
-    ExactSolver<long double>(1e-18).solve(designs, scene, truth);
+    std::vector<Outcome> truth;
+    for (const Truth& known : truths_of(designs, scene)) truth.push_back(known.outcome);
     const Contestant* too_dear = nullptr;
     for (const Contestant& contestant : contestants) {
       if (stop_requested && stop_requested()) return rows;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Speed against accuracy: every method at every setting on the same designs, errors against long double.
+/// Speed against accuracy: every method at every setting on the same designs, errors against study/truth.hpp.
 #pragma once
 
 #include <cstdint>
@@ -43,11 +43,14 @@ struct PrecisionOptions {
   std::vector<std::string> methods;  ///< only these, on the least model; empty: all
 };
 
-/// All contestants, those of a series one after another, the cheapest first.
-std::vector<Contestant> precision_contestants(bool quick);
+/// All contestants, those of a series one after another, the cheapest first. With Coulomb friction exact and
+/// GSL's steppers on one coordinate and the slip.
+std::vector<Contestant> precision_contestants(bool quick, Friction friction = Friction::sticking);
 
-/// Random designs: slope 0.1 to 0.8, mass ratio 0.5 to 10, L/R 0.3 to 1, uniform, released from rest on top.
-std::vector<Design> random_designs(std::size_t count, std::uint64_t seed);
+/// Random designs: slope 0.1 to 0.8, mass ratio 0.5 to 10, L/R 0.3 to 1, uniform, released from rest on top;
+/// with Coulomb friction mu_static 0.1 to 1 and mu_kinetic 0.7 to 1 times that.
+std::vector<Design> random_designs(std::size_t count, std::uint64_t seed,
+                                   Friction friction = Friction::sticking);
 
 /// Solves the designs by a contestant until the time is taken well, and compares with the truth. One thread.
 Measurement measure(const Contestant& contestant, std::span<const Design> designs, const Scene& scene,

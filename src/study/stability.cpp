@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "physics/rolling.hpp"
-#include "trajectory/exact.hpp"
+#include "study/truth.hpp"
 
 namespace leapmap {
 namespace {
@@ -17,55 +17,43 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double most_error = 0.05;
 
-Outcome true_outcome(const StabilitySubject& subject) {
-  Outcome outcome;
-  ExactSolver<long double>(1e-18).solve({&subject.design, 1}, subject.scene, {&outcome, 1});
-  return outcome;
-}
-
-/// The largest of the errors of height, absolute, and of both times, relative. Of outcomes with the same
-/// flags.
-double error_of(const Outcome& ours, const Outcome& right) {
-  double error = 0.0;
-  const auto worsen = [&](double by) { error = by > error || std::isnan(by) ? by : error; };
-  if (right.candidates > 0) worsen(std::abs(ours.first_jump_time / right.first_jump_time - 1.0));
-  if (right.status == Status::jumped) {
-    worsen(std::abs(ours.jump_height - right.jump_height));
-    worsen(std::abs(ours.jump_time / right.jump_time - 1.0));
-  }
-  return error;
-}
-
 /// What can be expected of any method at a subject.
-struct Truth {
-  Outcome outcome;
+struct Expected {
+  Truth truth;
   double condition = 0.0;
   bool decided = true;
 };
 
-/// Moves every input by some ulps up and down and looks how far the answer moves.
-Truth truth_of(const StabilitySubject& subject) {
-  constexpr int ulps = 4;
-  Truth truth{true_outcome(subject)};
-  for (double Design::*input : {&Design::slope, &Design::mass_ratio, &Design::offset_ratio,
-                                &Design::inertia_factor, &Design::release_angle, &Design::release_spin}) {
+/// Moves every input by some ulps up and down and looks how far the answer moves. With friction a design goes
+/// through several phases, each with roundings of its own.
+Expected expected_of(const StabilitySubject& subject) {
+  const int ulps = subject.scene.friction == Friction::coulomb ? 100 : 4;
+  Expected expected{truths_of({&subject.design, 1}, subject.scene)[0]};
+  const Outcome right = refined_outcome(subject.design, subject.scene);
+  std::vector<double Design::*> inputs{&Design::slope,         &Design::mass_ratio,
+                                       &Design::offset_ratio,  &Design::inertia_factor,
+                                       &Design::release_angle, &Design::release_spin};
+  if (subject.scene.friction == Friction::coulomb)
+    inputs.insert(inputs.end(), {&Design::mu_static, &Design::mu_kinetic, &Design::restitution});
+  for (double Design::*input : inputs) {
     double worst = 0.0;
     for (const double direction : {-1.0, 1.0}) {
-      StabilitySubject moved = subject;
-      double& value = moved.design.*input;
-      if (value == 0.0 || (input == &Design::offset_ratio && value * direction == 1.0)) continue;
+      Design moved = subject.design;
+      double& value = moved.*input;
+      const bool at_most = input == &Design::offset_ratio && value * direction == 1.0;
+      if (value == 0.0 || std::isnan(value) || at_most) continue;
       for (int i = 0; i < ulps; ++i) value = std::nextafter(value, direction * HUGE_VAL);
-      const Outcome there = true_outcome(moved);
-      if (!same_flags(there, truth.outcome)) {
-        truth.decided = false;
+      const Outcome there = refined_outcome(moved, subject.scene);
+      if (!same_flags(there, right)) {
+        expected.decided = false;
         continue;
       }
       const double change = std::abs(value / subject.design.*input - 1.0);
-      worst = std::max(worst, error_of(there, truth.outcome) / change);
+      worst = std::max(worst, error_of(there, right) / change);
     }
-    truth.condition += worst;
+    expected.condition += worst;
   }
-  return truth;
+  return expected;
 }
 
 double energy_drift(const Design& design, const Outcome& outcome) {
@@ -77,11 +65,18 @@ double energy_drift(const Design& design, const Outcome& outcome) {
   return std::abs(drift) / (1.0 + kinetic);
 }
 
-Finding finding_of(const Outcome& ours, const Truth& truth, double error) {
-  if (!truth.decided) return Finding::undecided;
+/// The error that a contestant was asked for: its tolerance, as far as doubles go. A fixed step asks for
+/// none.
+double asked_of(const Contestant& contestant) {
+  constexpr double finest = 1e-12, of_a_step = 1e-6;
+  return contestant.fixed_step ? of_a_step : std::max(contestant.setting, finest);
+}
+
+Finding finding_of(const Outcome& ours, const Expected& expected, double error, double asked) {
+  if (!expected.decided) return Finding::undecided;
   if (ours.status == Status::failed) return Finding::failed;
-  if (!same_flags(ours, truth.outcome)) return Finding::wrong;
-  if (error <= std::max(1e-6, 100.0 * epsilon * (1.0 + truth.condition))) return Finding::fine;
+  if (!same_flags(ours, expected.truth.outcome)) return Finding::wrong;
+  if (error <= std::max(asked, 100.0 * epsilon * (1.0 + expected.condition))) return Finding::fine;
   return error <= most_error ? Finding::lossy : Finding::wrong;
 }
 
@@ -104,15 +99,15 @@ std::string_view verdict_of(std::span<const Finding> findings) {
 std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
                                    const std::function<bool()>& stop_requested) {
   using Clock = std::chrono::steady_clock;
-  std::vector<Truth> truths;
+  std::vector<Expected> expected;
   for (const StabilitySubject& subject : stability_case.subjects) {
     if (stop_requested && stop_requested()) return {};
-    truths.push_back(truth_of(subject));
+    expected.push_back(expected_of(subject));
   }
 
   std::vector<StabilityRow> rows;
   for (const Contestant& contestant : stability_case.contestants) {
-    for (std::size_t i = 0; i < truths.size(); ++i) {
+    for (std::size_t i = 0; i < expected.size(); ++i) {
       if (stop_requested && stop_requested()) return rows;
       const StabilitySubject& subject = stability_case.subjects[i];
       const Solving solving = make_solving(contestant, subject.scene, stability_case.max_steps);
@@ -121,13 +116,15 @@ std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
       solving.solve({&subject.design, 1}, {&outcome, 1});
       const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
       const double error =
-          same_flags(outcome, truths[i].outcome) ? error_of(outcome, truths[i].outcome) : nan;
-      rows.push_back({stability_case.name, stability_case.abscissa, contestant.method,
-                      contestant.fixed_step ? "step" : "tolerance", contestant.setting,
-                      stability_case.walks_settings ? contestant.setting : subject.x, error,
-                      energy_drift(subject.design, outcome), truths[i].condition,
-                      solving.evaluations ? static_cast<double>(solving.evaluations()) : nan, seconds,
-                      outcome.failure ? outcome.failure : "", finding_of(outcome, truths[i], error)});
+          same_flags(outcome, expected[i].truth.outcome) ? error_of(outcome, expected[i].truth.outcome) : nan;
+      rows.push_back(
+          {stability_case.name, stability_case.abscissa, contestant.method,
+           contestant.fixed_step ? "step" : "tolerance", contestant.setting,
+           stability_case.walks_settings ? contestant.setting : subject.x, error,
+           subject.scene.friction == Friction::sticking ? energy_drift(subject.design, outcome) : nan,
+           expected[i].condition, solving.evaluations ? static_cast<double>(solving.evaluations()) : nan,
+           seconds, outcome.failure ? outcome.failure : "",
+           finding_of(outcome, expected[i], error, asked_of(contestant)), expected[i].truth.witness});
     }
   }
   return rows;

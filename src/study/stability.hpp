@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Where methods fail: designs and settings chosen to be hard, and what every method makes of them.
 ///
-/// A case is a walk along one number, its abscissa, into trouble. Every answer is compared with long
-/// double's, and with what the problem itself allows: how much the answer moves when the inputs move by an
-/// ulp.
+/// A case is a walk along one number, its abscissa, into trouble. Every answer is compared with the truth
+/// (study/truth.hpp), and with what the problem itself allows: how much the answer moves when the inputs move
+/// by some ulps.
 #pragma once
 
 #include <functional>
@@ -15,16 +15,19 @@
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
 #include "study/contestant.hpp"
+#include "study/truth.hpp"
 
 namespace leapmap {
 
 /// What one answer is worth.
 enum class Finding {
-  fine,       ///< error within 1e-6, or within 100 roundings times the condition
-  undecided,  ///< four ulps of an input change status, flag or candidates: no method in double can be asked
-  lossy,      ///< digits are lost beyond that, but not beyond 5 %
-  failed,     ///< the method says that it failed
-  wrong       ///< status, flag or candidates are wrong, or the error is beyond 5 %, and nothing says so
+  fine,  ///< error within the tolerance asked (1e-6 of a fixed step, which asks for none; no tolerance below
+         ///< 1e-12 counts), or within 100 roundings times the condition
+  undecided,  ///< four ulps of an input, a hundred with friction, change status, flag or candidates: no
+              ///< method in double can be asked
+  lossy,   ///< digits are lost beyond that, but not beyond 5 %
+  failed,  ///< the method says that it failed
+  wrong    ///< status, flag or candidates are wrong, or the error is beyond 5 %, and nothing says so
 };
 std::string_view name_of(Finding finding);
 
@@ -58,20 +61,26 @@ struct StabilityRow {
   double x = 0.0;
   double error = 0.0;  ///< largest of jump_height's, absolute [diameters], jump_time's and first_jump_time's,
                        ///< relative; NaN where the finding is failed or flags are wrong
-  double energy_drift = 0.0;  ///< at the jump, over 1 + its kinetic energy; NaN without a jump
-  double condition = 0.0;     ///< times that a relative change of the inputs comes back in the answer
-  double evaluations = 0.0;   ///< of the acceleration; NaN: none
+  double energy_drift =
+      0.0;                 ///< at the jump, over 1 + its kinetic energy; NaN without a jump or with friction
+  double condition = 0.0;  ///< times that a relative change of the inputs comes back in the answer
+  double evaluations = 0.0;  ///< of the acceleration; NaN: none
   double seconds = 0.0;
   std::string failure;  ///< why the method says that it failed; empty: it does not
   Finding finding = Finding::fine;
+  Witness witness = Witness::both;  ///< by what the right answer is known
 };
 
 struct StabilityOptions {
   bool quick = false;  ///< fewer places and fewer steps before a method gives up
 };
 
-/// The cases whose subjects are designs: needle, release, graze, long, step, tolerance.
+/// The cases whose subjects are designs: needle, release, graze, long, step, tolerance, and those of
+/// friction_cases.
 std::vector<StabilityCase> stability_cases(const StabilityOptions& options);
+
+/// The cases with Coulomb friction: painleve, slow, dip, stick, bounces.
+std::vector<StabilityCase> friction_cases(bool quick);
 
 /// Every contestant on every subject, one contestant after another. One thread. stop_requested is asked
 /// before each design; the rows are then those there are.

@@ -134,6 +134,8 @@ std::vector<StabilityCase> stability_cases(const StabilityOptions& options) {
   std::vector<StabilityCase> cases{needle(options.quick),     release(options.quick),
                                    graze(options.quick),      long_run(options.quick),
                                    long_steps(options.quick), unreachable_tolerances(options.quick)};
+  for (StabilityCase& with_friction : friction_cases(options.quick))
+    cases.push_back(std::move(with_friction));
   if (options.quick)
     for (StabilityCase& stability_case : cases)
       stability_case.max_steps = std::min(stability_case.max_steps, 20'000l);

@@ -29,7 +29,9 @@ void derivative(const CoulombIntegration::System& system, const double y[], doub
 }
 
 int right_hand_side(double, const double y[], double f[], void* params) {
-  derivative(*static_cast<const CoulombIntegration::System*>(params), y, f);
+  auto& system = *static_cast<CoulombIntegration::System*>(params);
+  ++system.evaluations;
+  derivative(system, y, f);
   return GSL_SUCCESS;
 }
 
@@ -134,7 +136,7 @@ Outcome CoulombIntegration::solve(const Design& design, const Scene& scene, cons
   return go_through_phases<double>(
       design, scene, observer,
       [&](const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at, double runway) {
-        system_ = {hoop, rolls};
+        system_.hoop = hoop, system_.friction = rolls;
         if (at.spin < 0.0 || (at.spin == 0.0 && !(torque(hoop, trig(at.angle)) > 0.0)))
           return PhaseEnd::stalls;
         const Guard guards[]{[&](const Y& y) { return hold(hoop, contact.mu_static, 1.0, y); },
@@ -156,7 +158,7 @@ Outcome CoulombIntegration::solve(const Design& design, const Scene& scene, cons
       [&](const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at, double runway,
           int direction) {
         const double sign = direction;
-        system_ = {hoop, sign * contact.mu_kinetic};
+        system_.hoop = hoop, system_.friction = sign * contact.mu_kinetic;
         if (!(pivot(system_, {at.angle, at.spin}).value > 0.0)) return PhaseEnd::indeterminate;
         const auto rates = [&](const Y& y) {
           Y f;

@@ -39,7 +39,11 @@ class CoulombIntegration {
   struct System {
     Hoop<double> hoop;
     double friction;  ///< mu_kinetic sign(v), while sliding
+    long evaluations = 0;
   };
+
+  /// How often a right-hand side was asked for so far.
+  long evaluations() const { return system_.evaluations; }
 
  private:
   IntegrationOptions options_;

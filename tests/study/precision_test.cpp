@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "study/truth.hpp"
 #include "trajectory/exact.hpp"
 
 namespace leapmap {
@@ -104,6 +105,27 @@ TEST(Precision, WrongFlagsAndFailuresAreSharesAndNoErrors) {
   EXPECT_EQ(failed.failed + failed.wrong, 1.0);
   EXPECT_GT(failed.failed, 0.8) << "steps this long lose energy or gain it, and say so";
   EXPECT_TRUE(std::isnan(failed.max_height_error));
+}
+
+TEST(Precision, WithFrictionExactAndIntegrationsConvergeToTheSame) {
+  const Scene coulomb{.friction = Friction::coulomb, .runway = 4.0};
+  const auto designs = random_designs(20, 3, Friction::coulomb);
+  EXPECT_EQ(designs[0].slope, random_designs(1, 3, Friction::coulomb)[0].slope);
+  std::vector<Outcome> truth;
+  for (const Truth& known : truths_of(designs, coulomb)) {
+    EXPECT_EQ(known.witness, Witness::both);
+    truth.push_back(known.outcome);
+  }
+  const auto by = [&](const char* method, double tolerance,
+                      RollingModel model = RollingModel::one_coordinate) {
+    return measure({method, false, tolerance, 0, model}, designs, coulomb, truth, 0.1);
+  };
+  const Measurement coarse = by("gsl-rk8pd", 1e-6), fine = by("gsl-rk8pd", 1e-11),
+                    exact = by("exact", 1e-12, RollingModel::energy_integral);
+  EXPECT_EQ(coarse.wrong + fine.wrong + fine.failed + exact.wrong + exact.failed, 0.0);
+  EXPECT_LT(fine.max_height_error, 1e-3 * coarse.max_height_error);
+  EXPECT_GT(fine.evaluations, coarse.evaluations);
+  EXPECT_LT(exact.max_height_error, 1e-13);
 }
 
 TEST(Precision, LeavesOutTheSettingsThatTakeTooLong) {

@@ -46,7 +46,9 @@ class StabilityOfTheDefault : public ::testing::TestWithParam<const char*> {};
 // exact is the default of sweep and of hop. Every place of the walk but those that an ulp decides: right
 // status, flag and candidates, heights and times as promised.
 TEST_P(StabilityOfTheDefault, IsFineOnTheWholeWalk) {
-  StabilityCase walk = only(find_case(GetParam(), false), "exact");
+  const std::string name = GetParam();
+  // A slide near Painleve's edge takes an integration a hundred thousand steps.
+  StabilityCase walk = only(find_case(name, name == "painleve"), "exact");
   // The longest run's 13 truths in long double would take a minute; leapmap stability has it.
   std::erase_if(walk.subjects, [&](const StabilitySubject& s) { return walk.name == "long" && s.x > 500.0; });
   ASSERT_FALSE(walk.contestants.empty());
@@ -62,11 +64,14 @@ TEST_P(StabilityOfTheDefault, IsFineOnTheWholeWalk) {
   for (const StabilityRow& row : rows)
     EXPECT_TRUE(row.finding == Finding::fine || row.finding == Finding::undecided)
         << row.study << " at " << row.x << ": " << name_of(row.finding) << ", error " << row.error;
-  EXPECT_LE(std::ranges::count(rows, Finding::undecided, &StabilityRow::finding), 1)
-      << "1e-15 beyond the fold, some ulps of the mass ratio";
+  // 1e-15 beyond the fold, some ulps of the mass ratio; with friction 1e-13 and 1e-14 either side of a
+  // boundary
+  const bool slips = walk.subjects[0].scene.friction == Friction::coulomb;
+  EXPECT_LE(std::ranges::count(rows, Finding::undecided, &StabilityRow::finding), slips ? 4 : 1);
 }
 INSTANTIATE_TEST_SUITE_P(Walks, StabilityOfTheDefault,
-                         ::testing::Values("needle", "release", "graze", "long", "tolerance"),
+                         ::testing::Values("needle", "release", "graze", "long", "tolerance", "painleve",
+                                           "slow", "dip", "stick", "bounces"),
                          [](const auto& walk) { return std::string(walk.param); });
 
 TEST(Stability, TheDefaultFlightIsFineWhereLandingEventsArmedTooEarlyLoseTheJump) {
@@ -106,6 +111,36 @@ TEST(Stability, NoMethodIsSilentlyWrongAtTolerancesNoDoubleCanReach) {
     if (row.x <= 1e-18 && row.method != "exact" && row.finding != Finding::failed) {
       EXPECT_LT(row.error, 1e-8) << row.method << " at " << row.x;
     }
+  }
+}
+
+TEST(Stability, TheTruthHasTwoWitnessesButWhereSomeUlpsDecide) {
+  const Design paper;
+  for (const Friction friction : {Friction::sticking, Friction::coulomb}) {
+    const Truth truth = truths_of({&paper, 1}, {.friction = friction})[0];
+    EXPECT_EQ(truth.witness, Witness::both);
+    EXPECT_EQ(truth.outcome.jump_height, refined_outcome(paper, {.friction = friction}).jump_height);
+  }
+  // Where some ulps decide, the integration is in doubt about itself; so it is at some places beside the
+  // fold.
+  std::size_t alone = 0;
+  for (const StabilitySubject& subject : find_case("graze", false).subjects)
+    alone += truths_of({&subject.design, 1}, subject.scene)[0].witness == Witness::long_double;
+  EXPECT_GE(alone, 1u);
+  EXPECT_LE(alone, 6u);
+}
+
+TEST(Stability, TheWalksAcrossABoundaryCrossOne) {
+  for (const char* name : {"painleve", "dip", "stick"}) {
+    std::size_t crossed = 0;
+    const StabilityCase walk = find_case(name, false);
+    for (std::size_t i = 0; i + 1 < walk.subjects.size(); i += 2) {
+      const StabilitySubject &below = walk.subjects[i], &beyond = walk.subjects[i + 1];
+      ASSERT_EQ(below.x, -beyond.x);
+      crossed += !same_flags(refined_outcome(below.design, below.scene),
+                             refined_outcome(beyond.design, beyond.scene));
+    }
+    EXPECT_EQ(2 * crossed, walk.subjects.size()) << name;
   }
 }
 

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/truth.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "study/contestant.hpp"
+#include "trajectory/coulomb.hpp"
+#include "trajectory/exact.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr double finest = 1e-13, coarser = 1e-12;
+constexpr double own_error = 1e-11;  // of an integration at `finest` over a few revolutions
+constexpr double slack = 10.0;       // of the difference between the two integrations
+
+class Integrations {
+ public:
+  explicit Integrations(const Scene& scene)
+      : fine_(make_solving({"gsl-rk8pd", false, finest}, scene, most_steps(scene))),
+        coarse_(make_solving({"gsl-rk8pd", false, coarser}, scene, most_steps(scene))) {}
+
+  Outcome fine(const Design& design) const { return solved(fine_, design); }
+  Outcome coarse(const Design& design) const { return solved(coarse_, design); }
+  /// Whether its flags stay where the inputs change by its own error.
+  bool is_sure(const Design& design, const Outcome& outcome) const {
+    for (double Design::*input : {&Design::slope, &Design::mass_ratio, &Design::offset_ratio,
+                                  &Design::inertia_factor, &Design::release_angle, &Design::release_spin,
+                                  &Design::mu_static, &Design::mu_kinetic, &Design::restitution})
+      for (const double way : {-1.0, 1.0}) {
+        Design beside = design;
+        beside.*input *= 1.0 + way * own_error;
+        if (beside.offset_ratio <= 1.0 && !same_flags(fine(beside), outcome)) return false;
+      }
+    return true;
+  }
+
+ private:
+  /// A long run takes a million; a slide near Painleve's edge would take any number.
+  static long most_steps(const Scene& scene) {
+    return scene.friction == Friction::coulomb ? 100'000 : 1'000'000;
+  }
+  static Outcome solved(const Solving& solving, const Design& design) {
+    Outcome outcome;
+    solving.solve({&design, 1}, {&outcome, 1});
+    return outcome;
+  }
+  Solving fine_, coarse_;
+};
+
+}  // namespace
+
+std::string_view name_of(Witness witness) {
+  constexpr std::array<std::string_view, 3> names{"long double and gsl-rk8pd", "gsl-rk8pd", "long double"};
+  return names[static_cast<std::size_t>(witness)];
+}
+
+double error_of(const Outcome& ours, const Outcome& right) {
+  double error = 0.0;
+  const auto worsen = [&](double by) { error = by > error || std::isnan(by) ? by : error; };
+  if (right.candidates > 0) worsen(std::abs(ours.first_jump_time / right.first_jump_time - 1.0));
+  if (right.status == Status::jumped) {
+    worsen(std::abs(ours.jump_height - right.jump_height));
+    worsen(std::abs(ours.jump_time / right.jump_time - 1.0));
+  }
+  return error;
+}
+
+Outcome refined_outcome(const Design& design, const Scene& scene) {
+  Outcome outcome;
+  if (scene.friction == Friction::coulomb)
+    outcome = CoulombSolver<long double>(1e-15).solve(design, scene);
+  else
+    ExactSolver<long double>(1e-18).solve({&design, 1}, scene, {&outcome, 1});
+  return outcome;
+}
+
+std::vector<Truth> truths_of(std::span<const Design> designs, const Scene& scene) {
+  const Integrations by_time(scene);
+  std::vector<Truth> truths;
+  for (const Design& design : designs) {
+    const Outcome refined = refined_outcome(design, scene), fine = by_time.fine(design);
+    const Outcome coarse = fine.status == Status::failed ? fine : by_time.coarse(design);
+    if (fine.status == Status::failed || !same_flags(fine, coarse)) {
+      truths.push_back({refined, Witness::long_double});
+      continue;
+    }
+    const double doubt = own_error + slack * error_of(coarse, fine);
+    if (same_flags(refined, fine) && error_of(refined, fine) <= doubt)
+      truths.push_back({refined, Witness::both});
+    else if (by_time.is_sure(design, fine))
+      truths.push_back({fine, Witness::integration});
+    else
+      truths.push_back({refined, Witness::long_double});
+  }
+  return truths;
+}
+
+}  // namespace leapmap
