@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import h5py
 import numpy as np
 
-from open_file import Refused, opened
+from open_file import Refused, names_in, opened
 
 FORMAT_MAJOR = 1  # the newest format this reader knows
 
@@ -111,7 +111,7 @@ def _read_open(path, file, most_designs):
         raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
                       "use a newer leapmap")
     result = Map(str(path), attributes, fields=Fields(str(path)))
-    datasets = {name: dataset for name, dataset in file.items() if isinstance(dataset, h5py.Dataset)}  # the group is for viewers
+    datasets = {name: file[name] for name in names_in(file) if isinstance(file.get(name), h5py.Dataset)}  # the group is for viewers
     for name, dataset in datasets.items():
         if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name):
             raise NotAMap(f"{path}: is damaged: it has a dataset of the name {name!r}")

@@ -214,7 +214,7 @@ std::string json_text(const Spec& spec, const Story& story, const Outcome& check
 int run(const HopArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   for (const auto& [option, value] : arguments.parameters)
-    overrides.push_back(fmt::format("design.{}={}", option->key, value));
+    overrides.push_back(fmt::format("{}.{}={}", option->section, option->key, value));
   const Spec spec = read_spec(arguments.spec, overrides);
   if (!spec.axes.empty())
     throw InputError(
@@ -256,13 +256,11 @@ void add_hop(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("hop", "solve one design and tell its phases, lift-offs and jump");
   auto arguments = std::make_shared<HopArguments>();
   command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop");
-  for (const Option* parameter : design_parameters()) {
+  for (const Option* option : hop_options()) {
     command->add_option_function<std::string>(
-        flag_of(*parameter),
-        [arguments, parameter](const std::string& value) {
-          arguments->parameters.emplace_back(parameter, value);
-        },
-        fmt::format("{}; {}", parameter->meaning, allowed_values(*parameter)));
+        flag_of(*option),
+        [arguments, option](const std::string& value) { arguments->parameters.emplace_back(option, value); },
+        fmt::format("{}; {}", option->meaning, allowed_values(*option)));
   }
   command->add_option("--set", arguments->overrides, "KEY=VALUE: override a key of the spec")
       ->expected(1)

@@ -49,16 +49,39 @@ const std::array options{
            "\"sticking\": never slips (the paper's model); \"coulomb\": slips, lands and hops on",
            {},
            frictions},
-    Option{"scene", "mu_static", ParameterSlot{&Design::mu_static}, "1",
-           "static friction coefficient; no effect when sticking", coefficient},
-    Option{"scene", "mu_kinetic", ParameterSlot{&Design::mu_kinetic}, "1",
-           "kinetic friction coefficient, mu_static unless given; a lower mu_static counts as much; no "
-           "effect when sticking",
-           coefficient},
-    Option{"scene", "restitution", ParameterSlot{&Design::restitution}, "1",
-           "Poisson restitution; no effect when sticking", fraction},
-    Option{"scene", "rest_speed", NumberSlot{[](Spec& s) -> double& { return s.scene.rest_speed; }},
-           "sqrt(g R)", "slower rebounds count as none; no effect when sticking", non_negative},
+    Option{"scene",
+           "mu_static",
+           ParameterSlot{&Design::mu_static},
+           "1",
+           "coulomb only: static friction coefficient",
+           coefficient,
+           {},
+           true},
+    Option{"scene",
+           "mu_kinetic",
+           ParameterSlot{&Design::mu_kinetic},
+           "1",
+           "coulomb only: kinetic friction coefficient, mu_static unless given; a lower mu_static counts as "
+           "much",
+           coefficient,
+           {},
+           true},
+    Option{"scene",
+           "restitution",
+           ParameterSlot{&Design::restitution},
+           "1",
+           "coulomb only: Poisson restitution",
+           fraction,
+           {},
+           true},
+    Option{"scene",
+           "rest_speed",
+           NumberSlot{[](Spec& s) -> double& { return s.scene.rest_speed; }},
+           "sqrt(g R)",
+           "coulomb only: slower rebounds count as none",
+           non_negative,
+           {},
+           true},
     Option{"scene",
            "runway",
            NumberSlot{[](Spec& s) -> double& { return s.scene.runway; }},
@@ -191,10 +214,18 @@ std::vector<const Option*> design_parameters() {
   return parameters;
 }
 
+std::vector<const Option*> hop_options() {
+  std::vector<const Option*> of_one;
+  for (const Option& option : options)
+    if (option.section == "scene" || (option.section == "design" && option.key != "points"))
+      of_one.push_back(&option);
+  return of_one;
+}
+
 std::vector<const Option*> design_parameters(const Spec& spec) {
   std::vector<const Option*> parameters = design_parameters();
   std::erase_if(parameters, [&](const Option* parameter) {
-    return parameter->section == "scene" && spec.friction == "sticking" &&
+    return parameter->of_coulomb && spec.scene.friction != Friction::coulomb &&
            std::ranges::find(spec.list.columns, parameter->key, &Axis::key) == spec.list.columns.end();
   });
   return parameters;
@@ -208,8 +239,8 @@ std::vector<double> list_values(const Spec& spec, const Option& parameter) {
                                            : std::vector(spec.list.count, value_of(parameter, spec.design));
 }
 
-std::string flag_of(const Option& parameter) {
-  std::string flag = fmt::format("--{}", parameter.key);
+std::string flag_of(const Option& option) {
+  std::string flag = fmt::format("--{}", option.key);
   std::ranges::replace(flag, '_', '-');
   return flag;
 }

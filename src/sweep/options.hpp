@@ -35,6 +35,7 @@ struct Option {
   std::string_view meaning;
   Range range{};                                    ///< numbers and integers
   std::vector<std::string_view> (*choices)() = {};  ///< texts: what is allowed; unset: anything
+  bool of_coulomb = false;                          ///< says nothing where the contact never slips
 };
 
 /// All keys, in the order of the documentation.
@@ -44,7 +45,10 @@ std::span<const Option> spec_options();
 /// its contact.
 std::vector<const Option*> design_parameters();
 
-/// Those of them that matter to a spec, or that its list names.
+/// The keys of a scene and of one design, each of which has a flag on leapmap hop.
+std::vector<const Option*> hop_options();
+
+/// Those parameters that matter to a spec, or that its list names.
 std::vector<const Option*> design_parameters(const Spec& spec);
 
 /// A design's value of one of these parameters.
@@ -55,8 +59,8 @@ inline double value_of(const Option& parameter, const Design& design) {
 /// The values of a parameter along a spec's list of designs.
 std::vector<double> list_values(const Spec& spec, const Option& parameter);
 
-/// The command line's name for a parameter, for example "--mass-ratio".
-std::string flag_of(const Option& parameter);
+/// The command line's name for a key, for example "--mass-ratio".
+std::string flag_of(const Option& option);
 
 /// The option of that section and key, or nullptr; an empty section means any. What takes an axis may also
 /// stand in [design], where the axes of a resolved spec do, in their order.

@@ -23,6 +23,8 @@ constexpr std::int64_t most_axis_values =
 constexpr std::int64_t most_designs =
     1'000'000'000'000;  // a map of 10^12 designs is terabytes: surely a typing error
 
+constexpr const char* command_line = "command line";  // as an Entry's place
+
 /// One key as written: where, and its value.
 struct Entry {
   const Option* option;
@@ -34,7 +36,10 @@ struct Entry {
 /// "key = value" as the user wrote it, on one line.
 std::string quoted(const Option& option, const toml::node& node) {
   std::ostringstream text;
-  node.visit([&](const auto& value) { text << value; });
+  if (node.is_floating_point())
+    text << fmt::format("{}", *node.value<double>());  // as short as it was written
+  else
+    node.visit([&](const auto& value) { text << value; });
   std::string flat = text.str();
   std::ranges::replace(flat, '\n', ' ');
   return fmt::format("{}.{} = {}", option.section, option.key, flat);
@@ -229,6 +234,31 @@ void override_with(std::vector<Entry>& entries, const Entry& entry) {
   found == entries.end() ? entries.push_back(entry) : void(*found = entry);
 }
 
+constexpr std::string_view
+    no_friction = "the contact never slips, and has no use for it",
+    with_friction =
+        "with friction = \"coulomb\", on the command line --friction coulomb or --set friction=coulomb";
+
+/// Whether a key says no more than its default.
+bool is_default(const Option& option, const Entry& entry) {
+  const auto* slot = std::get_if<ParameterSlot>(&option.slot);
+  const auto value = entry.node->value<double>();
+  if (!value) return false;
+  Spec spec;
+  if (!slot) return *value == std::get<NumberSlot>(option.slot)(spec);
+  const double usual = spec.design.*slot->member;
+  return *value == (std::isnan(usual) ? spec.design.mu_static : usual);
+}
+
+/// Nothing given is ignored without a word: what only slipping contacts have needs one. A file may spell
+/// defaults out.
+void refuse_what_has_no_use(const std::vector<Entry>& entries, const Spec& spec) {
+  if (spec.scene.friction == Friction::coulomb) return;
+  for (const Entry& entry : entries)
+    if (entry.option->of_coulomb && (entry.place == command_line || !is_default(*entry.option, entry)))
+      refuse(entry, no_friction, with_friction);
+}
+
 /// A points file is looked for beside the spec first, then from the working folder.
 std::string find_points(const Spec& spec) {
   namespace fs = std::filesystem;
@@ -247,10 +277,16 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
   spec.points =
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
   spec.list = read_points(spec.points, origin_of(spec));
+  if (spec.scene.friction != Friction::coulomb)
+    for (const Axis& column : spec.list.columns)
+      if (find_option("design", column.key)->of_coulomb)
+        throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key, no_friction,
+                                     with_friction));
   return spec;
 }
 
-Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
+Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
+                bool lenient) {
   Spec spec;
   spec.origin = origin;
   toml::table file;
@@ -274,7 +310,7 @@ Spec parse_spec(std::string_view text, const std::string& origin, const std::vec
     const Option* option = find_option(section, key);
     if (!option) refuse_key("--set " + set, section, key);
     values.push_back(parse_override(set, std::string_view(set).substr(equals + 1)));
-    override_with(entries, {option, "command line", {}, values.back().get("v")});
+    override_with(entries, {option, command_line, {}, values.back().get("v")});
   }
 
   const auto given = [&](std::string_view key) {
@@ -282,6 +318,7 @@ Spec parse_spec(std::string_view text, const std::string& origin, const std::vec
   };
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
   spec.scene.friction = spec.friction == "coulomb" ? Friction::coulomb : Friction::sticking;
+  if (!lenient) refuse_what_has_no_use(entries, spec);
   // Where mu_static varies, mu_kinetic follows it from design to design.
   const bool varies =
       std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() || !spec.points.empty();

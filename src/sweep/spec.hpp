@@ -62,8 +62,10 @@ struct Spec {
 /// for anything that is not allowed, IoError if the file cannot be read.
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides);
 
-/// The same from a TOML text; origin is for messages. A list of designs is left as its path.
-Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides);
+/// The same from a TOML text; origin is for messages. A list of designs is left as its path. lenient: a spec
+/// that a map tells; those of older versions name what their friction has no use for.
+Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
+                bool lenient = false);
 
 /// The spec's file, for messages; "command line" if there is none.
 std::string origin_of(const Spec& spec);

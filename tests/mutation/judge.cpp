@@ -86,6 +86,7 @@ int main() {
   using namespace leapmap;
   constexpr std::size_t few = 24, many = 96;
   const Scene sticks, slips{.friction = Friction::coulomb};
+  const Scene rebounds{.friction = Friction::coulomb, .runway = 8.0, .hop_height = 0.4};
   ExactSolver<double> exact(1e-11);
   CoulombSolver<double> coulomb(1e-11);
   RollingIntegration rolling(adaptive("gsl-rk8pd", 1e-12));
@@ -99,6 +100,8 @@ int main() {
                          }),
       first_disagreement("exact, Coulomb", slips, many,
                          [&](const Design& design) { return coulomb.solve(design, slips); }),
+      first_disagreement("exact, Coulomb, rebounds", rebounds, many,
+                         [&](const Design& design) { return coulomb.solve(design, rebounds); }),
       first_disagreement("integration, no slip", sticks, few,
                          [&](const Design& design) { return rolling.solve(design, sticks); }),
       first_disagreement("integration, Coulomb", slips, few,

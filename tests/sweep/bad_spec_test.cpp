@@ -31,6 +31,7 @@ std::string refusal(const std::string& text, const std::vector<std::string>& ove
   folder.write("nan.csv", "slope\nnan\n");
   folder.write("negative.csv", "mass_ratio\n-1\n");
   folder.write("good.csv", "slope\n0.1\n");
+  folder.write("mu.csv", "slope,mu_static\n0.1,0.4\n");
   try {
     read_spec(folder.write("spec.toml", text), overrides);
   } catch (const InputError& error) {
@@ -110,6 +111,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadSpec{"unknown_method", "[numerics]\nmethod = \"euler\"", {"method", "euler", "gsl-rk8pd"}},
         BadSpec{"tolerance_0", "[numerics]\ntolerance = 0", {"tolerance", "allowed"}},
         BadSpec{"unknown_friction", "[scene]\nfriction = \"viscous\"", {"friction", "viscous", "coulomb"}},
+        BadSpec{"mu_without_friction",
+                "[scene]\nmu_static = 0.4",
+                {"spec.toml:2", "scene.mu_static = 0.4", "never slips", "--friction coulomb"}},
+        BadSpec{"restitution_without_friction",
+                "[scene]\nrestitution = 0.1",
+                {"scene.restitution = 0.1", "--friction coulomb"}},
+        BadSpec{"mu_axis_without_friction",
+                "[scene]\nmu_kinetic = { values = [0.1, 0.2] }",
+                {"scene.mu_kinetic", "--friction coulomb"}},
+        BadSpec{"mu_column_without_friction",
+                "[design]\npoints = \"mu.csv\"",
+                {"mu.csv", "column 'mu_static'", "--friction coulomb"}},
         BadSpec{"unknown_field", "[output]\nfields = [\"jump_hight\"]", {"jump_hight", "jump_height"}},
         BadSpec{"field_twice", "[output]\nfields = [\"dip\", \"dip\"]", {"dip", "twice"}},
         BadSpec{"hop_height_negative", "[scene]\nhop_height = -0.1", {"hop_height", "-0.1"}},

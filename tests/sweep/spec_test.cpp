@@ -132,22 +132,31 @@ TEST(Spec, ResolvedTextReadsBackAsTheSameSpec) {
 }
 
 TEST(Spec, ResolvedTextKeepsAnAxisOverAnyParameterAndOverAllOfThem) {
-  std::vector<std::string> all;
+  const std::string slips = "friction=coulomb";
+  std::vector<std::string> all{slips};
   for (const Option* parameter : design_parameters()) {
     const std::string axis = fmt::format("{}={{values=[0.25,0.5]}}", parameter->key);
     all.push_back(axis);
-    for (const std::vector<std::string>& settings : {std::vector{axis}, all}) {
+    for (const std::vector<std::string>& settings : {std::vector{slips, axis}, all}) {
       const Spec spec = read_spec("", settings), again = parse_spec(resolved_text(spec), "text", {});
-      ASSERT_EQ(again.axes.size(), settings.size());
-      for (std::size_t i = 0; i < settings.size(); ++i) EXPECT_EQ(again.axes[i].key, spec.axes[i].key);
+      ASSERT_EQ(again.axes.size(), settings.size() - 1);
+      for (std::size_t i = 0; i < again.axes.size(); ++i) EXPECT_EQ(again.axes[i].key, spec.axes[i].key);
       EXPECT_EQ(resolved_text(again), resolved_text(spec));
     }
   }
 }
 
 TEST(Spec, MuKineticIsMuStaticUnlessGiven) {
-  EXPECT_EQ(parse("[scene]\nmu_static = 0.3\n").design.mu_kinetic, 0.3);
-  EXPECT_EQ(parse("[scene]\nmu_static = 0.3\nmu_kinetic = 0.2\n").design.mu_kinetic, 0.2);
+  EXPECT_EQ(parse("[scene]\nfriction = \"coulomb\"\nmu_static = 0.3\n").design.mu_kinetic, 0.3);
+  EXPECT_EQ(parse("[scene]\nfriction = \"coulomb\"\nmu_static = 0.3\nmu_kinetic = 0.2\n").design.mu_kinetic,
+            0.2);
+}
+
+TEST(Spec, WhatOnlySlippingContactsHaveMayBeSpeltOutAtItsDefaultAndIsReadFromOlderMaps) {
+  EXPECT_NO_THROW(parse("[scene]\nmu_static = 0.5\nmu_kinetic = 0.5\nrestitution = 0\nrest_speed = 1e-3\n"));
+  EXPECT_THROW(parse_spec("", "", {"mu_static=0.5"}), InputError) << "given by hand";
+  EXPECT_NO_THROW(parse_spec("[scene]\nmu_static = 0.3\n", "map.h5", {}, true));
+  EXPECT_EQ(parse_spec("", "", {"mu_static=0.3", "friction=coulomb"}).design.mu_static, 0.3);
 }
 
 TEST(Spec, AListOfDesignsIsReadFromBesideTheSpec) {
