@@ -145,7 +145,7 @@ def overview(t):
             if name not in names:
                 names.append(name)
             verdicts[name, study] = verdict
-    figure, axis = plt.subplots(figsize=(8.6, 0.27 * len(names) + 1.6), layout="constrained")
+    figure, axis = plt.subplots(figsize=(2.4 + 0.98 * len(studies), 0.27 * len(names) + 1.6), layout="constrained")
     for row, name in enumerate(names):
         for column, study in enumerate(studies):
             verdict = verdicts.get((name, study))
