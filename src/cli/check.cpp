@@ -35,7 +35,7 @@ bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
         report.sample->max_rel_time_error, report.sample->max_rel_motion_error,
         report.sample->undecided > 0 ? fmt::format("; {} nobody can decide", report.sample->undecided) : "");
   if (report.sample && report.sample->refereed > 0)
-    say("referee  {} designs from the paper's (7) to (9), in SI units: all within {:.1e}{}\n",
+    say("referee  {} designs from the paper's (7) to (9), in SI units: largest error {:.1e}{}\n",
         grouped(report.sample->refereed), report.sample->referee_max_error,
         report.sample->referee_undecided > 0
             ? fmt::format("; {} it cannot decide", report.sample->referee_undecided)

@@ -195,8 +195,8 @@ int run(const InfoArguments& arguments) {
         short_form("audit_max_rel_time_error", ".1e"), short_form("audit_max_rel_motion_error", ".1e"),
         told("audit_flag_mismatches"), told("audit_beyond_tolerance"), told("audit_undecided"));
   if (hdf5::has_attribute(map.file(), "audit_referee_designs"))
-    say("referee: {} of them from the paper's (7) to (9): within {}, {} it cannot decide\n",
-        told("audit_referee_designs"), short_form("audit_referee_max_error", ".1e"),
+    say("referee: {} of them from the paper's (7) to (9): {} wrong, largest error {}, {} it cannot decide\n",
+        told("audit_referee_designs"), told("audit_overruled"), short_form("audit_referee_max_error", ".1e"),
         told("audit_referee_undecided"));
   if (hdf5::has_attribute(map.file(), "retry_designs"))
     say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),

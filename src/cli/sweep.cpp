@@ -192,8 +192,8 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
         report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "",
         report.failed > 0 ? fmt::format("; {} failed, not compared", report.failed) : "");
   if (!arguments.quiet && report.refereed > 0)
-    say("referee  {} of them from the paper's (7) to (9), in SI units: all within {:.1e}{}\n",
-        grouped(report.refereed), report.referee_max_error,
+    say("referee  {} of them from the paper's (7) to (9), in SI units: {} wrong, largest error {:.1e}{}\n",
+        grouped(report.refereed), report.overruled, report.referee_max_error,
         report.referee_undecided > 0 ? fmt::format("; {} it cannot decide", report.referee_undecided) : "");
   const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)

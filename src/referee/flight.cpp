@@ -36,6 +36,7 @@ Flown fly(const Body& body, const Motion& lift_off) {
   const auto height = [&](double time) { return flying(body, lift_off, time).y - body.R; };
   const auto rate = [&](double time) { return flying(body, lift_off, time).y_rate; };
   const double step = 0.01 / (std::abs(lift_off.spin) + std::sqrt(body.g / body.R));
+  long looks_left = 100'000;
   Flown flown;
   std::optional<double> landing;
   bool above = false;
@@ -55,6 +56,7 @@ Flown fly(const Body& body, const Motion& lift_off) {
   };
   double rate_before = lift_off.y_rate;
   for (double time = step; !landing; time += step) {
+    if (--looks_left < 0) return {.failed = true};
     const double rate_here = rate(time);
     if ((rate_before > 0.0) != (rate_here > 0.0)) look(bisect(rate, time - step, time), true);
     if (!landing) look(time, false);

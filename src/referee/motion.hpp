@@ -69,6 +69,7 @@ struct Flown {
   double height = 0.0;  ///< of the lowest point's highest place above the plane [m]; 0: it never clears it
   double apex_time = 0.0, landing_time = 0.0;  ///< after lift-off [s]
   double dip = 0.0;                            ///< the lowest place before that [m], <= 0
+  bool failed = false;                         ///< it takes more looks than are taken; nothing else is said
 };
 /// The centre of mass falls freely and the spin stays: looks along the flight in small steps.
 Flown fly(const Body& body, const Motion& lift_off);

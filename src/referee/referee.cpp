@@ -137,11 +137,18 @@ Outcome Referee::solve_sticking() {
   const std::vector<Guard> guards{[&](const Motion& at) { return forces_of(body, rolls, at).normal; },
                                   [&](const Motion& at) { return at.spin; },
                                   [&](const Motion& at) { return runway - at.x; }};
+  bool gave_up = false;
   const auto happens = [&](std::size_t guard) {
-    if (guard > 0) outcome_.status = guard == 1 ? Status::stalled : Status::no_jump;
-    return guard > 0 || count_lift_off(fly(body, at_));
+    if (guard > 0) {
+      outcome_.status = guard == 1 ? Status::stalled : Status::no_jump;
+      return true;
+    }
+    const Flown flown = fly(body, at_);
+    gave_up = flown.failed;
+    return gave_up || count_lift_off(flown);
   };
-  return follow(rolls, guards, happens) ? outcome_ : failed_outcome("the referee's integration gave up");
+  if (!follow(rolls, guards, happens) || gave_up) return failed_outcome("the referee gave up");
+  return outcome_;
 }
 
 }  // namespace leapmap::referee

@@ -60,7 +60,7 @@ Outcome Referee::solve_coulomb(const Design& design) {
   const auto ended = [&](Status status) {
     if (status == Status::failed || status == Status::indeterminate) {
       const std::uint64_t sequence = outcome_.phase_sequence;
-      outcome_ = failed_outcome("the referee's integration gave up");
+      outcome_ = failed_outcome("the referee gave up");
       outcome_.status = status;
       outcome_.phase_sequence = sequence;
       return outcome_;
@@ -119,6 +119,7 @@ Outcome Referee::solve_coulomb(const Design& design) {
     }
     begin(Phase::flight);
     const Flown flown = fly(body, at_);
+    if (flown.failed) return ended(Status::failed);
     const bool jumps = count_lift_off(flown);
     if (jumps) outcome_.energy_lost = (released - energy(body, at_)) / (body.mass() * body.g * R);
     Motion landed = flying(body, at_, flown.landing_time);

@@ -25,9 +25,9 @@ enum class Finding {
          ///< 1e-12 counts), or within 100 roundings times the condition
   undecided,  ///< four ulps of an input, a hundred with friction, change status, flag or candidates: no
               ///< method in double can be asked
-  lossy,   ///< digits are lost beyond that, but not beyond 5 %
-  failed,  ///< the method says that it failed
-  wrong    ///< status, flag or candidates are wrong, or the error is beyond 5 %, and nothing says so
+  lossy,      ///< digits are lost beyond that, but not beyond 5 %
+  failed,     ///< the method says that it failed
+  wrong       ///< status, flag or candidates are wrong, or the error is beyond 5 %, and nothing says so
 };
 std::string_view name_of(Finding finding);
 

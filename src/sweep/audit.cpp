@@ -22,6 +22,7 @@ namespace leapmap {
 namespace {
 
 constexpr double audit_tolerance = 1e-13, coarser_tolerance = 1e-12;
+constexpr std::size_t usual_referee_every = 10;
 constexpr double audit_reach =
     1e-11;  // relative: how far off an integration at that tolerance may see a flag flip
 constexpr double own_error = 1e-11;  // an integration's at that tolerance, over a few revolutions
@@ -176,6 +177,7 @@ void merge(AuditReport& report, const AuditReport& other) {
   least(report.first_inaccurate, other.first_inaccurate);
   report.refereed += other.refereed;
   report.referee_undecided += other.referee_undecided;
+  report.overruled += other.overruled;
   report.referee_max_error = std::max(report.referee_max_error, other.referee_max_error);
   least(report.first_overruled, other.first_overruled);
 }
@@ -195,7 +197,8 @@ constexpr std::array counts{AuditAttribute{"audit_designs", &AuditReport::design
                             AuditAttribute{"audit_beyond_tolerance", &AuditReport::beyond_tolerance, 1},
                             AuditAttribute{"audit_failed", &AuditReport::failed, 4},
                             AuditAttribute{"audit_referee_designs", &AuditReport::refereed, 5},
-                            AuditAttribute{"audit_referee_undecided", &AuditReport::referee_undecided, 5}};
+                            AuditAttribute{"audit_referee_undecided", &AuditReport::referee_undecided, 5},
+                            AuditAttribute{"audit_overruled", &AuditReport::overruled, 5}};
 constexpr std::array errors{
     AuditAttribute{"audit_max_abs_height_error", &AuditReport::max_abs_height_error, 0},
     AuditAttribute{"audit_max_rel_time_error", &AuditReport::max_rel_time_error, 0},
@@ -260,10 +263,9 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
       referee_{solver_by_referee(spec.scene, audit_tolerance),
                solver_by_referee(spec.scene, coarser_tolerance)},
       referee_every_(referee_every) {
-  constexpr double usual_every = 10.0;
   if (referee_every == 0) {
     const double audited = spec.numerics.audit * static_cast<double>(Tiling(shape_of(spec)).designs());
-    referee_every_ = audited <= usual_every ? 1 : static_cast<std::size_t>(usual_every);
+    referee_every_ = audited <= 3.0 * usual_referee_every ? 1 : usual_referee_every;
   }
   const bool integrates = audit_method(spec.numerics) != "exact";
   const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
@@ -292,41 +294,68 @@ std::vector<Outcome> Auditor::outcomes_beside(const Judge& judge, const Design& 
 auto Auditor::verdict_of(const Judge& judge, const Design& design, const Outcome& ours) const -> Verdict {
   Outcome theirs;
   judge.solve({&design, 1}, {&theirs, 1});
-  const double height_allowed = allowed_ * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
-  const auto exceeds = [&](const Difference& d, const Difference& doubt) {
-    return d.height > std::max(height_allowed, doubt.height) || d.time > std::max(allowed_, doubt.time) ||
-           d.motion > std::max(allowed_, doubt.motion);
-  };
   Verdict verdict;
   verdict.difference = difference(ours, theirs, spec_.output);
   verdict.undecided = theirs.status == Status::failed;
   if (verdict.undecided) return verdict;
   verdict.wrong_flags = verdict.difference.flags;
-  verdict.inaccurate = !verdict.wrong_flags && exceeds(verdict.difference, {});
+  verdict.inaccurate = !verdict.wrong_flags && exceeds(verdict.difference, {}, ours);
   if (!verdict.wrong_flags && !verdict.inaccurate) return verdict;
 
   std::vector<Outcome> beside = outcomes_beside(judge, design, verdict.wrong_flags);
   if (std::ranges::all_of(beside, [&](const Outcome& o) { return same_flags(o, theirs); })) {
     Difference doubt;
     for (const Outcome& outcome : beside) doubt = larger(doubt, difference(outcome, theirs), 10.0);
-    verdict.inaccurate = verdict.inaccurate && exceeds(verdict.difference, doubt);
+    verdict.inaccurate = verdict.inaccurate && exceeds(verdict.difference, doubt, ours);
     return verdict;
   }
-  // The judge cannot decide. What it is asked about is wrong all the same if it is like none of the answers
-  // nearby.
   beside.push_back(theirs);
-  std::erase_if(beside, [&](const Outcome& o) { return !same_flags(o, ours); });
-  Difference nearest{true, HUGE_VAL, HUGE_VAL, HUGE_VAL}, spread;
+  std::erase_if(beside, [](const Outcome& o) { return o.status == Status::failed; });
+  return verdict_among(ours, beside);
+}
+
+/// A judge whose answers nearby differ cannot decide. What it is asked about is wrong all the same if it is
+/// like none of them; not where bounces make every answer its own, and as to numbers only if it is far off,
+/// as they may go with the root of the distance from a cliff.
+auto Auditor::verdict_among(const Outcome& ours, const std::vector<Outcome>& beside) const -> Verdict {
+  constexpr std::size_t most_kinds = 3, least_of_a_kind = 2, least_like = 3;
+  constexpr Difference far_off{false, 1e-4, 1e-4, 1e-4};
+  Verdict verdict;
+  std::vector<std::pair<const Outcome*, std::size_t>> kinds;
   for (const Outcome& outcome : beside) {
-    const Difference d = difference(ours, outcome, spec_.output);
-    nearest = {false, std::min(nearest.height, d.height), std::min(nearest.time, d.time),
-               std::min(nearest.motion, d.motion)};
-    spread = larger(spread, difference(outcome, beside.front()), 10.0);
+    const auto kind =
+        std::ranges::find_if(kinds, [&](const auto& k) { return same_flags(*k.first, outcome); });
+    if (kind == kinds.end())
+      kinds.emplace_back(&outcome, 1);
+    else
+      ++kind->second;
   }
-  verdict.wrong_flags = nearest.flags;
-  verdict.inaccurate = !nearest.flags && exceeds(nearest, spread);
+  const bool few_kinds = kinds.size() <= most_kinds && std::ranges::all_of(kinds, [](const auto& k) {
+                           return k.second >= least_of_a_kind;
+                         });
+  std::vector<Outcome> like;
+  std::ranges::copy_if(beside, std::back_inserter(like),
+                       [&](const Outcome& o) { return same_flags(o, ours); });
+  verdict.wrong_flags = like.empty() && few_kinds;
+  if (like.size() >= least_like) {
+    Difference spread = far_off;
+    bool is_like_one = false;
+    for (const Outcome& outcome : like) spread = larger(spread, difference(outcome, like.front()), 10.0);
+    for (const Outcome& outcome : like) {
+      verdict.difference = difference(ours, outcome, spec_.output);
+      is_like_one = is_like_one || !exceeds(verdict.difference, spread, ours);
+    }
+    verdict.inaccurate = !is_like_one;
+  }
   verdict.undecided = !verdict.wrong_flags && !verdict.inaccurate;
   return verdict;
+}
+
+/// Whether a difference is more than is allowed, and more than a judge's doubt.
+bool Auditor::exceeds(const AuditDifference& d, const AuditDifference& doubt, const Outcome& ours) const {
+  const double height_allowed = allowed_ * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
+  return d.height > std::max(height_allowed, doubt.height) || d.time > std::max(allowed_, doubt.time) ||
+         d.motion > std::max(allowed_, doubt.motion);
 }
 
 void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
@@ -336,11 +365,21 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
     ++report.failed;
     return;
   }
+  const Design design = space_.at(number);
+  Verdict verdict = verdict_of(second_, design, ours);
+  std::optional<Verdict> ruling;
+  // Where an integration convicts exact, the referee is asked for its opinion.
+  const bool second_opinion = verdict.convicts() && resolved_method(spec_.numerics) == "exact";
+  if (mix(number) % referee_every_ == 0 || second_opinion)
+    ruling = verdict_of(referee_, design, as_stored(ours, spec_.scene));
+  const bool acquitted = ruling && !ruling->undecided && !ruling->convicts();
+  if (verdict.convicts() && acquitted) verdict.undecided = true;
+  // Of flags two of three decide. Numbers may be wrong by a formula that the second method shares.
+  if (ruling && ruling->wrong_flags && !verdict.undecided && !verdict.convicts()) ruling->undecided = true;
+
   const auto note_first = [&](std::optional<std::size_t>& first) {
     first = std::min(first.value_or(number), number);
   };
-  const Design design = space_.at(number);
-  const Verdict verdict = verdict_of(second_, design, ours);
   if (verdict.undecided) {
     ++report.undecided;
   } else if (verdict.wrong_flags) {
@@ -352,17 +391,16 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
     report.max_rel_motion_error = std::max(report.max_rel_motion_error, verdict.difference.motion);
     if (verdict.inaccurate) ++report.beyond_tolerance, note_first(report.first_inaccurate);
   }
-  if (mix(number) % referee_every_ != 0) return;
-  const Verdict ruling = verdict_of(referee_, design, as_stored(ours, spec_.scene));
+  if (!ruling) return;
   ++report.refereed;
-  if (ruling.undecided) {
+  if (ruling->undecided) {
     ++report.referee_undecided;
     return;
   }
-  if (ruling.wrong_flags || ruling.inaccurate) note_first(report.first_overruled);
-  if (!ruling.wrong_flags)
-    report.referee_max_error = std::max({report.referee_max_error, ruling.difference.height,
-                                         ruling.difference.time, ruling.difference.motion});
+  if (ruling->convicts()) ++report.overruled, note_first(report.first_overruled);
+  if (!ruling->wrong_flags)
+    report.referee_max_error = std::max({report.referee_max_error, ruling->difference.height,
+                                         ruling->difference.time, ruling->difference.motion});
 }
 
 AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,

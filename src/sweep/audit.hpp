@@ -55,10 +55,11 @@ struct AuditReport {
   std::size_t beyond_tolerance = 0;             ///< designs whose error is larger
   std::optional<std::size_t> first_mismatch;    ///< the least design number whose flags differ
   std::optional<std::size_t> first_inaccurate;  ///< the least design number beyond the tolerance
-  // The referee's part (referee/referee.hpp), which solves a tenth of these designs from the paper's (7) to
-  // (9).
+  // The referee's part (referee/referee.hpp). From the paper's (7) to (9) it solves a tenth of these designs,
+  // and those that the second method convicts exact of: it may acquit them.
   std::size_t refereed = 0;                    ///< designs it looked at
   std::size_t referee_undecided = 0;           ///< of those, designs it gave up on or is in doubt about
+  std::size_t overruled = 0;                   ///< designs that it finds wrong
   double referee_max_error = 0.0;              ///< the largest of the three errors above, by the referee
   std::optional<std::size_t> first_overruled;  ///< the least design number that it finds wrong
 };
@@ -88,7 +89,7 @@ AuditReport read_audit(const MapReader& map);
 class Auditor {
  public:
   /// Keeps a reference to spec. The referee sees one design in so many; 0: one in ten, or all of an audit of
-  /// ten or fewer.
+  /// thirty or fewer.
   explicit Auditor(const Spec& spec, std::size_t referee_every = 0);
   /// Adds what a sample comes to. An error is beyond the tolerance if it is larger than numerics.tolerance (a
   /// hundred times that for an adaptive stepper, whose tolerance is per step; no less than 1e-11, the audit's
@@ -106,9 +107,13 @@ class Auditor {
   struct Verdict {
     bool undecided = false, wrong_flags = false, inaccurate = false;
     AuditDifference difference;
+
+    bool convicts() const { return !undecided && (wrong_flags || inaccurate); }
   };
   std::vector<Outcome> outcomes_beside(const Judge& judge, const Design& design, bool of_flags) const;
   Verdict verdict_of(const Judge& judge, const Design& design, const Outcome& ours) const;
+  Verdict verdict_among(const Outcome& ours, const std::vector<Outcome>& beside) const;
+  bool exceeds(const AuditDifference& d, const AuditDifference& doubt, const Outcome& ours) const;
 
   const Spec& spec_;
   DesignSpace space_;

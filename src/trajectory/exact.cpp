@@ -328,6 +328,14 @@ void ExactSolver<T>::take_off(std::span<const Design> designs, const Scene& scen
         outcome = failed_outcome("a lift-off could not be solved");
         continue;
       }
+      // Between two falls so near each other the normal force rises by less than rounding: they are one.
+      constexpr S one_fall = S(1e-6);
+      if (outcome.candidates > 0 &&
+          angles[i] - search.jump_angle < one_fall * std::max(S(1), std::abs(angles[i]))) {
+        advance(search);
+        still_searching_.push_back(index[i]);
+        continue;
+      }
       if (outcome.candidates == 0) search.first_angle = angles[i];
       search.jump_angle = angles[i];
       const LiftOff<double> lift_off{Outcome::none, static_cast<double>(angles[i] + search.turned_back),

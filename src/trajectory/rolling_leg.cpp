@@ -114,11 +114,12 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& length) const {
   const S begin = std::sqrt(-shift);
   S sum(0), from = begin;
   const S end = std::sqrt(length - shift);
+  int panels = 0;
   // Panels of some two thirds of a radian.
   while (from < end) {
     S to = std::sqrt(from * from + S(0.7));
     if (to > end || S(1.15) * to > end) to = end;
-    sum += duration(roll, shift, from, to, S(0), 0);
+    sum += duration(roll, shift, from, to, S(0), 0, panels);
     from = to;
   }
   return sum;
@@ -126,13 +127,14 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& length) const {
 
 template <class S>
 S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, const S& enough,
-                          int halvings) const {
-  constexpr int most_halvings = 50;
+                          int halvings, int& panels) const {
+  constexpr int most_halvings = 50, most_panels = 10'000;
   // The nodes in lanes.
   using T = typename SpectralPanel<S, nodes>::T;
   using std::sin, std::sqrt;
   const Roll<T> rolls = widened<T>(roll);
   typename SpectralPanel<S, nodes>::Values f;
+  T least_E(std::numeric_limits<S>::max());
   for (std::size_t i = 0; i < nodes; i += Lanes<T>::count) {
     const T q = T(from) + T(to - from) * Lanes<T>::load(panel_.node.data() + i), x = T(shift) + q * q;
     const Trig<T> turned = trig(x);
@@ -141,17 +143,24 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
     const T half = sin((rolls.release + x) * T(0.5)),
             J = rolls.hoop.J_min + T(4) * rolls.hoop.rho * half * half;
     Lanes<T>::store(T(2) * q * sqrt(J / E), f.data() + i);
+    least_E = smaller(least_E, E);
   }
   const S whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);
   // The tail itself, and not its square, which the error goes as where f is smooth: a narrow needle of little
   // weight between the nodes shows in the tail alone.
-  if (tail <= std::max(tolerance_ * whole, enough)) return whole;
-  if (halvings == most_halvings || !(whole > S(0))) return std::numeric_limits<S>::quiet_NaN();
+  // Beside a stall E is a difference of near equals: what its roundings make of the time no panel resolves.
+  const auto least = lanes_of(least_E);
+  const S rounding = S(16) * std::numeric_limits<S>::epsilon() *
+                     (S(4) + roll.released + S(2) * to * to * roll.hoop.sin_slope) /
+                     *std::min_element(least.begin(), least.end());
+  if (tail <= std::max(std::max(tolerance_, std::min(rounding, S(1e-4))) * whole, enough)) return whole;
+  if (halvings == most_halvings || ++panels > most_panels || !(whole > S(0)))
+    return std::numeric_limits<S>::quiet_NaN();
   // Parts need be no better than a tenth of that of the whole, so that roundings are not halved for ever.
   const S allowed = halvings == 0 ? S(0.1) * tolerance_ * whole : enough,
           middle = from + (to - from) * S(0.5);
-  const S first = duration(roll, shift, from, middle, allowed, halvings + 1);
-  return std::isnan(first) ? first : first + duration(roll, shift, middle, to, allowed, halvings + 1);
+  const S first = duration(roll, shift, from, middle, allowed, halvings + 1, panels);
+  return std::isnan(first) ? first : first + duration(roll, shift, middle, to, allowed, halvings + 1, panels);
 }
 
 template class RollingLeg<double>;

@@ -25,8 +25,8 @@ class RollingLeg {
 
   S duration(const Roll<S>& roll, const S& length) const;
   /// enough: an error that does not matter.
-  S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, const S& enough,
-             int halvings) const;
+  S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, const S& enough, int halvings,
+             int& panels) const;
 
   S tolerance_;
   SpectralPanel<S, nodes> panel_;

@@ -19,7 +19,9 @@ constexpr double near_edge = 0.3;        // the edge matters for rounding from h
 constexpr double share_of_edge = 0.6;    // a panel goes over so much of the way to the edge
 constexpr double at_edge = 1e-13;        // what is left changes nothing that is bounded [rad]
 constexpr double nearest_edge = 1e-290;  // nor anything else
-constexpr int most_panels = 100'000;     // some slides rock against the edge, some 1e-100 deep
+constexpr double least_place = 0.02;     // of an event in its panel
+constexpr int most_shortened = 40;
+constexpr int most_panels = 100'000;  // some slides rock against the edge, some 1e-100 deep
 
 /// The edges on either side of a slide, and how far they are; NaN: none within a turn.
 template <class S>
@@ -97,14 +99,14 @@ template <class S>
 std::optional<PhaseEnd> SlidingLeg<S>::end_at_edge(const Slide& slide, const ContactState<S>& at,
                                                    const SlidingMotion<S>& motion) {
   if (!(slide.left < S(at_edge))) return {};
+  if (slide.left < S(nearest_edge)) return PhaseEnd::indeterminate;
   const Trig<S> phi = trig(at.angle);
   if (phi.cos >= S(0)) return {};  // its spin will be used up before
   const S power = power_at_edge(slide.hoop, phi, slide.friction);
   if (power > S(1) && slide.free_force < S(1e-3) * slide.hoop.cos_slope) return PhaseEnd::lifts_off;
   // The forces grow as left^(power - 1): the slip that they take away until the edge is bounded if power > 0.
   const S taken = std::abs(motion.slip / at.spin) * slide.left / power;
-  if (slide.left < S(nearest_edge) || (power > S(0) && std::abs(at.slip) > S(2) * taken))
-    return PhaseEnd::indeterminate;
+  if (power > S(0) && std::abs(at.slip) > S(2) * taken) return PhaseEnd::indeterminate;
   return {};
 }
 
@@ -128,7 +130,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   const auto shrink = [&](const Panel& tried) {
     return std::isfinite(tried.excess) ? change(tried, S(0.85)) : S(0.5);
   };
-  int refined = 0;
+  int refined = 0, shortened = 0;
   for (int taken = 0; taken < most_panels; ++taken) {
     // By angle while the hoop turns and its spin does not vanish soon; else by time.
     slide.edge.reset();
@@ -155,7 +157,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
         panels_.solve_by_angle(slide, at, stretch, panel);
         by_angle = panel.excess <= S(1);
         const S least = panel.spin_vanishes ? std::min(S(vanishing_angle), longest * S(0.1)) : shortest;
-        if (by_angle || length < least) break;
+        if (by_angle || !(length > least)) break;
       }
     }
     if (!by_angle) {
@@ -163,7 +165,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       for (;; duration *= shrink(panel)) {
         panels_.solve_by_time(slide, at, duration, panel);
         if (panel.excess <= S(1)) break;
-        if (duration < S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1)))
+        if (!(duration > S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1))))
           return panel.indeterminate ? PhaseEnd::indeterminate : PhaseEnd::failed;
       }
     }
@@ -173,7 +175,18 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       ++refined;
       continue;
     }
-    refined = 0;
+    // A panel that lasts so much longer holds the event's place to few digits: at almost no spin it lasts for
+    // ever.
+    const bool lasts = panel.end.time - at.time > S(longest_time);
+    if (lasts && event.place < S(least_place) && ++shortened < most_shortened) {
+      const S to = S(2) * event.place;
+      if (by_angle)
+        length = stretch.shift + (stretch.begin + stretch.span * to) * (stretch.begin + stretch.span * to);
+      else
+        duration *= to;
+      continue;
+    }
+    refined = shortened = 0;
     if (event.place > S(1)) {
       edges.turn(panel.turned);
       at = panel.end;

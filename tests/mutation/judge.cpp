@@ -32,7 +32,12 @@ Design any_design(std::mt19937_64& random, std::size_t number) {
                 .mu_static = uniform(random, 0.1, 1.0)};
   design.mu_kinetic = design.mu_static * uniform(random, 0.7, 1.0);
   design.restitution = uniform(random, 0.0, 0.7);
-  if (number % 8 == 7) design.mass_ratio = uniform(random, 50.0, 200.0);  // these come near Painleve's edge
+  if (number % 4 == 2) {  // these come near Painleve's edge
+    design.mass_ratio = uniform(random, 50.0, 200.0);
+    design.inertia_factor = 0.5;
+    design.mu_static = uniform(random, 0.5, 0.9);
+    design.mu_kinetic = 0.85 * design.mu_static;
+  }
   return design;
 }
 

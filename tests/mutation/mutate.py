@@ -99,8 +99,10 @@ def judged(name, folder, library):
     try:
         done = subprocess.run([folder / "judge"], capture_output=True, text=True, timeout=120)
     except subprocess.TimeoutExpired:
-        return "never ends"
-    return done.stdout.strip() or (f"exit status {done.returncode}" if done.returncode else "")
+        return "BROKEN: the judge never ends"
+    if done.returncode not in (0, 1) or (done.returncode == 1) != bool(done.stdout):
+        return f"BROKEN: the judge ends with status {done.returncode}"
+    return done.stdout.strip()
 
 
 def main():
