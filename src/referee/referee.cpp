@@ -84,7 +84,9 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
     std::ranges::stable_sort(events, {}, &Event::tau);
     for (const Event& event : events) {
       at_ = event.at;
-      at_.y = scene_.radius, at_.y_rate = 0.0;  // but for rounding they are
+      // but for rounding they are
+      at_.y = scene_.radius, at_.y_rate = 0.0;
+      if (mode.kind == Mode::rolls) at_.x_rate = scene_.radius * at_.spin;
       time_ = began + step.t0 + event.tau;
       if (happens(event.guard)) return true;
     }

@@ -90,7 +90,6 @@ Outcome Referee::solve_coulomb(const Design& design) {
       if (!follow({Mode::rolls}, guards, first_event)) return ended(Status::failed);
       if (happened == 2) return ended(Status::stalled);
       if (happened == 3) return ended(Status::no_jump);
-      at_.x_rate = R * at_.spin;
       next = free_rise(body, at_) >= 0.0 ? Next::flies
              : happened == 0             ? Next::slides_backwards
                                          : Next::slides_forwards;

@@ -162,6 +162,25 @@ TEST(Audit, ConvictsAnAnswerThatIsLikeNoneOfThoseNearbyWhereNobodyCanDecide) {
   EXPECT_TRUE(report.first_overruled);
 }
 
+/// A grid of bouncing hoops, whose number of hops is another at every unit in the last place.
+TEST(Audit, ConvictsNobodyWhereEveryAnswerNearbyIsAnother) {
+  const Spec spec =
+      read_spec("", {"friction=coulomb", "restitution=0.842", "mu_static=0.94", "mu_kinetic=0.6", "runway=20",
+                     "hop_height=1", "slope={from=0.2,to=0.6,count=6}", "mass_ratio={from=2,to=12,count=6}",
+                     "audit=1"});
+  const AuditReport report = audit(spec, drawn_from(spec), 0);
+  EXPECT_EQ(report.designs, 36u);
+  EXPECT_FALSE(disagree(report));
+}
+
+/// Its times go with the root of the distance from a fold, and the integration has the worse one.
+TEST(Audit, DoesNotConvictBesideAFold) {
+  const Spec spec = read_spec(
+      "", {"slope=0.8846815059690065", "mass_ratio=3.4782721611411747", "offset_ratio=0.3594395109165115",
+           "inertia_factor=0.5", "release_angle=2.1740918245867857", "audit=1"});
+  EXPECT_FALSE(disagree(audit(spec, drawn_from(spec), 1)));
+}
+
 TEST(Audit, CallsTheRefereeToATenthOfItsDesigns) {
   const Spec spec = grid("exact", "1e-12", "0.3");
   const AuditReport report = audit(spec, drawn_from(spec), 0);

@@ -175,6 +175,49 @@ struct Known {
   const char* sequence;             // empty: not known
 };
 
+/// A hoop with so little spin slides through a runway before it turns a millionth of a radian.
+TEST(AimedCoulomb, SlidesThatHardlyTurnEndWhereTheRunwayDoes) {
+  for (const double spin : {1e-9, 1e-8, 1e-7, 1e-6}) {
+    const Design design{.slope = 0.216690937580796,
+                        .mass_ratio = 13.0,
+                        .offset_ratio = 0.0,
+                        .release_spin = spin,
+                        .mu_static = 0.0};
+    const Scene scene{.friction = Friction::coulomb, .runway = 0.3};
+    const Outcome outcome = solved(design, scene);
+    EXPECT_EQ(outcome.status, Status::no_jump);
+    // x = w t + sin(theta) t^2 / 2 = 0.6 pi, of which w t is turned
+    const double g = std::sin(design.slope), end = 0.6 * std::numbers::pi;
+    const double t = (std::sqrt(spin * spin + 2.0 * g * end) - spin) / g;
+    EXPECT_NEAR(outcome.slip_distance, end - spin * t, 1e-9) << spin;
+  }
+}
+
+/// They took for ever: against Painleve's edge, and beside a stall.
+TEST(AimedCoulomb, NoSlideAndNoRollIsEndless) {
+  const Design against{.slope = 0.0,
+                       .mass_ratio = 697015.0583834717,
+                       .offset_ratio = 0.5,
+                       .inertia_factor = 0.5,
+                       .release_angle = 1.5707963267948966,
+                       .release_spin = 1.0,
+                       .mu_static = 0.5,
+                       .restitution = 0.3471513046631715};
+  EXPECT_EQ(solved(against, {.friction = Friction::coulomb, .hop_height = 1e-6, .rest_speed = 0.1}).status,
+            Status::indeterminate);
+  for (const double slope : {0.038851253022090526, 0.038851253021690346, 0.03885125302165033}) {
+    const Design beside{.slope = slope,
+                        .mass_ratio = 15.56214633204247,
+                        .offset_ratio = 0.30441845510791754,
+                        .release_angle = 4.3607424563955846,
+                        .release_spin = 0.09023941235359072,
+                        .mu_static = 1.0061521329075416,
+                        .mu_kinetic = 0.17556111358616475};
+    const Status status = solved(beside).status;
+    EXPECT_TRUE(status == Status::no_jump || status == Status::failed) << slope;
+  }
+}
+
 TEST(AimedCoulomb, KnownCases) {
   const Known cases[]{{{.slope = 0.4097929865924131,
                         .mass_ratio = 188.0803499182982,
