@@ -159,12 +159,13 @@ void ExactSolver<T>::scan(const List& designs) {
       while (turns < turns_a_scan && search.end > S(2) * pi_of<S> * (search.first_turn + S(turns))) ++turns;
     }
     std::array<ScanFlags, 8> flags;
+    NodeSigns signs;
     scan_turns(nodes_, rows_.template load_motion<T>(index.data()), gather(index, &Search::first_turn), turns,
-               flags.data());
+               flags.data(), signs);
     const std::size_t count = std::min(width, designs.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       searches_[index[i]].flags = flags[i];
-      hand_on_signs(searches_[index[i]], turns);
+      hand_on_signs(searches_[index[i]], signs, i, turns);
     }
   }
 }
@@ -173,19 +174,21 @@ void ExactSolver<T>::scan(const List& designs) {
 /// sign that the scan before found there. Where this scan's sign differs by rounding, the interval from there
 /// on is looked at.
 template <class T>
-void ExactSolver<T>::hand_on_signs(Search& search, int turns) const {
+void ExactSolver<T>::hand_on_signs(Search& search, const NodeSigns& signs, std::size_t lane,
+                                   int turns) const {
   constexpr auto nodes = static_cast<std::size_t>(nodes_a_turn);
   const auto scanned = static_cast<std::size_t>(turns) * nodes;  // of all turns, the last node not counted
-  ScanFlags& flags = search.flags;
-  const auto above_at = [&](std::size_t k) -> bool {
-    return k < scanned ? flags.above[k / nodes] >> k % nodes & 1u
-                       : flags.above[static_cast<std::size_t>(turns) - 1] >> nodes & 1u;
+  const auto above_at = [&](std::size_t k) {
+    return k < scanned ? is_above(signs, k / nodes, k % nodes, lane)
+                       : is_above(signs, static_cast<std::size_t>(turns) - 1, nodes, lane);
   };
   const auto look_at = [&](std::size_t k, bool left) {
-    const std::uint64_t bit = std::uint64_t{1} << k % nodes;
-    flags.looks[k / nodes] |= bit;
-    flags.falls[k / nodes] &= ~bit;
-    flags.above[k / nodes] = left ? flags.above[k / nodes] | bit : flags.above[k / nodes] & ~bit;
+    const auto put = [&](IntervalBits& bits, bool value) {
+      const std::uint64_t bit = std::uint64_t{1} << k % nodes;
+      bits[k / nodes] = value ? bits[k / nodes] | bit : bits[k / nodes] & ~bit;
+    };
+    put(search.flags.looks, true), put(search.flags.falls, false);
+    put(search.flags.above_left, left), put(search.flags.above_right, above_at(k + 1));
   };
   const bool first_above = search.last_above;
   search.last_above = above_at(scanned);
@@ -220,8 +223,8 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
     const S part = part_length_[static_cast<std::size_t>(search.halvings)], at = node + S(search.part) * part;
     const S from = std::max(at * step, search.release), to = std::min((at + part) * step, search.end);
     if (from < to) {
-      const auto flagged = [&](const IntervalBits& bits, int further = 0) -> bool {
-        return bits[static_cast<std::size_t>(search.turn)] >> (search.node + further) & 1u;
+      const auto flagged = [&](const IntervalBits& bits) -> bool {
+        return bits[static_cast<std::size_t>(search.turn)] >> search.node & 1u;
       };
       const S left_node = node * step, right_node = (node + S(1)) * step;
       const auto side = [](bool is_above) { return is_above ? Side::above : Side::below; };
@@ -231,9 +234,9 @@ bool ExactSolver<T>::next_interval(std::uint32_t design, Interval& interval) {
       if (from == search.release) {
         interval.from_side = Side::above;
       } else if (from == left_node) {
-        interval.from_side = side(flagged(search.flags.above));
+        interval.from_side = side(flagged(search.flags.above_left) || flagged(search.flags.falls));
       }
-      if (to == right_node) interval.to_side = side(flagged(search.flags.above, 1));
+      if (to == right_node) interval.to_side = side(flagged(search.flags.above_right));
       return true;
     }
     if (from >= search.end) {

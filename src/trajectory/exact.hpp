@@ -88,7 +88,7 @@ class ExactSolver {
   void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   void prepare(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   void scan(const List& designs);
-  void hand_on_signs(Search& search, int turns) const;
+  void hand_on_signs(Search& search, const NodeSigns& signs, std::size_t lane, int turns) const;
   bool next_interval(std::uint32_t design, Interval& interval);
   void advance(Search& search) const;
   void classify_intervals();

@@ -27,24 +27,17 @@ inline constexpr int turns_a_scan = 3;  ///< each further one costs a third of t
 using IntervalBits = std::array<std::uint64_t, turns_a_scan>;
 
 struct ScanFlags {
-  IntervalBits looks;  ///< intervals that may hold a fall
-  IntervalBits falls;  ///< those of them that surely hold one, and nothing else
-  /// Whether G > 0 at each node, that of the next revolution's first node last. The sign at a node is
-  /// computed once, and decides for the intervals on both sides of it: were it computed twice, a root on a
-  /// node could be lost by rounding, or counted twice.
-  IntervalBits above;
+  IntervalBits looks;                    ///< intervals that may hold a fall
+  IntervalBits falls;                    ///< those of them that surely hold one, and nothing else
+  IntervalBits above_left, above_right;  ///< of those that only may hold one: whether G > 0 at either end
 };
 
-/// Eight bytes of eight bits the other way round: bit i of byte j becomes bit j of byte i.
-constexpr std::uint64_t transposed(std::uint64_t x) {
-  const auto swap = [&x](std::uint64_t upper, int distance) {
-    const std::uint64_t differs = (x ^ x >> distance) & upper;
-    x ^= differs ^ differs << distance;
-  };
-  swap(0x00AA00AA00AA00AAu, 7);
-  swap(0x0000CCCC0000CCCCu, 14);
-  swap(0x00000000F0F0F0F0u, 28);
-  return x;
+/// Whether G > 0 at the nodes of each revolution, the first of the next one included: a byte a node, a bit a
+/// lane. The sign at a node is computed once, and decides for the intervals on both sides of it: were it
+/// computed twice, a root on a node could be lost by rounding, or counted twice.
+using NodeSigns = std::array<std::array<std::uint64_t, nodes_a_turn / 8 + 1>, turns_a_scan>;
+inline bool is_above(const NodeSigns& signs, std::size_t turn, std::size_t node, std::size_t lane) {
+  return signs[turn][node / 8] >> (8 * (node % 8) + lane) & 1u;
 }
 
 /// The nodes 0 to 24; the others mirror them.
@@ -60,10 +53,10 @@ ScanNodes<S> scan_nodes() {
 }
 
 /// Flags the intervals of `turns` <= turns_a_scan revolutions that may hold a fall of G, one ScanFlags a
-/// lane.
+/// lane, and tells the signs at their nodes.
 template <class T>
 void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const T& first_turn, int turns,
-                ScanFlags* flags) {
+                ScanFlags* flags, NodeSigns& signs) {
   using std::abs;
   using S = ScalarOf<T>;
   const Hoop<T>& h = roll.hoop;
@@ -105,8 +98,8 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
       }
       const std::uint64_t next_positive = positive >> 8 | std::uint64_t{Lanes<T>::bits(G > T(0))} << 56;
       const std::uint64_t sinks = positive & ~next_positive;
-      for (std::uint64_t lane = 0, bytes = transposed(positive); lane < Lanes<T>::count; ++lane, bytes >>= 8)
-        flags[lane].above[u] |= (bytes & 0xFFu) << k;
+      signs[u][k / 8] = positive;
+      signs[u][k / 8 + 1] = next_positive >> 56;
       constexpr std::uint64_t lanes = ((std::uint64_t{1} << Lanes<T>::count) - 1) * 0x0101010101010101u;
       for (std::uint64_t fall = plain & sinks & lanes; fall != 0; fall &= fall - 1) {
         const auto bit = static_cast<std::size_t>(std::countr_zero(fall)), lane = bit % 8;
@@ -115,13 +108,11 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
       for (std::uint64_t look = ~plain & lanes; look != 0; look &= look - 1) {
         const auto bit = static_cast<std::size_t>(std::countr_zero(look)), lane = bit % 8;
         flags[lane].looks[u] |= std::uint64_t{1} << (k + bit / 8);
+        flags[lane].above_left[u] |= positive >> bit << 63 >> (63 - k - bit / 8);
+        flags[lane].above_right[u] |= next_positive >> bit << 63 >> (63 - k - bit / 8);
       }
     }
-    const std::uint64_t last = Lanes<T>::bits(G > T(0));
-    for (std::size_t i = 0; i < Lanes<T>::count; ++i) {
-      flags[i].looks[u] |= flags[i].falls[u];
-      flags[i].above[u] |= (last >> i & 1u) << nodes_a_turn;
-    }
+    for (std::size_t i = 0; i < Lanes<T>::count; ++i) flags[i].looks[u] |= flags[i].falls[u];
   }
 }
 

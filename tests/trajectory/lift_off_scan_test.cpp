@@ -71,7 +71,8 @@ TEST(Scan, FlagsEveryFallThatDenseSamplingSeesAndCallsNoOtherOneSure) {
     const Roll<double> roll = random_roll(random);
     const double first_turn = std::floor(testing::uniform(random, -1.0, 4.0));
     ScanFlags flags;
-    scan_turns(nodes, roll, first_turn, turns_a_scan, &flags);
+    NodeSigns signs;
+    scan_turns(nodes, roll, first_turn, turns_a_scan, &flags, signs);
     for (int t = 0; t < turns_a_scan; ++t)
       for (int k = 0; k < nodes_a_turn; ++k) {
         const auto u = static_cast<std::size_t>(t);
@@ -121,52 +122,34 @@ TEST(Scan, LanesSeeWhatOneNumberSees) {
                   lanes([](const auto& r) { return r.hoop.Ic; }),
                   lanes([](const auto& r) { return r.hoop.J_min; })};
     std::array<ScanFlags, 8> together;
-    scan_turns(scan_nodes<double>(), batch, Batch(1.0), turns_a_scan, together.data());
+    NodeSigns signs;
+    scan_turns(scan_nodes<double>(), batch, Batch(1.0), turns_a_scan, together.data(), signs);
     for (std::size_t k = 0; k < width; ++k) {
       ScanFlags alone;
-      scan_turns(scan_nodes<double>(), rolls[k], 1.0, turns_a_scan, &alone);
+      scan_turns(scan_nodes<double>(), rolls[k], 1.0, turns_a_scan, &alone, signs);
       EXPECT_EQ(together[k].looks, alone.looks);
       EXPECT_EQ(together[k].falls, alone.falls);
-      EXPECT_EQ(together[k].above, alone.above);
     }
   }
 }
 
-TEST(Scan, SignsAtNodesAreThoseOfGAndJoinRevolutions) {
+TEST(Scan, SignsAtNodesAreThoseOfEveryLaneAndJoinRevolutions) {
   std::mt19937_64 random(15);
-  std::size_t compared = 0;
   for (int i = 0; i < 500; ++i) {
     const Roll<double> roll = random_roll(random);
     ScanFlags flags;
-    scan_turns(scan_nodes<double>(), roll, 0.0, turns_a_scan, &flags);
-    const auto above = [&](std::size_t t, std::size_t k) -> bool { return flags.above[t] >> k & 1u; };
-    for (std::size_t t = 0; t < turns_a_scan; ++t) {
-      if (t > 0) {
-        EXPECT_EQ(above(t - 1, nodes_a_turn), above(t, 0));
-      }
-      for (std::size_t k = 0; k <= nodes_a_turn; ++k) {
-        if (k < nodes_a_turn && flags.falls[t] >> k & 1u) {
-          EXPECT_TRUE(above(t, k) && !above(t, k + 1));
+    NodeSigns signs;
+    scan_turns(scan_nodes<double>(), roll, 0.0, turns_a_scan, &flags, signs);
+    for (std::size_t t = 0; t + 1 < turns_a_scan; ++t)
+      EXPECT_EQ(is_above(signs, t, nodes_a_turn, 0), is_above(signs, t + 1, 0, 0));
+    for (std::size_t t = 0; t < turns_a_scan; ++t)
+      for (std::size_t k = 0; k < nodes_a_turn; ++k)
+        if (flags.falls[t] >> k & 1u) {
+          EXPECT_TRUE(is_above(signs, t, k, 0) && !is_above(signs, t, k + 1, 0));
+        } else if (flags.looks[t] >> k & 1u) {
+          EXPECT_EQ(flags.above_left[t] >> k & 1u, std::uint64_t{is_above(signs, t, k, 0)});
+          EXPECT_EQ(flags.above_right[t] >> k & 1u, std::uint64_t{is_above(signs, t, k + 1, 0)});
         }
-        const double angle =
-            2.0 * std::numbers::pi * static_cast<double>(t * nodes_a_turn + k) / nodes_a_turn;
-        const double G = lift(roll, angle).value;
-        if (std::abs(G) < 1e-9) continue;  // its sign is rounding's
-        EXPECT_EQ(above(t, k), G > 0.0);
-        ++compared;
-      }
-    }
-  }
-  EXPECT_GT(compared, 70'000u);
-}
-
-TEST(Scan, TransposesBits) {
-  std::mt19937_64 random(16);
-  for (int i = 0; i < 100; ++i) {
-    const std::uint64_t x = random(), y = transposed(x);
-    for (int row = 0; row < 8; ++row)
-      for (int column = 0; column < 8; ++column)
-        EXPECT_EQ(x >> (8 * row + column) & 1u, y >> (8 * column + row) & 1u);
   }
 }
 
