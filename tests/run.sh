@@ -10,7 +10,7 @@ git ls-files 'src/*.[ch]pp' 'tests/*.[ch]pp' | xargs -r clang-format --dry-run -
 
 cmake --preset dev -DLEAPMAP_TESTS=ON
 cmake --build --preset dev --target leapmap-tests
-ctest --preset dev --no-tests=error -j 2 -E '^(cli|analysis)\.'
+ctest --preset dev --no-tests=error -j 2 -E '^(cli|analysis|mutation)\.'
 
 sh tests/fuzz/run.sh 10
 
