@@ -179,7 +179,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
     // ever.
     const bool lasts = panel.end.time - at.time > S(longest_time);
     if (lasts && event.place < S(least_place) && ++shortened < most_shortened) {
-      const S to = S(2) * event.place;
+      const S to = std::max(S(2) * event.place, S(0.5 * least_place));
       if (by_angle)
         length = stretch.shift + (stretch.begin + stretch.span * to) * (stretch.begin + stretch.span * to);
       else
