@@ -123,7 +123,7 @@ def case_chart(t, study):
 
 def landing_chart(t):
     figure, axis = plt.subplots(figsize=(11.0, 4.8), layout="constrained")
-    for (name, rows, verdict), marker in zip(series(t, "landing"), "o^vs"):
+    for (name, rows, verdict), marker in zip(series(t, "landing"), "o^vsD"):
         x, error = np.maximum(t.fields["x"][rows], 1e-9), np.maximum(t.fields["error"][rows], FLOOR)
         axis.plot(x, error, marker, markersize=5, markerfacecolor="none", label=f"{name}: {verdict}")
     axis.set_xscale("log")

@@ -65,13 +65,14 @@ std::string check_line(const Spec& spec, const Story& story, const Outcome& b) {
   AuditReport report;
   Auditor(spec, 1).look_at({0, a}, report);
   const bool disagrees = report.first_mismatch || report.first_inaccurate;
-  return fmt::format("Check: {} {}, height within {:.1e} diameters, time within {:.1e}.{}", by,
-                     disagrees ? "DISAGREES" : "agrees", std::abs(a.jump_height - b.jump_height),
+  return fmt::format("Check: {} {} {:.1e} diameters, time {} {:.1e}.{}", by,
+                     disagrees ? "DISAGREES: height off by" : "agrees, height within",
+                     std::abs(a.jump_height - b.jump_height), disagrees ? "by" : "within",
                      std::abs(a.jump_time / b.jump_time - 1.0),
-                     report.first_overruled ? " The paper's (7) to (9) DISAGREE."
-                     : report.referee_undecided
-                         ? ""
-                         : fmt::format(" The paper's (7) to (9): within {:.1e}.", report.referee_max_error));
+                     report.first_overruled     ? " The paper's (7) to (9) DISAGREE."
+                     : report.referee_undecided ? ""
+                                                : fmt::format(" The paper's (7) to (9): all within {:.1e}.",
+                                                              report.referee_max_error));
 }
 
 void print_jump(const Spec& spec, const Story& story, const Outcome& checked) {

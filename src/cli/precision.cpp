@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
@@ -16,6 +15,7 @@
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
 #include "study/precision.hpp"
+#include "support/errors.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/point_list.hpp"
 
@@ -108,6 +108,11 @@ int run(PrecisionArguments arguments, bool designs_given) {
   if (options.quick) options.budget = 0.3;
   if (!arguments.points.empty()) options.points = read_designs(arguments.points);
   const Scene scene{.friction = arguments.friction, .runway = 4.0};
+  const std::vector<Contestant> contestants = precision_contestants(true, scene.friction);
+  for (const std::string& method : options.methods)
+    if (std::ranges::find(contestants, method, &Contestant::method) == contestants.end())
+      throw InputError(fmt::format(
+          "--methods {}: knows no friction; allowed with --friction coulomb: exact, gsl-...", method));
   hdf5::refuse_other_file(arguments.table, filetype, arguments.locking);  // not after minutes of work
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
@@ -163,13 +168,14 @@ void add_precision(CLI::App& app, int& status) {
       ->add_option("--methods", arguments->options.methods, "only these, with commas between; default: all")
       ->delimiter(',')
       ->check(CLI::IsMember(methods));
-  const std::map<std::string, Friction> frictions{{"sticking", Friction::sticking},
-                                                  {"coulomb", Friction::coulomb}};
   command
-      ->add_option(
-          "--friction", arguments->friction,
+      ->add_option_function<std::string>(
+          "--friction",
+          [arguments](const std::string& word) {
+            arguments->friction = word == "coulomb" ? Friction::coulomb : Friction::sticking;
+          },
           "sticking (never slips), or coulomb: then random designs have a random mu_static and mu_kinetic")
-      ->transform(CLI::CheckedTransformer(frictions));
+      ->check(CLI::IsMember({"sticking", "coulomb"}));
   command->add_flag("--quick", arguments->options.quick,
                     "fewer designs and settings, less time for each: within 30 s");
   command->footer(

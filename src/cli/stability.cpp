@@ -154,7 +154,7 @@ void add_stability(CLI::App& app, int& status) {
   auto arguments = std::make_shared<StabilityArguments>();
   command->add_option("-o,--output", arguments->table, "the table to write, HDF5; default: maps/stability.h5")
       ->check(named_file());
-  command->add_flag("--quick", arguments->options.quick, "fewer places on each walk: within 30 s");
+  command->add_flag("--quick", arguments->options.quick, "fewer places on each walk: within a minute");
   command->footer(
       "The cases: needle (a mass on the rim of an ever lighter hoop), release (ever closer to the unstable "
       "equilibrium),\n"

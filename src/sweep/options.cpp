@@ -132,7 +132,7 @@ const std::array options{
            "tolerance",
            NumberSlot{[](Spec& s) -> double& { return s.numerics.tolerance; }},
            "1",
-           "relative error allowed in times (exact), or per step (gsl-)",
+           "relative error allowed in times (exact; with friction in every phase), or per step (gsl-)",
            {0.0, 0.1, false, true}},
     Option{"numerics",
            "absolute_tolerance",
