@@ -191,23 +191,25 @@ struct AuditAttribute {
   Member member;
   int since;
 };
-constexpr std::array counts{AuditAttribute{"audit_designs", &AuditReport::designs, 0},
-                            AuditAttribute{"audit_flag_mismatches", &AuditReport::flag_mismatches, 0},
-                            AuditAttribute{"audit_undecided", &AuditReport::undecided, 1},
-                            AuditAttribute{"audit_beyond_tolerance", &AuditReport::beyond_tolerance, 1},
-                            AuditAttribute{"audit_failed", &AuditReport::failed, 4},
-                            AuditAttribute{"audit_referee_designs", &AuditReport::refereed, 5},
-                            AuditAttribute{"audit_referee_undecided", &AuditReport::referee_undecided, 5},
-                            AuditAttribute{"audit_overruled", &AuditReport::overruled, 5}};
-constexpr std::array errors{
-    AuditAttribute{"audit_max_abs_height_error", &AuditReport::max_abs_height_error, 0},
-    AuditAttribute{"audit_max_rel_time_error", &AuditReport::max_rel_time_error, 0},
-    AuditAttribute{"audit_max_rel_motion_error", &AuditReport::max_rel_motion_error, 5},
-    AuditAttribute{"audit_allowed_error", &AuditReport::allowed_error, 4},
-    AuditAttribute{"audit_referee_max_error", &AuditReport::referee_max_error, 5}};
-constexpr std::array firsts{AuditAttribute{"audit_first_mismatch", &AuditReport::first_mismatch, 4},
-                            AuditAttribute{"audit_first_inaccurate", &AuditReport::first_inaccurate, 4},
-                            AuditAttribute{"audit_first_overruled", &AuditReport::first_overruled, 5}};
+using Count = AuditAttribute<std::size_t AuditReport::*>;
+using Error = AuditAttribute<double AuditReport::*>;
+using First = AuditAttribute<std::optional<std::size_t> AuditReport::*>;
+constexpr std::array counts{Count{"audit_designs", &AuditReport::designs, 0},
+                            Count{"audit_flag_mismatches", &AuditReport::flag_mismatches, 0},
+                            Count{"audit_undecided", &AuditReport::undecided, 1},
+                            Count{"audit_beyond_tolerance", &AuditReport::beyond_tolerance, 1},
+                            Count{"audit_failed", &AuditReport::failed, 4},
+                            Count{"audit_referee_designs", &AuditReport::refereed, 5},
+                            Count{"audit_referee_undecided", &AuditReport::referee_undecided, 5},
+                            Count{"audit_overruled", &AuditReport::overruled, 5}};
+constexpr std::array errors{Error{"audit_max_abs_height_error", &AuditReport::max_abs_height_error, 0},
+                            Error{"audit_max_rel_time_error", &AuditReport::max_rel_time_error, 0},
+                            Error{"audit_max_rel_motion_error", &AuditReport::max_rel_motion_error, 5},
+                            Error{"audit_allowed_error", &AuditReport::allowed_error, 4},
+                            Error{"audit_referee_max_error", &AuditReport::referee_max_error, 5}};
+constexpr std::array firsts{First{"audit_first_mismatch", &AuditReport::first_mismatch, 4},
+                            First{"audit_first_inaccurate", &AuditReport::first_inaccurate, 4},
+                            First{"audit_first_overruled", &AuditReport::first_overruled, 5}};
 
 }  // namespace
 
@@ -359,7 +361,8 @@ bool Auditor::exceeds(const AuditDifference& d, const AuditDifference& doubt, co
 }
 
 void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
-  const auto& [number, ours] = sample;
+  const std::size_t number = sample.number;
+  const Outcome& ours = sample.outcome;
   ++report.designs;
   if (ours.status == Status::failed) {
     ++report.failed;
