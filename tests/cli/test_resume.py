@@ -198,7 +198,7 @@ def test_a_second_signal_stops_at_once_and_leaves_a_part_to_go_on_with(second, t
 
 
 def test_ctrl_c_while_a_resumed_sweep_gathers_its_audit(tmp_path):
-    slow = SPEC.replace("audit = 1e-4", 'method = "gsl-rk8pd"\naudit = 1')
+    slow = SPEC.replace("audit = 1e-4", 'method = "gsl-rk8pd"\naudit = 0.2')
     (tmp_path / "spec.toml").write_text(slow)
     assert stopped(tmp_path, 1_000_000)[0] == 130  # about 100,000 designs, some seconds to solve again
     tiles = tiles_done(tmp_path / "map.h5.part")
