@@ -30,12 +30,7 @@ Expected expected_of(const StabilitySubject& subject) {
   const int ulps = subject.scene.friction == Friction::coulomb ? 100 : 4;
   Expected expected{truths_of({&subject.design, 1}, subject.scene)[0]};
   const Outcome right = refined_outcome(subject.design, subject.scene);
-  std::vector<double Design::*> inputs{&Design::slope,         &Design::mass_ratio,
-                                       &Design::offset_ratio,  &Design::inertia_factor,
-                                       &Design::release_angle, &Design::release_spin};
-  if (subject.scene.friction == Friction::coulomb)
-    inputs.insert(inputs.end(), {&Design::mu_static, &Design::mu_kinetic, &Design::restitution});
-  for (double Design::*input : inputs) {
+  for (double Design::*input : inputs_of(subject.scene.friction)) {
     double worst = 0.0;
     for (const double direction : {-1.0, 1.0}) {
       Design moved = subject.design;

@@ -79,6 +79,11 @@ struct StabilityOptions {
 /// friction_cases.
 std::vector<StabilityCase> stability_cases(const StabilityOptions& options);
 
+/// exact, all of GSL's steppers at the default tolerance, and at a fixed step the classical fourth order;
+/// without friction also those that games use and the implicit midpoint rule (symplectic, for Hamiltonian
+/// coordinates), which GSL calls rk2imp.
+std::vector<Contestant> usual_contestants(Friction friction);
+
 /// The cases with Coulomb friction: painleve, slow, dip, stick, bounces.
 std::vector<StabilityCase> friction_cases(bool quick);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The walks into trouble, as data.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,24 +20,10 @@ Contestant by_exact(double tolerance) {
   return {"exact", false, tolerance, 0, RollingModel::energy_integral};
 }
 
-/// exact, all of GSL's at the default tolerance, and at a fixed step those that games use, the classical
-/// fourth order and the implicit midpoint rule (symplectic, for Hamiltonian coordinates), which GSL calls
-/// rk2imp.
-std::vector<Contestant> usual_contestants() {
-  std::vector<Contestant> contestants{by_exact(usual_tolerance)};
-  for (const GslStepper& stepper : gsl_steppers())
-    contestants.push_back({std::string(stepper.name), false, usual_tolerance});
-  for (const GslStepper& stepper : game_steppers())
-    contestants.push_back({std::string(stepper.name), true, usual_step, stepper.order});
-  for (const char* stepper : {"gsl-rk4", "gsl-rk2imp"})
-    contestants.push_back({stepper, true, usual_step, find_gsl_stepper(stepper)->order});
-  return contestants;
-}
-
 /// A mass on the rim of an ever lighter hoop rolls through phi = 0, where the inertia about the contact is 2
 /// m R^2: the spin has a needle there, of width about 1 / sqrt(mass ratio).
 StabilityCase needle(bool quick) {
-  StabilityCase needle{"needle", "mass ratio", {}, usual_contestants()};
+  StabilityCase needle{"needle", "mass ratio", {}, usual_contestants(Friction::sticking)};
   for (int decade = 0; decade <= 9; decade += quick ? 3 : 1) {
     StabilitySubject subject{std::pow(10.0, decade), {}, {.runway = 2.0, .hop_height = 0.02}};
     subject.design.mass_ratio = subject.x;
@@ -49,7 +36,8 @@ StabilityCase needle(bool quick) {
 /// The unstable equilibrium has the centre of mass straight above the contact: sin(theta) = rho sin(theta +
 /// phi).
 StabilityCase release(bool quick) {
-  StabilityCase release{"release", "distance from the unstable equilibrium [rad]", {}, usual_contestants()};
+  StabilityCase release{
+      "release", "distance from the unstable equilibrium [rad]", {}, usual_contestants(Friction::sticking)};
   for (int decade = 1; decade <= 12; decade += quick ? 4 : 1) {
     StabilitySubject subject{std::pow(10.0, -decade), {}, {}};
     const Hoop<long double> hoop = derive<long double>(subject.design);
@@ -65,7 +53,8 @@ StabilityCase release(bool quick) {
 /// rho) / (1 + rho)) - 1 the normal force touches zero, and beyond it a pair of lift-off and return is born.
 /// From rest (w = 0) that is at mass ratio 13, at cos = -5/13 from the top.
 StabilityCase graze(bool quick) {
-  StabilityCase graze{"graze", "mass ratio beyond the fold, relative", {}, usual_contestants()};
+  StabilityCase graze{
+      "graze", "mass ratio beyond the fold, relative", {}, usual_contestants(Friction::sticking)};
   constexpr double spin = 0.01;
   constexpr double q = (1.0 + spin * spin) * (1.0 + spin * spin);
   constexpr double fold = (27.0 - q) / (2.0 * q);
@@ -82,7 +71,7 @@ StabilityCase graze(bool quick) {
 
 /// So slight a slope that the hoop is fast enough to jump only after many turns, as many as exact counts.
 StabilityCase long_run(bool quick) {
-  StabilityCase long_run{"long", "revolutions rolled to the jump", {}, usual_contestants()};
+  StabilityCase long_run{"long", "revolutions rolled to the jump", {}, usual_contestants(Friction::sticking)};
   long_run.max_steps = 5'000'000;  // the longest run takes some 3.2 million of the usual fixed steps
   for (const double turns : {1.0, 10.0, 100.0, 1000.0, 10000.0}) {
     if (quick && turns > 100.0) break;
@@ -129,6 +118,20 @@ StabilityCase unreachable_tolerances(bool quick) {
 }
 
 }  // namespace
+
+std::vector<Contestant> usual_contestants(Friction friction) {
+  const bool slips = friction == Friction::coulomb;
+  std::vector<Contestant> contestants{by_exact(usual_tolerance)};
+  for (const GslStepper& stepper : gsl_steppers())
+    contestants.push_back({std::string(stepper.name), false, usual_tolerance});
+  const auto add_fixed = [&](const GslStepper& stepper) {
+    contestants.push_back({std::string(stepper.name), true, usual_step, stepper.order});
+  };
+  if (!slips) std::ranges::for_each(game_steppers(), add_fixed);
+  add_fixed(*find_gsl_stepper("gsl-rk4"));
+  if (!slips) add_fixed(*find_gsl_stepper("gsl-rk2imp"));
+  return contestants;
+}
 
 std::vector<StabilityCase> stability_cases(const StabilityOptions& options) {
   std::vector<StabilityCase> cases{needle(options.quick),     release(options.quick),

@@ -2,25 +2,13 @@
 /// The walks into trouble that friction makes, as data.
 #include <cmath>
 
-#include "numerics/gsl_integrator.hpp"
 #include "study/stability.hpp"
 
 namespace leapmap {
 namespace {
 
-constexpr double usual_tolerance = 1e-10, usual_step = 0x1p-6;
-
-/// exact, GSL's adaptive steppers at the default tolerance, and the classical fourth order at a fixed step.
-std::vector<Contestant> contestants() {
-  std::vector<Contestant> all{{"exact", false, usual_tolerance, 0, RollingModel::energy_integral}};
-  for (const GslStepper& stepper : gsl_steppers())
-    all.push_back({std::string(stepper.name), false, usual_tolerance});
-  all.push_back({"gsl-rk4", true, usual_step, find_gsl_stepper("gsl-rk4")->order});
-  return all;
-}
-
 StabilityCase walk(std::string name, std::string abscissa) {
-  return {std::move(name), std::move(abscissa), {}, contestants(), false, 50'000};
+  return {std::move(name), std::move(abscissa), {}, usual_contestants(Friction::coulomb), false, 50'000};
 }
 
 const Scene coulomb{.friction = Friction::coulomb};

@@ -19,15 +19,14 @@ class Integrations {
  public:
   explicit Integrations(const Scene& scene)
       : fine_(make_solving({"gsl-rk8pd", false, finest}, scene, most_steps(scene))),
-        coarse_(make_solving({"gsl-rk8pd", false, coarser}, scene, most_steps(scene))) {}
+        coarse_(make_solving({"gsl-rk8pd", false, coarser}, scene, most_steps(scene))),
+        inputs_(inputs_of(scene.friction)) {}
 
   Outcome fine(const Design& design) const { return solved(fine_, design); }
   Outcome coarse(const Design& design) const { return solved(coarse_, design); }
   /// Whether its flags stay where the inputs change by its own error.
   bool is_sure(const Design& design, const Outcome& outcome) const {
-    for (double Design::*input : {&Design::slope, &Design::mass_ratio, &Design::offset_ratio,
-                                  &Design::inertia_factor, &Design::release_angle, &Design::release_spin,
-                                  &Design::mu_static, &Design::mu_kinetic, &Design::restitution})
+    for (double Design::*input : inputs_)
       for (const double way : {-1.0, 1.0}) {
         Design beside = design;
         beside.*input *= 1.0 + way * own_error;
@@ -49,6 +48,7 @@ class Integrations {
     return outcome;
   }
   Solving fine_, coarse_;
+  std::vector<double Design::*> inputs_;
 };
 
 }  // namespace
@@ -56,6 +56,15 @@ class Integrations {
 std::string_view name_of(Witness witness) {
   constexpr std::array<std::string_view, 3> names{"long double and gsl-rk8pd", "gsl-rk8pd", "long double"};
   return names[static_cast<std::size_t>(witness)];
+}
+
+std::vector<double Design::*> inputs_of(Friction friction) {
+  std::vector<double Design::*> inputs{&Design::slope,         &Design::mass_ratio,
+                                       &Design::offset_ratio,  &Design::inertia_factor,
+                                       &Design::release_angle, &Design::release_spin};
+  if (friction == Friction::coulomb)
+    inputs.insert(inputs.end(), {&Design::mu_static, &Design::mu_kinetic, &Design::restitution});
+  return inputs;
 }
 
 double error_of(const Outcome& ours, const Outcome& right) {

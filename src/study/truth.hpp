@@ -30,6 +30,9 @@ struct Truth {
 /// The right answers for the designs.
 std::vector<Truth> truths_of(std::span<const Design> designs, const Scene& scene);
 
+/// What an outcome depends on with that friction.
+std::vector<double Design::*> inputs_of(Friction friction);
+
 /// The exact solver's answer in long double, to some roundings.
 Outcome refined_outcome(const Design& design, const Scene& scene);
 
