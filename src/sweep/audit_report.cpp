@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/audit_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "map/tile.hpp"
+#include "support/errors.hpp"
+
+namespace leapmap {
+
+void merge(AuditReport& report, const AuditReport& other) {
+  const auto least = [](std::optional<std::size_t>& mine, const std::optional<std::size_t>& theirs) {
+    if (theirs) mine = std::min(mine.value_or(*theirs), *theirs);
+  };
+  report.designs += other.designs;
+  report.max_abs_height_error = std::max(report.max_abs_height_error, other.max_abs_height_error);
+  report.max_rel_time_error = std::max(report.max_rel_time_error, other.max_rel_time_error);
+  report.max_rel_motion_error = std::max(report.max_rel_motion_error, other.max_rel_motion_error);
+  report.failed += other.failed;
+  report.flag_mismatches += other.flag_mismatches;
+  report.undecided += other.undecided;
+  report.beyond_tolerance += other.beyond_tolerance;
+  least(report.first_mismatch, other.first_mismatch);
+  least(report.first_inaccurate, other.first_inaccurate);
+  report.refereed += other.refereed;
+  report.referee_undecided += other.referee_undecided;
+  report.overruled += other.overruled;
+  report.referee_max_error = std::max(report.referee_max_error, other.referee_max_error);
+  least(report.first_overruled, other.first_overruled);
+}
+
+namespace {
+
+/// An attribute of a map, and since which minor version of the format it is there.
+template <class Member>
+struct AuditAttribute {
+  const char* name;
+  Member member;
+  int since;
+};
+using Count = AuditAttribute<std::size_t AuditReport::*>;
+using Error = AuditAttribute<double AuditReport::*>;
+using First = AuditAttribute<std::optional<std::size_t> AuditReport::*>;
+constexpr std::array counts{Count{"audit_designs", &AuditReport::designs, 0},
+                            Count{"audit_flag_mismatches", &AuditReport::flag_mismatches, 0},
+                            Count{"audit_undecided", &AuditReport::undecided, 1},
+                            Count{"audit_beyond_tolerance", &AuditReport::beyond_tolerance, 1},
+                            Count{"audit_failed", &AuditReport::failed, 4},
+                            Count{"audit_referee_designs", &AuditReport::refereed, 5},
+                            Count{"audit_referee_undecided", &AuditReport::referee_undecided, 5},
+                            Count{"audit_overruled", &AuditReport::overruled, 5}};
+constexpr std::array errors{Error{"audit_max_abs_height_error", &AuditReport::max_abs_height_error, 0},
+                            Error{"audit_max_rel_time_error", &AuditReport::max_rel_time_error, 0},
+                            Error{"audit_max_rel_motion_error", &AuditReport::max_rel_motion_error, 5},
+                            Error{"audit_allowed_error", &AuditReport::allowed_error, 4},
+                            Error{"audit_referee_max_error", &AuditReport::referee_max_error, 5}};
+constexpr std::array firsts{First{"audit_first_mismatch", &AuditReport::first_mismatch, 4},
+                            First{"audit_first_inaccurate", &AuditReport::first_inaccurate, 4},
+                            First{"audit_first_overruled", &AuditReport::first_overruled, 5}};
+
+}  // namespace
+
+std::vector<hdf5::Attribute> audit_attributes(const AuditReport& report) {
+  std::vector<hdf5::Attribute> attributes;
+  for (const auto& row : counts)
+    attributes.emplace_back(row.name, static_cast<std::int64_t>(report.*row.member));
+  for (const auto& row : errors) attributes.emplace_back(row.name, report.*row.member);
+  for (const auto& row : firsts) {
+    const std::optional<std::size_t>& first = report.*row.member;
+    attributes.emplace_back(row.name, first ? static_cast<std::int64_t>(*first) : std::int64_t{-1});
+  }
+  return attributes;
+}
+
+AuditReport read_audit(const MapReader& map) {
+  AuditReport report;
+  report.method = map.attribute("audit_method");
+  const std::vector<std::int64_t> version = hdf5::read_integers(map.file(), "version");
+  const auto has = [&](const auto& row) { return version.at(1) >= row.since; };
+  const auto designs = static_cast<std::int64_t>(Tiling(map.shape()).designs());
+  const auto count = [&](const char* name, std::int64_t least, std::int64_t most) {
+    const std::int64_t value = hdf5::read_integers(map.file(), name)[0];
+    if (value < least || value > most) throw BrokenFile(fmt::format("is damaged: its {} is {}", name, value));
+    return value;
+  };
+  for (const auto& row : counts)
+    if (has(row)) report.*row.member = static_cast<std::size_t>(count(row.name, 0, designs));
+  for (const auto& row : errors)
+    if (has(row)) report.*row.member = hdf5::read_number(map.file(), row.name);
+  for (const auto& row : firsts)
+    if (const std::int64_t design = has(row) ? count(row.name, -1, designs - 1) : -1; design >= 0)
+      report.*row.member = static_cast<std::size_t>(design);
+  return report;
+}
+
+}  // namespace leapmap
