@@ -23,7 +23,7 @@ async function loadSolver(text) {
   const parameters = namesBy(leapmap.parameter_name), columns = namesBy(leapmap.column_name);
   const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name);
   const doubles = (pointer, n) => new Float64Array(leapmap.memory.buffer, pointer, n);
-  const defaults = Object.fromEntries(parameters.map((name, i) => [name, doubles(leapmap.parameters(), parameters.length)[i]]));
+  const defaults = Object.fromEntries(parameters.map((name, i) => [name, doubles(leapmap.parameter_values(), parameters.length)[i]]));
   const rows = (names, pointer, n) => {
     const values = doubles(pointer, n * names.length).slice();
     return Object.fromEntries(names.map((name, k) => [name, Float64Array.from({ length: n }, (_, i) => values[i * names.length + k])]));
@@ -35,7 +35,7 @@ async function loadSolver(text) {
      * motion's samples [s]; 0: as fine as a picture needs.
      */
     solve(design, slips, tolerance, interval = 0) {
-      doubles(leapmap.parameters(), parameters.length).set(parameters.map((name) => design[name] ?? defaults[name]));
+      doubles(leapmap.parameter_values(), parameters.length).set(parameters.map((name) => design[name] ?? defaults[name]));
       leapmap.solve(slips ? 1 : 0, tolerance, interval);
       const outcome = Object.fromEntries(fields.map((name, i) => [name, word(leapmap.field_text(i)) ?? leapmap.field_value(i)]));
       return {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "cli/commands.hpp"
@@ -11,6 +12,8 @@
 #include "cli/sweep.hpp"
 #include "map/schema.hpp"
 #include "map/trace_file.hpp"
+#include "model/fields.hpp"
+#include "model/model.hpp"
 #include "support/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/options.hpp"
@@ -27,21 +30,21 @@ struct HopArguments {
   Locking locking = Locking::required;
 };
 
+constexpr double check_tolerance = 1e-12;  // of the method that checks
+
 constexpr double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-std::string verdict(const Story& story, const Scene& scene) {
-  switch (story.outcome.status) {
+std::string verdict(const Motion& motion, const Scene& scene) {
+  switch (motion.outcome.status) {
     case Status::jumped:
-      return story.outcome.spurious_first_jump == 1
+      return motion.outcome.spurious_first_jump == 1
                  ? fmt::format("It jumps, after a spurious first lift-off below {} diameters.",
                                scene.hop_height)
                  : "It jumps at its first lift-off.";
     case Status::no_jump:
       return fmt::format("No jump within {} revolutions.", scene.runway);
     case Status::stalled:
-      return scene.friction == Friction::coulomb
-                 ? "It stalls: it rolls with its spin fallen to zero or below, or is released turning uphill."
-                 : "It stalls: the spin falls to zero, or the hoop does not start downhill.";
+      return "It stalls: it rolls with its spin fallen to zero, or does not start downhill.";
     case Status::airborne_at_release:
       return "The plane would have to pull at release: it is airborne from the start.";
     case Status::indeterminate:
@@ -50,13 +53,13 @@ std::string verdict(const Story& story, const Scene& scene) {
       return fmt::format(
           "The method gave up: {}. Try another tolerance, more max_steps, a shorter fixed_step or another "
           "method.",
-          story.outcome.failure ? story.outcome.failure : "for no reason it knows of");
+          motion.outcome.failure ? motion.outcome.failure : "for no reason it knows of");
   }
 }
 
 /// How well the method that audits this one agrees.
-std::string check_line(const Spec& spec, const Story& story, const Outcome& b) {
-  const Outcome& a = story.outcome;
+std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b) {
+  const Outcome& a = motion.outcome;
   const std::string by = audit_method(spec.numerics) + " at 1e-12";
   if (b.status == Status::failed) return fmt::format("Check: {} gave up on this design.", by);
   if (!same_flags(a, b))
@@ -75,44 +78,54 @@ std::string check_line(const Spec& spec, const Story& story, const Outcome& b) {
                                                               report.referee_max_error));
 }
 
-void print_jump(const Spec& spec, const Story& story, const Outcome& checked) {
-  const Outcome& jump = story.outcome;
-  const double second = time_unit(spec.scene);
+void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) {
+  const Outcome& jump = motion.outcome;
   if (jump.status == Status::jumped) {
     say("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off",
-        jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time * second,
-        jump.flight_time * second);
-    if (spec.scene.friction == Friction::sticking) {
-      say("; the flight first dips {:.4g} diameters.\n", jump.dip);
-    } else {
-      say(".\nSlid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
+        jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time, jump.flight_time);
+    if (jump.dip < 0.0) say("; the flight first dips {:.4g} diameters", jump.dip);
+    say(".\n");
+    if (std::isfinite(jump.energy_lost)) {
+      say("Slid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
           "rad/s.\n",
-          jump.slip_distance, jump.energy_lost, jump.landing_spin / second);
+          jump.slip_distance, jump.energy_lost, jump.landing_spin / time_unit(spec.scene));
     }
   }
-  say("{}\n", check_line(spec, story, checked));
+  say("{}\n", check_line(spec, motion, checked));
 }
 
-/// Every phase with Coulomb friction, flights with how they go.
-void print_phases(const Story& story, double second) {
-  std::size_t flights = 0;
-  for (const auto& [phase, at, direction] : story.phases) {
-    const std::string begins =
-        fmt::format("{:>12.6f} {:>12.4f} {:>14.6f}", at.time * second, degrees(at.angle), at.spin / second);
-    if (phase == Phase::rolling) {
-      say("{:<22} {}\n", "R  rolls", begins);
-    } else if (phase == Phase::sliding) {
-      say("{:<22} {}\n", direction > 0 ? "S  slides forwards" : "S  slides backwards", begins);
+/// Every phase, flights with how they go; and lift-offs after which the hoop is taken to roll on.
+void print_phases(const Motion& motion) {
+  const auto begins = [](double t, double phi, double spin) {
+    return fmt::format("{:>12.6f} {:>12.4f} {:>14.6f}", t, degrees(phi), spin);
+  };
+  std::size_t told = 0;
+  const auto print_flight = [&](std::string_view what) {
+    const Candidate& flown = motion.candidates[told++];
+    say("{:<22} {} {:>12.6f} {:>12.6f}\n", what, begins(flown.t, flown.phi, flown.spin), flown.height,
+        flown.t + flown.flight_time);
+    if (flown.height == 0.0) say("{:<22} it sinks at once: the plane would have to pull here\n", "");
+  };
+  const auto print_low_ones_before = [&](double t) {
+    while (told < motion.candidates.size() && motion.candidates[told].t < t)
+      print_flight(fmt::format("   lift-off {}, too low", told + 1));
+  };
+  for (const PhaseStart& phase : motion.phases) {
+    print_low_ones_before(phase.t);
+    if (phase.phase == Phase::flight) {
+      const bool jumps = motion.outcome.status == Status::jumped && told + 1 == motion.candidates.size();
+      print_flight(jumps ? "F  jumps" : "F  hops, too low");
     } else {
-      const Flight<double>& flown = story.candidates[flights++].flight;
-      const bool jumps = story.outcome.status == Status::jumped && flights == story.candidates.size();
-      say("{:<22} {} {:>12.6f} {:>12.6f}\n", jumps ? "F  jumps" : "F  hops, too low", begins, flown.height,
-          (at.time + flown.flight_time) * second);
+      const std::string_view how = phase.phase == Phase::rolling ? "R  rolls"
+                                   : phase.direction > 0         ? "S  slides forwards"
+                                                                 : "S  slides backwards";
+      say("{:<22} {}\n", how, begins(phase.t, phase.phi, phase.spin));
     }
   }
+  print_low_ones_before(std::numeric_limits<double>::infinity());
 }
 
-void print_table(const Spec& spec, const Story& story, const Outcome& checked) {
+void print_table(const Spec& spec, const Motion& motion, const Outcome& checked) {
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters(spec)) {
     const double value = value_of(*parameter, spec.design);
@@ -127,89 +140,71 @@ void print_table(const Spec& spec, const Story& story, const Outcome& checked) {
 
   say("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]", "spin [rad/s]",
       "height [2R]", "landing [s]");
-  if (spec.scene.friction == Friction::coulomb) {
-    print_phases(story, second);
-    say("\n{}  {}\n", phase_letters(story.outcome.phase_sequence), verdict(story, spec.scene));
-    print_jump(spec, story, checked);
-    return;
-  }
-  say("{:<22} {:>12.6f} {:>12.4f} {:>14.6f}\n", "R  rolls from release", 0.0,
-      degrees(spec.design.release_angle), spec.design.release_spin / second);
-  const auto& candidates = story.candidates;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const bool jump = story.outcome.status == Status::jumped && i + 1 == candidates.size();
-    const auto& [lift_off, flight] = candidates[i];
-    say("{:<22} {:>12.6f} {:>12.4f} {:>14.6f} {:>12.6f} {:>12.6f}\n",
-        jump ? "F  jumps" : fmt::format("   lift-off {}, too low", i + 1), lift_off.time * second,
-        degrees(lift_off.angle), lift_off.spin / second, flight.height,
-        (lift_off.time + flight.flight_time) * second);
-    if (flight.height == 0.0)
-      say("{:<22} it sinks at once: no-slip rolling asks the plane to pull here\n", "");
-  }
-  say("\n{}\n", verdict(story, spec.scene));
-  print_jump(spec, story, checked);
-  for (const Graze& graze : story.grazes)
-    say("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",
-        graze.time * second, graze.minimum ? "minimum" : "maximum", graze.normal_force,
+  print_phases(motion);
+  if (motion.outcome.phase_sequence != 0) say("\n{}", phase_letters(motion.outcome.phase_sequence));
+  say("\n{}\n", verdict(motion, spec.scene));
+  print_jump(spec, motion, checked);
+  for (const Graze& graze : motion.grazes)
+    say("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n", graze.t,
+        graze.minimum ? "minimum" : "maximum", graze.normal_force,
         graze.makes_lift_off() ? "making a " : "making no ");
 }
 
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
 /// The outcome under the map's names and units, so that a script finds the same words in both.
-std::string json_text(const Spec& spec, const Story& story, const Outcome& checked) {
+std::string json_text(const Spec& spec, const Motion& motion, const Outcome& checked) {
   const double second = time_unit(spec.scene);
-  const bool slips = spec.scene.friction == Friction::coulomb;
   std::vector<std::string> design, outcome, candidates, grazes, phases;
   for (const Option* parameter : design_parameters(spec))
     design.push_back(
         fmt::format("\"{}\": {}", parameter->key, json_number(value_of(*parameter, spec.design))));
   for (const Field& field : map_fields()) {
-    if (field.of_coulomb && !slips) continue;
+    if (!has(spec.scene.friction, field.only_of)) continue;
     std::string value;
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
-      value = json_number(story.outcome.*quantity->member * (quantity->unit(second)));
+      value = json_number(motion.outcome.*quantity->member);
     } else if (std::holds_alternative<Word>(field.source)) {
-      value = fmt::format("\"{}\"", phase_letters(story.outcome.phase_sequence));
+      value = fmt::format("\"{}\"", phase_letters(motion.outcome.phase_sequence));
     } else if (field.name == "status") {
-      value = fmt::format("\"{}\"", name_of(story.outcome.status));
+      value = fmt::format("\"{}\"", name_of(motion.outcome.status));
     } else {
       const auto& code = std::get<Code>(field.source);
-      value = code.value(story.outcome) == code.fill ? "null" : fmt::format("{}", code.value(story.outcome));
+      value =
+          code.value(motion.outcome) == code.fill ? "null" : fmt::format("{}", code.value(motion.outcome));
     }
     outcome.push_back(fmt::format("\"{}\": {}", field.name, value));
   }
-  for (const auto& [lift_off, flight] : story.candidates)
+  for (const Candidate& flown : motion.candidates)
     candidates.push_back(fmt::format(
         R"({{"time": {}, "angle": {}, "spin": {}, "height": {}, "apex_time": {}, "flight_time": {}, "dip": {}}})",
-        json_number(lift_off.time * second), json_number(lift_off.angle), json_number(lift_off.spin),
-        json_number(flight.height), json_number(flight.apex_time * second),
-        json_number(flight.flight_time * second), json_number(flight.dip)));
-  for (const Graze& graze : story.grazes)
+        json_number(flown.t), json_number(flown.phi), json_number(flown.spin * second),
+        json_number(flown.height), json_number(flown.apex_time), json_number(flown.flight_time),
+        json_number(flown.dip)));
+  for (const Graze& graze : motion.grazes)
     grazes.push_back(fmt::format(
         R"({{"time": {}, "angle": {}, "normal_force": {}, "extremum": "{}", "makes_lift_off": {}}})",
-        json_number(graze.time * second), json_number(graze.angle), json_number(graze.normal_force),
+        json_number(graze.t), json_number(graze.phi), json_number(graze.normal_force),
         graze.minimum ? "minimum" : "maximum", graze.makes_lift_off()));
-  for (const auto& [phase, at, direction] : story.phases)
+  for (const PhaseStart& at : motion.phases)
     phases.push_back(fmt::format(
         R"({{"phase": "{}", "direction": {}, "time": {}, "angle": {}, "spin": {}, "x": {}}})",
-        phase_letters(static_cast<std::uint64_t>(phase)), direction, json_number(at.time * second),
-        json_number(at.angle), json_number(at.spin), json_number(at.travel)));
-  const std::string slipping =
-      slips ? fmt::format(",\n  \"phases\": [{}]", fmt::join(phases, ", ")) : std::string();
+        phase_letters(static_cast<std::uint64_t>(at.phase)), at.direction, json_number(at.t),
+        json_number(at.phi), json_number(at.spin * second), json_number(at.x / spec.scene.radius)));
   const std::string check = fmt::format(
       R"({{"method": "{}", "tolerance": 1e-12, "status": "{}", "candidates": {}, "jump_height": {}, "jump_time": {}}})",
       audit_method(spec.numerics), name_of(checked.status), checked.candidates,
-      json_number(checked.jump_height), json_number(checked.jump_time * second));
+      json_number(checked.jump_height), json_number(checked.jump_time));
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
       "\"radius\": {}, "
       "\"gravity\": {}, \"rest_speed\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  "
       "\"lift_offs\": [{}],\n  "
-      "\"grazes\": [{}],\n  \"check\": {}{}\n}}\n",
-      fmt::join(design, ", "), spec.friction, spec.scene.runway, spec.scene.hop_height, spec.scene.radius,
-      spec.scene.gravity, spec.scene.rest_speed, resolved_method(spec.numerics), spec.numerics.tolerance,
-      fmt::join(outcome, ",\n  "), fmt::join(candidates, ", "), fmt::join(grazes, ", "), check, slipping);
+      "\"grazes\": [{}],\n  \"check\": {},\n  \"phases\": [{}]\n}}\n",
+      fmt::join(design, ", "), model_of(spec.scene).name, spec.scene.runway, spec.scene.hop_height,
+      spec.scene.radius, spec.scene.gravity, spec.scene.rest_speed, resolved_method(spec.numerics),
+      spec.numerics.tolerance, fmt::join(outcome, ",\n  "), fmt::join(candidates, ", "),
+      fmt::join(grazes, ", "), check, fmt::join(phases, ", "));
 }
 
 int run(const HopArguments& arguments) {
@@ -225,30 +220,29 @@ int run(const HopArguments& arguments) {
     throw InputError(
         fmt::format("{}: design.points is a list; allowed: one design for a hop", origin_of(spec)));
 
-  const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval / time_unit(spec.scene);
-  if (!arguments.trace.empty() && !(interval > 0.0))
-    throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
+  const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval;
   const bool exact = resolved_method(spec.numerics) == "exact";
-  Story story =
-      exact ? tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
-            : tell_by_integration(spec.design, spec.scene, integration_options(spec.numerics), interval);
-  const Story check =
-      exact ? tell_by_integration(spec.design, spec.scene, adaptive("gsl-rk8pd", check_tolerance))
-            : tell_exactly(spec.design, spec.scene, check_tolerance);
-  if (exact) story.grazes = check.grazes;
+  const Model& model = model_of(spec.scene);
+  Motion motion = exact ? model.tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
+                        : model.tell_by_integration(spec.design, spec.scene,
+                                                    integration_options(spec.numerics), interval);
+  const Motion check =
+      exact ? model.tell_by_integration(spec.design, spec.scene, adaptive("gsl-rk8pd", check_tolerance), 0.0)
+            : model.tell_exactly(spec.design, spec.scene, check_tolerance, 0.0);
+  if (exact) motion.grazes = check.grazes;
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
-    attributes.emplace_back("status", std::string(name_of(story.outcome.status)));
-    if (!write_trace(behind_links(arguments.trace), story, spec.scene, attributes, arguments.locking))
+    attributes.emplace_back("status", std::string(name_of(motion.outcome.status)));
+    if (!write_trace(behind_links(arguments.trace), motion, attributes, arguments.locking))
       tell_of_folder(arguments.trace);
   }
   if (arguments.json) {
-    say("{}", json_text(spec, story, check.outcome));
+    say("{}", json_text(spec, motion, check.outcome));
   } else {
-    print_table(spec, story, check.outcome);
-    if (!arguments.trace.empty()) say("Trace of {} points: {}\n", story.points.size(), arguments.trace);
+    print_table(spec, motion, check.outcome);
+    if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
   }
-  return story.outcome.status == Status::failed ? 1 : 0;
+  return motion.outcome.status == Status::failed ? 1 : 0;
 }
 
 }  // namespace

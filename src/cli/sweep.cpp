@@ -12,6 +12,7 @@
 #include "cli/provenance.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "map/schema.hpp"
 #include "support/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"

@@ -5,6 +5,7 @@
 
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "map/schema.hpp"
 #include "support/errors.hpp"
 #include "sweep/map_spec.hpp"
 

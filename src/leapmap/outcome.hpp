@@ -30,13 +30,21 @@ constexpr std::string_view name_of(Status status) {
   return names[static_cast<std::size_t>(status)];
 }
 
+/// Designs by how they ended.
+using StatusCounts = std::array<std::int64_t, status_count>;
+inline std::size_t designs_in(const StatusCounts& counts) {
+  std::int64_t designs = 0;
+  for (const std::int64_t count : counts) designs += count;
+  return static_cast<std::size_t>(designs);
+}
+
 /// Stored in traces and phase_sequence: numbers are never reused or changed.
 enum class Phase : std::uint8_t { rolling = 1, sliding = 2, flight = 3 };
 
 /// A phase_sequence as letters, for example "RSRSF"; "-": none; with "..." where there are 32 phases or more.
 std::string phase_letters(std::uint64_t sequence);
 
-/// Dimensionless: lengths in R, times in sqrt(R/g), heights and dip in hoop diameters. NaN: does not apply.
+/// As maps store it. NaN: does not apply.
 struct Outcome {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr std::uint8_t no_lift_off = 255;  ///< spurious_first_jump where there is no lift-off at all
@@ -45,20 +53,20 @@ struct Outcome {
   Status status = Status::not_computed;
   std::uint8_t spurious_first_jump = no_lift_off;  ///< 1: the first lift-off stayed below hop_height
   std::uint8_t candidates = 0;                     ///< lift-offs looked at, the jump included
-  double jump_height = none;
-  double jump_time = none;      ///< from release to lift-off
-  double jump_angle = none;     ///< phi at lift-off [rad]
-  double jump_spin = none;      ///< w at lift-off
-  double jump_distance = none;  ///< rolled since release
-  double apex_time = none;      ///< from lift-off
-  double flight_time = none;    ///< from lift-off to landing
-  double dip = none;            ///< how far the flight first enters the plane, <= 0
-  double first_jump_height = none;
-  double first_jump_time = none;
+  double jump_height = none;                       ///< apex of the jump above the plane [hoop diameters]
+  double jump_time = none;                         ///< from release to lift-off [s]
+  double jump_angle = none;                        ///< phi at lift-off [rad]
+  double jump_spin = none;                         ///< w at lift-off [sqrt(g/R)]
+  double jump_distance = none;                     ///< travelled since release [R]
+  double apex_time = none;                         ///< from lift-off [s]
+  double flight_time = none;                       ///< from lift-off to landing [s]
+  double dip = none;                ///< how far the flight first enters the plane [hoop diameters], <= 0
+  double first_jump_height = none;  ///< of the first lift-off [hoop diameters]
+  double first_jump_time = none;    ///< [s]
   // With Coulomb friction.
   std::uint64_t phase_sequence = 0;  ///< two bits a phase, the first lowest, up to 32; see Phase
   double slip_distance = none;       ///< slid, either way, from release to the end [R]
-  double landing_spin = none;        ///< w after the landing of the jump
+  double landing_spin = none;        ///< w after the landing of the jump [sqrt(g/R)]
   double energy_lost = none;         ///< from release to the lift-off of the jump, over (m + m_p) g R
   const char* failure = nullptr;     ///< why the status is failed, if that is known
 };

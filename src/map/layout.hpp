@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "map/hdf5.hpp"
-#include "map/schema.hpp"
 #include "map/tile.hpp"
+#include "model/fields.hpp"
 
 namespace leapmap {
 
@@ -25,9 +25,8 @@ struct MapLayout {
   std::vector<MapAxis> axes;     ///< one dimension each; empty: a list, whose one dimension is `design`
   std::vector<MapAxis> columns;  ///< of a list: its parameters, along `design`
   std::vector<const Field*> fields;
-  double time_unit = 1.0;  ///< sqrt(R/g) [s]
-  bool single = false;     ///< quantities as f4, not f8
-  int compression = 0;     ///< deflate's level, after a shuffle of bytes; 0: none
+  bool single = false;  ///< quantities as f4, not f8
+  int compression = 0;  ///< deflate's level, after a shuffle of bytes; 0: none
 };
 
 /// Bytes of one value of a field as stored: 1, 4 or 8.

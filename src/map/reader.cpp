@@ -9,6 +9,7 @@
 
 #include "map/hdf5_trust.hpp"
 #include "map/schema.hpp"
+#include "model/fields.hpp"
 #include "support/errors.hpp"
 
 namespace leapmap {

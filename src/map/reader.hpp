@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "leapmap/outcome.hpp"
 #include "map/hdf5_driver.hpp"
-#include "map/schema.hpp"
 #include "map/tile.hpp"
 
 namespace leapmap {

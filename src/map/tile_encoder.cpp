@@ -102,8 +102,7 @@ void TileEncoder::gather(std::span<const Outcome> outcomes) {
         continue;
       }
       const auto& quantity = std::get<Quantity>(field.source);
-      const double unit = quantity.unit(layout_->time_unit);
-      const auto value = [&](const Outcome& outcome) { return outcome.*quantity.member * unit; };
+      const auto value = [&](const Outcome& outcome) { return outcome.*quantity.member; };
       layout_->single
           ? gather_as<float>(some, to, [&](const Outcome& o) { return static_cast<float>(value(o)); })
           : gather_as<double>(some, to, value);

@@ -6,17 +6,16 @@
 #include <span>
 #include <string>
 
-#include "leapmap/scene.hpp"
+#include "leapmap/motion.hpp"
 #include "map/hdf5.hpp"
 #include "map/journaled_file.hpp"
-#include "trajectory/story.hpp"
 
 namespace leapmap {
 
-/// Writes the story in SI units (forces in weights) as a netCDF-readable HDF5 file, replacing path only once
+/// Writes the motion as a netCDF-readable HDF5 file, replacing path only once
 /// it is whole and was read again. Returns false if a power cut may undo that (JournaledFile::rename). Throws
 /// InputError if path is a file other than a trace, IoError if it cannot be written.
-[[nodiscard]] bool write_trace(const std::string& path, const Story& story, const Scene& scene,
+[[nodiscard]] bool write_trace(const std::string& path, const Motion& motion,
                                std::span<const hdf5::Attribute> attributes, Locking locking);
 
 }  // namespace leapmap

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <filesystem>
 
+#include "map/schema.hpp"
 #include "support/errors.hpp"
 
 namespace leapmap {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <memory>
 
+#include "coulomb/coulomb.hpp"
+#include "coulomb/coulomb_integration.hpp"
 #include "numerics/game_steppers.hpp"
-#include "trajectory/coulomb.hpp"
-#include "trajectory/coulomb_integration.hpp"
-#include "trajectory/exact.hpp"
-#include "trajectory/rolling_integration.hpp"
+#include "rolling/exact.hpp"
+#include "rolling/rolling_integration.hpp"
 
 namespace leapmap {
 namespace {
@@ -68,14 +68,6 @@ std::string_view name_of(RollingModel model) {
 }
 
 namespace {
-
-/// Of anything that solves one design, one after another.
-template <class One>
-auto one_by_one(std::shared_ptr<One> one, const Scene& scene) {
-  return [one, scene](std::span<const Design> designs, std::span<Outcome> outcomes) {
-    for (std::size_t i = 0; i < designs.size(); ++i) outcomes[i] = one->solve(designs[i], scene);
-  };
-}
 
 Solving make_slipping(const Contestant& contestant, const Scene& scene, long max_steps) {
   if (contestant.model == RollingModel::energy_integral)

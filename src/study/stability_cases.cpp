@@ -6,9 +6,9 @@
 
 #include "numerics/game_steppers.hpp"
 #include "numerics/gsl_integrator.hpp"
+#include "rolling/exact.hpp"
 #include "study/precision.hpp"
 #include "study/stability.hpp"
-#include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {

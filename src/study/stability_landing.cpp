@@ -7,9 +7,9 @@
 #include <tuple>
 
 #include "physics/flight_search.hpp"
+#include "rolling/exact.hpp"
 #include "study/precision.hpp"
 #include "study/stability.hpp"
-#include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "model/model.hpp"
+#include "model/parameters.hpp"
 #include "study/contestant.hpp"
-#include "trajectory/coulomb.hpp"
-#include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {
@@ -59,11 +59,11 @@ std::string_view name_of(Witness witness) {
 }
 
 std::vector<double Design::*> inputs_of(Friction friction) {
-  std::vector<double Design::*> inputs{&Design::slope,         &Design::mass_ratio,
-                                       &Design::offset_ratio,  &Design::inertia_factor,
-                                       &Design::release_angle, &Design::release_spin};
-  if (friction == Friction::coulomb)
-    inputs.insert(inputs.end(), {&Design::mu_static, &Design::mu_kinetic, &Design::restitution});
+  std::vector<double Design::*> inputs;
+  for (const Parameter& parameter : parameters())
+    if (const auto* member = std::get_if<double Design::*>(&parameter.member);
+        member && has(friction, parameter.only_of))
+      inputs.push_back(*member);
   return inputs;
 }
 
@@ -79,12 +79,7 @@ double error_of(const Outcome& ours, const Outcome& right) {
 }
 
 Outcome refined_outcome(const Design& design, const Scene& scene) {
-  Outcome outcome;
-  if (scene.friction == Friction::coulomb)
-    outcome = CoulombSolver<long double>(1e-15).solve(design, scene);
-  else
-    ExactSolver<long double>(1e-18).solve({&design, 1}, scene, {&outcome, 1});
-  return outcome;
+  return model_of(scene).refined(design, scene);
 }
 
 std::vector<Truth> truths_of(std::span<const Design> designs, const Scene& scene) {

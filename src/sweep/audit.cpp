@@ -8,7 +8,7 @@
 #include <memory>
 #include <mutex>
 
-#include "map/schema.hpp"
+#include "model/fields.hpp"
 #include "referee/referee.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
@@ -63,15 +63,6 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
   return d;
 }
 
-/// An outcome with its times in seconds, by the same conversion that maps are written with: what the referee
-/// says in seconds by itself checks that, too.
-Outcome as_stored(Outcome outcome, const Scene& scene) {
-  for (const Field& field : map_fields())
-    if (const auto* quantity = std::get_if<Quantity>(&field.source))
-      outcome.*quantity->member *= quantity->unit(time_unit(scene));
-  return outcome;
-}
-
 /// The design with each parameter some relative distance away, either way; 0: one unit in the last place.
 std::vector<Design> beside(const Design& design, const Spec& spec, double distance) {
   std::vector<Design> designs;
@@ -113,8 +104,7 @@ std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, c
       const auto* quantity = std::get_if<Quantity>(&field.source);
       if (!quantity) continue;
       double& value = samples.back().outcome.*quantity->member;
-      const double unit = quantity->unit(time_unit(spec.scene)), stored = value * unit;
-      value = (spec.output.precision == "f4" ? static_cast<float>(stored) : stored) / unit;
+      if (spec.output.precision == "f4") value = static_cast<float>(value);
     }
   }
   return samples;
@@ -142,8 +132,7 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
     }
     const std::vector<double> values = map.read(std::string(field.name), tile);
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
-      const double unit = quantity->unit(time_unit(spec.scene));
-      place(values, [&](Outcome& outcome, double value) { outcome.*quantity->member = value / unit; });
+      place(values, [&](Outcome& outcome, double value) { outcome.*quantity->member = value; });
     } else {
       const auto& code = std::get<Code>(field.source);
       place(values,
@@ -284,8 +273,7 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
   std::optional<Verdict> ruling;
   // Where an integration convicts exact, the referee is asked for its opinion.
   const bool second_opinion = verdict.convicts() && resolved_method(spec_.numerics) == "exact";
-  if (mix(number) % referee_every_ == 0 || second_opinion)
-    ruling = verdict_of(referee_, design, as_stored(ours, spec_.scene));
+  if (mix(number) % referee_every_ == 0 || second_opinion) ruling = verdict_of(referee_, design, ours);
   const bool acquitted = ruling && !ruling->undecided && !ruling->convicts();
   if (verdict.convicts() && acquitted) verdict.undecided = true;
   // Of flags two of three decide. Numbers may be wrong by a formula that the second method shares.

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "model/model.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap {
@@ -61,10 +62,12 @@ std::string hop_command(const Spec& spec, const Design& design) {
   for (const Option* parameter : design_parameters(spec))
     if (const double value = value_of(*parameter, design); !std::isnan(value))
       command += fmt::format(" {} {}", flag_of(*parameter), value);
-  if (spec.scene.friction == Friction::coulomb)
-    command += fmt::format(" --set friction=coulomb --set rest_speed={}", spec.scene.rest_speed);
-  command += fmt::format(" --set runway={} --set hop_height={} --set radius={} --set gravity={}",
-                         spec.scene.runway, spec.scene.hop_height, spec.scene.radius, spec.scene.gravity);
+  if (spec.scene.friction != Scene{}.friction)
+    command += fmt::format(" --friction {}", model_of(spec.scene).name);
+  for (const Parameter& parameter : parameters())
+    if (const auto* member = std::get_if<double Scene::*>(&parameter.member);
+        member && has(spec.scene.friction, parameter.only_of))
+      command += fmt::format(" --set {}={}", parameter.name, spec.scene.**member);
   command += fmt::format(" --set method={} --set tolerance={}", resolved_method(spec.numerics),
                          spec.numerics.tolerance);
   if (spec.numerics.absolute_tolerance > 0.0)

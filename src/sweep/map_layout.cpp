@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "model/model.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap {
@@ -17,7 +18,7 @@ MapAxis describe(const Option& option, std::vector<double> values) {
 }  // namespace
 
 bool stores(const Spec& spec, const Field& field) {
-  const bool silent = field.of_coulomb && spec.scene.friction != Friction::coulomb;
+  const bool silent = !has(spec.scene.friction, field.only_of);
   return stores(spec.output, field.name) && !(spec.output.fields.empty() && silent);
 }
 
@@ -29,7 +30,6 @@ MapLayout layout_of(const Spec& spec) {
       layout.columns.push_back(describe(*parameter, list_values(spec, *parameter)));
   for (const Field& field : map_fields())
     if (stores(spec, field)) layout.fields.push_back(&field);
-  layout.time_unit = time_unit(spec.scene);
   layout.single = spec.output.precision == "f4";
   layout.compression = static_cast<int>(spec.output.compression);
   return layout;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "map/hdf5_trust.hpp"
+#include "model/model.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/options.hpp"
 
@@ -22,12 +23,14 @@ std::vector<double> numbers_of(Spec& spec, const Option& option) {
     const double value = spec.design.*slot->member;
     return std::isnan(value) ? std::vector<double>{} : std::vector{value};  // NaN: follows another
   }
+  if (const auto* slot = std::get_if<SceneSlot>(&option.slot)) return {spec.scene.*slot->member};
   if (const auto* slot = std::get_if<NumberSlot>(&option.slot)) return {(*slot)(spec)};
   if (const auto* slot = std::get_if<IntegerSlot>(&option.slot)) return {static_cast<double>((*slot)(spec))};
   return {};
 }
 
 std::vector<std::string> texts_of(Spec& spec, const Option& option) {
+  if (std::holds_alternative<FrictionSlot>(option.slot)) return {std::string(model_of(spec.scene).name)};
   if (const auto* slot = std::get_if<TextSlot>(&option.slot)) return {(*slot)(spec)};
   if (const auto* slot = std::get_if<TextsSlot>(&option.slot)) return (*slot)(spec);
   return {};

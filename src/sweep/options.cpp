@@ -7,25 +7,24 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <numbers>
 
-#include "map/schema.hpp"
+#include "model/fields.hpp"
+#include "model/model.hpp"
+#include "numerics/gsl_integrator.hpp"
 #include "support/errors.hpp"
 
 namespace leapmap {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr double right_angle = std::numbers::pi / 2.0;
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr Range non_negative{0.0, inf, true, false};
-constexpr Range positive{1e-9, 1e9};  // a length or an acceleration
-constexpr Range ratio{0.0, 1e12};
-constexpr Range coefficient{0.0, 1e6};  // of friction: more than any pair of materials has
-constexpr Range fraction{0.0, 1.0};
 
-std::vector<std::string_view> frictions() { return {"sticking", "coulomb"}; }
+std::vector<std::string_view> frictions() {
+  std::vector<std::string_view> names;
+  for (const Model& model : models()) names.push_back(model.name);
+  return names;
+}
 
 std::vector<std::string_view> methods() {
   std::vector<std::string_view> names{"auto", "exact"};
@@ -41,84 +40,15 @@ std::vector<std::string_view> field_names() {
   return names;
 }
 
-const std::array options{
+/// The keys that are no parameters, in order.
+const std::array keys{
     Option{"scene",
            "friction",
-           TextSlot{[](Spec& s) -> std::string& { return s.friction; }},
+           FrictionSlot{},
            "",
            "\"sticking\": never slips (the paper's model); \"coulomb\": slips, lands and hops on",
            {},
            frictions},
-    Option{"scene",
-           "mu_static",
-           ParameterSlot{&Design::mu_static},
-           "1",
-           "coulomb only: static friction coefficient",
-           coefficient,
-           {},
-           true},
-    Option{"scene",
-           "mu_kinetic",
-           ParameterSlot{&Design::mu_kinetic},
-           "1",
-           "coulomb only: kinetic friction coefficient, mu_static unless given; a lower mu_static counts as "
-           "much",
-           coefficient,
-           {},
-           true},
-    Option{"scene",
-           "restitution",
-           ParameterSlot{&Design::restitution},
-           "1",
-           "coulomb only: Poisson restitution",
-           fraction,
-           {},
-           true},
-    Option{"scene",
-           "rest_speed",
-           NumberSlot{[](Spec& s) -> double& { return s.scene.rest_speed; }},
-           "sqrt(g R)",
-           "coulomb only: slower rebounds count as none",
-           non_negative,
-           {},
-           true},
-    Option{"scene",
-           "runway",
-           NumberSlot{[](Spec& s) -> double& { return s.scene.runway; }},
-           "revolutions",
-           "distance rolled after which the search for a jump ends",
-           {0.0, 1e6, false, true}},
-    Option{"scene", "hop_height", NumberSlot{[](Spec& s) -> double& { return s.scene.hop_height; }},
-           "hoop diameters", "a lift-off that flies this high is the jump; 0: the first one is",
-           non_negative},
-    Option{"scene", "radius", NumberSlot{[](Spec& s) -> double& { return s.scene.radius; }}, "m",
-           "the hoop's radius R; scales times only", positive},
-    Option{"scene", "gravity", NumberSlot{[](Spec& s) -> double& { return s.scene.gravity; }}, "m s-2",
-           "g; scales times only", positive},
-    Option{"design",
-           "slope",
-           ParameterSlot{&Design::slope},
-           "rad",
-           "slope of the plane",
-           {0.0, right_angle, true, false}},
-    Option{"design", "mass_ratio", ParameterSlot{&Design::mass_ratio}, "1",
-           "point mass over hoop mass, m_p / m", ratio},
-    Option{"design", "offset_ratio", ParameterSlot{&Design::offset_ratio}, "1",
-           "distance of the point mass from the centre over the radius, L / R", fraction},
-    Option{"design", "inertia_factor", ParameterSlot{&Design::inertia_factor}, "1",
-           "inertia of the bare hoop over m R^2: thin hoop 1, disc 1/2", ratio},
-    Option{"design",
-           "release_angle",
-           ParameterSlot{&Design::release_angle},
-           "rad",
-           "angle phi at release: 0 mass on the plane, 180 deg mass on top",
-           {-1e6, 1e6}},
-    Option{"design",
-           "release_spin",
-           ParameterSlot{&Design::release_spin},
-           "sqrt(g/R)",
-           "spin at release, positive downhill",
-           {-1e4, 1e4}},
     Option{"design", "points", TextSlot{[](Spec& s) -> std::string& { return s.points; }}, "",
            "CSV file with one design a line instead of axes; its header names parameters (angles in rad)"},
     Option{"numerics",
@@ -152,8 +82,12 @@ const std::array options{
            "1",
            "gsl-: a design that needs more steps has status failed",
            {1, 1e12}},
-    Option{"numerics", "audit", NumberSlot{[](Spec& s) -> double& { return s.numerics.audit; }}, "1",
-           "share of designs solved again by an independent method", fraction},
+    Option{"numerics",
+           "audit",
+           NumberSlot{[](Spec& s) -> double& { return s.numerics.audit; }},
+           "1",
+           "share of designs solved again by an independent method",
+           {0.0, 1.0}},
     Option{"output", "file", TextSlot{[](Spec& s) -> std::string& { return s.output.file; }}, "",
            "the map to write; -o overrides it"},
     Option{"output",
@@ -178,9 +112,37 @@ const std::array options{
            {0, 9}},
 };
 
-std::string shown(const Option& option, double value) {
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return option.unit == "rad" && value == right_angle ? "90 deg" : fmt::format("{}", value);
+Option option_of(const Parameter& parameter) {
+  const auto* of_design = std::get_if<double Design::*>(&parameter.member);
+  Option option{of_design && !parameter.of_contact ? "design" : "scene",
+                parameter.name,
+                SceneSlot{},
+                parameter.unit,
+                parameter.meaning,
+                parameter.range};
+  if (of_design)
+    option.slot = ParameterSlot{*of_design};
+  else
+    option.slot = SceneSlot{std::get<double Scene::*>(parameter.member)};
+  option.only_of = parameter.only_of;
+  return option;
+}
+
+/// Section by section: what picks the model, the parameters, the other keys.
+std::vector<Option> all_options() {
+  std::vector<Option> all;
+  for (const std::string_view section : {"scene", "design", "numerics", "output"}) {
+    const auto add_keys = [&](bool pick_model) {
+      std::ranges::copy_if(keys, std::back_inserter(all), [&](const Option& key) {
+        return key.section == section && std::holds_alternative<FrictionSlot>(key.slot) == pick_model;
+      });
+    };
+    add_keys(true);
+    for (const Parameter& parameter : parameters())
+      if (const Option option = option_of(parameter); option.section == section) all.push_back(option);
+    add_keys(false);
+  }
+  return all;
 }
 
 std::string default_of(const Option& option) {
@@ -188,7 +150,11 @@ std::string default_of(const Option& option) {
   return std::visit(
       [&](const auto& slot) -> std::string {
         using Slot = std::decay_t<decltype(slot)>;
-        if constexpr (std::is_same_v<Slot, ParameterSlot>) {
+        if constexpr (std::is_same_v<Slot, FrictionSlot>) {
+          return fmt::format("\"{}\"", model_of(spec.scene).name);
+        } else if constexpr (std::is_same_v<Slot, SceneSlot>) {
+          return fmt::format("{}", spec.scene.*slot.member);
+        } else if constexpr (std::is_same_v<Slot, ParameterSlot>) {
           const double value = spec.design.*slot.member;
           if (std::isnan(value)) return "that of mu_static";
           return option.key == "release_angle" ? "180 deg" : fmt::format("{:.6g}", value);
@@ -205,18 +171,21 @@ std::string default_of(const Option& option) {
 
 }  // namespace
 
-std::span<const Option> spec_options() { return options; }
+std::span<const Option> spec_options() {
+  static const std::vector<Option> options = all_options();
+  return options;
+}
 
 std::vector<const Option*> design_parameters() {
   std::vector<const Option*> parameters;
-  for (const Option& option : options)
+  for (const Option& option : spec_options())
     if (std::holds_alternative<ParameterSlot>(option.slot)) parameters.push_back(&option);
   return parameters;
 }
 
 std::vector<const Option*> hop_options() {
   std::vector<const Option*> of_one;
-  for (const Option& option : options)
+  for (const Option& option : spec_options())
     if (option.section == "scene" || (option.section == "design" && option.key != "points"))
       of_one.push_back(&option);
   return of_one;
@@ -225,7 +194,7 @@ std::vector<const Option*> hop_options() {
 std::vector<const Option*> design_parameters(const Spec& spec) {
   std::vector<const Option*> parameters = design_parameters();
   std::erase_if(parameters, [&](const Option* parameter) {
-    return parameter->of_coulomb && spec.scene.friction != Friction::coulomb &&
+    return !has(spec.scene.friction, parameter->only_of) &&
            std::ranges::find(spec.list.columns, parameter->key, &Axis::key) == spec.list.columns.end();
   });
   return parameters;
@@ -246,30 +215,22 @@ std::string flag_of(const Option& option) {
 }
 
 const Option* find_option(std::string_view section, std::string_view key) {
-  const auto found = std::ranges::find_if(options, [&](const Option& o) {
+  const auto found = std::ranges::find_if(spec_options(), [&](const Option& o) {
     const bool there =
         o.section == section || (section == "design" && std::holds_alternative<ParameterSlot>(o.slot));
     return o.key == key && (section.empty() || there);
   });
-  return found == options.end() ? nullptr : &*found;
+  return found == spec_options().end() ? nullptr : &*found;
 }
 
 std::string allowed_values(const Option& option) {
   if (option.choices) return fmt::format("one of {}", fmt::join(option.choices(), ", "));
   if (std::holds_alternative<TextSlot>(option.slot)) return "a string";
-  const Range& range = option.range;
-  const bool integer = std::holds_alternative<IntegerSlot>(option.slot);
-  return fmt::format("{} in {}{}, {}{}{}", integer ? "a whole number" : "a number",
-                     range.least_allowed ? '[' : '(', shown(option, range.least), shown(option, range.most),
-                     range.most_allowed ? ']' : ')',
-                     option.unit == "rad" ? ", in rad or as \"... deg\"" : "");
+  return allowed_values(option.range, option.unit,
+                        std::holds_alternative<IntegerSlot>(option.slot) ? "a whole number" : "a number");
 }
 
-bool in_range(const Option& option, double value) {
-  const Range& range = option.range;
-  return std::isfinite(value) && (range.least_allowed ? value >= range.least : value > range.least) &&
-         (range.most_allowed ? value <= range.most : value < range.most);
-}
+bool in_range(const Option& option, double value) { return option.range.holds(value); }
 
 double parse_number(const Option& option, std::string_view text) {
   const auto trim = [](std::string_view s) {
@@ -303,7 +264,7 @@ std::string options_help() {
       "scale = \"log\" }\n"
       "  offset_ratio = { values = [0.6, 0.8, 1.0] }\n";
   std::string_view section;
-  for (const Option& option : options) {
+  for (const Option& option : spec_options()) {
     if (option.section != section) help += fmt::format("[{}]\n", section = option.section);
     const bool axis = std::holds_alternative<ParameterSlot>(option.slot);
     const std::string unit =

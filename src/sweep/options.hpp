@@ -2,26 +2,28 @@
 /// Every key of a spec, declared once: name, meaning, unit, range, and where its value goes.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "model/parameters.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap {
-
-/// The values a number may take.
-struct Range {
-  double least, most;
-  bool least_allowed = true, most_allowed = true;
-};
 
 /// A number that every design has of its own, so that it takes an axis or a column of a list.
 struct ParameterSlot {
   double Design::*member;
 };
+/// A number of the scene.
+struct SceneSlot {
+  double Scene::*member;
+};
+/// The model of the contact, by its name.
+struct FrictionSlot {};
 using NumberSlot = double& (*)(Spec&);
 using IntegerSlot = long& (*)(Spec&);
 using TextSlot = std::string& (*)(Spec&);
@@ -30,12 +32,12 @@ using TextsSlot = std::vector<std::string>& (*)(Spec&);
 struct Option {
   std::string_view section;
   std::string_view key;
-  std::variant<ParameterSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot> slot;
+  std::variant<ParameterSlot, SceneSlot, FrictionSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot> slot;
   std::string_view unit;  ///< "rad" marks an angle, which may be written "30 deg"; "1": a pure number
   std::string_view meaning;
   Range range{};                                    ///< numbers and integers
   std::vector<std::string_view> (*choices)() = {};  ///< texts: what is allowed; unset: anything
-  bool of_coulomb = false;                          ///< says nothing where the contact never slips
+  std::optional<Friction> only_of{};                ///< the one model that has it; unset: every model
 };
 
 /// All keys, in the order of the documentation.

@@ -9,6 +9,7 @@
 #include "map/reader.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
+#include "model/fields.hpp"
 #include "support/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
@@ -54,10 +55,9 @@ void store_words(hid_t dataset, const Word& word, const Tile& tile, std::span<co
   hdf5::write_words(dataset, tile.start, tile.extent, values, what);
 }
 
-double stored_value(const Field& field, const Outcome& outcome, double time_unit) {
-  if (const auto* code = std::get_if<Code>(&field.source)) return code->value(outcome);
-  const auto& quantity = std::get<Quantity>(field.source);
-  return outcome.*quantity.member * quantity.unit(time_unit);
+double stored_value(const Field& field, const Outcome& outcome) {
+  const auto* code = std::get_if<Code>(&field.source);
+  return code ? code->value(outcome) : outcome.*std::get<Quantity>(field.source).member;
 }
 
 /// Puts the outcomes of one tile's designs in their places in every field.
@@ -70,8 +70,7 @@ void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Faile
       store_words(dataset, *word, tile, designs, what);
     } else {
       std::vector<double> values = hdf5::read_block(dataset, tile.start, tile.extent, what);
-      for (const Failed& design : designs)
-        values[design.index] = stored_value(field, design.outcome, time_unit(spec.scene));
+      for (const Failed& design : designs) values[design.index] = stored_value(field, design.outcome);
       hdf5::write_block(dataset, tile.start, tile.extent, values, what);
     }
     dataset.close(what);  // which writes the chunk

@@ -11,7 +11,6 @@
 
 #include "leapmap/outcome.hpp"
 #include "map/journaled_file.hpp"
-#include "map/schema.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap {

@@ -2,16 +2,16 @@
 /// Solves designs by the method that a spec asks for.
 #pragma once
 
-#include <functional>
-#include <span>
+#include <string_view>
 
-#include "leapmap/outcome.hpp"
 #include "sweep/spec.hpp"
+#include "trajectory/integration_options.hpp"
+#include "trajectory/solver.hpp"
 
 namespace leapmap {
 
-/// Solves designs[i] into outcomes[i]. Owns its workspace: one a thread.
-using Solver = std::function<void(std::span<const Design> designs, std::span<Outcome> outcomes)>;
+/// The stepper and its controls that numerics asks for, where the method is one of GSL's.
+IntegrationOptions integration_options(const Numerics& numerics);
 
 /// The solver of spec.numerics.method. What spec.output.fields leaves out need not be computed, and may be
 /// NaN.

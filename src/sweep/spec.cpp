@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 
+#include "model/model.hpp"
 #include "support/errors.hpp"
 #include "support/posix.hpp"
 #include "sweep/options.hpp"
@@ -138,9 +139,10 @@ struct Assign {
       spec.design.*slot.member = to_number(entry, *entry.node);
     }
   }
-  void operator()(NumberSlot slot) const {
-    if (entry.node->is_table()) refuse(entry, "takes no axis", allowed_values(*entry.option));
-    slot(spec) = to_number(entry, *entry.node);
+  void operator()(SceneSlot slot) const { spec.scene.*slot.member = one_number(); }
+  void operator()(NumberSlot slot) const { slot(spec) = one_number(); }
+  void operator()(FrictionSlot) const {
+    spec.scene.friction = std::ranges::find(models(), text(*entry.node), &Model::name)->friction;
   }
   void operator()(IntegerSlot slot) const {
     const auto value = to_whole(*entry.node);
@@ -161,6 +163,10 @@ struct Assign {
         refuse(entry, fmt::format("'{}' is there twice", name), "each once");
       slot(spec).push_back(name);
     }
+  }
+  double one_number() const {
+    if (entry.node->is_table()) refuse(entry, "takes no axis", allowed_values(*entry.option));
+    return to_number(entry, *entry.node);
   }
   std::string text(const toml::node& node) const {
     const toml::value<std::string>* value = node.as_string();
@@ -234,29 +240,33 @@ void override_with(std::vector<Entry>& entries, const Entry& entry) {
   found == entries.end() ? entries.push_back(entry) : void(*found = entry);
 }
 
-constexpr std::string_view
-    no_friction = "the contact never slips, and has no use for it",
-    with_friction =
-        "with friction = \"coulomb\", on the command line --friction coulomb or --set friction=coulomb";
+std::string no_use(const Scene& scene) {
+  return fmt::format("has no use where the contact {}", model_of(scene).meaning);
+}
+
+/// How to get the model that has the option.
+std::string with_its_model(const Option& option) {
+  const std::string_view name = model_of(*option.only_of).name;
+  return fmt::format("with friction = \"{}\", on the command line --friction {} or --set friction={}", name,
+                     name, name);
+}
 
 /// Whether a key says no more than its default.
 bool is_default(const Option& option, const Entry& entry) {
-  const auto* slot = std::get_if<ParameterSlot>(&option.slot);
   const auto value = entry.node->value<double>();
   if (!value) return false;
-  Spec spec;
-  if (!slot) return *value == std::get<NumberSlot>(option.slot)(spec);
-  const double usual = spec.design.*slot->member;
-  return *value == (std::isnan(usual) ? spec.design.mu_static : usual);
+  if (const auto* slot = std::get_if<SceneSlot>(&option.slot)) return *value == Scene{}.*slot->member;
+  constexpr Design design;
+  const double usual = design.*std::get<ParameterSlot>(option.slot).member;
+  return *value == (std::isnan(usual) ? design.mu_static : usual);
 }
 
-/// Nothing given is ignored without a word: what only slipping contacts have needs one. A file may spell
-/// defaults out.
+/// Nothing given is ignored without a word. A file may spell defaults out.
 void refuse_what_has_no_use(const std::vector<Entry>& entries, const Spec& spec) {
-  if (spec.scene.friction == Friction::coulomb) return;
   for (const Entry& entry : entries)
-    if (entry.option->of_coulomb && (entry.place == command_line || !is_default(*entry.option, entry)))
-      refuse(entry, no_friction, with_friction);
+    if (!has(spec.scene.friction, entry.option->only_of) &&
+        (entry.place == command_line || !is_default(*entry.option, entry)))
+      refuse(entry, no_use(spec.scene), with_its_model(*entry.option));
 }
 
 /// A points file is looked for beside the spec first, then from the working folder.
@@ -277,11 +287,10 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
   spec.points =
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
   spec.list = read_points(spec.points, origin_of(spec));
-  if (spec.scene.friction != Friction::coulomb)
-    for (const Axis& column : spec.list.columns)
-      if (find_option("design", column.key)->of_coulomb)
-        throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key, no_friction,
-                                     with_friction));
+  for (const Axis& column : spec.list.columns)
+    if (const Option& option = *find_option("design", column.key); !has(spec.scene.friction, option.only_of))
+      throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
+                                   no_use(spec.scene), with_its_model(option)));
   return spec;
 }
 
@@ -317,7 +326,6 @@ Spec parse_spec(std::string_view text, const std::string& origin, const std::vec
     return std::ranges::any_of(entries, [&](const Entry& e) { return e.option->key == key; });
   };
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
-  spec.scene.friction = spec.friction == "coulomb" ? Friction::coulomb : Friction::sticking;
   if (!lenient) refuse_what_has_no_use(entries, spec);
   // Where mu_static varies, mu_kinetic follows it from design to design.
   const bool varies =

@@ -12,7 +12,6 @@
 
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
-#include "trajectory/rolling_integration.hpp"
 
 namespace leapmap {
 
@@ -46,8 +45,7 @@ struct PointList {
 };
 
 struct Spec {
-  std::string origin;                 ///< the file it was read from, for messages
-  std::string friction = "sticking";  ///< scene.friction follows it
+  std::string origin;  ///< the file it was read from, for messages
   Scene scene;
   Design design;  ///< what axes and points leave out
   Numerics numerics;
@@ -75,9 +73,6 @@ std::string resolved_text(const Spec& spec);
 
 /// Whether output.fields names that field, or is left out.
 bool stores(const Output& output, std::string_view field);
-
-/// The stepper and its controls that numerics asks for, where the method is one of GSL's.
-IntegrationOptions integration_options(const Numerics& numerics);
 
 /// The name of the method that numerics.method stands for: "auto" is settled here. Rolling conserves energy
 /// and sliding reduces to quadratures, so that it is exact.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "model/model.hpp"
 #include "sweep/options.hpp"
 #include "sweep/spec.hpp"
 
@@ -52,6 +53,10 @@ std::string resolved_text(const Spec& original) {
             // NaN: follows another parameter, and is left out.
             if (const double value = spec.design.*slot.member; !std::isnan(value))
               line(option, number(value));
+          } else if constexpr (std::is_same_v<Slot, SceneSlot>) {
+            line(option, number(spec.scene.*slot.member));
+          } else if constexpr (std::is_same_v<Slot, FrictionSlot>) {
+            line(option, string(std::string(model_of(spec.scene).name)));
           } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
             line(option, number(slot(spec)));
           } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {
@@ -75,17 +80,6 @@ bool stores(const Output& output, std::string_view field) {
 
 std::string resolved_method(const Numerics& numerics) {
   return numerics.method == "auto" ? "exact" : numerics.method;
-}
-
-IntegrationOptions integration_options(const Numerics& numerics) {
-  IntegrationOptions options;
-  options.stepper = find_gsl_stepper(resolved_method(numerics));
-  options.control.relative = numerics.tolerance;
-  options.control.absolute =
-      numerics.absolute_tolerance > 0.0 ? numerics.absolute_tolerance : numerics.tolerance;
-  options.control.fixed_step = numerics.fixed_step;
-  options.max_steps = numerics.max_steps;
-  return options;
 }
 
 }  // namespace leapmap

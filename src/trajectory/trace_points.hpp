@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The points of a trace, whatever the friction: where they lie in time, and what they hold.
+/// The points of a motion, whatever the friction: where they lie in time, and what they hold, in the solvers'
+/// units until they are all taken (units.hpp).
 #pragma once
 
+#include "leapmap/motion.hpp"
 #include "physics/flight.hpp"
 #include "physics/sliding.hpp"
 #include "support/errors.hpp"
-#include "trajectory/story.hpp"
+#include "trajectory/contact_state.hpp"
 
 namespace leapmap {
 
-inline TracePoint rolling_point(const Hoop<double>& hoop, const ContactState<double>& at) {
+inline MotionPoint rolling_point(const Hoop<double>& hoop, const ContactState<double>& at) {
   const Trig<double> phi = trig(at.angle);
   const double acceleration = angular_acceleration(hoop, phi, at.spin);
   return {at.time,
@@ -23,13 +25,13 @@ inline TracePoint rolling_point(const Hoop<double>& hoop, const ContactState<dou
 }
 
 /// friction: mu_kinetic, with the sign of the sliding.
-inline TracePoint sliding_point(const Hoop<double>& hoop, double friction, const ContactState<double>& at) {
+inline MotionPoint sliding_point(const Hoop<double>& hoop, double friction, const ContactState<double>& at) {
   const auto motion = sliding_motion(hoop, trig(at.angle), at.spin * at.spin, friction);
   return {at.time, at.angle, at.spin, at.travel, 0.0, motion.normal_force, motion.friction, Phase::sliding};
 }
 
 /// `flown` after the flight that begins at `from`.
-inline TracePoint flight_point(const Hoop<double>& hoop, const ContactState<double>& from, double flown) {
+inline MotionPoint flight_point(const Hoop<double>& hoop, const ContactState<double>& from, double flown) {
   const Trig<double> phi = trig(from.angle);
   return {from.time + flown,
           from.angle + from.spin * flown,
@@ -44,7 +46,7 @@ inline TracePoint flight_point(const Hoop<double>& hoop, const ContactState<doub
 /// Samples at multiples of an interval. Throws InputError if they would be more than 10^7.
 struct TraceSampler {
   double interval;
-  std::vector<TracePoint>& points;
+  std::vector<MotionPoint>& points;
   long next = 0;
 
   /// Takes the samples up to `end` that are not taken yet; point_at(t) gives them.

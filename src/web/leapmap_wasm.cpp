@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// leapmap hop for the explorer's page: the exact solver and its motion, compiled to WebAssembly.
 ///
-/// The page writes parameters() in place, calls solve, and reads the rest, all of it the last solve's. Names
-/// and units are those of `leapmap hop --json`.
+/// The page writes parameter_values() in place, calls solve, and reads the rest, all of it the last solve's.
+/// Names and units are those of `leapmap hop --json`.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,53 +11,35 @@
 #include <variant>
 #include <vector>
 
-#include "map/schema.hpp"
-#include "trajectory/story.hpp"
+#include "coulomb/model.hpp"
+#include "model/fields.hpp"
+#include "model/parameters.hpp"
+#include "rolling/model.hpp"
 
 namespace leapmap {
 namespace {
-
-struct Parameter {
-  const char* name;
-  std::variant<double Design::*, double Scene::*> member;
-};
-constexpr std::array parameter_table{Parameter{"slope", &Design::slope},
-                                     Parameter{"mass_ratio", &Design::mass_ratio},
-                                     Parameter{"offset_ratio", &Design::offset_ratio},
-                                     Parameter{"inertia_factor", &Design::inertia_factor},
-                                     Parameter{"release_angle", &Design::release_angle},
-                                     Parameter{"release_spin", &Design::release_spin},
-                                     Parameter{"mu_static", &Design::mu_static},
-                                     Parameter{"mu_kinetic", &Design::mu_kinetic},
-                                     Parameter{"restitution", &Design::restitution},
-                                     Parameter{"runway", &Scene::runway},
-                                     Parameter{"hop_height", &Scene::hop_height},
-                                     Parameter{"rest_speed", &Scene::rest_speed},
-                                     Parameter{"radius", &Scene::radius},
-                                     Parameter{"gravity", &Scene::gravity}};
 
 /// What a point of the motion holds, in this order; lengths in m, times in s, forces in weights.
 constexpr std::array column_names{"t", "phi", "spin", "x", "y", "normal_force", "friction", "phase"};
 /// Likewise a lift-off.
 constexpr std::array lift_off_names{"time", "angle", "spin", "height", "apex_time", "flight_time", "dip"};
 
+double& value_of(const Parameter& parameter, Design& design, Scene& scene) {
+  const auto* of_design = std::get_if<double Design::*>(&parameter.member);
+  return of_design ? design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
+}
+
 /// The page's one design and all that is known of it.
 struct Page {
   Page() {
-    for (std::size_t i = 0; i < parameters.size(); ++i)
-      parameters[i] = std::visit(
-          [](auto member) {
-            if constexpr (std::is_same_v<decltype(member), double Design::*>)
-              return Design{}.*member;
-            else
-              return Scene{}.*member;
-          },
-          parameter_table[i].member);
+    Design design;
+    Scene scene;
+    for (const Parameter& parameter : leapmap::parameters())
+      parameters.push_back(value_of(parameter, design, scene));
   }
 
-  std::array<double, parameter_table.size()> parameters;
+  std::vector<double> parameters;
   Outcome outcome;
-  double time_unit = 1.0;
   std::string text;
   std::vector<std::array<double, column_names.size()>> points;
   std::vector<std::array<double, lift_off_names.size()>> lift_offs;
@@ -75,9 +57,9 @@ const char* name_in(const std::array<const char*, n>& names, int i) {
 
 /// Names by number, null after the last.
 LEAPMAP_EXPORT const char* parameter_name(int i) {
-  return i >= 0 && static_cast<std::size_t>(i) < parameter_table.size()
-             ? parameter_table[static_cast<std::size_t>(i)].name
-             : nullptr;
+  const auto all = leapmap::parameters();
+  return i >= 0 && static_cast<std::size_t>(i) < all.size() ? all[static_cast<std::size_t>(i)].name.data()
+                                                            : nullptr;
 }
 LEAPMAP_EXPORT const char* column_name(int i) { return name_in(column_names, i); }
 LEAPMAP_EXPORT const char* lift_off_name(int i) { return name_in(lift_off_names, i); }
@@ -89,7 +71,7 @@ LEAPMAP_EXPORT const char* field_name(int i) {
 }
 
 /// Their values, which the page sets; at first leapmap's defaults.
-LEAPMAP_EXPORT double* parameters() { return page.parameters.data(); }
+LEAPMAP_EXPORT double* parameter_values() { return page.parameters.data(); }
 
 /// Solves the design to a tolerance of times, and its motion every `interval` [s]; 0: as often as a picture
 /// needs, 400 to 4,000 times in all.
@@ -97,37 +79,28 @@ LEAPMAP_EXPORT void solve(int with_friction, double tolerance, double interval) 
   Design design;
   Scene scene;
   scene.friction = with_friction ? Friction::coulomb : Friction::sticking;
-  for (std::size_t i = 0; i < parameter_table.size(); ++i) {
-    if (const auto* of_design = std::get_if<double Design::*>(&parameter_table[i].member))
-      design.** of_design = page.parameters[i];
-    else
-      scene.*std::get<double Scene::*>(parameter_table[i].member) = page.parameters[i];
-  }
-  const double second = page.time_unit = time_unit(scene);
-  interval /= second;
+  const auto all = leapmap::parameters();
+  for (std::size_t i = 0; i < all.size(); ++i) value_of(all[i], design, scene) = page.parameters[i];
+  const auto tell = with_friction ? coulomb::tell_exactly : rolling::tell_exactly;
+  const double second = time_unit(scene);
   if (!(interval > 0.0)) {
-    const double end = tell_exactly(design, scene, tolerance, std::numeric_limits<double>::infinity()).end;
-    interval = std::max({std::min(0.03, end / 400.0), end / 4000.0, 1e-12});
+    const double end = tell(design, scene, tolerance, std::numeric_limits<double>::infinity()).end;
+    interval = std::max({std::min(0.03 * second, end / 400.0), end / 4000.0, 1e-12 * second});
   }
-  const Story story = tell_exactly(design, scene, tolerance, interval);
-  page.outcome = story.outcome;
+  const Motion motion = tell(design, scene, tolerance, interval);
+  page.outcome = motion.outcome;
   page.points.clear(), page.lift_offs.clear();
-  for (const TracePoint& point : story.points)
-    page.points.push_back({point.t * second, point.phi, point.spin / second, point.x * scene.radius,
-                           point.y * scene.radius, point.normal_force, point.friction,
-                           static_cast<double>(point.phase)});
-  for (const auto& [lift_off, flight] : story.candidates)
-    page.lift_offs.push_back({lift_off.time * second, lift_off.angle, lift_off.spin, flight.height,
-                              flight.apex_time * second, flight.flight_time * second, flight.dip});
+  for (const MotionPoint& point : motion.points)
+    page.points.push_back({point.t, point.phi, point.spin, point.x, point.y, point.normal_force,
+                           point.friction, static_cast<double>(point.phase)});
+  for (const Candidate& flown : motion.candidates)
+    page.lift_offs.push_back({flown.t, flown.phi, flown.spin * second, flown.height, flown.apex_time,
+                              flown.flight_time, flown.dip});
 }
 
 /// A field of the outcome as the map stores it; NaN where it does not apply, or is a text.
 LEAPMAP_EXPORT double field_value(int i) {
-  const Field& field = map_fields()[static_cast<std::size_t>(i)];
-  if (const auto* quantity = std::get_if<Quantity>(&field.source))
-    return page.outcome.*quantity->member * quantity->unit(page.time_unit);
-  const auto* code = std::get_if<Code>(&field.source);
-  return code && code->value(page.outcome) != code->fill ? code->value(page.outcome) : Outcome::none;
+  return stored_number(map_fields()[static_cast<std::size_t>(i)], page.outcome);
 }
 
 /// A field that is a text: the status, the sequence of phases. Null: it is a number.

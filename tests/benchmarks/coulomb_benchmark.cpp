@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "benchmarks/tell_errors.hpp"
+#include "coulomb/coulomb_integration.hpp"
 #include "study/precision.hpp"
-#include "trajectory/coulomb_integration.hpp"
 
 namespace leapmap {
 namespace {

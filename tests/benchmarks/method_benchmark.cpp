@@ -6,10 +6,11 @@
 /// whose status, flag or number of candidates differs from it. Engine is run_sweep on one thread: designs
 /// from axes, everything but the file.
 #include "benchmarks/tell_errors.hpp"
+#include "rolling/exact.hpp"
+#include "rolling/rolling_integration.hpp"
 #include "study/precision.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
-#include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {

@@ -7,7 +7,9 @@
 
 #include <random>
 
+#include "rolling/rolling_integration.hpp"
 #include "sweep/engine.hpp"
+#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {

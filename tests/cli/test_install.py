@@ -13,7 +13,7 @@ target_link_libraries(other PRIVATE leapmap::leapmap)
 MAIN = """
 #include <cstdio>
 #include <map/reader.hpp>
-#include <trajectory/rolling_integration.hpp>
+#include <rolling/rolling_integration.hpp>
 int main(int, char** arguments) {
   leapmap::IntegrationOptions options;
   options.stepper = leapmap::find_gsl_stepper("gsl-rk8pd");

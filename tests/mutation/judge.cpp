@@ -7,11 +7,11 @@
 #include <random>
 #include <string>
 
+#include "coulomb/coulomb.hpp"
+#include "coulomb/coulomb_integration.hpp"
 #include "referee/referee.hpp"
-#include "trajectory/coulomb.hpp"
-#include "trajectory/coulomb_integration.hpp"
-#include "trajectory/exact.hpp"
-#include "trajectory/rolling_integration.hpp"
+#include "rolling/exact.hpp"
+#include "rolling/rolling_integration.hpp"
 
 namespace leapmap {
 namespace {
@@ -41,12 +41,13 @@ Design any_design(std::mt19937_64& random, std::size_t number) {
   return design;
 }
 
-/// The largest difference; infinity: of status, flag, candidates or phases. times: of ours, in seconds.
+/// The largest difference; infinity: of status, flag, candidates or phases. second: sqrt(R/g), the size of a
+/// time.
 double difference(const Outcome& ours, const Outcome& right, double second) {
   if (!same_flags(ours, right)) return HUGE_VAL;
   double largest = 0.0;
   const auto look = [&](double Outcome::*member, double unit) {
-    const double a = ours.*member * unit, b = right.*member;
+    const double a = ours.*member, b = right.*member;
     if (std::isnan(a) && std::isnan(b)) return;
     const double error = std::abs(a - b) / (unit + std::abs(b));
     largest = std::isnan(error) ? HUGE_VAL : std::max(largest, error);
@@ -73,7 +74,7 @@ std::string first_disagreement(const char* method, const Scene& scene, std::size
   for (std::size_t i = 0; i < count; ++i) {
     const Design design = any_design(random, i);
     const Outcome right = referee.solve(design);
-    if (right.status == Status::failed || difference(coarser.solve(design), right, 1.0) > 0.1 * allowed) {
+    if (right.status == Status::failed || difference(coarser.solve(design), right, second) > 0.1 * allowed) {
       ++undecided;
       continue;
     }

@@ -17,9 +17,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SOURCES = ["src/trajectory/" + name + ".cpp" for name in
-           ("exact", "exact_times", "rolling_time", "rolling_leg", "sliding_leg", "sliding_panel", "coulomb",
-            "coulomb_integration", "rolling_integration")] + ["tests/mutation/judge.cpp"]
+SOURCES = ["src/" + name + ".cpp" for name in
+           ("rolling/exact", "rolling/exact_times", "rolling/rolling_time", "rolling/rolling_integration", "coulomb/rolling_leg",
+            "coulomb/sliding_leg", "coulomb/sliding_panel", "coulomb/coulomb", "coulomb/coulomb_integration")] + ["tests/mutation/judge.cpp"]
 LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
 OFF = "T(1.001)"
 

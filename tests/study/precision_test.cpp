@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "rolling/exact.hpp"
 #include "study/truth.hpp"
-#include "trajectory/exact.hpp"
 
 namespace leapmap {
 namespace {

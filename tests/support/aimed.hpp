@@ -10,8 +10,8 @@
 
 #include "leapmap/design.hpp"
 #include "physics/rolling_by_angle.hpp"
+#include "rolling/lift_off_scan.hpp"
 #include "support/designs.hpp"
-#include "trajectory/lift_off_scan.hpp"
 
 namespace leapmap::testing {
 

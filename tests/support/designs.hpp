@@ -7,12 +7,16 @@
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
-#include "trajectory/rolling_integration.hpp"
+#include "rolling/rolling_integration.hpp"
 
 namespace leapmap::testing {
 
-/// The paper's hoop in units where times come out in sqrt(R/g).
 inline Design paper_hoop() { return {}; }
+
+/// A scene in which a second is sqrt(R/g), a metre R.
+inline Scene unit_scene(Friction friction = Friction::sticking) {
+  return {.friction = friction, .radius = 1.0, .gravity = 1.0};
+}
 
 inline double uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
@@ -32,8 +36,8 @@ inline Design random_design(std::mt19937_64& random) {
 
 using leapmap::adaptive;
 
-inline Outcome solve(const Design& design, const Scene& scene = {}, std::string_view stepper = "gsl-rk8pd",
-                     double tolerance = 1e-12) {
+inline Outcome solve(const Design& design, const Scene& scene = unit_scene(),
+                     std::string_view stepper = "gsl-rk8pd", double tolerance = 1e-12) {
   return RollingIntegration(adaptive(stepper, tolerance)).solve(design, scene);
 }
 

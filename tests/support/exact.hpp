@@ -10,8 +10,8 @@
 
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
+#include "rolling/exact.hpp"
 #include "support/designs.hpp"
-#include "trajectory/exact.hpp"
 
 namespace leapmap::testing {
 

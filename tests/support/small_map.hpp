@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "map/schema.hpp"
 #include "map/writer.hpp"
 
 namespace leapmap::testing {
@@ -15,7 +16,6 @@ inline MapLayout small_layout() {
   layout.axes = {{"slope", "rad", "slope of the plane", {0.1, 0.2, 0.3}},
                  {"mass_ratio", "1", "mass ratio", {1, 2, 3, 4, 5}}};
   for (const Field& field : map_fields()) layout.fields.push_back(&field);
-  layout.time_unit = 0.5;
   layout.compression = 1;
   return layout;
 }

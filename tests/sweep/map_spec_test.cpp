@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/designs.hpp"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "map/schema.hpp"
 #include "support/errors.hpp"
 #include "support/sweep_into.hpp"
 #include "support/temporary_folder.hpp"
@@ -54,7 +55,7 @@ TEST(Retry, SettlesTheFailedByAnotherMethodAndLeavesTheRest) {
 
   const MapReader map(folder / "map.h5"), exact(folder / "exact.h5");
   for (const Field& field : map_fields()) {
-    if (field.of_coulomb) continue;
+    if (field.only_of) continue;
     const auto ours = map.read(std::string(field.name), all),
                theirs = exact.read(std::string(field.name), all);
     for (std::size_t i = 0; i < 600; ++i) {

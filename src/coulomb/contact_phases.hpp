@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Rolling, sliding, flying and landing with Coulomb friction, as a machine of phases.
+///
+// clang-format off
+///   phase       | ends when                           | and then
+///   ------------+-------------------------------------+----------------------------------------------
+///   R rolling   | |F| - mu_s N rises through zero     | S, the way that F held back (v gets the sign
+///     v = 0     |                                     |   of -F); F if n0 <= 0 there
+///               | the spin is not above zero          | stalled
+///   S sliding   | n0 falls through zero               | F, lift-off
+///     v > 0 or  | v comes back to zero                | R if |F| <= mu_s N, else S the other way
+///     v < 0     | Ic + rho s q falls to zero          | indeterminate (Painleve)
+///   F flight    | its apex reaches hop_height         | jumped
+///               | y comes back to zero                | landing, impulses at once; then F if it
+///               |                                     |   rebounds or n0 <= 0, S if v is not zero,
+///               |                                     |   else as where v comes back to zero
+///   R, S, F     | the centre has travelled the runway | no_jump
+///   at release  |                                     | R if N > 0 and |F| <= mu_s N, else
+///               |                                     |   airborne_at_release if n0 <= 0, else S;
+///               |                                     |   stalled if the spin is below zero
+// clang-format on
+///
+/// A hoop that slides may turn backwards for a while. At v = 0 the forces decide, never the sign of a rounded
+/// v, and what friction holds but for rounding it holds. Painleve's region is where the rigid-body equations
+/// have no answer or two; a slide that runs into its edge is followed until doubles cannot tell the edge from
+/// where it is. A design that goes through more than most_phases phases is failed.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "physics/rolling.hpp"
+#include "trajectory/contact_state.hpp"
+
+namespace leapmap {
+
+/// What the phases end in. slips_*: the direction that v takes.
+enum class PhaseEnd {
+  slips_forwards,
+  slips_backwards,
+  slip_ends,
+  lifts_off,
+  stalls,
+  runway_ends,
+  indeterminate,
+  too_long,
+  failed
+};
+
+/// What a design's friction and landing look like, its defaults settled. Static friction is never below
+/// kinetic: between the two neither sticking nor sliding would be consistent.
+template <class S>
+struct Contact {
+  S mu_static, mu_kinetic, restitution, rest_speed;
+};
+template <class S>
+Contact<S> contact_of(const Design& design, const Scene& scene) {
+  const double kinetic = std::isnan(design.mu_kinetic) ? design.mu_static : design.mu_kinetic;
+  return {S(std::max(design.mu_static, kinetic)), S(kinetic), S(design.restitution), S(scene.rest_speed)};
+}
+
+/// Mechanical energy over (m + m_p) g R, but for a constant: (3) and (4) with the constraint (1) released;
+/// normal: v_n.
+template <class S>
+S contact_energy(const Hoop<S>& hoop, const ContactState<S>& at) {
+  const Trig<S> phi = trig(at.angle);
+  const S along = at.slip + (hoop.clearance + hoop.rho * phi.versine) * at.spin;
+  const S across = at.normal + hoop.rho * phi.sin * at.spin;
+  return S(0.5) * (along * along + across * across + hoop.Ic * at.spin * at.spin) -
+         at.travel * hoop.sin_slope - hoop.rho * cos_from_vertical(hoop, phi);
+}
+
+inline constexpr int most_phases = 2'000;
+
+/// phase_sequence: two bits a phase, the first lowest, up to 32.
+class PhaseSequence {
+ public:
+  void append(Phase phase) {
+    if (count_ < 32) code_ |= static_cast<std::uint64_t>(phase) << (2 * count_);
+    ++count_;
+  }
+  std::uint64_t code() const { return code_; }
+  int count() const { return count_; }
+
+ private:
+  std::uint64_t code_ = 0;
+  int count_ = 0;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coulomb/coulomb.hpp"
+
+#include "coulomb/coulomb_automaton.hpp"
+
+namespace leapmap {
+
+template <class S>
+Outcome CoulombSolver<S>::solve(const Design& design, const Scene& scene, const CoulombObserver& observer) {
+  return go_through_phases<S>(
+      design, scene, observer,
+      [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway) {
+        return rolling_.run(hoop, contact.mu_static, at, runway);
+      },
+      [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway,
+          int direction) { return sliding_.run(hoop, contact.mu_kinetic, at, runway, direction); });
+}
+
+template class CoulombSolver<double>;
+template class CoulombSolver<long double>;
+
+}  // namespace leapmap

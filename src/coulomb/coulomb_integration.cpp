@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coulomb/coulomb_integration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "coulomb/coulomb_automaton.hpp"
+#include "physics/sliding.hpp"
+
+namespace leapmap {
+namespace {
+
+/// (phi, w, v, x), for both phases: while rolling v stays zero.
+using Y = State<4>;
+constexpr double rolls = std::numeric_limits<double>::infinity();  // System::friction while rolling
+
+void derivative(const CoulombIntegration::System& system, const double y[], double f[]) {
+  const Trig<double> phi = trig(y[0]);
+  f[0] = y[1];
+  f[3] = y[2] + y[1];
+  if (system.friction == rolls) {
+    f[1] = angular_acceleration(system.hoop, phi, y[1]);
+    f[2] = 0.0;
+  } else {
+    const SlidingMotion<double> motion = sliding_motion(system.hoop, phi, y[1] * y[1], system.friction);
+    f[1] = motion.angular;
+    f[2] = motion.slip;
+  }
+}
+
+int right_hand_side(double, const double y[], double f[], void* params) {
+  auto& system = *static_cast<CoulombIntegration::System*>(params);
+  ++system.evaluations;
+  derivative(system, y, f);
+  return GSL_SUCCESS;
+}
+
+/// By central differences: good to 1e-10, which is plenty for Newton's iterations.
+int jacobian(double, const double y[], double* dfdy, double dfdt[], void* params) {
+  const auto& system = *static_cast<const CoulombIntegration::System*>(params);
+  for (std::size_t j = 0; j < 4; ++j) {
+    Y low, high, f_low, f_high;
+    std::copy_n(y, 4, low.begin());
+    high = low;
+    const double h = 6e-6 * (1.0 + std::abs(y[j]));
+    low[j] -= h, high[j] += h;
+    derivative(system, low.data(), f_low.data());
+    derivative(system, high.data(), f_high.data());
+    for (std::size_t i = 0; i < 4; ++i) dfdy[4 * i + j] = (f_high[i] - f_low[i]) / (2.0 * h);
+  }
+  std::fill_n(dfdt, 4, 0.0);
+  return GSL_SUCCESS;
+}
+
+/// mu N - sign F of a rolling hoop and its rate in time.
+Sample<double> hold(const Hoop<double>& hoop, double mu, double sign, const Y& y) {
+  const Trig<double> phi = trig(y[0]);
+  const double w = y[1], a = angular_acceleration(hoop, phi, w);
+  const auto gradient = acceleration_gradient(hoop, phi, w, a);
+  const double jerk = gradient.by_angle * w + gradient.by_spin * a;
+  const double F_rate =
+      (1.0 - hoop.rho * phi.cos) * jerk + hoop.rho * (3.0 * phi.sin * w * a + phi.cos * w * w * w);
+  const double N = normal_force(hoop, phi, w, a), F = friction_force(hoop, phi, w, a);
+  // raised by some roundings, as stick_guards are
+  const double slack =
+      32.0 * std::numeric_limits<double>::epsilon() * (mu * std::abs(N) + std::abs(F) + hoop.sin_slope);
+  return {mu * N - sign * F + slack, mu * normal_force_rate(hoop, phi, w, a) - sign * F_rate};
+}
+
+/// n0 of a sliding hoop and its rate.
+Sample<double> lift(const CoulombIntegration::System& system, const Y& y, const Y& f) {
+  const Trig<double> phi = trig(y[0]);
+  return {free_normal_force(system.hoop, phi, y[1] * y[1]),
+          system.hoop.rho * y[1] * (2.0 * phi.cos * f[1] - phi.sin * y[1] * y[1])};
+}
+
+/// Ic + rho s q and its rate.
+Sample<double> pivot(const CoulombIntegration::System& system, const Y& y) {
+  const Hoop<double>& hoop = system.hoop;
+  const Trig<double> phi = trig(y[0]);
+  const double q = hoop.rho * phi.sin - system.friction * (1.0 - hoop.rho * phi.cos);
+  const double q_rate = hoop.rho * (phi.cos - system.friction * phi.sin);
+  return {sliding_coefficients(hoop, phi, system.friction).pivot,
+          hoop.rho * y[1] * (phi.cos * q + phi.sin * q_rate)};
+}
+
+ContactState<double> state_of(double time, const Y& y) { return {time, y[3], y[0], y[1], y[2]}; }
+
+}  // namespace
+
+CoulombIntegration::CoulombIntegration(const IntegrationOptions& options)
+    : options_(options),
+      integrator_(*options.stepper, options.control, {&right_hand_side, &jacobian, 4, &system_}) {}
+
+Outcome CoulombIntegration::solve(const Design& design, const Scene& scene, const CoulombObserver& observer,
+                                  const StepObserver& step_told) {
+  steps_ = 0;
+  using Guard = std::function<Sample<double>(const Y&)>;
+  // Steps until one of the guards falls; the first of them wins.
+  const auto follow = [&](Phase phase, int direction, ContactState<double>& at, std::span<const Guard> guards,
+                          std::span<const PhaseEnd> ends) {
+    const Y start{at.angle, at.spin, at.slip, at.travel};
+    const double began = at.time;
+    std::array<Sample<double>, 4> now;
+    for (std::size_t g = 0; g < guards.size(); ++g) now[g] = guards[g](start);
+    if (!integrator_.start(start, 0.01 / (1.0 + std::abs(at.spin)))) return PhaseEnd::failed;
+    const auto retake = [&](double tau, Y& y) { return integrator_.retake(tau, y); };
+    for (;;) {
+      if (++steps_ > options_.max_steps || !integrator_.advance()) return PhaseEnd::failed;
+      const Step<4>& step = integrator_.step();
+      const double turned = std::abs(step.y1[0] - step.y0[0]);
+      const int looks = 1 + static_cast<int>(std::min(turned * (8.0 / std::numbers::pi), 1000.0));
+      const Fall<4>* first = nullptr;
+      PhaseEnd end = PhaseEnd::failed;
+      for (std::size_t g = 0; g < guards.size(); ++g) {
+        now[g] = find_falls(step, looks, now[g], guards[g], retake, falls_[g]);
+        if (falls_[g].failed) return PhaseEnd::failed;
+        if (!falls_[g].falls.empty() && (!first || falls_[g].falls.front().tau < first->tau))
+          first = &falls_[g].falls.front(), end = ends[g];
+      }
+      if (step_told)
+        step_told(phase, direction, state_of(began + step.t0, step.y0), first ? first->tau : step.h,
+                  [&](double tau, ContactState<double>& state) {
+                    Y y;
+                    const bool taken = retake(tau, y);
+                    state = state_of(began + step.t0 + tau, y);
+                    return taken;
+                  });
+      if (first) {
+        at = state_of(began + step.t0 + first->tau, first->state);
+        return end;
+      }
+    }
+  };
+
+  return go_through_phases<double>(
+      design, scene, observer,
+      [&](const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at, double runway) {
+        system_.hoop = hoop, system_.friction = rolls;
+        if (at.spin < 0.0 || (at.spin == 0.0 && !(torque(hoop, trig(at.angle)) > 0.0)))
+          return PhaseEnd::stalls;
+        const Guard guards[]{[&](const Y& y) { return hold(hoop, contact.mu_static, 1.0, y); },
+                             [&](const Y& y) { return hold(hoop, contact.mu_static, -1.0, y); },
+                             [&](const Y& y) {
+                               return Sample<double>{y[1], angular_acceleration(hoop, trig(y[0]), y[1])};
+                             },
+                             [&](const Y& y) {
+                               return Sample<double>{runway - y[3], -(y[2] + y[1])};
+                             }};
+        constexpr PhaseEnd ends[]{PhaseEnd::slips_backwards, PhaseEnd::slips_forwards, PhaseEnd::stalls,
+                                  PhaseEnd::runway_ends};
+        for (const std::size_t g : {0u, 1u})  // what has fallen at the start is no fall of a step
+          if (has_fallen(guards[g](Y{at.angle, at.spin, at.slip, at.travel}))) return ends[g];
+        const PhaseEnd end = follow(Phase::rolling, 0, at, guards, ends);
+        if (end == PhaseEnd::stalls) at.spin = 0.0;
+        return end;
+      },
+      [&](const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at, double runway,
+          int direction) {
+        const double sign = direction;
+        system_.hoop = hoop, system_.friction = sign * contact.mu_kinetic;
+        if (!(pivot(system_, {at.angle, at.spin}).value > 0.0)) return PhaseEnd::indeterminate;
+        const auto rates = [&](const Y& y) {
+          Y f;
+          derivative(system_, y.data(), f.data());
+          return f;
+        };
+        const Guard guards[]{[&](const Y& y) { return lift(system_, y, rates(y)); },
+                             [&](const Y& y) {
+                               return Sample<double>{sign * y[2], sign * rates(y)[2]};
+                             },
+                             [&](const Y& y) {
+                               return Sample<double>{runway - y[3], -(y[2] + y[1])};
+                             },
+                             [&](const Y& y) { return pivot(system_, y); }};
+        constexpr PhaseEnd ends[]{PhaseEnd::lifts_off, PhaseEnd::slip_ends, PhaseEnd::runway_ends,
+                                  PhaseEnd::indeterminate};
+        const PhaseEnd end = follow(Phase::sliding, direction, at, guards, ends);
+        if (end == PhaseEnd::slip_ends) at.slip = 0.0;
+        return end;
+      });
+}
+
+}  // namespace leapmap

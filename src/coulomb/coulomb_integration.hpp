@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One design with Coulomb friction by integrating rolling and sliding in time with one of GSL's steppers:
+/// the audit of CoulombSolver, with which it shares equations, flights and landings, but neither energy
+/// integral nor quadratures.
+#pragma once
+
+#include <functional>
+
+#include "coulomb/contact_phases.hpp"
+#include "coulomb/coulomb.hpp"
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
+#include "numerics/events.hpp"
+#include "trajectory/integration_options.hpp"
+
+namespace leapmap {
+
+/// The motion inside a step of a phase in contact: the state tau after the step's start; false if the method
+/// fails there.
+using ContactMotion = std::function<bool(double tau, ContactState<double>&)>;
+
+/// A step in contact: its phase and direction of sliding, the state at its start, how much of it was gone
+/// through, and the motion in it.
+using StepObserver =
+    std::function<void(Phase, int direction, const ContactState<double>&, double end, const ContactMotion&)>;
+
+/// A thread's own workspace.
+class CoulombIntegration {
+ public:
+  explicit CoulombIntegration(const IntegrationOptions& options);
+  CoulombIntegration(const CoulombIntegration&) = delete;
+  CoulombIntegration& operator=(const CoulombIntegration&) = delete;
+
+  /// step, if set, is told of every step in contact, in order.
+  Outcome solve(const Design& design, const Scene& scene, const CoulombObserver& observer = {},
+                const StepObserver& step = {});
+
+  /// What the right-hand sides work on.
+  struct System {
+    Hoop<double> hoop;
+    double friction;  ///< mu_kinetic sign(v), while sliding
+    long evaluations = 0;
+  };
+
+  /// How often a right-hand side was asked for so far.
+  long evaluations() const { return system_.evaluations; }
+
+ private:
+  IntegrationOptions options_;
+  System system_{};
+  GslIntegrator<4> integrator_;
+  std::array<Falls<4>, 4> falls_;
+  long steps_ = 0;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One design's motion with friction and without an integrator: sliding by Picard's iteration from sample to
+/// sample.
+#include <cmath>
+
+#include "coulomb/coulomb.hpp"
+#include "coulomb/model.hpp"
+#include "rolling/rolling_motion.hpp"
+#include "trajectory/units.hpp"
+
+namespace leapmap::coulomb {
+namespace {
+
+/// A phase as it begins, in the solver's units.
+struct Begun {
+  Phase phase;
+  ContactState<double> state;
+  int direction;
+};
+
+}  // namespace
+
+Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval) {
+  Motion motion;
+  std::vector<Begun> phases;
+  std::vector<Flight<double>> flights;
+  ContactState<double> end;
+  CoulombObserver observer;
+  observer.phase = [&](Phase phase, const ContactState<double>& state, int direction) {
+    phases.push_back({phase, state, direction});
+    motion.phases.push_back(in_si(phase, state, direction, scene));
+  };
+  observer.lift_off = [&](const LiftOff<double>& lift_off, const Flight<double>& flight) {
+    flights.push_back(flight);
+    motion.candidates.push_back(in_si(lift_off, flight, scene));
+  };
+  observer.end = [&](const ContactState<double>& state) { end = state; };
+  motion.outcome = CoulombSolver<double>(tolerance).solve(design, scene, observer);
+  if (!(interval > 0.0)) return motion;
+
+  const Hoop<double> hoop = derive<double>(design);
+  const double mu = contact_of<double>(design, scene).mu_kinetic, second = time_unit(scene);
+  const SlidingLeg<double> sliding(motion_tolerance);
+  RollingMotion sampled(hoop, interval / second, motion.points);
+  auto flight = flights.begin();
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    const auto& [phase, from, direction] = phases[i];
+    const bool is_last = i + 1 == phases.size();
+    const ContactState<double>& to = is_last ? end : phases[i + 1].state;
+    if (phase == Phase::rolling) {
+      const bool stalls = is_last && motion.outcome.status == Status::stalled;
+      sampled.roll(from, stalls ? short_of_stall(from.angle, to.angle) : to.angle);
+    } else if (phase == Phase::sliding) {
+      ContactState<double> at = from;
+      const double friction = direction * mu;
+      sampled.until(to.time, [&, way = direction](double t) {
+        if (!sliding.advance(hoop, mu, at, t - at.time, way)) at.angle = NAN;
+        at.time = t;
+        return sliding_point(hoop, friction, at);
+      });
+    } else {
+      motion.points.push_back(flight_point(hoop, from, 0.0));
+      sampled.fly(from, (flight++)->flight_time);
+    }
+  }
+  motion.end = sampled.end() * second;
+  to_si(motion.points, scene);
+  return motion;
+}
+
+}  // namespace leapmap::coulomb

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The model with Coulomb friction and Poisson restitution: a hoop rolls, slides, flies, lands and hops on
+/// until a flight reaches hop_height (contact_phases.hpp).
+#pragma once
+
+#include "leapmap/motion.hpp"
+#include "trajectory/solver.hpp"
+
+namespace leapmap::coulomb {
+
+/// Rolling by its energy integral, sliding by quadratures, flights in closed form. tolerance: relative, of
+/// times.
+Solver exact(const Scene& scene, double tolerance, const Wanted& wanted);
+
+/// By integration in time (coulomb_integration.hpp).
+Solver integration(const Scene& scene, const IntegrationOptions& options);
+
+/// The exact solver in long double: a reference for studies and tests.
+Outcome refined(const Design& design, const Scene& scene);
+
+/// One design's motion by the exact solver, no integrator needed. interval > 0: sampled that often [s], and
+/// at the jump's lift-off and landing; infinite: those two only. Throws InputError if that would be more than
+/// 10^7 samples.
+Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval = 0.0);
+
+/// The same by integration in time.
+Motion tell_by_integration(const Design& design, const Scene& scene, const IntegrationOptions& options,
+                           double interval = 0.0);
+
+}  // namespace leapmap::coulomb

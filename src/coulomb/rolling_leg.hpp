@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One rolling phase by its energy integral: where friction is used up, the spin is, or the runway is.
+#pragma once
+
+#include <array>
+
+#include "coulomb/contact_phases.hpp"
+#include "numerics/spectral.hpp"
+#include "physics/stick.hpp"
+
+namespace leapmap {
+
+template <class S>
+class RollingLeg {
+ public:
+  /// Times will be good to the tolerance, relative, or to some roundings.
+  explicit RollingLeg(double tolerance);
+
+  /// Rolls on from a state without slip, its spin not below zero, to the phase's end.
+  PhaseEnd run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at, const S& runway) const;
+
+ private:
+  static constexpr std::size_t nodes_a_turn = 48;
+  static constexpr std::size_t nodes = 24;
+
+  S duration(const Roll<S>& roll, const S& length) const;
+  /// enough: an error that does not matter.
+  S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, const S& enough, int halvings,
+             int& panels) const;
+
+  S tolerance_;
+  SpectralPanel<S, nodes> panel_;
+  /// One turn, and as many nodes more as there may be lanes.
+  struct Grid {
+    std::array<S, nodes_a_turn + 16> sin, cos, versine;
+  } grid_;
+};
+
+}  // namespace leapmap

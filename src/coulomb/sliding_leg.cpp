@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coulomb/sliding_leg.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "numerics/panel_fall.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr double longest_angle = 2.0, first_angle = 1.2;  // of a panel by angle [rad]
+constexpr double shortest_angle = 1e-12;                  // of 1 + |angle|
+constexpr double vanishing_angle = 0.05;  // where the spin vanishes within less than this, panels are by time
+constexpr double longest_time = 1.0, first_time = 0.25,
+                 shortest_time = 1e-12;  // of a panel by time [sqrt(R/g)]
+constexpr double near_edge = 0.3;        // the edge matters for rounding from here on [rad]
+constexpr double share_of_edge = 0.6;    // a panel goes over so much of the way to the edge
+constexpr double at_edge = 1e-13;        // what is left changes nothing that is bounded [rad]
+constexpr double nearest_edge = 1e-290;  // nor anything else
+constexpr double least_place = 0.02;     // of an event in its panel
+constexpr int most_shortened = 40;
+constexpr int most_panels = 100'000;  // some slides rock against the edge, some 1e-100 deep
+
+/// The edges on either side of a slide, and how far they are; NaN: none within a turn.
+template <class S>
+struct EdgesAround {
+  struct Side {
+    bool known = false;
+    PainleveEdge<S> edge{};
+    S left{};
+  };
+  Side behind, ahead;  // at lesser and at greater angles
+
+  Side& on(const S& way) { return way > S(0) ? ahead : behind; }
+  /// Looks where nobody has yet.
+  void find(const Hoop<S>& hoop, const S& friction, const S& angle, const S& way) {
+    Side& side = on(way);
+    if (side.known) return;
+    side.known = true;
+    side.left = left_to_edge(hoop, friction, angle, way);
+    const S there = angle + way * side.left;
+    side.edge = {trig(there), trig(S(S(2) * there)), way};
+  }
+  void turn(const S& by) {
+    ahead.left -= by;
+    behind.left += by;
+  }
+  /// The nearer of those known, or nothing if it is far.
+  const Side* near() const {
+    const Side* nearest = nullptr;
+    for (const Side* side : {&ahead, &behind})
+      if (side->known && side->left < S(near_edge) && !(nearest && nearest->left < side->left))
+        nearest = side;
+    return nearest;
+  }
+};
+
+}  // namespace
+
+template <class S>
+SlidingLeg<S>::SlidingLeg(double tolerance)
+    : panels_(std::max(S(tolerance) * S(0.5), S(100) * std::numeric_limits<S>::epsilon())) {}
+
+template <class S>
+auto SlidingLeg<S>::first_event(const S& runway, int direction, const Panel& panel) const -> Event {
+  using Values = typename Panels::Values;
+  struct Guard {
+    PhaseEnd end;
+    S offset, factor;  // of the values that it falls with
+    const typename Panels::Course& course;
+  };
+  const Guard guards[]{{PhaseEnd::lifts_off, S(0), S(1), panel.free_force},
+                       {PhaseEnd::slip_ends, S(0), S(direction), panel.slip},
+                       {PhaseEnd::runway_ends, runway, S(-1), panel.travel}};
+  Event event{S(2), PhaseEnd::failed, false};
+  for (const Guard& guard : guards) {
+    Values values, rates;
+    S largest(0);
+    for (std::size_t i = 0; i < Panels::nodes; ++i) {
+      values[i] = guard.offset + guard.factor * guard.course.value[i];
+      rates[i] = guard.factor * guard.course.rate[i];
+      largest = std::max(largest, std::abs(values[i]));
+    }
+    const auto sample = [&](const Sample<S>& at) {
+      return Sample<S>{guard.offset + guard.factor * at.value, guard.factor * at.rate};
+    };
+    const S slack = S(4) * panels_.grid().tail(values) + S(64) * std::numeric_limits<S>::epsilon() * largest;
+    const PanelFall<S> fall = first_fall(panels_.grid(), values, rates, sample(guard.course.start),
+                                         sample(guard.course.end), slack);
+    event.unsure = event.unsure || fall.unsure;
+    if (fall.place < event.place) event.place = fall.place, event.end = guard.end;
+  }
+  return event;
+}
+
+template <class S>
+std::optional<PhaseEnd> SlidingLeg<S>::end_at_edge(const Slide& slide, const ContactState<S>& at,
+                                                   const SlidingMotion<S>& motion) {
+  if (!(slide.left < S(at_edge))) return {};
+  if (slide.left < S(nearest_edge)) return PhaseEnd::indeterminate;
+  const Trig<S> phi = trig(at.angle);
+  if (phi.cos >= S(0)) return {};  // its spin will be used up before
+  const S power = power_at_edge(slide.hoop, phi, slide.friction);
+  if (power > S(1) && slide.free_force < S(1e-3) * slide.hoop.cos_slope) return PhaseEnd::lifts_off;
+  // The forces grow as left^(power - 1): the slip that they take away until the edge is bounded if power > 0.
+  const S taken = std::abs(motion.slip / at.spin) * slide.left / power;
+  if (power > S(0) && std::abs(at.slip) > S(2) * taken) return PhaseEnd::indeterminate;
+  return {};
+}
+
+template <class S>
+PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& runway,
+                            int direction) const {
+  Slide slide{hoop, direction > 0 ? mu_kinetic : -mu_kinetic, {}, {}, {}};
+  const S& friction = slide.friction;
+  const bool has_edges = !keeps_off_painleve(hoop, friction);
+  const Trig<S> released = trig(at.angle);
+  if (!(sliding_coefficients(hoop, released, friction).pivot > S(0))) return PhaseEnd::indeterminate;
+  slide.free_force = free_normal_force(hoop, released, S(at.spin * at.spin));
+  EdgesAround<S> edges;
+  Panel panel;
+  S length(first_angle), duration(first_time);
+  // The tails go about with the length's power `nodes`: a length that just meets the tolerance, with some
+  // slack.
+  const auto change = [](const Panel& tried, const S& most) {
+    return std::clamp(S(0.85) * std::pow(tried.excess, S(-1) / S(Panels::nodes)), S(0.3), most);
+  };
+  const auto shrink = [&](const Panel& tried) {
+    return std::isfinite(tried.excess) ? change(tried, S(0.85)) : S(0.5);
+  };
+  int refined = 0, shortened = 0;
+  for (int taken = 0; taken < most_panels; ++taken) {
+    // By angle while the hoop turns and its spin does not vanish soon; else by time.
+    slide.edge.reset();
+    if (const auto* near = edges.near()) slide.edge = near->edge, slide.left = near->left;
+    const Trig<S> phi = trig(at.angle);
+    const SlidingMotion<S> start = sliding_motion(hoop, phi, S(at.spin * at.spin), friction,
+                                                  slide.coefficients(hoop, phi, S(0)), slide.free_force);
+    const S way = at.spin < S(0) || (at.spin == S(0) && start.angular < S(0)) ? S(-1) : S(1);
+    S longest(longest_angle);
+    if (has_edges) {
+      edges.find(hoop, friction, at.angle, way);
+      if (slide.edge && slide.edge->way == way)
+        if (const auto end = end_at_edge(slide, at, start)) return *end;
+      const S left = edges.on(way).left;
+      if (!std::isnan(left)) longest = std::min(longest, S(share_of_edge) * left);
+    }
+    typename Panels::Stretch stretch{};
+    bool by_angle = at.spin != S(0) || start.angular > S(0);
+    if (by_angle) {
+      length = std::min(length, longest);
+      const S shortest = S(shortest_angle) * (slide.edge ? slide.left : S(1) + std::abs(at.angle));
+      for (;; length *= shrink(panel)) {
+        stretch = Panels::stretch_of(at.spin, S(way * start.angular), length);
+        panels_.solve_by_angle(slide, at, stretch, panel);
+        by_angle = panel.excess <= S(1);
+        const S least = panel.spin_vanishes ? std::min(S(vanishing_angle), longest * S(0.1)) : shortest;
+        if (by_angle || !(length > least)) break;
+      }
+    }
+    if (!by_angle) {
+      length = S(vanishing_angle);
+      for (;; duration *= shrink(panel)) {
+        panels_.solve_by_time(slide, at, duration, panel);
+        if (panel.excess <= S(1)) break;
+        if (!(duration > S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1))))
+          return panel.indeterminate ? PhaseEnd::indeterminate : PhaseEnd::failed;
+      }
+    }
+    const Event event = first_event(runway, direction, panel);
+    if (event.unsure && refined < 2) {  // the polynomials of shorter panels are right to rounding
+      (by_angle ? length : duration) *= S(0.5);
+      ++refined;
+      continue;
+    }
+    // A panel that lasts so much longer holds the event's place to few digits: at almost no spin it lasts for
+    // ever.
+    const bool lasts = panel.end.time - at.time > S(longest_time);
+    if (lasts && event.place < S(least_place) && ++shortened < most_shortened) {
+      const S to = std::max(S(2) * event.place, S(0.5 * least_place));
+      if (by_angle)
+        length = stretch.shift + (stretch.begin + stretch.span * to) * (stretch.begin + stretch.span * to);
+      else
+        duration *= to;
+      continue;
+    }
+    refined = shortened = 0;
+    if (event.place > S(1)) {
+      edges.turn(panel.turned);
+      at = panel.end;
+      slide.free_force = panel.free_force.end.value;
+      (by_angle ? length : duration) *=
+          std::max(change(panel, S(2)), S(1));  // roundings do not shrink with it
+      length = std::min(length, S(longest_angle)), duration = std::min(duration, S(longest_time));
+      continue;
+    }
+    // The panel once more, ending there: its end is better than a value between nodes.
+    if (by_angle) {
+      stretch.span *= event.place;
+      panels_.solve_by_angle(slide, at, stretch, panel);
+    } else {
+      panels_.solve_by_time(slide, at, S(duration * event.place), panel);
+    }
+    if (!std::isfinite(panel.excess)) return PhaseEnd::failed;
+    at = panel.end;
+    if (event.end == PhaseEnd::slip_ends) at.slip = S(0);
+    return event.end;
+  }
+  return PhaseEnd::too_long;
+}
+
+template <class S>
+bool SlidingLeg<S>::advance(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& duration,
+                            int direction) const {
+  const Slide slide{hoop, S(S(direction) * mu_kinetic), {}, {}, {}};
+  Panel panel;
+  const S end = at.time + duration;
+  for (S step = std::min(duration, S(first_time)); at.time < end;) {
+    panels_.solve_by_time(slide, at, std::min(step, S(end - at.time)), panel);
+    if (panel.excess <= S(1)) {
+      at = panel.end;
+    } else if ((step *= S(0.5)) < S(shortest_time)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template class SlidingLeg<double>;
+template class SlidingLeg<long double>;
+
+}  // namespace leapmap

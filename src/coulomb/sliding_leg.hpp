@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One sliding phase, panel by panel (coulomb/sliding_panel.hpp), to whatever ends it.
+#pragma once
+
+#include "coulomb/sliding_panel.hpp"
+
+namespace leapmap {
+
+template <class S>
+class SlidingLeg {
+ public:
+  /// The nodes of a panel resolve what they hold to half the tolerance, relative, or to some roundings.
+  explicit SlidingLeg(double tolerance);
+
+  /// Slides on from a state with n0 > 0 (or zero but for rounding), towards `direction` (1 or -1), to the
+  /// phase's end.
+  PhaseEnd run(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& runway,
+               int direction) const;
+
+  /// Slides on for a time, with no look at what would end the phase. False: it could not be solved.
+  bool advance(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& duration,
+               int direction) const;
+
+ private:
+  using Panels = SlidingPanels<S>;
+  using Panel = typename Panels::Panel;
+  using Slide = typename Panels::Slide;
+
+  /// The first event of a panel: where, what, and whether shorter panels would tell better.
+  struct Event {
+    S place;  ///< in (0, 1]; 2: none
+    PhaseEnd end;
+    bool unsure;
+  };
+  Event first_event(const S& runway, int direction, const Panel& panel) const;
+  /// How a slide ends that has come to Painleve's edge; nothing: it has not, or something may happen yet.
+  static std::optional<PhaseEnd> end_at_edge(const Slide& slide, const ContactState<S>& at,
+                                             const SlidingMotion<S>& motion);
+
+  Panels panels_;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coulomb/sliding_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+
+namespace leapmap {
+namespace {
+
+constexpr int most_iterations = 60;
+
+/// The largest, and infinity if any is no number: such a panel is not resolved.
+template <class S>
+S largest(std::initializer_list<S> values) {
+  S most(0);
+  for (const S& value : values) most = std::isfinite(value) ? std::max(most, value) : S(HUGE_VAL);
+  return most;
+}
+
+}  // namespace
+
+template <class S>
+auto SlidingPanels<S>::stretch_of(const S& spin, const S& rise, const S& length) -> Stretch {
+  // x = shift + q^2 takes out u's zero just before the start, where the spin is small and grows.
+  const S shift = rise > S(0) ? std::max(-spin * spin / (S(2) * rise), -length) : -length;
+  const S begin = std::sqrt(-shift);
+  return {shift, begin, std::sqrt(length - shift) - begin};
+}
+
+template <class S>
+void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                                      Panel& panel) const {
+  // The nodes in lanes.
+  using T = typename Grid::T;
+  using std::exp, std::sqrt;
+  constexpr std::size_t width = Lanes<T>::count;
+  const auto get = [](const Values& values, std::size_t i) { return Lanes<T>::load(values.data() + i); };
+  const auto put = [](const T& value, Values& values, std::size_t i) {
+    Lanes<T>::store(value, values.data() + i);
+  };
+  const Hoop<S>& hoop = slide.hoop;
+  const S& friction = slide.friction;
+  const Hoop<T> hoops = widened<T>(hoop);
+  const T m(friction);
+  const S way = from.spin < S(0) ? S(-1) : S(1), length = stretch.length();
+  panel.indeterminate = panel.spin_vanishes = false;
+  panel.excess = std::numeric_limits<S>::infinity();
+  panel.turned = way * length;
+  panel.end.angle = from.angle + panel.turned;
+  const Trig<S> start_phi = trig(from.angle), end_phi = trig(panel.end.angle);
+
+  const SlidingCoefficients<S> end = slide.coefficients(hoop, end_phi, S(way * length));
+  panel.indeterminate = !(end.pivot > S(0));
+  // With n0 in place of u, where it is the one that vanishes, and the cosine stays away from zero.
+  const S farthest = S(-0.2);
+  const bool by_force = slide.edge && slide.free_force < S(0.5) * hoop.cos_slope &&
+                        start_phi.cos < farthest && end_phi.cos < farthest;
+
+  Values a, b, weight, angle;
+  std::array<Trig<T>, nodes / width> phi;
+  std::array<SlidingCoefficients<T>, nodes / width> coefficients;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const T q = T(stretch.begin) + T(stretch.span) * get(grid_.node, i);
+    const T w = q * T(S(2) * stretch.span), x = T(stretch.shift) + q * q;
+    const Trig<T> at_node = phi[i / width] = trig(T(from.angle) + T(way) * x);
+    const SlidingCoefficients<T> at = coefficients[i / width] =
+        slide.coefficients(hoops, at_node, T(way) * x);
+    panel.indeterminate = panel.indeterminate || !all(at.pivot > T(S(0)));
+    const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoops.rho * at_node.cos;
+    if (by_force) {
+      const T tangent = at_node.sin / at_node.cos;
+      put(turned * (grows - tangent), a, i);
+      put(turned * tangent * hoops.cos_slope, b, i);
+    } else {
+      put(turned * grows, a, i);
+      put(turned * T(S(2)) * at.turn * hoops.cos_slope, b, i);
+    }
+    put(w, weight, i);
+    put(x, angle, i);
+  }
+  if (panel.indeterminate) return;
+
+  const Values A = grid_.integrals(a);
+  Values growth, driven;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const T grown = exp(get(A, i));
+    put(grown, growth, i);
+    put(get(b, i) / grown, driven, i);
+  }
+  const Values B = grid_.integrals(driven);
+  const S start_u = from.spin * from.spin, start_force = slide.free_force;
+  const S start_y = by_force ? start_force : start_u;
+  const S end_y = std::exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
+  const auto spin_squared = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
+    return by_force ? (y - hoop_at.cos_slope) / (hoop_at.rho * at.cos) : y;
+  };
+  const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
+    return by_force ? y : free_normal_force(hoop_at, at, y);
+  };
+  const auto force_rate = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& u, const R& n0,
+                                       const R& turn) {
+    return hoop_at.rho * (R(S(2)) * at.cos * turn * n0 - at.sin * u);
+  };
+  const S end_u = spin_squared(hoop, end_phi, end_y);
+  T least_u(std::min(start_u > S(0) ? start_u : end_u, end_u));
+  Values time_rate;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const Trig<T>& at = phi[i / width];
+    const SlidingCoefficients<T>& there = coefficients[i / width];
+    const T y = get(growth, i) * (T(start_y) + get(B, i));
+    const T u = spin_squared(hoops, at, y), n0 = force(hoops, at, y);
+    least_u = smaller(least_u, u);
+    const T w = get(weight, i), rate = w / sqrt(u);
+    put(rate, time_rate, i);
+    put(sliding_motion(hoops, at, u, m, there, n0).slip * rate, panel.slip.rate, i);
+    put(n0, panel.free_force.value, i);
+    put(T(way) * w * force_rate(hoops, at, u, n0, there.turn), panel.free_force.rate, i);
+  }
+  const auto least = lanes_of(least_u);
+  const S slowest = *std::min_element(least.begin(), least.end());
+  panel.spin_vanishes = !(slowest > S(0));
+  if (panel.spin_vanishes) return;
+
+  const S end_force = force(hoop, end_phi, end_y);
+  const S end_weight = S(2) * stretch.span * (stretch.begin + stretch.span),
+          end_rate = end_weight / std::sqrt(end_u);
+  const S start_weight = S(2) * stretch.span * stretch.begin;
+  const SlidingCoefficients<S> start = slide.coefficients(hoop, start_phi, S(0));
+  panel.end.spin = way * std::sqrt(end_u);
+  panel.free_force.end = {end_force,
+                          way * end_weight * force_rate(hoop, end_phi, end_u, end_force, end.turn)};
+  panel.free_force.start = {
+      start_force, way * start_weight * force_rate(hoop, start_phi, start_u, start_force, start.turn)};
+  // At rest weight over spin has a limit.
+  const S start_rate = start_u > S(0) ? start_weight / std::sqrt(start_u) : time_rate[0];
+  panel.slip.start = {
+      from.slip, start_rate * sliding_motion(hoop, start_phi, start_u, friction, start, start_force).slip};
+
+  const Values slipped = grid_.integrals(panel.slip.rate);
+  Values slip_time;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    panel.slip.value[i] = from.slip + slipped[i];
+    slip_time[i] = panel.slip.value[i] * time_rate[i];
+    panel.travel.rate[i] = way * weight[i] + slip_time[i];
+  }
+  panel.travel.start = {from.travel, way * start_weight + from.slip * start_rate};
+  const Values carried = grid_.integrals(slip_time);
+  for (std::size_t i = 0; i < nodes; ++i) panel.travel.value[i] = from.travel + way * angle[i] + carried[i];
+  const S duration = grid_.integral(time_rate);
+  panel.end.time = from.time + duration;
+  panel.end.slip = from.slip + grid_.integral(panel.slip.rate);
+  panel.end.travel = from.travel + way * length + grid_.integral(slip_time);
+  panel.slip.end = {panel.end.slip,
+                    end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
+  panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
+  const S noise = slide.rounding_at_end(end.pivot) +
+                  S(16) * std::numeric_limits<S>::epsilon() * std::min(start_u / slowest, S(1e6));
+  panel.excess = largest<S>({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
+                             S(0.1) * grid_.tail(time_rate) / duration,
+                             grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
+                 (tolerance_ + noise);
+}
+
+template <class S>
+void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration,
+                                     Panel& panel) const {
+  using T = typename Grid::T;
+  constexpr std::size_t width = Lanes<T>::count;
+  const Hoop<S>& hoop = slide.hoop;
+  const S& friction = slide.friction;
+  panel.indeterminate = panel.spin_vanishes = false;
+  panel.excess = std::numeric_limits<S>::infinity();
+  Values turned, spin, angular;
+  for (std::size_t i = 0; i < nodes; ++i)
+    spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
+  bool settled = false;
+  const Hoop<T> hoops = widened<T>(hoop);
+  const T m(friction), length(duration), rho(hoop.rho);
+  for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
+    S least_pivot(hoop.Ic + S(2));
+    for (std::size_t i = 0; i < nodes; i += width) {
+      const T x = Lanes<T>::load(turned.data() + i);
+      const Trig<T> phi = trig(T(from.angle) + x);
+      const SlidingCoefficients<T> at = slide.coefficients(hoops, phi, x);
+      const auto pivots = lanes_of(at.pivot);
+      least_pivot = std::min(least_pivot, *std::min_element(pivots.begin(), pivots.end()));
+      if (!(least_pivot > S(0))) {
+        panel.indeterminate = true;
+        return;
+      }
+      const T w = Lanes<T>::load(spin.data() + i), u = w * w;
+      const T n0 = free_normal_force(hoops, phi, u);
+      const SlidingMotion<T> motion = sliding_motion(hoops, phi, u, m, at, n0);
+      Lanes<T>::store(length * motion.angular, angular.data() + i);
+      Lanes<T>::store(length * motion.slip, panel.slip.rate.data() + i);
+      Lanes<T>::store(n0, panel.free_force.value.data() + i);
+      Lanes<T>::store(length * rho * w * (T(S(2)) * phi.cos * motion.angular - phi.sin * u),
+                      panel.free_force.rate.data() + i);
+    }
+    const Values gained = grid_.integrals(angular);
+    S change(0), most(1);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      change = largest<S>({change, std::abs(from.spin + gained[i] - spin[i])});
+      most = std::max({most, std::abs(from.spin), std::abs(angular[i])});
+      spin[i] = from.spin + gained[i];
+    }
+    const Values spun = grid_.integrals(spin);
+    for (std::size_t i = 0; i < nodes; ++i) turned[i] = duration * spun[i];
+    // Near the edge, or a needle of the spin, accelerations are known to some roundings more.
+    const S noise = std::min(slide.rounding(least_pivot), S(1e4) * std::numeric_limits<S>::epsilon());
+    settled = change <= (S(8) * std::numeric_limits<S>::epsilon() + noise) * most;
+  }
+  panel.end.spin = from.spin + grid_.integral(angular);
+  panel.turned = duration * grid_.integral(spin);
+  panel.end.angle = from.angle + panel.turned;
+  const Trig<S> start_phi = trig(from.angle), end_phi = trig(panel.end.angle);
+  const SlidingCoefficients<S> at_start = slide.coefficients(hoop, start_phi, S(0)),
+                               at_end = slide.coefficients(hoop, end_phi, panel.turned);
+  panel.indeterminate = !(at_end.pivot > S(0));
+  if (panel.indeterminate) return;
+  const auto sample_force = [&](const Trig<S>& phi, const S& w, const SlidingMotion<S>& motion) {
+    return Sample<S>{free_normal_force(hoop, phi, S(w * w)),
+                     duration * hoop.rho * w * (S(2) * phi.cos * motion.angular - phi.sin * w * w)};
+  };
+  const auto motion_at = [&](const Trig<S>& phi, const S& w, const SlidingCoefficients<S>& at) {
+    const S u = w * w;
+    return sliding_motion(hoop, phi, u, friction, at, free_normal_force(hoop, phi, u));
+  };
+  const SlidingMotion<S> start = motion_at(start_phi, from.spin, at_start),
+                         end = motion_at(end_phi, panel.end.spin, at_end);
+  panel.free_force.start = sample_force(start_phi, from.spin, start);
+  panel.free_force.end = sample_force(end_phi, panel.end.spin, end);
+  panel.slip.start = {from.slip, duration * start.slip};
+  panel.travel.start = {from.travel, duration * (from.slip + from.spin)};
+  const Values slipped = grid_.integrals(panel.slip.rate);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    panel.slip.value[i] = from.slip + slipped[i];
+    panel.travel.rate[i] = duration * (panel.slip.value[i] + spin[i]);
+  }
+  const Values travelled = grid_.integrals(panel.travel.rate);
+  for (std::size_t i = 0; i < nodes; ++i) panel.travel.value[i] = from.travel + travelled[i];
+  panel.end.time = from.time + duration;
+  panel.end.slip = from.slip + grid_.integral(panel.slip.rate);
+  panel.end.travel = from.travel + grid_.integral(panel.travel.rate);
+  panel.slip.end = {panel.end.slip, duration * end.slip};
+  panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
+  if (settled)
+    panel.excess = largest<S>({grid_.tail(angular) / (S(1) + std::abs(from.spin)),
+                               grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
+                   (tolerance_ + slide.rounding_at_end(at_end.pivot));
+}
+
+template class SlidingPanels<double>;
+template class SlidingPanels<long double>;
+
+}  // namespace leapmap

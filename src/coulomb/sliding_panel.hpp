@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A stretch of one sliding phase, solved at the nodes of a panel.
+///
+/// In the angle u = w^2 obeys du/dphi = a u + b with a = 2 rho c turn, b = 2 cos(theta) turn
+/// (physics/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the integral of a; time, slip and
+/// travel are integrals over u's root. Near Painleve's edge n0 takes the place of u: it obeys an equation of
+/// the same kind, with -tan(phi) + 2 rho c turn and tan(phi) cos(theta), and keeps its digits where it
+/// vanishes with the pivot. Where the spin goes through zero panels are in time: angle and spin at their
+/// nodes by Picard's iteration.
+#pragma once
+
+#include <optional>
+
+#include "coulomb/contact_phases.hpp"
+#include "numerics/spectral.hpp"
+#include "physics/painleve.hpp"
+
+namespace leapmap {
+
+template <class S>
+class SlidingPanels {
+ public:
+  static constexpr std::size_t nodes = 24;
+  using Grid = SpectralPanel<S, nodes>;
+  using Values = typename Grid::Values;
+
+  /// A function at the panel's start, nodes and end, and its derivative by the panel's coordinate.
+  struct Course {
+    Sample<S> start;
+    Values value, rate;
+    Sample<S> end;
+  };
+  /// What the nodes of a panel hold, in order of time, and its end.
+  struct Panel {
+    Course slip, travel, free_force;
+    ContactState<S> end;
+    S turned;  ///< from start to end
+    S excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    bool indeterminate, spin_vanishes;
+  };
+  /// A panel by angle: |phi - from| = shift + q^2, q from begin to begin + span.
+  struct Stretch {
+    S shift, begin, span;
+    S length() const { return shift + (begin + span) * (begin + span); }
+  };
+  /// What a slide is about.
+  struct Slide {
+    Hoop<S> hoop;
+    S friction;                           ///< mu_kinetic sign(v)
+    std::optional<PainleveEdge<S>> edge;  ///< the nearest, if it is near
+    S left;                               ///< angle from a panel's start to it
+    S free_force;                         ///< n0 at a panel's start
+
+    /// What sliding says at an angle, `turned` past the panel's start.
+    template <class T>
+    SlidingCoefficients<T> coefficients(const Hoop<T>& hoops, const Trig<T>& phi, const T& turned) const {
+      const T m(friction);
+      if (!edge) return sliding_coefficients(hoops, phi, m);
+      return sliding_coefficients(hoops, phi, m, edge->pivot(hoops, m, T(left) - T(edge->way) * turned));
+    }
+    /// Relative rounding of the accelerations where the pivot is so large: it comes of terms that may cancel.
+    S rounding(const S& pivot) const {
+      return S(16) * std::numeric_limits<S>::epsilon() *
+             (hoop.Ic + hoop.rho * (hoop.rho + S(2) * std::abs(friction))) / pivot;
+    }
+    /// The same at a panel's end: near the edge the pivot comes without cancellation.
+    S rounding_at_end(const S& pivot) const { return rounding(edge ? S(1) : pivot); }
+  };
+
+  explicit SlidingPanels(const S& tolerance) : tolerance_(tolerance) {}
+
+  /// The stretch of that length, its nodes closer where the spin is small and grows. rise: of w^2 / 2, an
+  /// angle.
+  static Stretch stretch_of(const S& spin, const S& rise, const S& length);
+  void solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                      Panel& panel) const;
+  void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
+
+  const Grid& grid() const { return grid_; }
+
+ private:
+  S tolerance_;
+  Grid grid_;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/fields.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace leapmap {
+namespace {
+
+constexpr std::array<std::string_view, status_count> status_names = [] {
+  std::array<std::string_view, status_count> names;
+  for (int i = 0; i < status_count; ++i) names[static_cast<std::size_t>(i)] = name_of(static_cast<Status>(i));
+  return names;
+}();
+constexpr std::array<std::string_view, 2> spurious_names{"first_lift_off_is_the_jump",
+                                                         "first_lift_off_is_spurious"};
+
+const std::array fields{
+    Field{"jump_height", Quantity{&Outcome::jump_height, Measure::height}, "1",
+          "apex of the jump above the plane, in hoop diameters"},
+    Field{"jump_time", Quantity{&Outcome::jump_time, Measure::time}, "s",
+          "time from release to the lift-off of the jump"},
+    Field{"spurious_first_jump",
+          Code{[](const Outcome& o) { return o.spurious_first_jump; },
+               [](Outcome& o, std::uint8_t code) { o.spurious_first_jump = code; }, Outcome::no_lift_off,
+               spurious_names},
+          "1", "whether the first lift-off stays below hop_height"},
+    Field{"status",
+          Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.status); },
+               [](Outcome& o, std::uint8_t code) {
+                 o.status = code < status_count ? static_cast<Status>(code) : Status::not_computed;
+               },
+               0, status_names},
+          "1", "how the design ended"},
+    Field{"jump_angle", Quantity{&Outcome::jump_angle}, "rad", "angle phi at the lift-off of the jump"},
+    Field{"jump_spin", Quantity{&Outcome::jump_spin}, "1", "spin at the lift-off of the jump, in sqrt(g/R)"},
+    Field{"jump_distance", Quantity{&Outcome::jump_distance}, "1",
+          "distance rolled from release to the lift-off of the jump, in R"},
+    Field{"apex_time", Quantity{&Outcome::apex_time, Measure::time}, "s",
+          "time from the lift-off of the jump to its apex"},
+    Field{"flight_time", Quantity{&Outcome::flight_time, Measure::time}, "s",
+          "time from the lift-off of the jump to its landing"},
+    Field{"first_jump_height", Quantity{&Outcome::first_jump_height, Measure::height}, "1",
+          "apex of the first lift-off above the plane, in hoop diameters"},
+    Field{"first_jump_time", Quantity{&Outcome::first_jump_time, Measure::time}, "s",
+          "time from release to the first lift-off"},
+    Field{"dip", Quantity{&Outcome::dip, Measure::height}, "1",
+          "how far the flight of the jump first enters the plane, in hoop diameters, <= 0"},
+    Field{"candidates",
+          Code{[](const Outcome& o) { return o.candidates; },
+               [](Outcome& o, std::uint8_t code) { o.candidates = code; },
+               255,
+               {}},
+          "1", "lift-offs looked at, the jump included; 254: that many or more"},
+    Field{"phase_sequence", Word{&Outcome::phase_sequence}, "1",
+          "two bits a phase, the first lowest, up to 32: 1 rolling, 2 sliding, 3 flight; 0: none", 3,
+          Friction::coulomb},
+    Field{"slip_distance", Quantity{&Outcome::slip_distance}, "1",
+          "distance slid, either way, from release to the end, in R", 3, Friction::coulomb},
+    Field{"landing_spin", Quantity{&Outcome::landing_spin}, "1",
+          "spin after the landing of the jump, in sqrt(g/R)", 3, Friction::coulomb},
+    Field{"energy_lost", Quantity{&Outcome::energy_lost}, "1",
+          "energy lost from release to the lift-off of the jump, over (m + m_p) g R", 3, Friction::coulomb},
+};
+
+}  // namespace
+
+std::span<const Field> map_fields() { return fields; }
+
+const Field* find_field(std::string_view name) {
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+double stored_number(const Field& field, const Outcome& outcome) {
+  if (const auto* quantity = std::get_if<Quantity>(&field.source)) return outcome.*quantity->member;
+  const auto* code = std::get_if<Code>(&field.source);
+  return code && code->value(outcome) != code->fill ? code->value(outcome) : Outcome::none;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Each field of an outcome as maps store it, declared once: name, type, unit, meaning, and where its value
+/// comes from. The encoder, retry, audit, hop, JSON, the FORMAT page, the web page and Python read these
+/// rows.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+
+namespace leapmap {
+
+/// What an error of a quantity is: that of a height is absolute, of a time relative, of any other relative to
+/// one more than its size.
+enum class Measure { height, time, other };
+
+/// A measured quantity, stored as f8, NaN where it does not apply.
+struct Quantity {
+  double Outcome::*member;
+  Measure measure = Measure::other;
+};
+
+/// A small code, stored as u1.
+struct Code {
+  std::uint8_t (*value)(const Outcome&);
+  void (*put)(Outcome&, std::uint8_t);      ///< the inverse
+  std::uint8_t fill;                        ///< what a design not computed shows
+  std::span<const std::string_view> names;  ///< flag_meanings of 0, 1, 2, ...; empty: a count
+};
+
+/// A word of bits, stored as u8 of HDF5's (64 bits).
+struct Word {
+  std::uint64_t Outcome::*member;
+};
+
+struct Field {
+  std::string_view name;
+  std::variant<Quantity, Code, Word> source;
+  std::string_view unit;  ///< as UDUNITS reads it; "1": a pure number
+  std::string_view long_name;
+  int since = 0;                      ///< the minor version of the map's format that brought it
+  std::optional<Friction> only_of{};  ///< the one model that fills it; unset: every model
+};
+
+/// A field's value where it is a number, NaN where it does not apply. Words have none.
+double stored_number(const Field& field, const Outcome& outcome);
+
+/// Every field of a map, in the order of the file.
+std::span<const Field> map_fields();
+
+/// The field of that name, or nullptr.
+const Field* find_field(std::string_view name);
+
+}  // namespace leapmap

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What a model is, and the list of them. A new one is a folder beside rolling and coulomb, and a row of the
+/// list; nothing else asks which model a scene names.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "leapmap/motion.hpp"
+#include "leapmap/scene.hpp"
+#include "trajectory/solver.hpp"
+
+namespace leapmap {
+
+/// How designs of a scene are solved: each of these takes the scene it was chosen for.
+struct Model {
+  Friction friction;
+  std::string_view name;     ///< in specs: the value of scene.friction
+  std::string_view meaning;  ///< in a few words
+  /// Without an integrator, to a relative tolerance of times.
+  Solver (*exact)(const Scene&, double tolerance, const Wanted&);
+  /// By integration in time.
+  Solver (*integration)(const Scene&, const IntegrationOptions&);
+  /// By the exact solver in long double.
+  Outcome (*refined)(const Design&, const Scene&);
+  /// One design's motion, sampled every `interval` [s]; 0: not sampled.
+  Motion (*tell_exactly)(const Design&, const Scene&, double tolerance, double interval);
+  Motion (*tell_by_integration)(const Design&, const Scene&, const IntegrationOptions&, double interval);
+};
+
+/// Every model.
+std::span<const Model> models();
+
+const Model& model_of(Friction friction);
+inline const Model& model_of(const Scene& scene) { return model_of(scene.friction); }
+
+/// Whether a model has what only some have: a parameter or a field whose row names that model. Unset: all.
+inline bool has(Friction model, std::optional<Friction> only_of) { return !only_of || *only_of == model; }
+
+}  // namespace leapmap

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "model/model.hpp"
+#include "model/parameters.hpp"
+#include "support/errors.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr double right_angle = std::numbers::pi / 2.0;
+
+std::string shown(double value, std::string_view unit) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return unit == "rad" && value == right_angle ? "90 deg" : fmt::format("{}", value);
+}
+
+[[noreturn]] void refuse(std::string_view place, const Parameter& parameter, double value,
+                         std::string_view what, std::string_view allowed) {
+  throw InputError(fmt::format("{}{}{} = {} {}; allowed: {}", place, place.empty() ? "" : ": ",
+                               parameter.name, value, what, allowed));
+}
+
+/// What has no use must be left at its default.
+void refuse_unused(std::string_view place, const Parameter& parameter, double value, double usual,
+                   const Scene& scene) {
+  if (value == usual || (std::isnan(value) && std::isnan(usual))) return;
+  const std::string_view name = model_of(*parameter.only_of).name;
+  refuse(place, parameter, value, fmt::format("has no use where the contact {}", model_of(scene).meaning),
+         fmt::format("with friction = {}, on the command line --friction {}", name, name));
+}
+
+}  // namespace
+
+std::string allowed_values(const Range& range, std::string_view unit, std::string_view what) {
+  return fmt::format("{} in {}{}, {}{}{}", what, range.least_allowed ? '[' : '(', shown(range.least, unit),
+                     shown(range.most, unit), range.most_allowed ? ']' : ')',
+                     unit == "rad" ? ", in rad or as \"... deg\"" : "");
+}
+
+void check_scene(const Scene& scene) {
+  constexpr Scene usual;
+  for (const Parameter& parameter : parameters()) {
+    const auto* member = std::get_if<double Scene::*>(&parameter.member);
+    if (!member) continue;
+    const double value = scene.**member;
+    if (!has(scene.friction, parameter.only_of)) refuse_unused({}, parameter, value, usual.**member, scene);
+    if (!parameter.range.holds(value))
+      refuse({}, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
+  }
+}
+
+void check_design(const Design& design, const Scene& scene, std::string_view place) {
+  constexpr Design usual;
+  for (const Parameter& parameter : parameters()) {
+    const auto* member = std::get_if<double Design::*>(&parameter.member);
+    if (!member) continue;
+    const double value = design.**member;
+    if (!has(scene.friction, parameter.only_of)) {
+      refuse_unused(place, parameter, value, usual.**member, scene);
+    } else if (!parameter.range.holds(value) && !(std::isnan(value) && std::isnan(usual.**member))) {
+      refuse(place, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
+    }
+  }
+}
+
+}  // namespace leapmap

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/parameters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace leapmap {
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double right_angle = std::numbers::pi / 2.0;
+constexpr Range non_negative{0.0, inf, true, false};
+constexpr Range positive{1e-9, 1e9};  // a length or an acceleration
+constexpr Range ratio{0.0, 1e12};
+constexpr Range coefficient{0.0, 1e6};  // of friction: more than any pair of materials has
+constexpr Range fraction{0.0, 1.0};
+
+const std::array table{
+    Parameter{"mu_static", &Design::mu_static, "1", "coulomb only: static friction coefficient", coefficient,
+              Friction::coulomb, true},
+    Parameter{
+        "mu_kinetic", &Design::mu_kinetic, "1",
+        "coulomb only: kinetic friction coefficient, mu_static unless given; a lower mu_static counts as "
+        "much",
+        coefficient, Friction::coulomb, true},
+    Parameter{"restitution", &Design::restitution, "1", "coulomb only: Poisson restitution", fraction,
+              Friction::coulomb, true},
+    Parameter{"rest_speed", &Scene::rest_speed, "sqrt(g R)", "coulomb only: slower rebounds count as none",
+              non_negative, Friction::coulomb, true},
+    Parameter{"runway",
+              &Scene::runway,
+              "revolutions",
+              "distance rolled after which the search for a jump ends",
+              {0.0, 1e6, false, true}},
+    Parameter{"hop_height", &Scene::hop_height, "hoop diameters",
+              "a lift-off that flies this high is the jump; 0: the first one is", non_negative},
+    Parameter{"radius", &Scene::radius, "m", "the hoop's radius R; scales times only", positive},
+    Parameter{"gravity", &Scene::gravity, "m s-2", "g; scales times only", positive},
+    Parameter{"slope", &Design::slope, "rad", "slope of the plane", {0.0, right_angle, true, false}},
+    Parameter{"mass_ratio", &Design::mass_ratio, "1", "point mass over hoop mass, m_p / m", ratio},
+    Parameter{"offset_ratio", &Design::offset_ratio, "1",
+              "distance of the point mass from the centre over the radius, L / R", fraction},
+    Parameter{"inertia_factor", &Design::inertia_factor, "1",
+              "inertia of the bare hoop over m R^2: thin hoop 1, disc 1/2", ratio},
+    Parameter{"release_angle",
+              &Design::release_angle,
+              "rad",
+              "angle phi at release: 0 mass on the plane, 180 deg mass on top",
+              {-1e6, 1e6}},
+    Parameter{"release_spin",
+              &Design::release_spin,
+              "sqrt(g/R)",
+              "spin at release, positive downhill",
+              {-1e4, 1e4}}};
+
+}  // namespace
+
+bool Range::holds(double value) const {
+  return std::isfinite(value) && (least_allowed ? value >= least : value > least) &&
+         (most_allowed ? value <= most : value < most);
+}
+
+std::span<const Parameter> parameters() { return table; }
+
+const Parameter* find_parameter(std::string_view name) {
+  // Not by std::ranges: the page's compiler has no such algorithms yet.
+  const auto found =
+      std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == name; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Every number that a design or a scene has, declared once: name, meaning, unit, range, and whose it is.
+/// Specs, flags, axes, entry checks, the page and Python read these rows.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
+
+namespace leapmap {
+
+/// The values a number may take.
+struct Range {
+  double least, most;
+  bool least_allowed = true, most_allowed = true;
+
+  /// Whether a number is finite and inside.
+  bool holds(double value) const;
+};
+
+struct Parameter {
+  std::string_view name;
+  /// A design's own, so that it takes an axis or a column of a list; or of the scene, the same for all.
+  std::variant<double Design::*, double Scene::*> member;
+  std::string_view unit;  ///< "rad" marks an angle, which may be written "30 deg"; "1": a pure number
+  std::string_view meaning;
+  Range range;
+  std::optional<Friction> only_of{};  ///< the one model that has it; unset: every model
+  bool of_contact = false;            ///< of the contact with the plane: stands in a spec's [scene]
+};
+
+/// All of them, in the order of the documentation.
+std::span<const Parameter> parameters();
+
+/// The parameter of that name, or nullptr.
+const Parameter* find_parameter(std::string_view name);
+
+/// "a number in [0, 1]" and the like.
+std::string allowed_values(const Range& range, std::string_view unit, std::string_view what = "a number");
+
+/// Throws InputError if a number of the scene is out of its range.
+void check_scene(const Scene& scene);
+
+/// Throws InputError, with parameter, value and what is allowed, if a number of the design is out of its
+/// range or has no use in the scene: mu_static, say, where the contact never slips. place: in front of the
+/// message.
+void check_design(const Design& design, const Scene& scene, std::string_view place = {});
+
+}  // namespace leapmap

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One design's motion without slip, integrated in time.
+#include <cmath>
+
+#include "rolling/model.hpp"
+#include "rolling/rolling_integration.hpp"
+#include "rolling/rolling_motion.hpp"
+#include "trajectory/units.hpp"
+
+namespace leapmap::rolling {
+
+Motion tell_by_integration(const Design& design, const Scene& scene, const IntegrationOptions& options,
+                           double interval, double graze_limit) {
+  const Hoop<double> hoop = derive<double>(design);
+  const double second = time_unit(scene);
+  Motion motion;
+  TraceSampler sampler{interval / second, motion.points};
+  const auto rolled = [&](double t, const OneCoordinate::Y& y) {
+    return ContactState<double>{
+        .time = t, .travel = y[0] - design.release_angle, .angle = y[0], .spin = y[1]};
+  };
+
+  RollingObserver observer;
+  LiftOff<double> last;
+  Flight<double> flown;
+  observer.lift_off = [&](const LiftOff<double>& lift_off, const Flight<double>& flight) {
+    last = lift_off, flown = flight;
+    motion.candidates.push_back(in_si(lift_off, flight, scene));
+  };
+  observer.graze = [&](const Graze& graze) {
+    if (std::abs(graze.normal_force) >= graze_limit) return;
+    motion.grazes.push_back(graze);
+    motion.grazes.back().t *= second;
+  };
+  if (interval > 0.0) {
+    observer.step = [&](const GslIntegrator<2>& integrator, double end) {
+      const double t0 = integrator.step().t0;
+      sampler.until(t0 + end, [&](double t) {
+        OneCoordinate::Y y = integrator.step().y0;
+        if (!integrator.retake(t - t0, y)) y.fill(NAN);
+        return rolling_point(hoop, rolled(t, y));
+      });
+    };
+  }
+  motion.outcome = RollingIntegration(options).solve(design, scene, observer);
+  if (motion.outcome.status == Status::airborne_at_release ||
+      !sets_out(hoop, design.release_angle, design.release_spin))
+    return motion;
+  motion.phases.push_back(
+      in_si(Phase::rolling, rolled(0.0, {design.release_angle, design.release_spin}), 0, scene));
+  if (motion.outcome.status == Status::jumped) {
+    const ContactState<double> lift_off = rolled(last.time, {last.angle, last.spin});
+    motion.phases.push_back(in_si(Phase::flight, lift_off, 0, scene));
+    if (interval > 0.0) {
+      motion.points.push_back(rolling_point(hoop, lift_off));
+      sampler.fly(hoop, lift_off, flown.flight_time);
+    }
+  }
+  to_si(motion.points, scene);
+  if (!motion.points.empty()) motion.end = motion.points.back().t;
+  return motion;
+}
+
+}  // namespace leapmap::rolling

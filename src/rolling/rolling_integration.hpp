@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One design by integrating its equations of motion in time with one of GSL's steppers.
+#pragma once
+
+#include <functional>
+
+#include "leapmap/design.hpp"
+#include "leapmap/motion.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "physics/flight.hpp"
+#include "rolling/rolling_models.hpp"
+#include "trajectory/integration_options.hpp"
+
+namespace leapmap {
+
+/// Looks on while a design is solved; unset functions cost nothing.
+template <std::size_t D>
+struct IntegrationObserver {
+  /// Every step, in order; retake gives the method's own state inside it; only [0, end] of the step was
+  /// rolled.
+  std::function<void(const GslIntegrator<D>& integrator, double end)> step;
+  std::function<void(const LiftOff<double>&, const Flight<double>&)> lift_off;
+  /// Its time in sqrt(R/g).
+  std::function<void(const Graze&)> graze;
+};
+
+/// A thread's own workspace for one model of rolling: GSL's memory is allocated here once, and every design
+/// restarts it.
+template <class Model>
+class Integration {
+ public:
+  static constexpr std::size_t D = Model::dimension;
+  using Observer = IntegrationObserver<D>;
+
+  explicit Integration(const IntegrationOptions& options);
+  Integration(const Integration&) = delete;
+  Integration& operator=(const Integration&) = delete;
+
+  /// Rolls the design until its jump, its stall or the end of the runway. Never throws for a bad design: what
+  /// the method cannot do has status failed.
+  Outcome solve(const Design& design, const Scene& scene, const Observer& observer = {});
+
+  /// How often the acceleration was asked for so far, by the stepper and by the search for events.
+  long evaluations() const { return system_.evaluations; }
+
+  /// What the right-hand side works on.
+  struct System {
+    Model model{};
+    long evaluations = 0;
+  };
+
+ private:
+  Outcome roll(const Design& design, const Scene& scene, const Observer& observer);
+
+  IntegrationOptions options_;
+  System system_;
+  GslIntegrator<D> integrator_;
+  Falls<D> lift_offs_, stalls_;
+};
+
+/// The least model that rolls, and what looks on.
+using RollingIntegration = Integration<OneCoordinate>;
+using RollingObserver = RollingIntegration::Observer;
+
+}  // namespace leapmap

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rolling/rolling_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t most_starts = 64;  // beyond it the spans met are forgotten: memory stays bounded
+
+/// sqrt(J / E) = dt / dphi.
+template <class T>
+T slowness(const T& inertia, const T& vis_viva) {
+  return inertia * reciprocal_sqrt(inertia * vis_viva);
+}
+
+/// E near the release, released + 2 push x + bend x^2, and its zeros.
+template <class T>
+struct ReleaseParabola {
+  T bend, discriminant, root;
+  MaskOf<T> real;  ///< whether it has zeros
+  /// The nearer zero. Without one E is far from zero if its least value is, over the distance that takes: -1
+  /// will do.
+  T nearer;
+};
+
+template <class T>
+ReleaseParabola<T> parabola_at_release(const Roll<T>& roll) {
+  using std::sqrt;
+  ReleaseParabola<T> p;
+  p.bend = -roll.hoop.rho * cos_from_vertical(roll.hoop, roll.release_trig);
+  p.discriminant = roll.push * roll.push - roll.released * p.bend;
+  p.root = sqrt(larger(p.discriminant, T(0)));
+  p.real = p.discriminant >= T(0);
+  p.nearer = select(p.real, -roll.released / (roll.push + p.root), T(-1));
+  return p;
+}
+
+/// The square of acosh(1 + x), from below; within 1 % for x < 1. Without a logarithm: it is only for node
+/// numbers.
+template <class T>
+T square_acosh(const T& x) {
+  return T(12) * x / (T(6) + x);
+}
+
+/// The square of log(r), of the ellipse about a panel through a point beside its end, or beside its middle;
+/// from below. `height` is the point's distance from the panel over its half-length.
+template <class T>
+T square_growth_beside_end(const T& height) {
+  using std::sqrt;
+  return square_acosh(T(0.5) * (height + sqrt(T(4) + height * height)) - T(1));
+}
+template <class T>
+T square_growth_beside(const T& height) {
+  const T square = height * height;
+  return T(3) * square / (T(3) + square);  // of asinh(height)
+}
+
+/// Rules of 0 to `most` nodes, worked out once.
+template <class S>
+const std::vector<GaussRule<S>>& rules_up_to(std::size_t most) {
+  static const std::vector<GaussRule<S>> rules = [&] {
+    std::vector<GaussRule<S>> found;
+    for (std::size_t n = 0; n <= most; ++n) found.push_back(gauss_rule<S>(n));
+    return found;
+  }();
+  return rules;
+}
+
+}  // namespace
+
+template <class T>
+RollingTime<T>::RollingTime(double tolerance) : rules_(rules_up_to<S>(most_nodes)) {
+  using std::log;
+  // A hundred times finer than asked for costs a few nodes, and the bounds on r are not strict in every
+  // corner.
+  tolerance_ = std::max(S(tolerance) * S(0.01L), S(450) * std::numeric_limits<S>::epsilon());
+  digits_ = -log(tolerance_);
+  starts_.resize(rules_.size());
+  panels_.resize(rules_.size() * 2 * (parts_a_panel + 1));
+}
+
+/// The number of nodes for a panel whose r has this square of its logarithm.
+template <class T>
+T RollingTime<T>::nodes_for(const T& square_growth, MaskOf<T>& hard) const {
+  const T need = T(digits_ * S(0.5L)) * reciprocal_sqrt(square_growth) + T(2);
+  const MaskOf<T> too_many = !(need < T(S(most_nodes + 1)));
+  hard = hard | too_many;
+  return select(too_many, T(2), need);
+}
+
+template <class T>
+NodesNeeded<T> RollingTime<T>::needed(const Roll<T>& roll, const Quiet<T>& quiet, MaskOf<T>& hard) const {
+  using std::sqrt;
+  const T per_rho = T(1) / (T(2) * roll.hoop.rho);
+  NodesNeeded<T> nodes;
+  nodes.needle = sqrt(square_acosh(roll.hoop.J_min * per_rho));
+  nodes.strip = sqrt(square_acosh(quiet.vis_viva * per_rho));
+  const auto for_length = [&](const S& length) {
+    const T per_half = T(S(2) / length);
+    return nodes_for(smaller(square_growth_beside_end(nodes.needle * per_half),
+                             square_growth_beside(nodes.strip * per_half)),
+                     hard);
+  };
+  nodes.panel = for_length(pi_of<S>);
+  nodes.rest = for_length(pi_of<S> / S(parts_a_panel));
+  return nodes;
+}
+
+template <class T>
+T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
+                          const T& end, MaskOf<T>& hard) {
+  using std::floor, std::sqrt;
+  const Hoop<T>& hoop = roll.hoop;
+  const T rho2 = T(2) * hoop.rho;
+  const auto [bend, discriminant, root, real, x1] = parabola_at_release(roll);
+  hard = hard | !(roll.push > T(0)) | !(real | (-discriminant > T(4) * bend * bend));
+
+  const T span = end - roll.release;
+  const T q0 = sqrt(-x1), q1 = sqrt(span - x1);
+  const T reach = span / (q0 + q1), half = T(0.5) * reach;  // q1 - q0, which would cancel for a fast release
+  // The other zero, x2 < x1 where bend > 0: the ellipse through it has the sum of distances to the panel's
+  // ends.
+  const T x2 = select(real & (bend > T(0)), -(roll.push + root) / bend, T(-1e6));
+  const T behind = square_acosh(larger((sqrt(-x2) + sqrt(span - x2)) / (T(2) * half) - T(1), T(0)));
+  // Needles and the quiet place come nearer by the map: an x + i d beside x is d / (2 q) beside q.
+  const T behind_by = roll.release - T(2) * pi_of<T> * floor(roll.release / (T(2) * pi_of<T>));
+  const T nearer = T(0.5) / (q1 * half);
+  const auto ahead = [&](const T& distance, const T& height) {
+    return select(distance > span * T(0.999), square_growth_beside_end(height * nearer),
+                  square_growth_beside(height * nearer));
+  };
+  T growth = smaller(behind, smaller(ahead(T(2) * pi_of<T> - behind_by, needed.needle),
+                                     ahead(quiet.distance, needed.strip)));
+  if (any(behind_by < T(1))) {  // a needle just behind the release
+    const T u = -behind_by - x1, d = needed.needle;
+    growth = smaller(growth, square_growth_beside(sqrt(T(0.5) * (sqrt(u * u + d * d) - u)) / half));
+  }
+  const auto nodes = lanes_of(nodes_for(growth, hard));
+  const int n = static_cast<int>(*std::max_element(nodes.begin(), nodes.end()));
+
+  // E as in vis_viva_past_release, and J likewise turned on from the release
+  const Trig<T>& phi0 = roll.release_trig;
+  const T by_sine = rho2 * sin_from_vertical(hoop, phi0), by_versine = -rho2 * cos_from_vertical(hoop, phi0);
+  const T push2 = T(2) * roll.push, J_cos = rho2 * phi0.versine, J_sin = rho2 * phi0.sin;
+  const auto slowness_at = [&](const auto& x, const auto& turned, const auto& x_less_sin) {
+    const T E = roll.released + push2 * T(x) + by_sine * T(x_less_sin) + by_versine * T(turned.versine);
+    const T J = hoop.J_min + rho2 * T(turned.versine) + J_cos * T(turned.cos) + J_sin * T(turned.sin);
+    return slowness(J, E);
+  };
+  const S first_span = lanes_of(span)[0];
+  T total(0);
+  if (all((q0 == T(0)) & (span == T(first_span)))) {
+    for (const SharedNode& node : start_from_rest(first_span, n))
+      total = total + T(node.weight) * slowness_at(node.x, node.trig, node.x_less_sin);
+    return total;
+  }
+  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(n)];
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const T past = reach * T(rule.node[i]), x = past * (T(2) * q0 + past);
+    const Trig<T> turned = trig(x);
+    total = total + T(rule.weight[i]) * (q0 + past) * slowness_at(x, turned, x_minus_sin(x, turned.sin));
+  }
+  return T(2) * reach * total;
+}
+
+template <class T>
+const std::vector<typename RollingTime<T>::SharedNode>& RollingTime<T>::start_from_rest(const S& span,
+                                                                                        int nodes) {
+  using std::sqrt;
+  std::vector<Start>& starts = starts_[static_cast<std::size_t>(nodes)];
+  const auto met =
+      std::find_if(starts.begin(), starts.end(), [&](const Start& start) { return start.span == span; });
+  if (met != starts.end()) return met->nodes;
+  if (starts.size() >= most_starts) starts.clear();
+  Start& start = starts.emplace_back(Start{span, {}});
+  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+  const S q1 = sqrt(span);
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const S q = q1 * rule.node[i], x = q * q;
+    const Trig<S> turned = trig(x);
+    start.nodes.push_back({S(2) * q1 * q * rule.weight[i], x, x_minus_sin(x, turned.sin), turned});
+  }
+  return start.nodes;
+}
+
+template <class T>
+T RollingTime<T>::panel(const Roll<T>& roll, long panel, int parts, int nodes) {
+  const long odd = panel & 1;
+  std::vector<SharedNode>& shared =
+      panels_[static_cast<std::size_t>((2 * nodes + odd) * (parts_a_panel + 1) + parts)];
+  if (shared.empty()) {
+    const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+    const S length = pi_of<S> * S(parts) / S(parts_a_panel);
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const S x = pi_of<S> * S(odd) + length * rule.node[i];
+      shared.push_back({length * rule.weight[i], x, S(0), trig(x)});
+    }
+  }
+  const Hoop<T>& hoop = roll.hoop;
+  const T gain = T(2) * hoop.sin_slope, rho2 = T(2) * hoop.rho;
+  const T swing = rho2 * hoop.cos_slope, sway = rho2 * hoop.sin_slope;
+  const T level = roll.level + gain * T(pi_of<S> * S(panel - odd));
+  T total(0);
+  for (const SharedNode& node : shared) {
+    const T E = level + gain * T(node.x) + swing * T(node.trig.cos) - sway * T(node.trig.sin);
+    total = total + T(node.weight) * slowness(hoop.J_min + rho2 * T(node.trig.versine), E);
+  }
+  return total;
+}
+
+template <class T>
+int RollingTime<T>::rest_nodes_near_release() const {
+  using std::acosh;
+  const S farther = S(1) + S(0.4L) * S(2 * parts_a_panel) / pi_of<S>;  // 1 + 0.4 / half the length of a part
+  return static_cast<int>(S(0.5L) * digits_ / acosh(farther)) + 2;
+}
+
+template <class T>
+T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int nodes) const {
+  const Hoop<T>& hoop = roll.hoop;
+  const Trig<S> phi = trig(angle);
+  const Trig<T> from{T(phi.sin), T(phi.cos), T(phi.versine)};
+  const T gain = T(2) * hoop.sin_slope, rho2 = T(2) * hoop.rho;
+  const T level = roll.level + gain * T(angle);
+  const T swing = rho2 * cos_from_vertical(hoop, from), sway = rho2 * sin_from_vertical(hoop, from);
+  const T J_mean = hoop.J_min + rho2, J_cos = rho2 * from.cos, J_sin = rho2 * from.sin;
+  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+  T total(0);
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const T x = length * T(rule.node[i]);
+    const SinCos<T> turned = sincos_of(x);
+    const T E = level + gain * x + swing * turned.cos - sway * turned.sin;
+    total = total + T(rule.weight[i]) * slowness(J_mean - J_cos * turned.cos + J_sin * turned.sin, E);
+  }
+  return length * total;
+}
+
+template <class T>
+ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
+  using std::abs, std::asin, std::atan2, std::floor, std::sqrt;
+  constexpr S epsilon = std::numeric_limits<S>::epsilon();
+  constexpr int most_halvings = 60;
+  long panels_left = 20'000;
+  // The last resort of hard designs, so that a loose tolerance saves no nodes here: too few would miss a
+  // spike.
+  const S tolerance = std::min(tolerance_, S(1e-8L));
+  const GaussRule<S>& gauss = rules_[sizeof(S) > 8 ? 30 : 20];
+
+  const Hoop<S>& hoop = roll.hoop;
+  const S x1 = roll.push > S(0) ? parabola_at_release(roll).nearer : S(-1);
+  const S q0 = sqrt(-x1);
+  const S release = atan2(roll.release_trig.sin, roll.release_trig.cos);  // of whole turns nothing depends
+  S unsure(
+      0);  // of J / E in the panel at hand, relative: roundings of E's largest terms, and of the angle in J
+  const auto slowness_past = [&](const S& x) {
+    const S E = vis_viva_past_release(roll, x);
+    const S terms = roll.released + S(2) * x * (abs(roll.push) + hoop.rho * std::min(x, S(1)));
+    const Trig<S> phi = trig(release + x);
+    const S J = contact_inertia(hoop, phi);
+    const S in_J = hoop.rho * abs(phi.sin) * (S(4) + x) / J;
+    unsure =
+        std::max(unsure, E > S(0) ? S(4) * epsilon * (terms / E + in_J) : std::numeric_limits<S>::infinity());
+    return slowness(J, E);
+  };
+  const auto near_release = [&](const S& past) {
+    return S(2) * (q0 + past) * slowness_past(past * (S(2) * q0 + past));
+  };
+
+  S total(0);
+  const auto rule = [&](const auto& f, S a, S b) {
+    S sum(0);
+    for (std::size_t i = 0; i < gauss.node.size(); ++i)
+      sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
+    --panels_left;
+    return sum * (b - a);
+  };
+  const auto halve = [&](const auto& self, const auto& f, S a, S b, S whole, int depth) -> void {
+    const S middle = a + (b - a) * S(0.5L);
+    unsure = S(0);
+    const S left = rule(f, a, middle), right = rule(f, middle, b), sum = left + right;
+    const bool agree = abs(sum - whole) <= std::max(S(0.1L) * tolerance * (total + sum), unsure * sum);
+    if (agree || depth == 0 || panels_left <= 0 || !(unsure < S(1))) {
+      total += agree ? sum : std::numeric_limits<S>::quiet_NaN();
+      return;
+    }
+    self(self, f, a, middle, left, depth - 1);
+    self(self, f, middle, b, right, depth - 1);
+  };
+
+  // Edges where the integrand may be sharp: the needles at 2 pi k, among eighths of a turn, and the minima of
+  // E.
+  const S eighth = pi_of<S> / S(4), turn = S(2) * pi_of<S>;
+  const S minimum = pi_of<S> - asin(std::min(S(1), hoop.sin_slope / hoop.rho)) - hoop.slope;
+  const S end = to - roll.release;
+  for (S x(0); x < end;) {
+    const S angle = release + x;
+    const auto next = [&](const S& first, const S& step) {
+      const S after = first + step * (floor((angle - first) / step) + S(1)) - release;
+      return after > x + S(1e-9L) ? after : after + step;
+    };
+    S b = std::min({end, next(S(0), eighth), next(minimum, turn)});
+    if (x < S(1)) {
+      b = std::min(b, S(1));
+      const auto past = [&](const S& at) { return at > S(0) ? at / (q0 + sqrt(q0 * q0 + at)) : S(0); };
+      const S from = past(x), until = past(b);
+      halve(halve, near_release, from, until, rule(near_release, from, until), most_halvings);
+    } else {
+      halve(halve, slowness_past, x, b, rule(slowness_past, x, b), most_halvings);
+    }
+    x = b;
+  }
+  return total;
+}
+
+template class RollingTime<double>;
+template class RollingTime<long double>;
+template class RollingTime<Batch>;
+
+}  // namespace leapmap
