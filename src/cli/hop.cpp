@@ -8,13 +8,15 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
-#include "cli/provenance.hpp"
+#include "support/printable.hpp"
+#include "sweep/begin_map.hpp"
+#include "sweep/provenance.hpp"
 #include "cli/sweep.hpp"
 #include "map/schema.hpp"
 #include "map/trace_file.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/options.hpp"
 

@@ -16,7 +16,7 @@
 #include "map/reader.hpp"
 #include "map/writer.hpp"
 #include "model/fields.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/printable.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/map_spec.hpp"

@@ -10,9 +10,9 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/posix.hpp"
-#include "support/version.hpp"
+#include "leapmap/version.hpp"
 
 namespace {
 

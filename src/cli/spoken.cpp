@@ -33,18 +33,4 @@ std::string spoken_duration(double seconds) {
   return fmt::format("{:.3g} days", seconds / 86400.0);
 }
 
-std::string shell_quoted(const std::string& word) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_-+=./:,@%").find(c) != std::string_view::npos;
-  };
-  bool needs = word.empty();
-  std::string text = "'";
-  for (const char c : word) {
-    needs = needs || !plain(c);
-    text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  return needs ? text + "'" : word;
-}
-
 }  // namespace leapmap::cli

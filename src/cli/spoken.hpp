@@ -13,7 +13,5 @@ std::string grouped(std::uint64_t number);
 std::string spoken_bytes(double bytes);
 /// "1 h 02 min", "3 min 20 s", "4.2 s".
 std::string spoken_duration(double seconds);
-/// A word as a shell takes it, in quotes where it needs them.
-std::string shell_quoted(const std::string& word);
 
 }  // namespace leapmap::cli

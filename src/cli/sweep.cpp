@@ -1,132 +1,61 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// leapmap sweep: solves the designs of a spec into a map.
+#include "leapmap/sweep.hpp"
+
 #include <fmt/format.h>
 
-#include <array>
-#include <chrono>
+#include <filesystem>
+
 #include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
-#include "cli/provenance.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
-#include "map/schema.hpp"
-#include "support/errors.hpp"
-#include "sweep/audit.hpp"
+#include "support/printable.hpp"
+#include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
-#include "sweep/engine.hpp"
-#include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-/// What a tile adds to the map and to what is known of it.
-struct FinishedTile {
-  EncodedTile encoded;
-  AuditReport audit;
-  double audit_seconds = 0.0;
-};
-
-/// A tile's share of the audit; unset if a stop was requested meanwhile.
-std::optional<AuditReport> audit_tile(const Auditor& auditor, const Spec& spec, const Tiling& tiling,
-                                      const Tile& tile, std::span<const Outcome> outcomes) {
-  AuditReport report = auditor.begin();
-  for (const AuditSample& sample : audit_samples(spec, tiling, tile, outcomes)) {
-    if (noted_signal() != 0) return std::nullopt;
-    auditor.look_at(sample, report);
-  }
-  return report;
-}
-
-/// What a sweep has found so far besides the map, and how long it took in this session.
-struct Course {
-  AuditReport audit;
-  double audit_seconds = 0.0;  ///< summed over threads
-  double seconds = 0.0;
-};
-
-/// Solves and audits what is missing in the map, committing now and then.
-Course solve_rest(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout,
-                  const Tiling& tiling, MapWriter& writer) {
-  const bool audited = spec.numerics.audit > 0.0;
-  Course course;
-  if (audited)
-    course.audit = writer.progress().tiles > 0 ? read_audit(writer.reader()) : Auditor(spec).begin();
-  Progress progress(tiling.designs(), writer.progress().designs(), arguments.quiet);
-  EngineOptions options;
+SweepOptions options_of(const SweepArguments& arguments) {
+  SweepOptions options;
+  options.resume = arguments.resume, options.overwrite = arguments.overwrite;
   options.threads = arguments.threads;
-  options.first_tile = writer.progress().tiles;
+  options.commit_interval = arguments.commit_interval;
+  options.lock = arguments.locking == Locking::required;
   options.stop_requested = [] { return noted_signal() != 0; };
-  auto last_commit = Clock::now();
-  const double seconds_before = writer.progress().seconds;
-  const auto begin = Clock::now();
-  const auto commit = [&] {
-    course.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    writer.set_seconds(seconds_before + course.seconds);
-    writer.commit(audited ? audit_attributes(course.audit) : std::vector<hdf5::Attribute>{});
-    last_commit = Clock::now();
-  };
-  const auto store = [&](const FinishedTile& tile) {
-    writer.write(tile.encoded);
-    merge(course.audit, tile.audit);
-    course.audit_seconds += tile.audit_seconds;
-    progress.update(writer.progress().designs());
-    if (std::chrono::duration<double>(Clock::now() - last_commit).count() >= arguments.commit_interval)
-      commit();
-  };
-  run_sweep(spec, tiling, options, [&] {
-    const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
-    const auto auditor = audited ? std::make_shared<Auditor>(spec) : nullptr;
-    return [&, encoder, auditor](std::size_t number, const Tile& tile,
-                                 std::span<const Outcome> outcomes) -> Prepared {
-      const auto finished = std::make_shared<FinishedTile>();
-      finished->encoded = encoder->encode(number, outcomes);
-      if (auditor) {
-        const auto audit_begin = Clock::now();
-        const auto report = audit_tile(*auditor, spec, tiling, tile, outcomes);
-        if (!report) return {};
-        finished->audit = *report;
-        finished->audit_seconds = std::chrono::duration<double>(Clock::now() - audit_begin).count();
-      }
-      return {[&store, finished] { store(*finished); }, finished->encoded.bytes() + sizeof(FinishedTile)};
-    };
-  });
-  commit();
-  return course;
+  return options;
 }
 
-/// All of a sweep between the map's opening and its end. Returns the exit status.
-int fill(const SweepArguments& arguments, const Spec& spec, const MapLayout& layout, const Tiling& tiling,
-         const std::string& map, MapWriter& writer) {
-  const std::size_t already = writer.progress().designs();
-  const Course course = solve_rest(arguments, spec, layout, tiling, writer);
-  const std::size_t done = writer.progress().designs();
-  if (noted_signal() != 0) {
-    writer.keep();
-    tell(fmt::format("interrupted after {} of {} designs, which {} keeps; go on by: {}", grouped(done),
-                     grouped(tiling.designs()), part_of(map), sweep_command(arguments, map, "--resume")));
+void tell_resumed(const std::string& map, std::size_t done, std::size_t total) {
+  say("resumed  {}\n", done > 0 ? fmt::format("{} of {} designs were there already", grouped(done), grouped(total))
+                                : fmt::format("nothing to go on with in {}: begun anew", part_of(map)));
+  flush_out();
+}
+
+/// Says what a sweep came to. Returns the exit status.
+int tell_report(const SweepArguments& arguments, const Spec& spec, const std::string& map,
+                const Report& report) {
+  if (!report.whole) {
+    tell(fmt::format("interrupted after {} of {} designs, which {} keeps; go on by: {}", grouped(report.done),
+                     grouped(report.designs), part_of(map), sweep_command(arguments, map, "--resume")));
     return 128 + noted_signal();
   }
-  const StatusCounts statuses = writer.progress().statuses;
-  if (!writer.finish({})) tell_of_folder(map);
-  const int threads = thread_count(arguments.threads);
-  const auto team =
-      static_cast<double>(std::min<std::size_t>(static_cast<std::size_t>(threads), tiling.size()));
-  const double solving = course.seconds - course.audit_seconds / team;
-  if (!arguments.quiet)
-    say("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(done - already),
-        spoken_duration(solving), static_cast<double>(done - already) / solving, threads,
-        resolved_method(spec.numerics));
-  const int status = spec.numerics.audit > 0.0 ? tell_audit(arguments, spec, course.audit) : 0;
-  if (arguments.quiet) return status;
-  print_totals(statuses);
-  if (statuses[static_cast<std::size_t>(Status::failed)] > 0)
+  if (!report.durable) tell_of_folder(map);
+  if (report.was_whole && !arguments.quiet) say("map      {} is whole already\n", map);
+  if (!report.was_whole && !arguments.quiet)
+    say("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(report.solved),
+        spoken_duration(report.seconds), static_cast<double>(report.solved) / report.seconds,
+        thread_count(arguments.threads), resolved_method(spec.numerics));
+  const int status = report.audit ? tell_audit(arguments, spec, *report.audit) : 0;
+  if (arguments.quiet || report.was_whole) return status;
+  print_totals(report.statuses);
+  if (report.statuses[static_cast<std::size_t>(Status::failed)] > 0)
     say("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", shell_quoted(map),
         sweep_command(arguments, map, "--retry-failed"));
   say("map      {}\n", map);
@@ -136,53 +65,47 @@ int fill(const SweepArguments& arguments, const Spec& spec, const MapLayout& lay
 int run(const SweepArguments& arguments) {
   const Spec spec = read_spec(arguments.spec, arguments.overrides);
   const std::string map = behind_links(arguments.map.empty() ? spec.output.file : arguments.map);
-  const Tiling tiling(shape_of(spec));
-  const MapLayout layout = layout_of(spec);
   if (arguments.dry_run) {
-    print_plan(arguments, spec, map, tiling);
+    print_plan(arguments, spec, map, Tiling(shape_of(spec)));
     return 0;
   }
-  if (map.empty())
-    throw InputError(
-        fmt::format("{}: output.file is not set; allowed: a file's name there or with -o", arguments.spec));
-  if (arguments.retry_failed) return retry_sweep(arguments, spec, map);
-  refuse_own_input(arguments, spec, map);
-  if (is_done(arguments, map, spec)) {
-    if (!arguments.quiet) say("map      {} is whole already\n", map);
-    const MapReader whole(map, arguments.locking);
-    return hdf5::has_attribute(whole.file(), "audit_first_mismatch")
-               ? tell_audit(arguments, spec, read_audit(whole))
-               : 0;
-  }
-
-  std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
-  opening.emplace_back("threads", std::int64_t{thread_count(arguments.threads)});
-  if (spec.numerics.audit > 0.0) opening.emplace_back("audit_method", audit_method(spec.numerics));
-  MapWriter writer = open_map(arguments, map, spec, layout, tiling, opening);
-  note_signals();
-  if (arguments.resume && !arguments.quiet) {
-    const std::size_t there = writer.progress().designs();
-    say("resumed  {}\n", there > 0 ? fmt::format("{} of {} designs were there already", grouped(there),
-                                                 grouped(tiling.designs()))
-                                   : fmt::format("nothing to go on with in {}: begun anew", part_of(map)));
-    flush_out();
-  }
+  if (arguments.retry_failed && !map.empty()) return retry_sweep(arguments, spec, map);
+  SweepOptions options = options_of(arguments);
+  std::optional<Progress> progress;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    if (!progress) {  // the map is open, and the first design not yet solved
+      note_signals();
+      if (arguments.resume && !arguments.quiet) tell_resumed(map, done, total);
+      progress.emplace(total, done, arguments.quiet);
+    }
+    progress->update(done);
+  };
   try {
-    return fill(arguments, spec, layout, tiling, map, writer);
-  } catch (const BrokenFile& error) {
-    throw IoError(
-        fmt::format("{}; the disk or its driver loses what it is given; begin anew by --overwrite, on "
-                    "another disk",
-                    error.what()));
-  } catch (const IoError& error) {
-    if (writer.committed() == 0) throw IoError(fmt::format("{}; nothing is kept", error.what()));
+    const Report report = sweep(spec, map, options);
+    progress.reset();
+    return tell_report(arguments, spec, map, report);
+  } catch (const KeptError& error) {
     throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by: {}",
-                              error.what(), grouped(writer.committed()), grouped(tiling.designs()),
+                              error.what(), grouped(error.kept), grouped(error.designs),
                               sweep_command(arguments, map, "--resume")));
   }
 }
 
 }  // namespace
+
+std::string sweep_command(const SweepArguments& arguments, const std::string& map, std::string_view how) {
+  std::string command =
+      fmt::format("leapmap sweep {} -o {} {}", shell_quoted(arguments.spec), shell_quoted(map), how);
+  for (const std::string& set : arguments.overrides) command += " --set " + shell_quoted(set);
+  if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
+  if (arguments.commit_interval != SweepArguments{}.commit_interval)
+    command += fmt::format(" --commit-interval {}", arguments.commit_interval);
+  if (arguments.locking != Locking::required) command += " --no-lock";
+  std::error_code ignored;
+  if (how == "--resume" && std::filesystem::exists(map, ignored))
+    command += " --overwrite";  // the older map, once the new one is whole
+  return command;
+}
 
 int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditReport& report) {
   if (!arguments.quiet)

@@ -27,22 +27,8 @@ struct SweepArguments {
 void print_plan(const SweepArguments& arguments, const Spec& spec, const std::string& map,
                 const Tiling& tiling);
 
-/// Begins a map, or goes on with what an earlier sweep left of it. opening: the root's attributes of a new
-/// one.
-MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
-                   const MapLayout& layout, const Tiling& tiling, std::span<const hdf5::Attribute> opening);
-
-/// True if a sweep to be resumed has ended already: its map is there, of the same spec.
-bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec);
-
-/// Refuses (InputError) to write the map over what it is made from: the spec or its list of designs.
-void refuse_own_input(const SweepArguments& arguments, const Spec& spec, const std::string& map);
-
 /// Tells what the audit found; where it disagrees, with the command to see it. Returns the exit status.
 int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditReport& report);
-
-/// The file behind a symbolic link, which is to stay one; any other name as it is.
-std::string behind_links(const std::string& map);
 
 /// What the user types to sweep into that map again, with `how`: "--resume" or "--retry-failed".
 std::string sweep_command(const SweepArguments& arguments, const std::string& map, std::string_view how);

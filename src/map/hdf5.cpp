@@ -8,7 +8,7 @@
 #include <cstring>
 #include <new>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap::hdf5 {
 namespace {

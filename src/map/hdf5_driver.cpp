@@ -11,7 +11,7 @@
 #include <new>
 
 #include "map/hdf5_trust.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/posix.hpp"
 
 namespace leapmap::hdf5 {

@@ -7,7 +7,7 @@
 #include <array>
 #include <exception>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/printable.hpp"
 
 namespace leapmap::hdf5 {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstring>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/file_calls.hpp"
 
 namespace leapmap {

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/file_calls.hpp"
 #include "support/posix.hpp"
 

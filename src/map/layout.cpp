@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {

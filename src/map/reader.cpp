@@ -10,7 +10,7 @@
 #include "map/hdf5_trust.hpp"
 #include "map/schema.hpp"
 #include "model/fields.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {

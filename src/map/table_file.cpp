@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "map/hdf5_driver.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {

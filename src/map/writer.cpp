@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "map/schema.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {

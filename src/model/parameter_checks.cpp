@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "model/model.hpp"
 #include "model/parameters.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {
@@ -53,17 +54,36 @@ void check_scene(const Scene& scene) {
   }
 }
 
+namespace {
+
+/// What keeps a design's parameter from being allowed in the scene, if anything does.
+enum class Fault { none, unused, out_of_range };
+Fault fault_of(const Parameter& parameter, double value, double usual, const Scene& scene) {
+  const bool is_usual = value == usual || (std::isnan(value) && std::isnan(usual));
+  if (!has(scene.friction, parameter.only_of)) return is_usual ? Fault::none : Fault::unused;
+  return is_usual || parameter.range.holds(value) ? Fault::none : Fault::out_of_range;
+}
+
+}  // namespace
+
+bool is_allowed(const Design& design, const Scene& scene) {
+  constexpr Design usual;
+  return std::ranges::all_of(parameters(), [&](const Parameter& parameter) {
+    const auto* member = std::get_if<double Design::*>(&parameter.member);
+    return !member || fault_of(parameter, design.**member, usual.**member, scene) == Fault::none;
+  });
+}
+
 void check_design(const Design& design, const Scene& scene, std::string_view place) {
   constexpr Design usual;
   for (const Parameter& parameter : parameters()) {
     const auto* member = std::get_if<double Design::*>(&parameter.member);
     if (!member) continue;
     const double value = design.**member;
-    if (!has(scene.friction, parameter.only_of)) {
-      refuse_unused(place, parameter, value, usual.**member, scene);
-    } else if (!parameter.range.holds(value) && !(std::isnan(value) && std::isnan(usual.**member))) {
+    const Fault fault = fault_of(parameter, value, usual.**member, scene);
+    if (fault == Fault::unused) refuse_unused(place, parameter, value, usual.**member, scene);
+    if (fault == Fault::out_of_range)
       refuse(place, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
-    }
   }
 }
 

@@ -46,6 +46,9 @@ std::string allowed_values(const Range& range, std::string_view unit, std::strin
 /// Throws InputError if a number of the scene is out of its range.
 void check_scene(const Scene& scene);
 
+/// Whether check_design lets the design pass.
+bool is_allowed(const Design& design, const Scene& scene);
+
 /// Throws InputError, with parameter, value and what is allowed, if a number of the design is out of its
 /// range or has no use in the scene: mu_static, say, where the contact never slips. place: in front of the
 /// message.

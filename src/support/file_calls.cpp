@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/posix.hpp"
 
 namespace leapmap {

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <utility>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap {
 

@@ -44,4 +44,18 @@ std::string printable(std::string_view text, std::string_view kept) {
   return shown;
 }
 
+std::string shell_quoted(const std::string& word) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("_-+=./:,@%").find(c) != std::string_view::npos;
+  };
+  bool needs = word.empty();
+  std::string text = "'";
+  for (const char c : word) {
+    needs = needs || !plain(c);
+    text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return needs ? text + "'" : word;
+}
+
 }  // namespace leapmap

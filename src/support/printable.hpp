@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Texts that come from files, as a terminal may show them.
+/// Texts that come from files or users, as a terminal may show them and a shell takes them.
 #pragma once
 
 #include <string>
@@ -10,5 +10,8 @@ namespace leapmap {
 /// The text with every control character and every byte that is not UTF-8 written as \x1b, so that no text
 /// can give a terminal orders. `kept`: control characters that stay, for example "\n\t".
 std::string printable(std::string_view text, std::string_view kept = "");
+
+/// A word as a shell takes it, in quotes where it needs them.
+std::string shell_quoted(const std::string& word);
 
 }  // namespace leapmap

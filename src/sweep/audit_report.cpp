@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "map/tile.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap {
 

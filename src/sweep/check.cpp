@@ -10,7 +10,7 @@
 #include "map/layout.hpp"
 #include "map/reader.hpp"
 #include "map/writer.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/solver.hpp"

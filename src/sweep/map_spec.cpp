@@ -46,7 +46,7 @@ std::string told(const std::vector<double>& numbers, const std::vector<std::stri
 }  // namespace
 
 Spec spec_of(const MapReader& map, const std::string& origin) {
-  Spec spec = parse_spec(map.attribute("spec"), origin, {}, true);
+  Spec spec = parse_map_spec(map.attribute("spec"), origin);
   if (!spec.axes.empty()) return spec;
   spec.list = {spec.points, {}, map.shape()[0]};
   const Tile all{{0}, {spec.list.count}, spec.list.count};

@@ -13,7 +13,7 @@
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "numerics/gsl_integrator.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {

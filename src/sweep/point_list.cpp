@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/posix.hpp"
 #include "sweep/options.hpp"
 

@@ -10,10 +10,12 @@
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "model/fields.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "sweep/audit.hpp"
+#include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/map_layout.hpp"
+#include "sweep/map_spec.hpp"
 #include "sweep/parallel.hpp"
 #include "sweep/solver.hpp"
 
@@ -140,8 +142,8 @@ Numerics retry_numerics(const Numerics& there, const Numerics& here) {
   return numerics;
 }
 
-std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spec, int threads,
-                                        Locking locking, const std::function<bool()>& stop_requested) {
+std::optional<RetryReport> retry_with(const std::string& path, const Spec& spec, int threads, Locking locking,
+                                      const std::function<bool()>& stop_requested) {
   const JournaledFile original(path, JournaledFile::Access::read, locking);
   std::optional<hdf5::File> file =
       hdf5::File::copy(original, path + ".retry", map_filetype, locking, stop_requested);
@@ -166,6 +168,18 @@ std::optional<RetryReport> retry_failed(const std::string& path, const Spec& spe
     file->discard();
     throw;
   }
+}
+
+std::optional<RetryReport> retry_failed(const std::string& path, const std::optional<Numerics>& how,
+                                        const SweepOptions& options) {
+  const Locking locking = options.lock ? Locking::required : Locking::if_possible;
+  const std::string map = behind_links(path);
+  Spec spec = [&] {
+    const MapReader reader(map, locking);
+    return spec_of(reader, map);
+  }();
+  spec.numerics = retry_numerics(spec.numerics, how.value_or(spec.numerics));
+  return retry_with(map, spec, options.threads, locking, options.stop_requested);
 }
 
 }  // namespace leapmap

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "model/model.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/posix.hpp"
 #include "sweep/options.hpp"
 #include "sweep/point_list.hpp"
@@ -294,8 +294,11 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
   return spec;
 }
 
-Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
-                bool lenient) {
+namespace {
+
+/// lenient: what has no use is let pass.
+Spec parse(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
+           bool lenient) {
   Spec spec;
   spec.origin = origin;
   toml::table file;
@@ -353,5 +356,13 @@ Spec parse_spec(std::string_view text, const std::string& origin, const std::vec
                                  static_cast<double>(most_designs)));
   return spec;
 }
+
+}  // namespace
+
+Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
+  return parse(text, origin, overrides, false);
+}
+
+Spec parse_map_spec(std::string_view text, const std::string& origin) { return parse(text, origin, {}, true); }
 
 }  // namespace leapmap

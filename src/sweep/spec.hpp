@@ -1,75 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A sweep's specification: which designs, in which scene, by which method, to which file.
-///
-/// Written in TOML (see README, "The spec"). Every key is declared once, in options.cpp; parsing, validation,
+/// What the library itself asks of a spec. Every key is declared once, in options.cpp; parsing, validation,
 /// --help, the resolved text and the map's axes all read that table.
 #pragma once
 
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "leapmap/design.hpp"
-#include "leapmap/scene.hpp"
+#include "leapmap/spec.hpp"
 
 namespace leapmap {
 
-struct Numerics {
-  std::string method = "auto";    ///< "auto", "exact" or a stepper's name
-  double tolerance = 1e-10;       ///< exact: relative error allowed in times; a stepper: per step
-  double absolute_tolerance = 0;  ///< absolute error allowed per step; 0: the same as tolerance
-  double fixed_step = 0;          ///< > 0: constant steps [sqrt(R/g)], errors unchecked
-  long max_steps = 1'000'000;     ///< a design that needs more has status failed
-  double audit = 0.001;           ///< share of designs solved again by an independent method
-};
-
-struct Output {
-  std::string file;                 ///< the map; -o overrides it
-  std::vector<std::string> fields;  ///< datasets to store; empty: all
-  std::string precision = "f8";     ///< of stored numbers: "f8" or "f4"
-  long compression = 1;             ///< deflate's level, 0 to 9; 0: none
-};
-
-/// One parameter that varies over a grid of designs: values in the parameter's own unit (angles in rad).
-struct Axis {
-  std::string key;
-  std::vector<double> values;
-};
-
-/// Designs one by one: a column of values for each parameter named, all equally long.
-struct PointList {
-  std::string path;           ///< the CSV file
-  std::vector<Axis> columns;  ///< empty: the list is the one design of the spec itself
-  std::size_t count = 1;
-};
-
-struct Spec {
-  std::string origin;  ///< the file it was read from, for messages
-  Scene scene;
-  Design design;  ///< what axes and points leave out
-  Numerics numerics;
-  Output output;
-  std::string points;      ///< design.points, as an absolute path
-  std::vector<Axis> axes;  ///< in spec order, the first varying slowest; empty: `list` holds the designs
-  PointList list;
-};
-
-/// Reads a spec from a TOML file; overrides are KEY=VALUE, applied in order, KEY with or without its section.
-/// An empty path means an empty spec: every key at its default. Throws InputError (see support/errors.hpp)
-/// for anything that is not allowed, IoError if the file cannot be read.
-Spec read_spec(const std::string& path, const std::vector<std::string>& overrides);
-
-/// The same from a TOML text; origin is for messages. A list of designs is left as its path. lenient: a spec
-/// that a map tells; those of older versions name what their friction has no use for.
-Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
-                bool lenient = false);
+/// A spec that a map tells. Those of older versions name what their model has no use for; that is let pass.
+Spec parse_map_spec(std::string_view text, const std::string& origin);
 
 /// The spec's file, for messages; "command line" if there is none.
 std::string origin_of(const Spec& spec);
-
-/// The spec as resolved: TOML that read_spec turns into the same Spec again, every key and value written out.
-std::string resolved_text(const Spec& spec);
 
 /// Whether output.fields names that field, or is left out.
 bool stores(const Output& output, std::string_view field);

@@ -6,7 +6,7 @@
 #include "leapmap/motion.hpp"
 #include "physics/flight.hpp"
 #include "physics/sliding.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "trajectory/contact_state.hpp"
 
 namespace leapmap {

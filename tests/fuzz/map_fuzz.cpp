@@ -18,7 +18,7 @@
 #include <string>
 
 #include "map/writer.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/small_map.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/check.hpp"

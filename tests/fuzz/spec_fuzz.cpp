@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "sweep/spec.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <random>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/system_calls.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "map/reader.hpp"
 #include "map/writer.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/small_map.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "map/writer.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/small_map.hpp"
 #include "support/system_calls.hpp"
 #include "support/temporary_folder.hpp"

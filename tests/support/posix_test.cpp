@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/printable.hpp"
 #include "support/temporary_folder.hpp"
 

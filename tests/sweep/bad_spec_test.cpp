@@ -2,7 +2,7 @@
 /// Every kind of bad input is refused with one line that names file, key, value and what is allowed.
 #include <gtest/gtest.h>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/spec.hpp"
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "map/schema.hpp"
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/sweep_into.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/designs.hpp"
@@ -48,7 +48,7 @@ TEST(Retry, SettlesTheFailedByAnotherMethodAndLeavesTheRest) {
 
   spec.numerics = retry_numerics(spec.numerics, spec.numerics);
   EXPECT_EQ(spec.numerics.method, "exact");
-  const RetryReport report = retry_failed(folder / "map.h5", spec, 2).value();
+  const RetryReport report = retry_with(folder / "map.h5", spec, 2).value();
   EXPECT_EQ(report.retried, static_cast<std::size_t>(failed));
   EXPECT_EQ(report.still_failed, 0u);
   EXPECT_EQ(std::accumulate(report.statuses.begin(), report.statuses.end(), std::int64_t{0}), 600);
@@ -77,13 +77,13 @@ TEST(Retry, SettlesTheFailedByAnotherMethodAndLeavesTheRest) {
 TEST(Retry, OfAMapWithoutStatusOrUnfinishedIsRefusedAndLeavesNothingBehind) {
   const testing::TemporaryFolder folder;
   const Spec bare = sweep(folder / "bare.h5", {"fields=[\"jump_height\"]"});
-  EXPECT_THROW(retry_failed(folder / "bare.h5", bare, 1), InputError);
+  EXPECT_THROW(retry_with(folder / "bare.h5", bare, 1), InputError);
   const Spec whole = sweep(folder / "whole.h5", {});
   const auto written = std::filesystem::last_write_time(folder / "whole.h5");
-  EXPECT_EQ(retry_failed(folder / "whole.h5", whole, 1)->retried, 0u);
+  EXPECT_EQ(retry_with(folder / "whole.h5", whole, 1)->retried, 0u);
   EXPECT_EQ(std::filesystem::last_write_time(folder / "whole.h5"), written)
       << "nothing failed: nothing is touched";
-  EXPECT_THROW(retry_failed(folder / "nowhere.h5", whole, 1), IoError);
+  EXPECT_THROW(retry_with(folder / "nowhere.h5", whole, 1), IoError);
   for (const auto& entry : std::filesystem::directory_iterator(folder / "."))
     EXPECT_EQ(entry.path().extension(), ".h5") << entry.path();
 }
@@ -94,7 +94,7 @@ TEST(Retry, StoppedItLeavesTheMapAsItWas) {
   const Tile all{{0, 0}, {20, 30}, 600};
   const auto before = MapReader(folder / "map.h5").read("status", all);
   spec.numerics = retry_numerics(spec.numerics, spec.numerics);
-  EXPECT_FALSE(retry_failed(folder / "map.h5", spec, 1, Locking::required, [] { return true; }));
+  EXPECT_FALSE(retry_with(folder / "map.h5", spec, 1, Locking::required, [] { return true; }));
   EXPECT_EQ(MapReader(folder / "map.h5").read("status", all), before);
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/errors.hpp"
+#include "leapmap/errors.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/options.hpp"
@@ -155,7 +155,7 @@ TEST(Spec, MuKineticIsMuStaticUnlessGiven) {
 TEST(Spec, WhatOnlySlippingContactsHaveMayBeSpeltOutAtItsDefaultAndIsReadFromOlderMaps) {
   EXPECT_NO_THROW(parse("[scene]\nmu_static = 0.5\nmu_kinetic = 0.5\nrestitution = 0\nrest_speed = 1e-3\n"));
   EXPECT_THROW(parse_spec("", "", {"mu_static=0.5"}), InputError) << "given by hand";
-  EXPECT_NO_THROW(parse_spec("[scene]\nmu_static = 0.3\n", "map.h5", {}, true));
+  EXPECT_NO_THROW(parse_map_spec("[scene]\nmu_static = 0.3\n", "map.h5"));
   EXPECT_EQ(parse_spec("", "", {"mu_static=0.3", "friction=coulomb"}).design.mu_static, 0.3);
 }
 

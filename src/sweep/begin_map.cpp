@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/begin_map.hpp"
+
 #include <fmt/format.h>
 
 #include <filesystem>
 
-#include "cli/spoken.hpp"
-#include "cli/sweep.hpp"
+#include "leapmap/errors.hpp"
 #include "map/schema.hpp"
-#include "support/errors.hpp"
+#include "support/printable.hpp"
 #include "sweep/map_spec.hpp"
 
-namespace leapmap::cli {
+namespace leapmap {
 namespace {
 
 bool exists(const std::string& path) {
@@ -47,26 +48,13 @@ std::string behind_links(const std::string& map) {
   return path.string();
 }
 
-std::string sweep_command(const SweepArguments& arguments, const std::string& map, std::string_view how) {
-  std::string command =
-      fmt::format("leapmap sweep {} -o {} {}", shell_quoted(arguments.spec), shell_quoted(map), how);
-  for (const std::string& set : arguments.overrides) command += " --set " + shell_quoted(set);
-  if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
-  if (arguments.commit_interval != SweepArguments{}.commit_interval)
-    command += fmt::format(" --commit-interval {}", arguments.commit_interval);
-  if (arguments.locking != Locking::required) command += " --no-lock";
-  if (how == "--resume" && exists(map))
-    command += " --overwrite";  // the older map, once the new one is whole
-  return command;
-}
-
-MapWriter open_map(const SweepArguments& arguments, const std::string& map, const Spec& spec,
-                   const MapLayout& layout, const Tiling& tiling, std::span<const hdf5::Attribute> opening) {
+MapWriter begin_map(const std::string& map, const Spec& spec, const MapLayout& layout, const Tiling& tiling,
+                    std::span<const hdf5::Attribute> opening, const SweepOptions& options, Locking locking) {
   const std::string part = part_of(map);
-  if (!arguments.resume || !has_part(map, arguments.locking))
-    return MapWriter::begin(map, layout, tiling, opening, arguments.overwrite, arguments.locking);
+  if (!options.resume || !has_part(map, locking))
+    return MapWriter::begin(map, layout, tiling, opening, options.overwrite, locking);
   try {
-    MapWriter writer = MapWriter::resume(map, layout, tiling, arguments.overwrite, arguments.locking);
+    MapWriter writer = MapWriter::resume(map, layout, tiling, options.overwrite, locking);
     refuse_other_beginning(writer.reader(), part, spec, opening);
     writer.verify();
     return writer;
@@ -78,8 +66,8 @@ MapWriter open_map(const SweepArguments& arguments, const std::string& map, cons
   }
 }
 
-void refuse_own_input(const SweepArguments& arguments, const Spec& spec, const std::string& map) {
-  for (const std::string& input : {arguments.spec, spec.points})
+void refuse_own_input(const Spec& spec, const std::string& map) {
+  for (const std::string& input : {spec.origin, spec.points})
     for (const std::string& output : {map, part_of(map)}) {
       std::error_code ignored;  // one of them is not there
       if (!input.empty() && std::filesystem::equivalent(input, output, ignored))
@@ -87,12 +75,12 @@ void refuse_own_input(const SweepArguments& arguments, const Spec& spec, const s
     }
 }
 
-bool is_done(const SweepArguments& arguments, const std::string& map, const Spec& spec) {
-  if (!arguments.resume || arguments.overwrite || exists(part_of(map)) || !exists(map)) return false;
-  if (const auto difference = first_difference(spec_of(MapReader(map, arguments.locking), map), spec))
+bool is_done(const std::string& map, const Spec& spec, const SweepOptions& options, Locking locking) {
+  if (!options.resume || options.overwrite || exists(part_of(map)) || !exists(map)) return false;
+  if (const auto difference = first_difference(spec_of(MapReader(map, locking), map), spec))
     throw InputError(fmt::format(
         "{}: exists already, of another spec: {}; allowed: another -o, or --overwrite", map, *difference));
   return true;
 }
 
-}  // namespace leapmap::cli
+}  // namespace leapmap

@@ -12,6 +12,11 @@ struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Work ended early because its caller asked it to.
+struct Stopped : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// A file that cannot be read or written: exit status 3.
 struct IoError : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/version.hpp"
+#include "leapmap/version.hpp"
 
 namespace leapmap {
 

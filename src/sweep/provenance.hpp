@@ -9,7 +9,7 @@
 #include "map/hdf5.hpp"
 #include "sweep/spec.hpp"
 
-namespace leapmap::cli {
+namespace leapmap {
 
 /// Root attributes of any file: conventions, title, file type and version, program, date, host.
 std::vector<hdf5::Attribute> file_provenance(std::string_view filetype, const std::string& title);
@@ -18,4 +18,4 @@ std::vector<hdf5::Attribute> file_provenance(std::string_view filetype, const st
 std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filetype,
                                         const std::string& title);
 
-}  // namespace leapmap::cli
+}  // namespace leapmap

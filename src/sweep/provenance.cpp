@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/provenance.hpp"
+#include "sweep/provenance.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -9,9 +9,9 @@
 #include <chrono>
 
 #include "map/schema.hpp"
-#include "support/version.hpp"
+#include "leapmap/version.hpp"
 
-namespace leapmap::cli {
+namespace leapmap {
 
 std::vector<hdf5::Attribute> file_provenance(std::string_view filetype, const std::string& title) {
   std::array<char, 256> host{};
@@ -36,4 +36,4 @@ std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filet
   return attributes;
 }
 
-}  // namespace leapmap::cli
+}  // namespace leapmap

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What an audit of a sweep found: how far a second method, and a third, are from what was stored.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace leapmap {
+
+/// What the two methods disagree on.
+struct AuditReport {
+  std::size_t designs = 0;
+  std::string method;  ///< of the audit
+  double max_abs_height_error =
+      0.0;  ///< [hoop diameters], of jump, first lift-off and dip, where the flags agree
+  double max_rel_time_error = 0.0;  ///< of the times to lift-off, apex and landing
+  double max_rel_motion_error =
+      0.0;                 ///< of angles, spins, distances and energies, relative to one more than their size
+  std::size_t failed = 0;  ///< designs the sweep gave up on: their status says so, nothing is compared
+  std::size_t flag_mismatches = 0;  ///< designs whose status, spurious flag or number of candidates differ
+  /// Designs on which the audit's method gave up, or whose flags it cannot tell within its own error.
+  std::size_t undecided = 0;
+  double allowed_error = 0.0;                   ///< see audit; for heights, relative to 1 + height
+  std::size_t beyond_tolerance = 0;             ///< designs whose error is larger
+  std::optional<std::size_t> first_mismatch;    ///< the least design number whose flags differ
+  std::optional<std::size_t> first_inaccurate;  ///< the least design number beyond the tolerance
+  // The referee's part (src/referee). From the paper's (7) to (9) it solves a tenth of these designs,
+  // and those that the second method convicts exact of: it may acquit them.
+  std::size_t refereed = 0;                    ///< designs it looked at
+  std::size_t referee_undecided = 0;           ///< of those, designs it gave up on or is in doubt about
+  std::size_t overruled = 0;                   ///< designs that it finds wrong
+  double referee_max_error = 0.0;              ///< the largest of the three errors above, by the referee
+  std::optional<std::size_t> first_overruled;  ///< the least design number that it finds wrong
+};
+
+/// Whether the second method or the referee disagrees on some design, by flags or beyond the tolerance.
+inline bool disagree(const AuditReport& report) {
+  return report.first_mismatch || report.first_inaccurate || report.first_overruled;
+}
+
+}  // namespace leapmap

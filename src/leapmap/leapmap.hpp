@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// All of leapmap: passive jumping hoops, solved one by one, by the million, or into maps.
+#pragma once
+
+#include "leapmap/audit.hpp"
+#include "leapmap/design.hpp"
+#include "leapmap/errors.hpp"
+#include "leapmap/map.hpp"
+#include "leapmap/motion.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "leapmap/solve.hpp"
+#include "leapmap/spec.hpp"
+#include "leapmap/sweep.hpp"
+#include "leapmap/trace.hpp"
+#include "leapmap/units.hpp"
+#include "leapmap/version.hpp"

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <numbers>
+
+namespace leapmap {
+
+/// An angle in radians.
+constexpr double degrees(double angle) { return angle * std::numbers::pi / 180.0; }
+
+}  // namespace leapmap

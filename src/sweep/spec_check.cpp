@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Whether a spec filled in by hand is one that a file could hold.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "leapmap/errors.hpp"
+#include "model/model.hpp"
+#include "sweep/options.hpp"
+
+namespace leapmap {
+namespace {
+
+[[noreturn]] void refuse(const Spec& spec, std::string_view key, const std::string& what,
+                         const std::string& allowed) {
+  throw InputError(fmt::format("{}: {} {}; allowed: {}", origin_of(spec), key, what, allowed));
+}
+
+void check_number(const Spec& spec, const Option& option, double value) {
+  if (!in_range(option, value))
+    refuse(spec, option.key, fmt::format("= {} is out of range", value), allowed_values(option));
+}
+
+void check_text(const Spec& spec, const Option& option, const std::string& text) {
+  if (!option.choices) return;
+  const auto choices = option.choices();
+  if (std::ranges::find(choices, text) == choices.end())
+    refuse(spec, option.key, fmt::format("= '{}' is unknown", text), allowed_values(option));
+}
+
+/// Axes, or the columns of a list.
+void check_values(const Spec& spec, const std::vector<Axis>& axes) {
+  for (const Axis& axis : axes) {
+    const Option* option = find_option("design", axis.key);
+    if (!option || !std::holds_alternative<ParameterSlot>(option->slot))
+      refuse(spec, axis.key, "is no parameter of a design", "an axis of one");
+    if (std::ranges::count(axes, axis.key, &Axis::key) > 1) refuse(spec, axis.key, "is there twice", "once");
+    if (!has(spec.scene.friction, option->only_of))
+      refuse(spec, axis.key, fmt::format("has no use where the contact {}", model_of(spec.scene).meaning),
+             fmt::format("with friction = {}", model_of(*option->only_of).name));
+    if (axis.values.empty()) refuse(spec, axis.key, "has no values", "one or more");
+    for (const double value : axis.values)
+      if (!std::isnan(value) || option->key != "mu_kinetic") check_number(spec, *option, value);
+  }
+}
+
+}  // namespace
+
+void check_spec(const Spec& spec) {
+  check_scene(spec.scene);
+  Spec copy;  // as slots are of specs that may be changed; without the designs, which may be many
+  copy.numerics = spec.numerics, copy.output = spec.output, copy.points = spec.points;
+  for (const Option& option : spec_options())
+    std::visit(
+        [&](const auto& slot) {
+          using Slot = std::decay_t<decltype(slot)>;
+          if constexpr (std::is_same_v<Slot, NumberSlot>)
+            check_number(spec, option, slot(copy));
+          else if constexpr (std::is_same_v<Slot, IntegerSlot>)
+            check_number(spec, option, static_cast<double>(slot(copy)));
+          else if constexpr (std::is_same_v<Slot, TextSlot>)
+            check_text(spec, option, slot(copy));
+          else if constexpr (std::is_same_v<Slot, TextsSlot>)
+            for (const std::string& text : slot(copy)) check_text(spec, option, text);
+        },
+        option.slot);
+  check_values(spec, spec.axes);
+  check_values(spec, spec.list.columns);
+  if (spec.axes.empty())
+    for (const Axis& column : spec.list.columns)
+      if (column.values.size() != spec.list.count)
+        refuse(spec, column.key, fmt::format("has {} values", column.values.size()),
+               fmt::format("one for each of the {} designs of the list", spec.list.count));
+}
+
+}  // namespace leapmap

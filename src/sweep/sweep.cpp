@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// From a spec to a map: solves, encodes and audits tiles on all threads, and writes them in order.
+#include "leapmap/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "map/schema.hpp"
+#include "map/writer.hpp"
+#include "sweep/audit.hpp"
+#include "sweep/begin_map.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/engine.hpp"
+#include "sweep/map_layout.hpp"
+#include "sweep/parallel.hpp"
+#include "sweep/provenance.hpp"
+
+namespace leapmap {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// What a tile adds to the map and to what is known of it.
+struct FinishedTile {
+  EncodedTile encoded;
+  AuditReport audit;
+  double audit_seconds = 0.0;
+};
+
+/// One sweep into a map that is open.
+class Sweeping {
+ public:
+  Sweeping(const Spec& spec, const MapLayout& layout, const Tiling& tiling, const SweepOptions& options,
+           MapWriter& writer)
+      : spec_(spec),
+        layout_(layout),
+        tiling_(tiling),
+        options_(options),
+        writer_(writer),
+        seconds_before_(writer.progress().seconds) {
+    if (spec.numerics.audit > 0.0)
+      audit_ = writer.progress().tiles > 0 ? read_audit(writer.reader()) : Auditor(spec).begin();
+  }
+
+  /// Solves and audits what is missing in the map, committing now and then.
+  void run() {
+    tell_progress();
+    EngineOptions engine{options_.threads, writer_.progress().tiles, options_.stop_requested};
+    run_sweep(spec_, tiling_, engine, [&] { return prepare(); });
+    commit();
+  }
+
+  const std::optional<AuditReport>& audit() const { return audit_; }
+  /// Of this call, less what the audit took of the threads.
+  double solving_seconds() const {
+    const auto threads = static_cast<std::size_t>(thread_count(options_.threads));
+    return seconds_ - audit_seconds_ / static_cast<double>(std::min(threads, tiling_.size()));
+  }
+
+ private:
+  bool stop_requested() const { return options_.stop_requested && options_.stop_requested(); }
+  void tell_progress() const {
+    if (options_.progress) options_.progress(writer_.progress().designs(), tiling_.designs());
+  }
+
+  /// A thread's way of finishing tiles.
+  Prepare prepare() {
+    const auto encoder = std::make_shared<TileEncoder>(layout_, tiling_);
+    const auto auditor = audit_ ? std::make_shared<Auditor>(spec_) : nullptr;
+    return [this, encoder, auditor](std::size_t number, const Tile& tile,
+                                    std::span<const Outcome> outcomes) -> Prepared {
+      const auto finished = std::make_shared<FinishedTile>();
+      finished->encoded = encoder->encode(number, outcomes);
+      if (auditor && !look_at(*auditor, tile, outcomes, *finished)) return {};
+      return {[this, finished] { store(*finished); }, finished->encoded.bytes() + sizeof(FinishedTile)};
+    };
+  }
+
+  /// A tile's share of the audit. False: a stop was requested meanwhile.
+  bool look_at(const Auditor& auditor, const Tile& tile, std::span<const Outcome> outcomes,
+               FinishedTile& finished) const {
+    const auto begin = Clock::now();
+    finished.audit = auditor.begin();
+    for (const AuditSample& sample : audit_samples(spec_, tiling_, tile, outcomes)) {
+      if (stop_requested()) return false;
+      auditor.look_at(sample, finished.audit);
+    }
+    finished.audit_seconds = seconds_since(begin);
+    return true;
+  }
+
+  void store(const FinishedTile& tile) {
+    writer_.write(tile.encoded);
+    if (audit_) merge(*audit_, tile.audit);
+    audit_seconds_ += tile.audit_seconds;
+    tell_progress();
+    if (seconds_since(last_commit_) >= options_.commit_interval) commit();
+  }
+
+  void commit() {
+    seconds_ = seconds_since(begin_);
+    writer_.set_seconds(seconds_before_ + seconds_);
+    writer_.commit(audit_ ? audit_attributes(*audit_) : std::vector<hdf5::Attribute>{});
+    last_commit_ = Clock::now();
+  }
+
+  const Spec& spec_;
+  const MapLayout& layout_;
+  const Tiling& tiling_;
+  const SweepOptions& options_;
+  MapWriter& writer_;
+  std::optional<AuditReport> audit_;
+  double seconds_before_, seconds_ = 0.0, audit_seconds_ = 0.0;  // the last one summed over threads
+  Clock::time_point begin_ = Clock::now(), last_commit_ = begin_;
+};
+
+/// The report on a map that is whole already.
+Report report_on(const std::string& map, const Spec& spec, Locking locking) {
+  const MapReader whole(map, locking);
+  Report report{.whole = true, .was_whole = true, .designs = Tiling(shape_of(spec)).designs()};
+  report.statuses = whole.status_counts();
+  report.done = designs_in(report.statuses);
+  if (hdf5::has_attribute(whole.file(), "audit_first_mismatch")) report.audit = read_audit(whole);
+  return report;
+}
+
+Report fill(const Spec& spec, const MapLayout& layout, const Tiling& tiling, const SweepOptions& options,
+            MapWriter& writer) {
+  const std::size_t already = writer.progress().designs();
+  Sweeping sweeping(spec, layout, tiling, options, writer);
+  sweeping.run();
+  Report report{.designs = tiling.designs(), .done = writer.progress().designs()};
+  report.solved = report.done - already;
+  report.statuses = writer.progress().statuses;
+  report.seconds = sweeping.solving_seconds();
+  report.audit = sweeping.audit();
+  report.whole = !(options.stop_requested && options.stop_requested());
+  if (report.whole)
+    report.durable = writer.finish({});
+  else
+    writer.keep();
+  return report;
+}
+
+}  // namespace
+
+Report sweep(const Spec& spec, const std::string& path, const SweepOptions& options) {
+  check_spec(spec);
+  if (path.empty())
+    throw InputError(origin_of(spec) + ": output.file is not set; allowed: a file's name there or with -o");
+  const std::string map = behind_links(path);
+  const Locking locking = options.lock ? Locking::required : Locking::if_possible;
+  const Tiling tiling(shape_of(spec));
+  const MapLayout layout = layout_of(spec);
+  refuse_own_input(spec, map);
+  if (is_done(map, spec, options, locking)) return report_on(map, spec, locking);
+
+  std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
+  opening.emplace_back("threads", std::int64_t{thread_count(options.threads)});
+  if (spec.numerics.audit > 0.0) opening.emplace_back("audit_method", audit_method(spec.numerics));
+  MapWriter writer = begin_map(map, spec, layout, tiling, opening, options, locking);
+  try {
+    return fill(spec, layout, tiling, options, writer);
+  } catch (const BrokenFile& error) {
+    throw IoError(
+        fmt::format("{}; the disk or its driver loses what it is given; begin anew by --overwrite, on "
+                    "another disk",
+                    error.what()));
+  } catch (const IoError& error) {
+    if (writer.committed() == 0) throw IoError(fmt::format("{}; nothing is kept", error.what()));
+    throw KeptError(error.what(), writer.committed(), tiling.designs());
+  }
+}
+
+Report sweep(const Spec& spec, const SweepOptions& options) { return sweep(spec, spec.output.file, options); }
+
+}  // namespace leapmap
