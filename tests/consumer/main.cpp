@@ -99,7 +99,7 @@ void refuses() {
   spec.axes = {{"mu_static", {0.1, 0.2}}};
   expect(has(refusal([&] { lm::sweep(spec, "none.h5"); }), "mu_static"), "an axis that has no use");
   spec.scene.friction = lm::Friction::coulomb;
-  expect(has(lm::resolved_text(spec), "friction = \"coulomb\""), "one truth for friction");
+  expect(has(lm::resolved_text(spec), "friction = 'coulomb'"), "one truth for friction");
   expect(!std::filesystem::exists("none.h5") && !std::filesystem::exists("none.h5.part"), "and nothing written");
 }
 
