@@ -8,17 +8,17 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
-#include "support/printable.hpp"
-#include "sweep/begin_map.hpp"
-#include "sweep/provenance.hpp"
 #include "cli/sweep.hpp"
+#include "leapmap/errors.hpp"
 #include "map/schema.hpp"
 #include "map/trace_file.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
-#include "leapmap/errors.hpp"
+#include "support/printable.hpp"
 #include "sweep/audit.hpp"
+#include "sweep/begin_map.hpp"
 #include "sweep/options.hpp"
+#include "sweep/provenance.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -223,6 +223,8 @@ int run(const HopArguments& arguments) {
         fmt::format("{}: design.points is a list; allowed: one design for a hop", origin_of(spec)));
 
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval;
+  if (!arguments.trace.empty() && !(interval > 0.0))
+    throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
   const bool exact = resolved_method(spec.numerics) == "exact";
   const Model& model = model_of(spec.scene);
   Motion motion = exact ? model.tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)

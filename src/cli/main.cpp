@@ -11,8 +11,8 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "leapmap/errors.hpp"
-#include "support/posix.hpp"
 #include "leapmap/version.hpp"
+#include "support/posix.hpp"
 
 namespace {
 
@@ -43,10 +43,17 @@ int run(int argc, char** argv) {
       "  leapmap check maps/slope_mass_ratio.h5            whether it is what was written, and right\n"
       "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 "
       "interrupted.");
-  app.set_version_flag("--version",
-                       fmt::format("leapmap {} (git {}), built for {}", leapmap::program_version(),
-                                   leapmap::git_revision(), leapmap::instruction_set()));
+  app.set_version_flag("--version", fmt::format("leapmap {} (git {}), using {}", leapmap::program_version(),
+                                                leapmap::git_revision(), leapmap::instruction_set()));
   app.require_subcommand(1);
+  app.fallthrough();  // so that it may stand after the command, too
+  app.add_option_function<std::string>(
+         "--instruction-set", [](const std::string& name) { leapmap::use_instruction_set(name); },
+         fmt::format("solve by a lower instruction set than the best of this machine, where bits must agree "
+                     "with another "
+                     "machine's; one of {}",
+                     fmt::join(leapmap::instruction_sets(), ", ")))
+      ->trigger_on_parse();
   leapmap::cli::add_sweep(app, status);
   leapmap::cli::add_hop(app, status);
   leapmap::cli::add_info(app, status);

@@ -9,17 +9,17 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
-#include "support/printable.hpp"
-#include "sweep/begin_map.hpp"
-#include "sweep/provenance.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "leapmap/errors.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
 #include "study/precision.hpp"
-#include "leapmap/errors.hpp"
+#include "support/printable.hpp"
+#include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/point_list.hpp"
+#include "sweep/provenance.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -9,14 +9,14 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
-#include "support/printable.hpp"
-#include "sweep/begin_map.hpp"
-#include "sweep/provenance.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
 #include "study/stability.hpp"
+#include "support/printable.hpp"
+#include "sweep/begin_map.hpp"
+#include "sweep/provenance.hpp"
 
 namespace leapmap::cli {
 namespace {

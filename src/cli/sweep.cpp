@@ -33,8 +33,9 @@ SweepOptions options_of(const SweepArguments& arguments) {
 }
 
 void tell_resumed(const std::string& map, std::size_t done, std::size_t total) {
-  say("resumed  {}\n", done > 0 ? fmt::format("{} of {} designs were there already", grouped(done), grouped(total))
-                                : fmt::format("nothing to go on with in {}: begun anew", part_of(map)));
+  say("resumed  {}\n", done > 0
+                           ? fmt::format("{} of {} designs were there already", grouped(done), grouped(total))
+                           : fmt::format("nothing to go on with in {}: begun anew", part_of(map)));
   flush_out();
 }
 

@@ -16,7 +16,11 @@ Outcome CoulombSolver<S>::solve(const Design& design, const Scene& scene, const 
           int direction) { return sliding_.run(hoop, contact.mu_kinetic, at, runway, direction); });
 }
 
+#ifdef LEAPMAP_KERNELS
 template class CoulombSolver<double>;
+#endif
+#ifdef LEAPMAP_SCALARS
 template class CoulombSolver<long double>;
+#endif
 
 }  // namespace leapmap

@@ -15,8 +15,4 @@ Solver integration(const Scene& scene, const IntegrationOptions& options) {
   return one_by_one(std::make_shared<CoulombIntegration>(options), scene);
 }
 
-Outcome refined(const Design& design, const Scene& scene) {
-  return CoulombSolver<long double>(1e-15).solve(design, scene);
-}
-
 }  // namespace leapmap::coulomb

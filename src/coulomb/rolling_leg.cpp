@@ -163,7 +163,11 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
   return std::isnan(first) ? first : first + duration(roll, shift, middle, to, allowed, halvings + 1, panels);
 }
 
+#ifdef LEAPMAP_KERNELS
 template class RollingLeg<double>;
+#endif
+#ifdef LEAPMAP_SCALARS
 template class RollingLeg<long double>;
+#endif
 
 }  // namespace leapmap

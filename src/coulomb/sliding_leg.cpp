@@ -228,7 +228,11 @@ bool SlidingLeg<S>::advance(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   return true;
 }
 
+#ifdef LEAPMAP_KERNELS
 template class SlidingLeg<double>;
+#endif
+#ifdef LEAPMAP_SCALARS
 template class SlidingLeg<long double>;
+#endif
 
 }  // namespace leapmap

@@ -252,7 +252,11 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
                    (tolerance_ + slide.rounding_at_end(at_end.pivot));
 }
 
+#ifdef LEAPMAP_KERNELS
 template class SlidingPanels<double>;
+#endif
+#ifdef LEAPMAP_SCALARS
 template class SlidingPanels<long double>;
+#endif
 
 }  // namespace leapmap

@@ -66,8 +66,8 @@ Spec parse_spec(std::string_view text, const std::string& origin = "text",
 /// The spec as resolved: TOML that read_spec turns into the same Spec again, every key and value written out.
 std::string resolved_text(const Spec& spec);
 
-/// Throws InputError, naming key, value and what is allowed, if a spec filled in by hand is one that read_spec
-/// would refuse.
+/// Throws InputError, naming key, value and what is allowed, if a spec filled in by hand is one that
+/// read_spec would refuse.
 void check_spec(const Spec& spec);
 
 }  // namespace leapmap

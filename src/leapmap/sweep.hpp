@@ -27,14 +27,14 @@ struct SweepOptions {
 };
 
 struct Report {
-  bool whole = false;         ///< false: it was stopped, and MAP.part keeps what is done
-  bool was_whole = false;     ///< resumed, and the map of this spec was there already
-  std::size_t designs = 0;    ///< of the spec
-  std::size_t done = 0;       ///< in the map now
-  std::size_t solved = 0;     ///< by this call
-  StatusCounts statuses{};    ///< designs in the map by how they ended
-  double seconds = 0.0;       ///< of this call's solving, without its audit's share of the threads
-  bool durable = true;        ///< false: a power cut may undo the map's taking its place
+  bool whole = false;                  ///< false: it was stopped, and MAP.part keeps what is done
+  bool was_whole = false;              ///< resumed, and the map of this spec was there already
+  std::size_t designs = 0;             ///< of the spec
+  std::size_t done = 0;                ///< in the map now
+  std::size_t solved = 0;              ///< by this call
+  StatusCounts statuses{};             ///< designs in the map by how they ended
+  double seconds = 0.0;                ///< of this call's solving, without its audit's share of the threads
+  bool durable = true;                 ///< false: a power cut may undo the map's taking its place
   std::optional<AuditReport> audit{};  ///< of the whole map; unset: numerics.audit is 0
 };
 
@@ -60,8 +60,8 @@ struct RetryReport {
 
 /// Solves the designs with status failed in a finished map again: as `how` says if that is another way than
 /// the map's, else by the method that audits it; and stores what comes out in a copy that takes the map's
-/// place once it is whole. Returns nullopt if stopped; the map is unchanged then. Throws InputError if the map
-/// is not whole, holds no status or is in use; BrokenFile if it is not what was written; IoError.
+/// place once it is whole. Returns nullopt if stopped; the map is unchanged then. Throws InputError if the
+/// map is not whole, holds no status or is in use; BrokenFile if it is not what was written; IoError.
 std::optional<RetryReport> retry_failed(const std::string& path, const std::optional<Numerics>& how = {},
                                         const SweepOptions& options = {});
 

@@ -10,8 +10,8 @@
 #include <iterator>
 #include <new>
 
-#include "map/hdf5_trust.hpp"
 #include "leapmap/errors.hpp"
+#include "map/hdf5_trust.hpp"
 #include "support/posix.hpp"
 
 namespace leapmap::hdf5 {

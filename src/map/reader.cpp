@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <new>
 
+#include "leapmap/errors.hpp"
 #include "map/hdf5_trust.hpp"
 #include "map/schema.hpp"
 #include "model/fields.hpp"
-#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {

@@ -4,8 +4,8 @@
 #include <cassert>
 #include <numeric>
 
-#include "map/hdf5_driver.hpp"
 #include "leapmap/errors.hpp"
+#include "map/hdf5_driver.hpp"
 
 namespace leapmap {
 namespace {

@@ -7,8 +7,8 @@
 #include <cassert>
 #include <filesystem>
 
-#include "map/schema.hpp"
 #include "leapmap/errors.hpp"
+#include "map/schema.hpp"
 
 namespace leapmap {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "leapmap/errors.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
-#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {

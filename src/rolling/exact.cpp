@@ -376,8 +376,12 @@ void ExactSolver<T>::land(std::span<Outcome> outcomes) const {
   }
 }
 
+#ifdef LEAPMAP_KERNELS
+template class ExactSolver<Batch>;
+#endif
+#ifdef LEAPMAP_SCALARS
 template class ExactSolver<double>;
 template class ExactSolver<long double>;
-template class ExactSolver<Batch>;
+#endif
 
 }  // namespace leapmap

@@ -183,9 +183,13 @@ typename ExactSolver<T>::Index ExactSolver<T>::index_of_part(const std::vector<P
   template typename ExactSolver<T>::S ExactSolver<T>::halve_time(std::uint32_t, S Search::*) const;          \
   template typename ExactSolver<T>::Index ExactSolver<T>::index_of_part(const std::vector<Part>&,            \
                                                                         std::size_t, std::size_t&) const;
+#ifdef LEAPMAP_KERNELS
+LEAPMAP_INSTANTIATE(Batch)
+#endif
+#ifdef LEAPMAP_SCALARS
 LEAPMAP_INSTANTIATE(double)
 LEAPMAP_INSTANTIATE(long double)
-LEAPMAP_INSTANTIATE(Batch)
+#endif
 #undef LEAPMAP_INSTANTIATE
 
 }  // namespace leapmap

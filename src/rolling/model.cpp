@@ -17,10 +17,4 @@ Solver integration(const Scene& scene, const IntegrationOptions& options) {
   return one_by_one(std::make_shared<RollingIntegration>(options), scene);
 }
 
-Outcome refined(const Design& design, const Scene& scene) {
-  Outcome outcome;
-  ExactSolver<long double>(1e-18).solve({&design, 1}, scene, {&outcome, 1});
-  return outcome;
-}
-
 }  // namespace leapmap::rolling

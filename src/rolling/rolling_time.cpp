@@ -315,7 +315,11 @@ ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
 }
 
 template class RollingTime<double>;
-template class RollingTime<long double>;
+#ifdef LEAPMAP_KERNELS
 template class RollingTime<Batch>;
+#endif
+#ifdef LEAPMAP_SCALARS
+template class RollingTime<long double>;
+#endif
 
 }  // namespace leapmap

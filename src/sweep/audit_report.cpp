@@ -7,8 +7,8 @@
 #include <array>
 #include <cstdint>
 
-#include "map/tile.hpp"
 #include "leapmap/errors.hpp"
+#include "map/tile.hpp"
 
 namespace leapmap {
 

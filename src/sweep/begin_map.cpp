@@ -28,9 +28,10 @@ void refuse_other_beginning(const MapReader& part, const std::string& name, cons
   for (const auto& [key, value] : now)
     if (key == "program_version" || key == "git_revision" || key == "instruction_set")
       if (part.attribute(key) != std::get<std::string>(value))
-        throw InputError(
-            fmt::format("{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one, {}",
-                        name, key, part.attribute(key), std::get<std::string>(value), allowed));
+        throw InputError(fmt::format(
+            "{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one{}, {}", name,
+            key, part.attribute(key), std::get<std::string>(value),
+            key == "instruction_set" ? " by --instruction-set" : "", allowed));
   if (const auto difference = first_difference(spec_of(part, name), spec))
     throw InputError(
         fmt::format("{}: was begun with another spec: {}; allowed: that spec (leapmap info --spec {}), {}",

@@ -7,10 +7,10 @@
 #include <array>
 #include <cmath>
 
+#include "leapmap/errors.hpp"
 #include "map/layout.hpp"
 #include "map/reader.hpp"
 #include "map/writer.hpp"
-#include "leapmap/errors.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/solver.hpp"

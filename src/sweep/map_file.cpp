@@ -36,7 +36,8 @@ std::vector<double> Map::read(const std::string& field) const {
 std::vector<double> Map::read(const std::string& field, const std::vector<std::size_t>& start,
                               const std::vector<std::size_t>& extent) const {
   if (!reader_->has(field))
-    throw InputError(fmt::format("{}: has no field '{}'; allowed: {}", path_, field, fmt::join(fields(), ", ")));
+    throw InputError(
+        fmt::format("{}: has no field '{}'; allowed: {}", path_, field, fmt::join(fields(), ", ")));
   const std::vector<std::size_t> all = shape();
   bool inside = start.size() == all.size() && extent.size() == all.size();
   for (std::size_t i = 0; inside && i < all.size(); ++i)
@@ -44,8 +45,9 @@ std::vector<double> Map::read(const std::string& field, const std::vector<std::s
   if (!inside)
     throw InputError(fmt::format("{}: the block at ({}) of ({}) is not in it; allowed: within ({})", path_,
                                  fmt::join(start, ", "), fmt::join(extent, ", "), fmt::join(all, ", ")));
-  return reader_->read(field, {start, extent,
-                               std::accumulate(extent.begin(), extent.end(), std::size_t{1}, std::multiplies<>())});
+  return reader_->read(
+      field,
+      {start, extent, std::accumulate(extent.begin(), extent.end(), std::size_t{1}, std::multiplies<>())});
 }
 
 bool Map::is_whole() const { return reader_->is_whole(); }

@@ -10,10 +10,10 @@
 #include <iterator>
 #include <numbers>
 
+#include "leapmap/errors.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "numerics/gsl_integrator.hpp"
-#include "leapmap/errors.hpp"
 
 namespace leapmap {
 namespace {

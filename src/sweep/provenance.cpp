@@ -8,8 +8,8 @@
 #include <array>
 #include <chrono>
 
-#include "map/schema.hpp"
 #include "leapmap/version.hpp"
+#include "map/schema.hpp"
 
 namespace leapmap {
 

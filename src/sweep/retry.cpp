@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "leapmap/errors.hpp"
 #include "map/reader.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "model/fields.hpp"
-#include "leapmap/errors.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"

@@ -32,7 +32,8 @@ Spec spec_of(const Scene& scene, const Options& options) {
 
 /// Calls make_work()(solver, first, size) for each block of neighbours, on all threads.
 template <class MakeWork>
-void for_blocks(std::size_t count, const Scene& scene, const SolveOptions& options, const MakeWork& make_work) {
+void for_blocks(std::size_t count, const Scene& scene, const SolveOptions& options,
+                const MakeWork& make_work) {
   const Spec spec = spec_of(scene, options);
   parallel_for_each((count + designs_a_block - 1) / designs_a_block, options.threads, [&] {
     return [&, solver = make_solver(spec), work = make_work()](std::size_t block) mutable {
@@ -95,8 +96,8 @@ Motion trace(const Design& design, const Scene& scene, const TraceOptions& optio
   const Spec spec = spec_of(scene, options);
   check_design(design, scene);
   if (!(options.interval >= 0.0 && options.interval < 1e9))
-    throw InputError(
-        fmt::format("interval = {} is out of range; allowed: a number of seconds in [0, 1e9)", options.interval));
+    throw InputError(fmt::format("interval = {} is out of range; allowed: a number of seconds in [0, 1e9)",
+                                 options.interval));
   const Model& model = model_of(scene);
   return resolved_method(spec.numerics) == "exact"
              ? model.tell_exactly(design, scene, options.tolerance, options.interval)

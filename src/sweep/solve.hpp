@@ -9,8 +9,8 @@
 namespace leapmap {
 
 /// Designs `first` to `first + designs.size() - 1` are to be put into `designs`; or their outcomes be taken.
-/// Both are called on any thread, once for each block of neighbours; blocks are the same whatever the number of
-/// threads.
+/// Both are called on any thread, once for each block of neighbours; blocks are the same whatever the number
+/// of threads.
 using GiveDesigns = std::function<void(std::size_t first, std::span<Design> designs)>;
 using TakeOutcomes = std::function<void(std::size_t first, std::span<const Outcome> outcomes)>;
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <sstream>
 
-#include "model/model.hpp"
 #include "leapmap/errors.hpp"
+#include "model/model.hpp"
 #include "support/posix.hpp"
 #include "sweep/options.hpp"
 #include "sweep/point_list.hpp"
@@ -363,6 +363,8 @@ Spec parse_spec(std::string_view text, const std::string& origin, const std::vec
   return parse(text, origin, overrides, false);
 }
 
-Spec parse_map_spec(std::string_view text, const std::string& origin) { return parse(text, origin, {}, true); }
+Spec parse_map_spec(std::string_view text, const std::string& origin) {
+  return parse(text, origin, {}, true);
+}
 
 }  // namespace leapmap

@@ -3,10 +3,10 @@
 /// units until they are all taken (units.hpp).
 #pragma once
 
+#include "leapmap/errors.hpp"
 #include "leapmap/motion.hpp"
 #include "physics/flight.hpp"
 #include "physics/sliding.hpp"
-#include "leapmap/errors.hpp"
 #include "trajectory/contact_state.hpp"
 
 namespace leapmap {

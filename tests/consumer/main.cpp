@@ -48,8 +48,8 @@ void solves_a_million() {
   expect(all.size() == designs.size(), "an outcome for each design");
   const std::vector<lm::Outcome> one = lm::solve(std::span(designs).first(5'000), scene, {.threads = 1});
   for (std::size_t i = 0; i < one.size(); ++i)
-    expect(one[i].status == all[i].status && (one[i].jump_height == all[i].jump_height ||
-                                              std::isnan(one[i].jump_height)),
+    expect(one[i].status == all[i].status &&
+               (one[i].jump_height == all[i].jump_height || std::isnan(one[i].jump_height)),
            "the same bits on one thread");
 }
 
@@ -79,7 +79,8 @@ void sweeps() {
   expect(map.shape() == std::vector<std::size_t>({300, 8}) && map.axes()[1].key == "mass_ratio", "its axes");
   lm::Design design;
   design.slope = spec.axes[0].values[123], design.mass_ratio = 5;
-  expect(map.read("jump_height")[123 * 8 + 4] == lm::solve(design).jump_height, "the map holds what solve says");
+  expect(map.read("jump_height")[123 * 8 + 4] == lm::solve(design).jump_height,
+         "the map holds what solve says");
   expect(lm::resolved_text(map.spec()) == map.attribute("spec"), "and its spec");
 }
 
@@ -91,8 +92,10 @@ void refuses() {
   expect(has(too_long, "offset_ratio = 2") && has(too_long, "[0, 1]"), "a mass outside the hoop");
   const std::string unused = refusal([] { lm::solve({.mu_static = 0.3}); });
   expect(has(unused, "mu_static = 0.3") && has(unused, "--friction coulomb"), "friction where nothing slips");
-  expect(has(refusal([] { lm::solve(lm::Design{}, {.runway = -1}); }), "runway = -1"), "a runway that is none");
-  expect(has(refusal([] { lm::solve(lm::Design{}, {}, {.method = "rk45"}); }), "gsl-rkf45"), "an unknown method");
+  expect(has(refusal([] { lm::solve(lm::Design{}, {.runway = -1}); }), "runway = -1"),
+         "a runway that is none");
+  expect(has(refusal([] { lm::solve(lm::Design{}, {}, {.method = "rk45"}); }), "gsl-rkf45"),
+         "an unknown method");
   const std::vector<lm::Design> some{{}, {.mass_ratio = -1}};
   expect(has(refusal([&] { lm::solve(some); }), "design 1: mass_ratio = -1"), "which of many");
   lm::Spec spec;
@@ -100,7 +103,8 @@ void refuses() {
   expect(has(refusal([&] { lm::sweep(spec, "none.h5"); }), "mu_static"), "an axis that has no use");
   spec.scene.friction = lm::Friction::coulomb;
   expect(has(lm::resolved_text(spec), "friction = 'coulomb'"), "one truth for friction");
-  expect(!std::filesystem::exists("none.h5") && !std::filesystem::exists("none.h5.part"), "and nothing written");
+  expect(!std::filesystem::exists("none.h5") && !std::filesystem::exists("none.h5.part"),
+         "and nothing written");
 }
 
 }  // namespace

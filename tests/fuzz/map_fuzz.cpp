@@ -17,8 +17,8 @@
 #include <fstream>
 #include <string>
 
-#include "map/writer.hpp"
 #include "leapmap/errors.hpp"
+#include "map/writer.hpp"
 #include "support/small_map.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/check.hpp"

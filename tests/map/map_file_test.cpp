@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "leapmap/errors.hpp"
 #include "map/reader.hpp"
 #include "map/writer.hpp"
-#include "leapmap/errors.hpp"
 #include "support/small_map.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "map/writer.hpp"
 #include "leapmap/errors.hpp"
+#include "map/writer.hpp"
 #include "support/small_map.hpp"
 #include "support/system_calls.hpp"
 #include "support/temporary_folder.hpp"

@@ -73,7 +73,7 @@ def stands_alone():
     for source in sorted((ROOT / "src/referee").glob("*.cpp")):
         headers = subprocess.run(["g++", "-std=c++20", "-MM", "-isystem", "/usr/include/eigen3", "-I", ROOT / "src", source],
                                  check=True, capture_output=True, text=True).stdout
-        if shared := re.findall(r"\S*src/(?:physics|trajectory)/\S*", headers):
+        if shared := re.findall(r"\S*src/(?:physics|trajectory|rolling|coulomb|model)/\S*", headers):
             print(f"{source.name} includes {shared}")
             return False
     return True
@@ -94,7 +94,7 @@ def judged(name, folder, library):
     for source in SOURCES:
         at = folder / source if source.startswith("src") else ROOT / source
         objects.append(folder / (at.stem + ".o"))
-        subprocess.run(["g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-I", include, "-c", at, "-o", objects[-1]], check=True)
+        subprocess.run(["g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-DLEAPMAP_KERNELS=kernels", "-DLEAPMAP_SCALARS", "-I", include, "-c", at, "-o", objects[-1]], check=True)
     subprocess.run(["g++", "-fopenmp", *objects, library, *LIBRARIES, "-o", folder / "judge"], check=True)
     try:
         done = subprocess.run([folder / "judge"], capture_output=True, text=True, timeout=120)

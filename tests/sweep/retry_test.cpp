@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <numeric>
 
-#include "map/schema.hpp"
 #include "leapmap/errors.hpp"
+#include "map/schema.hpp"
 #include "support/sweep_into.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/designs.hpp"

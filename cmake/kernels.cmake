@@ -1,0 +1,52 @@
+# Compiles the kernels (src/model/kernels.hpp) once for each of LEAPMAP_INSTRUCTION_SETS and adds them to the library.
+#
+# Of several sets, each is linked into one object in which every symbol but its entry is local and no section is shared
+# (COMDAT): otherwise the linker would keep any one copy of an inline function, perhaps one for a newer machine.
+
+function(leapmap_kernel_objects target march entry)
+  add_library(${target} OBJECT ${LEAPMAP_KERNEL_SOURCES})
+  target_compile_definitions(${target} PRIVATE LEAPMAP_KERNELS=${entry})
+  target_compile_options(${target} PRIVATE $<$<NOT:$<STREQUAL:${march},>>:-march=${march}> -fno-gnu-unique)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:GSL::gsl,INTERFACE_INCLUDE_DIRECTORIES>)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:leapmap-options>)
+endfunction()
+
+include(CheckCXXSourceRuns)
+
+# What looks inside the kernels, tests and benchmarks, is compiled as they are.
+add_library(leapmap-inside INTERFACE)
+set(march "")
+set(list "")
+list(LENGTH LEAPMAP_INSTRUCTION_SETS count)
+if(count LESS 2)
+  set(march "${LEAPMAP_INSTRUCTION_SETS}")
+  leapmap_kernel_objects(leapmap-kernels "${march}" leapmap_kernels)
+  target_sources(leapmap PRIVATE $<TARGET_OBJECTS:leapmap-kernels>)
+  set(list "KERNELS(leapmap_kernels, \"$<IF:$<STREQUAL:${march},>,baseline,${march}>\")\n")
+else()
+  foreach(set ${LEAPMAP_INSTRUCTION_SETS})
+    string(MAKE_C_IDENTIFIER leapmap_kernels_${set} entry)
+    leapmap_kernel_objects(leapmap-kernels-${set} ${set} ${entry})
+    set(object ${PROJECT_BINARY_DIR}/kernels-${set}.o)
+    add_custom_command(OUTPUT ${object} DEPENDS $<TARGET_OBJECTS:leapmap-kernels-${set}> VERBATIM COMMAND_EXPAND_LISTS
+      COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object} $<TARGET_OBJECTS:leapmap-kernels-${set}>
+      COMMAND ${CMAKE_OBJCOPY} --keep-global-symbol=${entry} ${object}
+      COMMENT "The kernels for ${set} as one object")
+    target_sources(leapmap PRIVATE ${object})
+    set_source_files_properties(${object} PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
+    string(APPEND list "KERNELS(${entry}, \"${set}\")\n")
+  endforeach()
+  # As the best that this machine has, of which tests and benchmarks see every symbol.
+  foreach(set ${LEAPMAP_INSTRUCTION_SETS})
+    string(MAKE_C_IDENTIFIER runs_${set} runs)
+    check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"${set}\") ? 0 : 1; }" ${runs})
+    if(${runs} OR NOT march)
+      set(march ${set})
+    endif()
+  endforeach()
+  target_sources(leapmap-inside INTERFACE $<TARGET_OBJECTS:leapmap-kernels-${march}>)
+endif()
+target_compile_options(leapmap-inside INTERFACE $<$<NOT:$<STREQUAL:${march},>>:-march=${march}>)
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/generated/kernel_list.inc CONTENT "${list}")
+target_include_directories(leapmap PRIVATE ${PROJECT_BINARY_DIR}/generated)

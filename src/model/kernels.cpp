@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One set of kernels, under a name of its own: LEAPMAP_KERNELS, which CMakeLists.txt gives.
+#include "model/kernels.hpp"
+
+#include <array>
+
+#include "coulomb/model.hpp"
+#include "numerics/lanes.hpp"
+#include "rolling/model.hpp"
+#include "study/solving.hpp"
+
+namespace leapmap {
+namespace {
+
+const std::array list{
+    Model{Friction::sticking, "sticking", "never slips (the paper's model)", rolling::exact,
+          rolling::integration, rolling::refined, rolling::tell_exactly,
+          [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
+            return rolling::tell_by_integration(design, scene, options, interval);
+          }},
+    Model{Friction::coulomb, "coulomb", "slips, lands and hops on", coulomb::exact, coulomb::integration,
+          coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration}};
+
+const Kernels of_this_set{list, solving_of, static_cast<int>(Lanes<Batch>::count)};
+
+}  // namespace
+}  // namespace leapmap
+
+extern "C" const leapmap::Kernels* LEAPMAP_KERNELS() { return &leapmap::of_this_set; }
