@@ -2,8 +2,8 @@
 /// leapmap hop: one design, told in full.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "cli/commands.hpp"
@@ -108,13 +108,17 @@ void print_phases(const Motion& motion) {
         flown.t + flown.flight_time);
     if (flown.height == 0.0) say("{:<22} it sinks at once: the plane would have to pull here\n", "");
   };
-  const auto print_low_ones_before = [&](double t) {
-    while (told < motion.candidates.size() && motion.candidates[told].t < t)
+  // Without slip lift-offs that stay low are no phases: they come before the flight, if there is one.
+  auto flights =
+      static_cast<std::size_t>(std::ranges::count(motion.phases, Phase::flight, &PhaseStart::phase));
+  const auto print_low_ones = [&] {
+    while (motion.candidates.size() - told > flights)
       print_flight(fmt::format("   lift-off {}, too low", told + 1));
   };
   for (const PhaseStart& phase : motion.phases) {
-    print_low_ones_before(phase.t);
     if (phase.phase == Phase::flight) {
+      print_low_ones();
+      --flights;
       const bool jumps = motion.outcome.status == Status::jumped && told + 1 == motion.candidates.size();
       print_flight(jumps ? "F  jumps" : "F  hops, too low");
     } else {
@@ -124,7 +128,7 @@ void print_phases(const Motion& motion) {
       say("{:<22} {}\n", how, begins(phase.t, phase.phi, phase.spin));
     }
   }
-  print_low_ones_before(std::numeric_limits<double>::infinity());
+  print_low_ones();
 }
 
 void print_table(const Spec& spec, const Motion& motion, const Outcome& checked) {

@@ -49,10 +49,11 @@ int run(int argc, char** argv) {
   app.fallthrough();  // so that it may stand after the command, too
   app.add_option_function<std::string>(
          "--instruction-set", [](const std::string& name) { leapmap::use_instruction_set(name); },
-         fmt::format("solve by a lower instruction set than the best of this machine, where bits must agree "
-                     "with another "
-                     "machine's; one of {}",
-                     fmt::join(leapmap::instruction_sets(), ", ")))
+         fmt::format(
+             "solve by a lower instruction set than the best of this machine, where bits should agree "
+             "with another "
+             "machine's; one of {}",
+             fmt::join(leapmap::instruction_sets(), ", ")))
       ->trigger_on_parse();
   leapmap::cli::add_sweep(app, status);
   leapmap::cli::add_hop(app, status);

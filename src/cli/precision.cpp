@@ -14,6 +14,7 @@
 #include "leapmap/errors.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
+#include "model/model.hpp"
 #include "study/precision.hpp"
 #include "support/printable.hpp"
 #include "sweep/begin_map.hpp"
@@ -129,8 +130,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
       file_provenance(filetype, "Speed against accuracy of methods for passive hoops");
   attributes.emplace_back("random_designs",
                           static_cast<std::int64_t>(options.points.empty() ? options.designs : 0));
-  attributes.emplace_back("friction",
-                          std::string(scene.friction == Friction::coulomb ? "coulomb" : "sticking"));
+  attributes.emplace_back("friction", std::string(model_of(scene).name));
   attributes.emplace_back("seed", static_cast<std::int64_t>(options.seed));
   attributes.emplace_back("budget", options.budget);
   attributes.emplace_back("wall_time",
@@ -170,14 +170,16 @@ void add_precision(CLI::App& app, int& status) {
       ->add_option("--methods", arguments->options.methods, "only these, with commas between; default: all")
       ->delimiter(',')
       ->check(CLI::IsMember(methods));
+  std::vector<std::string> frictions;
+  for (const Model& model : models()) frictions.emplace_back(model.name);
   command
       ->add_option_function<std::string>(
           "--friction",
           [arguments](const std::string& word) {
-            arguments->friction = word == "coulomb" ? Friction::coulomb : Friction::sticking;
+            arguments->friction = std::ranges::find(models(), word, &Model::name)->friction;
           },
           "sticking (never slips), or coulomb: then random designs have a random mu_static and mu_kinetic")
-      ->check(CLI::IsMember({"sticking", "coulomb"}));
+      ->check(CLI::IsMember(frictions));
   command->add_flag("--quick", arguments->options.quick,
                     "fewer designs and settings, less time for each: within 30 s");
   command->footer(

@@ -13,6 +13,7 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "leapmap/version.hpp"
 #include "support/printable.hpp"
 #include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
@@ -102,6 +103,10 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
   if (arguments.commit_interval != SweepArguments{}.commit_interval)
     command += fmt::format(" --commit-interval {}", arguments.commit_interval);
   if (arguments.locking != Locking::required) command += " --no-lock";
+  if (!uses_best_instruction_set()) {
+    const std::string set = instruction_set();
+    command += " --instruction-set " + set.substr(0, set.find(','));
+  }
   std::error_code ignored;
   if (how == "--resume" && std::filesystem::exists(map, ignored))
     command += " --overwrite";  // the older map, once the new one is whole

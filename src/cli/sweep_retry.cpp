@@ -29,11 +29,12 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
         fmt::format("{}: is of other designs: {}; allowed: its own spec (leapmap info --spec {})", map,
                     *difference, shell_quoted(map)));
   note_signals();
-  SweepOptions options;
+  RetryOptions options;
+  options.how = spec.numerics;
   options.threads = arguments.threads, options.lock = arguments.locking == Locking::required;
   options.stop_requested = [] { return noted_signal() != 0; };
   const Numerics numerics = retry_numerics(there.numerics, spec.numerics);
-  const auto report = retry_failed(map, spec.numerics, options);
+  const auto report = retry_failed(map, options);
   if (!report) {
     tell(fmt::format("interrupted; {} is as it was", map));
     return 128 + noted_signal();

@@ -47,120 +47,159 @@ ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const
 /// Goes through the phases until the design ends. roll(hoop, contact, state, runway) and slide(...,
 /// direction) move the state to their phase's end, or as far as they came; direction is 1 or -1.
 template <class S, class Roll, class Slide>
-Outcome go_through_phases(const Design& design, const Scene& scene, const CoulombObserver& observer,
-                          const Roll& roll, const Slide& slide) {
-  using std::abs;
-  const Hoop<S> hoop = derive<S>(design);
-  const Contact<S> contact = contact_of<S>(design, scene);
-  const S runway = S(2) * std::numbers::pi_v<S> * S(scene.runway);
-  ContactState<S> at;
-  at.angle = S(design.release_angle), at.spin = S(design.release_spin);
-  const S released = contact_energy(hoop, at);
+class PhaseMachine {
+ public:
+  PhaseMachine(const Design& design, const Scene& scene, const CoulombObserver& observer, const Roll& roll,
+               const Slide& slide)
+      : design_(design),
+        scene_(scene),
+        observer_(observer),
+        roll_(roll),
+        slide_(slide),
+        hoop_(derive<S>(design)),
+        contact_(contact_of<S>(design, scene)),
+        runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)) {
+    at_.angle = S(design.release_angle), at_.spin = S(design.release_spin);
+    released_ = contact_energy(hoop_, at_);
+  }
 
-  Outcome outcome;
-  PhaseSequence sequence;
-  S slipped(0);
-  const auto state = [&] {
-    return ContactState<double>{static_cast<double>(at.time),  static_cast<double>(at.travel),
-                                static_cast<double>(at.angle), static_cast<double>(at.spin),
-                                static_cast<double>(at.slip),  static_cast<double>(at.normal)};
-  };
-  const auto end = [&](Status status, const char* reason = nullptr) {
-    if (observer.end) observer.end(state());
-    outcome.status = status;
-    outcome.failure = reason;
-    outcome.phase_sequence = sequence.code();
-    if (status == Status::failed || status == Status::indeterminate) {
-      const std::uint64_t phases = outcome.phase_sequence;
-      outcome = {};
-      outcome.status = status, outcome.failure = reason, outcome.phase_sequence = phases;
-    } else {
-      outcome.slip_distance = static_cast<double>(slipped);
-      to_seconds(outcome, time_unit(scene));
-    }
-    return outcome;
-  };
-  const auto begin = [&](Phase phase, int direction) {
-    sequence.append(phase);
-    if (observer.phase) observer.phase(phase, state(), direction);
-  };
-
-  ContactPhase next = contact_phase(hoop, contact, at, Leaving::unless_it_sticks);
-  if (next == ContactPhase::leaves) return end(Status::airborne_at_release);
-  if (at.spin < S(0)) return end(Status::stalled);
-
-  while (sequence.count() < most_phases) {
-    PhaseEnd ended;
-    if (next == ContactPhase::leaves) {
-      ended = PhaseEnd::lifts_off;
-    } else if (next == ContactPhase::rolls) {
-      begin(Phase::rolling, 0);
-      ended = roll(hoop, contact, at, runway);
-    } else {
-      const int direction = next == ContactPhase::slides_forwards ? 1 : -1;
-      begin(Phase::sliding, direction);
-      const ContactState<S> from = at;
-      ended = slide(hoop, contact, at, runway, direction);
-      slipped += abs((at.travel - from.travel) - (at.angle - from.angle));
-    }
-    switch (ended) {
-      case PhaseEnd::slips_forwards:
-      case PhaseEnd::slips_backwards:
-        next = free_normal_force(hoop, trig(at.angle), S(at.spin * at.spin)) <= S(0) ? ContactPhase::leaves
-               : ended == PhaseEnd::slips_forwards ? ContactPhase::slides_forwards
+  Outcome run() {
+    ContactPhase next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
+    if (next == ContactPhase::leaves) return ended_as(Status::airborne_at_release);
+    if (at_.spin < S(0)) return ended_as(Status::stalled);
+    while (sequence_.count() < most_phases) {
+      const PhaseEnd end = next == ContactPhase::leaves ? PhaseEnd::lifts_off : stay_in_contact(next);
+      switch (end) {
+        case PhaseEnd::slips_forwards:
+        case PhaseEnd::slips_backwards:
+          next = free_normal_force(hoop_, trig(at_.angle), S(at_.spin * at_.spin)) <= S(0)
+                     ? ContactPhase::leaves
+                 : end == PhaseEnd::slips_forwards ? ContactPhase::slides_forwards
                                                    : ContactPhase::slides_backwards;
-        continue;
-      case PhaseEnd::slip_ends:
-        next = contact_phase(hoop, contact, at, Leaving::unless_it_sticks);
-        continue;
-      case PhaseEnd::stalls:
-        return end(Status::stalled);
-      case PhaseEnd::runway_ends:
-        return end(Status::no_jump);
-      case PhaseEnd::indeterminate:
-        return end(Status::indeterminate);
-      case PhaseEnd::too_long:
-        return end(Status::failed, "it slides on for longer than is followed");
-      case PhaseEnd::failed:
-        return end(Status::failed, "a phase could not be solved to the tolerance");
-      case PhaseEnd::lifts_off:
-        break;
+          break;
+        case PhaseEnd::slip_ends:
+          next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
+          break;
+        case PhaseEnd::lifts_off:
+          if (const Status status = fly_and_land(next); status != Status::not_computed)
+            return ended_as(status);
+          break;
+        case PhaseEnd::stalls:
+          return ended_as(Status::stalled);
+        case PhaseEnd::runway_ends:
+          return ended_as(Status::no_jump);
+        case PhaseEnd::indeterminate:
+          return ended_as(Status::indeterminate);
+        case PhaseEnd::too_long:
+          return ended_as(Status::failed, "it slides on for longer than is followed");
+        case PhaseEnd::failed:
+          return ended_as(Status::failed, "a phase could not be solved to the tolerance");
+      }
     }
+    return ended_as(Status::failed, "more phases than a design may go through");
+  }
 
+ private:
+  ContactState<double> state() const {
+    return {static_cast<double>(at_.time), static_cast<double>(at_.travel), static_cast<double>(at_.angle),
+            static_cast<double>(at_.spin), static_cast<double>(at_.slip),   static_cast<double>(at_.normal)};
+  }
+
+  void begin(Phase phase, int direction) {
+    sequence_.append(phase);
+    if (observer_.phase) observer_.phase(phase, state(), direction);
+  }
+
+  /// What is not known of a design that has no answer is not told.
+  Outcome ended_as(Status status, const char* reason = nullptr) {
+    if (observer_.end) observer_.end(state());
+    if (status == Status::failed || status == Status::indeterminate) {
+      outcome_ = {};
+    } else {
+      outcome_.slip_distance = static_cast<double>(slipped_);
+      to_seconds(outcome_, time_unit(scene_));
+    }
+    outcome_.status = status;
+    outcome_.failure = reason;
+    outcome_.phase_sequence = sequence_.code();
+    return outcome_;
+  }
+
+  /// Rolls or slides to the phase's end.
+  PhaseEnd stay_in_contact(ContactPhase phase) {
+    using std::abs;
+    if (phase == ContactPhase::rolls) {
+      begin(Phase::rolling, 0);
+      return roll_(hoop_, contact_, at_, runway_);
+    }
+    const int direction = phase == ContactPhase::slides_forwards ? 1 : -1;
+    begin(Phase::sliding, direction);
+    const ContactState<S> from = at_;
+    const PhaseEnd end = slide_(hoop_, contact_, at_, runway_, direction);
+    slipped_ += abs((at_.travel - from.travel) - (at_.angle - from.angle));
+    return end;
+  }
+
+  /// Flies, and lands unless that was it. Returns how the design ends, or not_computed if it goes on as
+  /// `next`.
+  Status fly_and_land(ContactPhase& next) {
     begin(Phase::flight, 0);
-    const LiftOff<S> lift_off{at.time, at.angle, at.spin};
-    const Flight<S> flight = at.normal > S(0) ? fly_off(hoop, lift_off, at.normal) : fly(hoop, lift_off);
-    const LiftOff<double> told{static_cast<double>(at.time), static_cast<double>(at.angle),
-                               static_cast<double>(at.spin)};
+    const LiftOff<S> lift_off{at_.time, at_.angle, at_.spin};
+    const Flight<S> flight = at_.normal > S(0) ? fly_off(hoop_, lift_off, at_.normal) : fly(hoop_, lift_off);
+    const bool jumps = look_at(lift_off, flight);
+    const Trig<S> phi = trig(at_.angle);
+    const Sample<S> travel = travel_in_flight(hoop_, phi, at_.spin, at_.slip, flight.flight_time);
+    const S climb = height_above_plane(hoop_, phi, at_.spin, flight.flight_time, at_.normal).rate;
+    at_.time += flight.flight_time;
+    at_.travel += travel.value;
+    at_.angle += at_.spin * flight.flight_time;
+    const Landing<S> landing = land(hoop_, trig(at_.angle), {travel.rate - at_.spin, climb, at_.spin},
+                                    contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
+    if (jumps) {
+      outcome_.landing_spin = static_cast<double>(landing.after.spin);
+      return Status::jumped;
+    }
+    if (!(at_.travel < runway_)) return Status::no_jump;
+    at_.spin = landing.after.spin, at_.slip = landing.after.slip;
+    at_.normal = landing.after.normal;
+    // A flight that rounding made of n0 = 0 takes no time; it is contact.
+    const Leaving leaving = flight.flight_time > S(0) ? Leaving::always : Leaving::never;
+    next = at_.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
+    return Status::not_computed;
+  }
+
+  /// Tells of a flight, and whether it is the jump.
+  bool look_at(const LiftOff<S>& lift_off, const Flight<S>& flight) {
+    const LiftOff<double> told{static_cast<double>(lift_off.time), static_cast<double>(lift_off.angle),
+                               static_cast<double>(lift_off.spin)};
     const Flight<double> flown{static_cast<double>(flight.height), static_cast<double>(flight.apex_time),
                                static_cast<double>(flight.flight_time), static_cast<double>(flight.dip)};
-    const bool jumps = consider(outcome, scene, design, told, flown);
-    if (observer.lift_off) observer.lift_off(told, flown);
+    const bool jumps = consider(outcome_, scene_, design_, told, flown);
+    if (observer_.lift_off) observer_.lift_off(told, flown);
     if (jumps) {
-      outcome.jump_distance = static_cast<double>(at.travel);
-      outcome.energy_lost = static_cast<double>(released - contact_energy(hoop, at));
+      outcome_.jump_distance = static_cast<double>(at_.travel);
+      outcome_.energy_lost = static_cast<double>(released_ - contact_energy(hoop_, at_));
     }
-    const Trig<S> phi = trig(at.angle);
-    const Sample<S> travel = travel_in_flight(hoop, phi, at.spin, at.slip, flight.flight_time);
-    const S climb = height_above_plane(hoop, phi, at.spin, flight.flight_time, at.normal).rate;
-    at.time += flight.flight_time;
-    at.travel += travel.value;
-    at.angle += at.spin * flight.flight_time;
-    const Landing<S> landing = land(hoop, trig(at.angle), {travel.rate - at.spin, climb, at.spin},
-                                    contact.mu_kinetic, contact.restitution, contact.rest_speed);
-    if (jumps) {
-      outcome.landing_spin = static_cast<double>(landing.after.spin);
-      return end(Status::jumped);
-    }
-    if (!(at.travel < runway)) return end(Status::no_jump);
-    at.spin = landing.after.spin, at.slip = landing.after.slip;
-    at.normal = landing.after.normal;
-    // A flight that rounding made of n0 = 0 takes no time; it is contact.
-    next = at.normal > S(0) ? ContactPhase::leaves
-                            : contact_phase(hoop, contact, at,
-                                            flight.flight_time > S(0) ? Leaving::always : Leaving::never);
+    return jumps;
   }
-  return end(Status::failed, "more phases than a design may go through");
+
+  const Design& design_;
+  const Scene& scene_;
+  const CoulombObserver& observer_;
+  const Roll& roll_;
+  const Slide& slide_;
+  Hoop<S> hoop_;
+  Contact<S> contact_;
+  S runway_, released_{0}, slipped_{0};
+  ContactState<S> at_;
+  PhaseSequence sequence_;
+  Outcome outcome_;
+};
+
+template <class S, class Roll, class Slide>
+Outcome go_through_phases(const Design& design, const Scene& scene, const CoulombObserver& observer,
+                          const Roll& roll, const Slide& slide) {
+  return PhaseMachine<S, Roll, Slide>(design, scene, observer, roll, slide).run();
 }
 
 }  // namespace leapmap

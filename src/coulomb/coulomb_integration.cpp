@@ -84,6 +84,13 @@ Sample<double> pivot(const CoulombIntegration::System& system, const Y& y) {
           hoop.rho * y[1] * (phi.cos * q + phi.sin * q_rate)};
 }
 
+CoulombIntegration::Guard guard_of_runway(double runway) {
+  return {[runway](const Y& y) {
+            return Sample<double>{runway - y[3], -(y[2] + y[1])};
+          },
+          PhaseEnd::runway_ends};
+}
+
 ContactState<double> state_of(double time, const Y& y) { return {time, y[3], y[0], y[1], y[2]}; }
 
 }  // namespace
@@ -92,93 +99,95 @@ CoulombIntegration::CoulombIntegration(const IntegrationOptions& options)
     : options_(options),
       integrator_(*options.stepper, options.control, {&right_hand_side, &jacobian, 4, &system_}) {}
 
+/// Steps until one of the guards falls; the first of them wins.
+PhaseEnd CoulombIntegration::follow(Phase phase, int direction, ContactState<double>& at,
+                                    std::span<const Guard> guards, const StepObserver& step_told) {
+  const Y start{at.angle, at.spin, at.slip, at.travel};
+  const double began = at.time;
+  std::array<Sample<double>, most_guards> now;
+  for (std::size_t g = 0; g < guards.size(); ++g) now[g] = guards[g].sample(start);
+  if (!integrator_.start(start, 0.01 / (1.0 + std::abs(at.spin)))) return PhaseEnd::failed;
+  const auto retake = [&](double tau, Y& y) { return integrator_.retake(tau, y); };
+  for (;;) {
+    if (++steps_ > options_.max_steps || !integrator_.advance()) return PhaseEnd::failed;
+    const Step<4>& step = integrator_.step();
+    const double turned = std::abs(step.y1[0] - step.y0[0]);
+    const int looks = 1 + static_cast<int>(std::min(turned * (8.0 / std::numbers::pi), 1000.0));
+    const Fall<4>* first = nullptr;
+    PhaseEnd end = PhaseEnd::failed;
+    for (std::size_t g = 0; g < guards.size(); ++g) {
+      now[g] = find_falls(step, looks, now[g], guards[g].sample, retake, falls_[g]);
+      if (falls_[g].failed) return PhaseEnd::failed;
+      if (!falls_[g].falls.empty() && (!first || falls_[g].falls.front().tau < first->tau))
+        first = &falls_[g].falls.front(), end = guards[g].end;
+    }
+    if (step_told)
+      step_told(phase, direction, state_of(began + step.t0, step.y0), first ? first->tau : step.h,
+                [&](double tau, ContactState<double>& state) {
+                  Y y;
+                  const bool taken = retake(tau, y);
+                  state = state_of(began + step.t0 + tau, y);
+                  return taken;
+                });
+    if (first) {
+      at = state_of(began + step.t0 + first->tau, first->state);
+      return end;
+    }
+  }
+}
+
+PhaseEnd CoulombIntegration::roll(const Hoop<double>& hoop, const Contact<double>& contact,
+                                  ContactState<double>& at, double runway, const StepObserver& step_told) {
+  system_.hoop = hoop, system_.friction = rolls;
+  if (at.spin < 0.0 || (at.spin == 0.0 && !(torque(hoop, trig(at.angle)) > 0.0))) return PhaseEnd::stalls;
+  const Guard downhill{[&](const Y&y) { return hold(hoop, contact.mu_static, 1.0, y); },
+                       PhaseEnd::slips_backwards},
+      uphill{[&](const Y&y) { return hold(hoop, contact.mu_static, -1.0, y); }, PhaseEnd::slips_forwards},
+      spin{[&](const Y&y) {
+             return Sample<double>{y[1], angular_acceleration(hoop, trig(y[0]), y[1])};
+           },
+           PhaseEnd::stalls};
+  for (const Guard& guard : {downhill, uphill})  // what has fallen at the start is no fall of a step
+    if (has_fallen(guard.sample(Y{at.angle, at.spin, at.slip, at.travel}))) return guard.end;
+  const PhaseEnd end =
+      follow(Phase::rolling, 0, at, std::array{downhill, uphill, spin, guard_of_runway(runway)}, step_told);
+  if (end == PhaseEnd::stalls) at.spin = 0.0;
+  return end;
+}
+
+PhaseEnd CoulombIntegration::slide(const Hoop<double>& hoop, const Contact<double>& contact,
+                                   ContactState<double>& at, double runway, int direction,
+                                   const StepObserver& step_told) {
+  const double sign = direction;
+  system_.hoop = hoop, system_.friction = sign * contact.mu_kinetic;
+  if (!(pivot(system_, {at.angle, at.spin}).value > 0.0)) return PhaseEnd::indeterminate;
+  const auto rates = [&](const Y& y) {
+    Y f;
+    derivative(system_, y.data(), f.data());
+    return f;
+  };
+  const std::array guards{Guard{[&](const Y& y) { return lift(system_, y, rates(y)); }, PhaseEnd::lifts_off},
+                          Guard{[&](const Y& y) {
+                                  return Sample<double>{sign * y[2], sign * rates(y)[2]};
+                                },
+                                PhaseEnd::slip_ends},
+                          guard_of_runway(runway),
+                          Guard{[&](const Y& y) { return pivot(system_, y); }, PhaseEnd::indeterminate}};
+  const PhaseEnd end = follow(Phase::sliding, direction, at, guards, step_told);
+  if (end == PhaseEnd::slip_ends) at.slip = 0.0;
+  return end;
+}
+
 Outcome CoulombIntegration::solve(const Design& design, const Scene& scene, const CoulombObserver& observer,
                                   const StepObserver& step_told) {
   steps_ = 0;
-  using Guard = std::function<Sample<double>(const Y&)>;
-  // Steps until one of the guards falls; the first of them wins.
-  const auto follow = [&](Phase phase, int direction, ContactState<double>& at, std::span<const Guard> guards,
-                          std::span<const PhaseEnd> ends) {
-    const Y start{at.angle, at.spin, at.slip, at.travel};
-    const double began = at.time;
-    std::array<Sample<double>, 4> now;
-    for (std::size_t g = 0; g < guards.size(); ++g) now[g] = guards[g](start);
-    if (!integrator_.start(start, 0.01 / (1.0 + std::abs(at.spin)))) return PhaseEnd::failed;
-    const auto retake = [&](double tau, Y& y) { return integrator_.retake(tau, y); };
-    for (;;) {
-      if (++steps_ > options_.max_steps || !integrator_.advance()) return PhaseEnd::failed;
-      const Step<4>& step = integrator_.step();
-      const double turned = std::abs(step.y1[0] - step.y0[0]);
-      const int looks = 1 + static_cast<int>(std::min(turned * (8.0 / std::numbers::pi), 1000.0));
-      const Fall<4>* first = nullptr;
-      PhaseEnd end = PhaseEnd::failed;
-      for (std::size_t g = 0; g < guards.size(); ++g) {
-        now[g] = find_falls(step, looks, now[g], guards[g], retake, falls_[g]);
-        if (falls_[g].failed) return PhaseEnd::failed;
-        if (!falls_[g].falls.empty() && (!first || falls_[g].falls.front().tau < first->tau))
-          first = &falls_[g].falls.front(), end = ends[g];
-      }
-      if (step_told)
-        step_told(phase, direction, state_of(began + step.t0, step.y0), first ? first->tau : step.h,
-                  [&](double tau, ContactState<double>& state) {
-                    Y y;
-                    const bool taken = retake(tau, y);
-                    state = state_of(began + step.t0 + tau, y);
-                    return taken;
-                  });
-      if (first) {
-        at = state_of(began + step.t0 + first->tau, first->state);
-        return end;
-      }
-    }
-  };
-
   return go_through_phases<double>(
       design, scene, observer,
       [&](const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at, double runway) {
-        system_.hoop = hoop, system_.friction = rolls;
-        if (at.spin < 0.0 || (at.spin == 0.0 && !(torque(hoop, trig(at.angle)) > 0.0)))
-          return PhaseEnd::stalls;
-        const Guard guards[]{[&](const Y& y) { return hold(hoop, contact.mu_static, 1.0, y); },
-                             [&](const Y& y) { return hold(hoop, contact.mu_static, -1.0, y); },
-                             [&](const Y& y) {
-                               return Sample<double>{y[1], angular_acceleration(hoop, trig(y[0]), y[1])};
-                             },
-                             [&](const Y& y) {
-                               return Sample<double>{runway - y[3], -(y[2] + y[1])};
-                             }};
-        constexpr PhaseEnd ends[]{PhaseEnd::slips_backwards, PhaseEnd::slips_forwards, PhaseEnd::stalls,
-                                  PhaseEnd::runway_ends};
-        for (const std::size_t g : {0u, 1u})  // what has fallen at the start is no fall of a step
-          if (has_fallen(guards[g](Y{at.angle, at.spin, at.slip, at.travel}))) return ends[g];
-        const PhaseEnd end = follow(Phase::rolling, 0, at, guards, ends);
-        if (end == PhaseEnd::stalls) at.spin = 0.0;
-        return end;
+        return roll(hoop, contact, at, runway, step_told);
       },
       [&](const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at, double runway,
-          int direction) {
-        const double sign = direction;
-        system_.hoop = hoop, system_.friction = sign * contact.mu_kinetic;
-        if (!(pivot(system_, {at.angle, at.spin}).value > 0.0)) return PhaseEnd::indeterminate;
-        const auto rates = [&](const Y& y) {
-          Y f;
-          derivative(system_, y.data(), f.data());
-          return f;
-        };
-        const Guard guards[]{[&](const Y& y) { return lift(system_, y, rates(y)); },
-                             [&](const Y& y) {
-                               return Sample<double>{sign * y[2], sign * rates(y)[2]};
-                             },
-                             [&](const Y& y) {
-                               return Sample<double>{runway - y[3], -(y[2] + y[1])};
-                             },
-                             [&](const Y& y) { return pivot(system_, y); }};
-        constexpr PhaseEnd ends[]{PhaseEnd::lifts_off, PhaseEnd::slip_ends, PhaseEnd::runway_ends,
-                                  PhaseEnd::indeterminate};
-        const PhaseEnd end = follow(Phase::sliding, direction, at, guards, ends);
-        if (end == PhaseEnd::slip_ends) at.slip = 0.0;
-        return end;
-      });
+          int direction) { return slide(hoop, contact, at, runway, direction, step_told); });
 }
 
 }  // namespace leapmap

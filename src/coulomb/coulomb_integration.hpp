@@ -45,7 +45,22 @@ class CoulombIntegration {
   /// How often a right-hand side was asked for so far.
   long evaluations() const { return system_.evaluations; }
 
+  /// What ends a phase where it falls through zero, and in what.
+  struct Guard {
+    std::function<Sample<double>(const State<4>&)> sample;
+    PhaseEnd end;
+  };
+
  private:
+  static constexpr std::size_t most_guards = 4;
+
+  PhaseEnd follow(Phase phase, int direction, ContactState<double>& at, std::span<const Guard> guards,
+                  const StepObserver& step_told);
+  PhaseEnd roll(const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at,
+                double runway, const StepObserver& step_told);
+  PhaseEnd slide(const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at,
+                 double runway, int direction, const StepObserver& step_told);
+
   IntegrationOptions options_;
   System system_{};
   GslIntegrator<4> integrator_;

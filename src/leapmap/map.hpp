@@ -20,8 +20,9 @@ class MapReader;
 class Map {
  public:
   /// Opens a map, or the .part of one. Throws IoError if it is no map, or holds what no map does; InputError
-  /// while a sweep is writing it.
-  explicit Map(const std::string& path);
+  /// while a sweep is writing it. lock: as in SweepOptions. HDF5 is one for the whole program: not while
+  /// another of its threads reads or sweeps.
+  explicit Map(const std::string& path, bool lock = true);
   ~Map();
   Map(Map&&) noexcept;
   Map& operator=(Map&&) noexcept;
@@ -33,8 +34,8 @@ class Map {
   /// Every dataset along all dimensions: the fields and, of a list, its parameters.
   std::vector<std::string> fields() const;
   std::string unit(const std::string& field) const;
-  /// A whole field in C order, the last axis fastest; codes as numbers. Throws InputError if the map has no
-  /// such field, IoError.
+  /// A whole field in C order, the last axis fastest; codes as numbers, and a phase_sequence
+  /// exactly up to 26 phases. Throws InputError if the map has no such field, IoError.
   std::vector<double> read(const std::string& field) const;
   /// The block of a field that starts at `start` and reaches `extent` far along each dimension.
   std::vector<double> read(const std::string& field, const std::vector<std::size_t>& start,

@@ -61,7 +61,7 @@ struct Motion {
   std::vector<Candidate> candidates;  ///< in order; the last one is the jump if outcome.status is jumped
   std::vector<Graze> grazes;          ///< found by integration only
   std::vector<MotionPoint> points;    ///< empty unless asked for
-  double end = 0.0;                   ///< when the motion ends [s]; known where points were asked for
+  double end = 0.0;  ///< when the motion ends [s], if points were asked for; by integration, their last
 };
 
 }  // namespace leapmap

@@ -27,13 +27,14 @@ struct SolveOptions {
 /// throws InputError, naming the parameter, its value and what is allowed.
 Outcome solve(const Design& design, const Scene& scene = {}, const SolveOptions& options = {});
 
-/// Solves many, outcomes in the order of the designs. Which threads did it does not show in any bit. Throws
-/// InputError, naming the design's number too.
+/// Solves many, outcomes in the order of the designs. How many threads there were does not show in any bit;
+/// times may differ within the tolerance from those of a design solved alone. Throws InputError, naming the
+/// design's number too.
 std::vector<Outcome> solve(std::span<const Design> designs, const Scene& scene = {},
                            const SolveOptions& options = {});
 
-/// The same into outcomes, which must be as many as designs.
-void solve(std::span<const Design> designs, std::span<Outcome> outcomes, const Scene& scene,
-           const SolveOptions& options = {});
+/// The same into outcomes, as many as designs.
+void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, const Scene& scene = {},
+                const SolveOptions& options = {});
 
 }  // namespace leapmap

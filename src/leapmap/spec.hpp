@@ -24,34 +24,34 @@ struct Numerics {
 };
 
 struct Output {
-  std::string file;                 ///< the map; -o overrides it
-  std::vector<std::string> fields;  ///< datasets to store; empty: all
-  std::string precision = "f8";     ///< of stored numbers: "f8" or "f4"
-  long compression = 1;             ///< deflate's level, 0 to 9; 0: none
+  std::string file{};                 ///< the map; -o overrides it
+  std::vector<std::string> fields{};  ///< datasets to store; empty: all
+  std::string precision = "f8";       ///< of stored numbers: "f8" or "f4"
+  long compression = 1;               ///< deflate's level, 0 to 9; 0: none
 };
 
 /// One parameter that varies over a grid of designs: values in the parameter's own unit (angles in rad).
 struct Axis {
-  std::string key;
-  std::vector<double> values;
+  std::string key{};
+  std::vector<double> values{};
 };
 
 /// Designs one by one: a column of values for each parameter named, all equally long.
 struct PointList {
-  std::string path;           ///< the CSV file
-  std::vector<Axis> columns;  ///< empty: the list is the one design of the spec itself
+  std::string path{};           ///< the CSV file
+  std::vector<Axis> columns{};  ///< empty: the list is the one design of the spec itself
   std::size_t count = 1;
 };
 
 struct Spec {
-  std::string origin;  ///< the file it was read from, for messages
-  Scene scene;
-  Design design;  ///< what axes and points leave out
-  Numerics numerics;
-  Output output;
-  std::string points;      ///< design.points, as an absolute path
-  std::vector<Axis> axes;  ///< in spec order, the first varying slowest; empty: `list` holds the designs
-  PointList list;
+  std::string origin{};  ///< the file it was read from, for messages
+  Scene scene{};
+  Design design{};  ///< what axes and points leave out
+  Numerics numerics{};
+  Output output{};
+  std::string points{};      ///< design.points, as an absolute path
+  std::vector<Axis> axes{};  ///< in spec order, the first varying slowest; empty: `list` holds the designs
+  PointList list{};
 };
 
 /// Reads a spec from a TOML file; overrides are KEY=VALUE, applied in order, KEY with or without its section.

@@ -20,7 +20,8 @@ struct SweepOptions {
   int threads = 0;               ///< 0: as many as OpenMP offers
   double commit_interval = 1.0;  ///< [s]; kill -9 or a power cut loses no more than that and tiles in hand
   bool lock = true;              ///< false: do without locks where the file system has none
-  /// Told how many designs of how many are in the map: once before the first is solved, then after each tile.
+  /// Told how many designs of how many are in the map: once before the first is solved, from the caller's
+  /// thread; then after each tile, from the thread that writes.
   std::function<void(std::size_t done, std::size_t total)> progress{};
   /// Asked after each tile, from any thread; true: the sweep ends early and keeps what is done.
   std::function<bool()> stop_requested{};
@@ -42,9 +43,6 @@ struct Report {
 /// may not be replaced; KeptError if the file cannot be written any more; IoError.
 Report sweep(const Spec& spec, const std::string& path, const SweepOptions& options = {});
 
-/// The same into spec.output.file.
-Report sweep(const Spec& spec, const SweepOptions& options = {});
-
 /// A map could not be written any more.
 struct KeptError : IoError {
   KeptError(const std::string& what, std::size_t kept_designs, std::size_t all_designs)
@@ -58,11 +56,18 @@ struct RetryReport {
   bool durable = true;      ///< false: a power cut may undo the map's taking its place
 };
 
-/// Solves the designs with status failed in a finished map again: as `how` says if that is another way than
-/// the map's, else by the method that audits it; and stores what comes out in a copy that takes the map's
-/// place once it is whole. Returns nullopt if stopped; the map is unchanged then. Throws InputError if the
-/// map is not whole, holds no status or is in use; BrokenFile if it is not what was written; IoError.
-std::optional<RetryReport> retry_failed(const std::string& path, const std::optional<Numerics>& how = {},
-                                        const SweepOptions& options = {});
+struct RetryOptions {
+  std::optional<Numerics> how{};  ///< unset: by the method that audits the map's
+  int threads = 0;                ///< 0: as many as OpenMP offers
+  bool lock = true;               ///< false: do without locks where the file system has none
+  std::function<bool()>
+      stop_requested{};  ///< asked now and then, from any thread; true: the map stays as it is
+};
+
+/// Solves the designs with status failed in a finished map again: as options.how says if that is another way
+/// than the map's, else by the method that audits it; and stores what comes out in a copy that takes the
+/// map's place once it is whole. Returns nullopt if stopped; the map is unchanged then. Throws InputError if
+/// the map is not whole, holds no status or is in use; BrokenFile if it is not what was written; IoError.
+std::optional<RetryReport> retry_failed(const std::string& path, const RetryOptions& options = {});
 
 }  // namespace leapmap

@@ -5,7 +5,7 @@
 
 namespace leapmap {
 
-/// An angle in radians.
+/// The angle in radians of one given in degrees.
 constexpr double degrees(double angle) { return angle * std::numbers::pi / 180.0; }
 
 }  // namespace leapmap

@@ -19,8 +19,11 @@ std::string instruction_set();
 /// unless another is asked for.
 std::vector<std::string> instruction_sets();
 
-/// Uses that one from now on, for bits that agree with another machine's. Not while anything is being solved.
-/// Throws InputError if it was not built in or the machine has not got it.
+/// Whether that is the best there is.
+bool uses_best_instruction_set();
+
+/// Uses that one from now on, so that machines of different age run the same instructions. Not while anything
+/// is being solved. Throws InputError if it was not built in or the machine has not got it.
 void use_instruction_set(std::string_view name);
 
 }  // namespace leapmap

@@ -12,7 +12,8 @@
 namespace leapmap {
 namespace {
 
-const std::array list{
+// Made by the compiler: nothing of a set may run before it is chosen.
+constinit const std::array list{
     Model{Friction::sticking, "sticking", "never slips (the paper's model)", rolling::exact,
           rolling::integration, rolling::refined, rolling::tell_exactly,
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
@@ -21,7 +22,7 @@ const std::array list{
     Model{Friction::coulomb, "coulomb", "slips, lands and hops on", coulomb::exact, coulomb::integration,
           coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration}};
 
-const Kernels of_this_set{list, solving_of, static_cast<int>(Lanes<Batch>::count)};
+constinit const Kernels of_this_set{list, solving_of, static_cast<int>(Lanes<Batch>::count)};
 
 }  // namespace
 }  // namespace leapmap

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,16 +33,22 @@ constexpr Built built[]{
 };
 
 bool machine_has(std::string_view set) {
-#if defined(__x86_64__) && !defined(__clang__)
-  if (set == "x86-64-v4") return __builtin_cpu_supports("x86-64-v4");
-  if (set == "x86-64-v3") return __builtin_cpu_supports("x86-64-v3");
-  if (set == "x86-64-v2") return __builtin_cpu_supports("x86-64-v2");
+#ifdef __x86_64__
+  __builtin_cpu_init();
+  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                  __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  if (set == "x86-64-v3") return v3;
+  if (set == "x86-64-v4")
+    return v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
 #endif
-  return !set.empty();  // any other is the machine's own, or what every machine has
+  // Nothing is known of other names: such a set is for the machine that it was built on.
+  return std::size(built) == 1 || set == "x86-64";
 }
 
 const Built* best() {
-  const Built* found = built;
+  const Built* found = nullptr;
   for (const Built& set : built)
     if (machine_has(set.name)) found = &set;
   return found;
@@ -52,15 +59,23 @@ std::atomic<const Built*>& chosen() {
   return set;
 }
 
+const Built& in_use() {
+  if (const Built* set = chosen()) return *set;
+  throw std::runtime_error(
+      fmt::format("was built for {}, which this machine does not have; build it with "
+                  "cmake -DLEAPMAP_INSTRUCTION_SETS=x86-64",
+                  built[0].name));
+}
+
 }  // namespace
 
-const Kernels& kernels() { return *chosen().load()->kernels(); }
+const Kernels& kernels() { return *in_use().kernels(); }
 
 std::span<const Model> models() { return kernels().models; }
 
 const Model& model_of(Friction friction) { return *std::ranges::find(models(), friction, &Model::friction); }
 
-std::string instruction_set() { return fmt::format("{}, {} lanes", chosen().load()->name, kernels().lanes); }
+std::string instruction_set() { return fmt::format("{}, {} lanes", in_use().name, kernels().lanes); }
 
 std::vector<std::string> instruction_sets() {
   std::vector<std::string> names;
@@ -68,6 +83,8 @@ std::vector<std::string> instruction_sets() {
     if (machine_has(set.name)) names.emplace_back(set.name);
   return names;
 }
+
+bool uses_best_instruction_set() { return &in_use() == best(); }
 
 void use_instruction_set(std::string_view name) {
   const auto found = std::ranges::find(built, name, &Built::name);

@@ -25,13 +25,16 @@ std::string shown(double value, std::string_view unit) {
                                parameter.name, value, what, allowed));
 }
 
-/// What has no use must be left at its default.
-void refuse_unused(std::string_view place, const Parameter& parameter, double value, double usual,
-                   const Scene& scene) {
-  if (value == usual || (std::isnan(value) && std::isnan(usual))) return;
+[[noreturn]] void refuse_unused(std::string_view place, const Parameter& parameter, double value,
+                                const Scene& scene) {
   const std::string_view name = model_of(*parameter.only_of).name;
   refuse(place, parameter, value, fmt::format("has no use where the contact {}", model_of(scene).meaning),
          fmt::format("with friction = {}, on the command line --friction {}", name, name));
+}
+
+/// Whether a value is what a parameter has unless it is given; mu_kinetic then is mu_static's, or NaN.
+bool is_usual(double value, double usual) {
+  return value == usual || (std::isnan(usual) && (std::isnan(value) || value == Design{}.mu_static));
 }
 
 }  // namespace
@@ -48,7 +51,8 @@ void check_scene(const Scene& scene) {
     const auto* member = std::get_if<double Scene::*>(&parameter.member);
     if (!member) continue;
     const double value = scene.**member;
-    if (!has(scene.friction, parameter.only_of)) refuse_unused({}, parameter, value, usual.**member, scene);
+    if (!has(scene.friction, parameter.only_of) && value != usual.**member)
+      refuse_unused({}, parameter, value, scene);
     if (!parameter.range.holds(value))
       refuse({}, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
   }
@@ -59,9 +63,9 @@ namespace {
 /// What keeps a design's parameter from being allowed in the scene, if anything does.
 enum class Fault { none, unused, out_of_range };
 Fault fault_of(const Parameter& parameter, double value, double usual, const Scene& scene) {
-  const bool is_usual = value == usual || (std::isnan(value) && std::isnan(usual));
-  if (!has(scene.friction, parameter.only_of)) return is_usual ? Fault::none : Fault::unused;
-  return is_usual || parameter.range.holds(value) ? Fault::none : Fault::out_of_range;
+  if (!has(scene.friction, parameter.only_of)) return is_usual(value, usual) ? Fault::none : Fault::unused;
+  const bool follows = std::isnan(value) && std::isnan(usual);
+  return follows || parameter.range.holds(value) ? Fault::none : Fault::out_of_range;
 }
 
 }  // namespace
@@ -81,7 +85,7 @@ void check_design(const Design& design, const Scene& scene, std::string_view pla
     if (!member) continue;
     const double value = design.**member;
     const Fault fault = fault_of(parameter, value, usual.**member, scene);
-    if (fault == Fault::unused) refuse_unused(place, parameter, value, usual.**member, scene);
+    if (fault == Fault::unused) refuse_unused(place, parameter, value, scene);
     if (fault == Fault::out_of_range)
       refuse(place, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
   }

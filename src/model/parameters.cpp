@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/parameters.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -64,12 +63,5 @@ bool Range::holds(double value) const {
 }
 
 std::span<const Parameter> parameters() { return table; }
-
-const Parameter* find_parameter(std::string_view name) {
-  // Not by std::ranges: the page's compiler has no such algorithms yet.
-  const auto found =
-      std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == name; });
-  return found == table.end() ? nullptr : &*found;
-}
 
 }  // namespace leapmap

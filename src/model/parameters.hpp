@@ -37,9 +37,6 @@ struct Parameter {
 /// All of them, in the order of the documentation.
 std::span<const Parameter> parameters();
 
-/// The parameter of that name, or nullptr.
-const Parameter* find_parameter(std::string_view name);
-
 /// "a number in [0, 1]" and the like.
 std::string allowed_values(const Range& range, std::string_view unit, std::string_view what = "a number");
 

@@ -58,113 +58,155 @@ Outcome Integration<Model>::solve(const Design& design, const Scene& scene, cons
   return outcome;
 }
 
+template <class Model>
+Sample<double> Integration<Model>::normal_force_at(const State<D>& y) {
+  ++system_.evaluations;
+  return system_.model.normal_force(y);
+}
+
+template <class Model>
+Sample<double> Integration<Model>::spin_at(const State<D>& y) {
+  ++system_.evaluations;
+  const Model& model = system_.model;
+  return {model.spin(y), angular_acceleration(model.hoop, trig(model.angle(y)), model.spin(y))};
+}
+
+/// The method's own state inside the step.
+template <class Model>
+bool Integration<Model>::retake(double tau, State<D>& y) {
+  if (!integrator_.retake(tau, y)) return false;
+  if constexpr (Model::projects) system_.model.project(y);
+  return true;
+}
+
+template <class Model>
+bool Integration<Model>::advance() {
+  if (!integrator_.advance()) return false;
+  if constexpr (Model::projects) {
+    State<D> y = integrator_.step().y1;
+    system_.model.project(y);
+    return integrator_.replace(y);
+  }
+  return true;
+}
+
+/// How long after the start of the step the hoop, rolling forwards, comes to an angle.
+template <class Model>
+double Integration<Model>::time_at(double angle, double latest) {
+  const auto angle_at = [&](double tau) {
+    State<D> y;
+    return retake(tau, y) ? Sample<double>{system_.model.angle(y) - angle, system_.model.spin(y)}
+                          : Sample<double>{NAN, 0.0};
+  };
+  return polish_root(angle_at, 0.0, latest, 0.5 * latest, true, 1e-15 * latest);
+}
+
+template <class Model>
+bool Integration<Model>::is_believable(const State<D>& y, double energy) const {
+  const Model& model = system_.model;
+  const Trig<double> phi = trig(model.angle(y));
+  const double kinetic = kinetic_energy(model.hoop, phi, model.spin(y));
+  const double drift = kinetic + potential_energy(model.hoop, model.angle(y), phi) - energy;
+  return std::abs(drift) <= most_energy_drift * (1.0 + kinetic);
+}
+
+template <class Model>
+void Integration<Model>::tell_grazes(const Rolling& rolling, double end) {
+  if (!rolling.observer.graze) return;
+  for (const NearMiss& miss : lift_offs_.near_misses)
+    if (State<D> y; miss.tau <= end && retake(miss.tau, y) && system_.model.angle(y) <= rolling.runway_end)
+      rolling.observer.graze(
+          {integrator_.step().t0 + miss.tau, system_.model.angle(y), miss.value, miss.minimum});
+}
+
+/// Takes the step's lift-offs up to a stall. True: the outcome is settled.
+template <class Model>
+bool Integration<Model>::take_lift_offs(Rolling& rolling, double stall) {
+  const Model& model = system_.model;
+  for (const Fall<D>& fall : lift_offs_.falls) {
+    const LiftOff<double> lift_off{integrator_.step().t0 + fall.tau, model.angle(fall.state),
+                                   model.spin(fall.state)};
+    if (fall.tau > stall || lift_off.angle > rolling.runway_end) break;
+    if (!is_believable(fall.state, rolling.energy) || lift_off.spin < 0.0) {
+      rolling.outcome = failed_outcome(energy_lost);
+      return true;
+    }
+    const Flight<double> flight = fly(model.hoop, lift_off);
+    const bool is_jump = consider(rolling.outcome, rolling.scene, rolling.design, lift_off, flight);
+    if (rolling.observer.step && is_jump) rolling.observer.step(integrator_, fall.tau);
+    if (rolling.observer.lift_off) rolling.observer.lift_off(lift_off, flight);
+    if (!is_jump) continue;
+    // The minimum that made this fall lies just after it.
+    const auto made_by = std::ranges::find_if(
+        lift_offs_.near_misses, [&](const NearMiss& miss) { return miss.minimum && miss.tau >= fall.tau; });
+    tell_grazes(rolling, made_by == lift_offs_.near_misses.end() ? fall.tau : made_by->tau);
+    return true;
+  }
+  return false;
+}
+
+/// Looks at the step just taken: a lift-off is where the normal force falls through zero, a stall where the
+/// spin does. True: the outcome is settled.
+template <class Model>
+bool Integration<Model>::settle(Rolling& rolling) {
+  const Model& model = system_.model;
+  const Step<D>& step = integrator_.step();
+  const double turned_to = model.angle(step.y1);
+  // A look every 22.5 degrees: the normal force swings once or twice a revolution.
+  const int looks =
+      1 + static_cast<int>(std::min(std::abs(turned_to - model.angle(step.y0)) * (16.0 / two_pi), 1000.0));
+  const auto state_at = [&](double tau, State<D>& y) { return retake(tau, y); };
+  rolling.force = find_falls(
+      step, looks, rolling.force, [&](const State<D>& y) { return normal_force_at(y); }, state_at,
+      lift_offs_);
+  rolling.spin = find_falls(
+      step, looks, rolling.spin, [&](const State<D>& y) { return spin_at(y); }, state_at, stalls_);
+  if (lift_offs_.failed || stalls_.failed) {
+    rolling.outcome = failed_outcome(no_event);
+    return true;
+  }
+  const bool stalls = !stalls_.falls.empty();
+  const double stall = stalls ? stalls_.falls.front().tau : step.h;
+  const double stall_angle = stalls ? model.angle(stalls_.falls.front().state) : turned_to;
+  if (take_lift_offs(rolling, stall)) return true;
+  if (!is_believable(step.y1, rolling.energy)) {
+    rolling.outcome = failed_outcome(energy_lost);
+    return true;
+  }
+  tell_grazes(rolling, stall);
+  const bool runs_out = stall_angle >= rolling.runway_end;
+  if (rolling.observer.step)
+    rolling.observer.step(integrator_,
+                          stall_angle > rolling.runway_end ? time_at(rolling.runway_end, stall) : stall);
+  if (runs_out || stalls) rolling.outcome.status = runs_out ? Status::no_jump : Status::stalled;
+  return runs_out || stalls;
+}
+
 /// The outcome with its times in sqrt(R/g).
 template <class Model>
 Outcome Integration<Model>::roll(const Design& design, const Scene& scene, const Observer& observer) {
-  const Model& model = system_.model;
   system_.model.set(derive<double>(design));
-  const Hoop<double>& hoop = model.hoop;
-  // A lift-off is where the normal force falls through zero, a stall where the spin does.
-  const auto normal_force_at = [&](const State<D>& y) {
-    ++system_.evaluations;
-    return model.normal_force(y);
-  };
-  const auto spin_at = [&](const State<D>& y) {
-    ++system_.evaluations;
-    return Sample<double>{model.spin(y), angular_acceleration(hoop, trig(model.angle(y)), model.spin(y))};
-  };
-  const auto retake = [&](double tau, State<D>& y) {
-    if (!integrator_.retake(tau, y)) return false;
-    if constexpr (Model::projects) model.project(y);
-    return true;
-  };
-
-  Outcome outcome;
-  const State<D> release = model.rolling(design.release_angle, design.release_spin);
-  Sample<double> force = normal_force_at(release), spin = spin_at(release);
-  if (force.value <= 0.0) {
-    outcome.status = Status::airborne_at_release;
-    return outcome;
+  const State<D> release = system_.model.rolling(design.release_angle, design.release_spin);
+  Rolling rolling{design,
+                  scene,
+                  observer,
+                  rolling_energy(system_.model.hoop, design.release_angle, design.release_spin),
+                  design.release_angle + two_pi * scene.runway,
+                  normal_force_at(release),
+                  spin_at(release),
+                  {}};
+  if (rolling.force.value <= 0.0) {
+    rolling.outcome.status = Status::airborne_at_release;
+    return rolling.outcome;
   }
-  if (spin.value < 0.0 || (spin.value == 0.0 && spin.rate <= 0.0)) {
-    outcome.status = Status::stalled;
-    return outcome;
+  if (rolling.spin.value < 0.0 || (rolling.spin.value == 0.0 && rolling.spin.rate <= 0.0)) {
+    rolling.outcome.status = Status::stalled;
+    return rolling.outcome;
   }
-
-  // How long after the start of the step the hoop, rolling forwards, comes to an angle.
-  const auto time_at = [&](double angle, double latest) {
-    const auto angle_at = [&](double tau) {
-      State<D> y;
-      return retake(tau, y) ? Sample<double>{model.angle(y) - angle, model.spin(y)}
-                            : Sample<double>{NAN, 0.0};
-    };
-    return polish_root(angle_at, 0.0, latest, 0.5 * latest, true, 1e-15 * latest);
-  };
-
-  const double energy = rolling_energy(hoop, design.release_angle, design.release_spin);
-  const auto believable = [&](const State<D>& y) {
-    const Trig<double> phi = trig(model.angle(y));
-    const double kinetic = kinetic_energy(hoop, phi, model.spin(y));
-    const double drift = kinetic + potential_energy(hoop, model.angle(y), phi) - energy;
-    return std::abs(drift) <= most_energy_drift * (1.0 + kinetic);
-  };
-
-  const double runway_end = design.release_angle + two_pi * scene.runway;
-  if (!integrator_.start(release, 0.01 / (1.0 + spin.value))) return failed_outcome(no_step);
+  if (!integrator_.start(release, 0.01 / (1.0 + rolling.spin.value))) return failed_outcome(no_step);
   for (long taken = 0; taken < options_.max_steps; ++taken) {
-    if (!integrator_.advance()) return failed_outcome(no_step);
-    if constexpr (Model::projects) {
-      State<D> y = integrator_.step().y1;
-      model.project(y);
-      if (!integrator_.replace(y)) return failed_outcome(no_step);
-    }
-    const Step<D>& step = integrator_.step();
-    const double turned_to = model.angle(step.y1);
-    // A look every 22.5 degrees: the normal force swings once or twice a revolution.
-    const int looks =
-        1 + static_cast<int>(std::min(std::abs(turned_to - model.angle(step.y0)) * (16.0 / two_pi), 1000.0));
-    force = find_falls(step, looks, force, normal_force_at, retake, lift_offs_);
-    spin = find_falls(step, looks, spin, spin_at, retake, stalls_);
-    if (lift_offs_.failed || stalls_.failed) return failed_outcome(no_event);
-
-    const double stall = stalls_.falls.empty() ? step.h : stalls_.falls.front().tau;
-    const double stall_angle = stalls_.falls.empty() ? turned_to : model.angle(stalls_.falls.front().state);
-    const auto tell_grazes = [&](double end) {
-      if (!observer.graze) return;
-      for (const NearMiss& miss : lift_offs_.near_misses)
-        if (State<D> y; miss.tau <= end && retake(miss.tau, y) && model.angle(y) <= runway_end)
-          observer.graze({step.t0 + miss.tau, model.angle(y), miss.value, miss.minimum});
-    };
-
-    for (const Fall<D>& fall : lift_offs_.falls) {
-      const LiftOff<double> lift_off{step.t0 + fall.tau, model.angle(fall.state), model.spin(fall.state)};
-      if (fall.tau > stall || lift_off.angle > runway_end) break;
-      if (!believable(fall.state) || lift_off.spin < 0.0) return failed_outcome(energy_lost);
-      const Flight<double> flight = fly(hoop, lift_off);
-      const bool is_jump = consider(outcome, scene, design, lift_off, flight);
-      if (observer.step && is_jump) observer.step(integrator_, fall.tau);
-      if (observer.lift_off) observer.lift_off(lift_off, flight);
-      if (is_jump) {
-        // The minimum that made this fall lies just after it.
-        const auto made_by = std::ranges::find_if(lift_offs_.near_misses, [&](const NearMiss& miss) {
-          return miss.minimum && miss.tau >= fall.tau;
-        });
-        tell_grazes(made_by == lift_offs_.near_misses.end() ? fall.tau : made_by->tau);
-        return outcome;
-      }
-    }
-    if (!believable(step.y1)) return failed_outcome(energy_lost);
-    tell_grazes(stall);
-    if (observer.step)
-      observer.step(integrator_, stall_angle > runway_end ? time_at(runway_end, stall) : stall);
-    if (stall_angle >= runway_end) {
-      outcome.status = Status::no_jump;
-      return outcome;
-    }
-    if (!stalls_.falls.empty()) {
-      outcome.status = Status::stalled;
-      return outcome;
-    }
+    if (!advance()) return failed_outcome(no_step);
+    if (settle(rolling)) return rolling.outcome;
   }
   return failed_outcome(out_of_steps);
 }

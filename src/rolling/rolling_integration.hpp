@@ -51,7 +51,26 @@ class Integration {
   };
 
  private:
+  /// A design on its way.
+  struct Rolling {
+    const Design& design;
+    const Scene& scene;
+    const Observer& observer;
+    double energy, runway_end;
+    Sample<double> force, spin;  ///< at the end of the step before
+    Outcome outcome;
+  };
+
   Outcome roll(const Design& design, const Scene& scene, const Observer& observer);
+  bool settle(Rolling& rolling);
+  bool take_lift_offs(Rolling& rolling, double stall);
+  void tell_grazes(const Rolling& rolling, double end);
+  bool is_believable(const State<D>& y, double energy) const;
+  double time_at(double angle, double latest);
+  bool advance();
+  bool retake(double tau, State<D>& y);
+  Sample<double> normal_force_at(const State<D>& y);
+  Sample<double> spin_at(const State<D>& y);
 
   IntegrationOptions options_;
   System system_;

@@ -11,7 +11,9 @@
 
 namespace leapmap {
 
-Map::Map(const std::string& path) : path_(path), reader_(std::make_unique<MapReader>(path)) {}
+Map::Map(const std::string& path, bool lock)
+    : path_(path),
+      reader_(std::make_unique<MapReader>(path, lock ? Locking::required : Locking::if_possible)) {}
 Map::~Map() = default;
 Map::Map(Map&&) noexcept = default;
 Map& Map::operator=(Map&&) noexcept = default;
@@ -52,7 +54,12 @@ std::vector<double> Map::read(const std::string& field, const std::vector<std::s
 
 bool Map::is_whole() const { return reader_->is_whole(); }
 StatusCounts Map::status_counts() const { return reader_->status_counts(); }
-Spec Map::spec() const { return spec_of(*reader_, path_); }
+Spec Map::spec() const {
+  Spec spec = spec_of(*reader_, path_);
+  spec.origin.clear();  // the map is no input of a sweep by it
+  return spec;
+}
+
 std::string Map::attribute(const std::string& name) const { return reader_->attribute(name); }
 
 std::optional<AuditReport> Map::audit() const {

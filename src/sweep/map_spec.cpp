@@ -65,6 +65,9 @@ std::optional<std::string> first_difference(const Spec& original_there, const Sp
   for (Spec* spec : {&there, &here}) {
     spec->numerics.method = resolved_method(spec->numerics);
     spec->output.file.clear();
+    const bool varies =
+        !spec->points.empty() || std::ranges::find(spec->axes, "mu_static", &Axis::key) != spec->axes.end();
+    if (std::isnan(spec->design.mu_kinetic) && !varies) spec->design.mu_kinetic = spec->design.mu_static;
     spec->points.clear();  // where a list was read from does not count, only what it holds
   }
   const auto keys = [](const Spec& spec) {

@@ -8,6 +8,9 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
+#include <memory>
+#include <utility>
 
 namespace leapmap {
 
@@ -17,6 +20,15 @@ inline constexpr int most_threads = 4096;
 /// The number of threads that will be used: threads, or OpenMP's own number if 0.
 inline int thread_count(int threads) {
   return std::min(threads > 0 ? threads : omp_get_max_threads(), most_threads);
+}
+
+/// The same question, whose answer stays true once it was: a stop is not taken back half-way.
+inline std::function<bool()> latched(std::function<bool()> stop_requested) {
+  if (!stop_requested) return {};
+  return [ask = std::move(stop_requested), stopped = std::make_shared<std::atomic<bool>>(false)] {
+    if (!*stopped && ask()) *stopped = true;
+    return stopped->load();
+  };
 }
 
 /// Calls make_worker() once on each thread, then the worker it returns with 0, 1, ..., count - 1: numbers are

@@ -170,16 +170,20 @@ std::optional<RetryReport> retry_with(const std::string& path, const Spec& spec,
   }
 }
 
-std::optional<RetryReport> retry_failed(const std::string& path, const std::optional<Numerics>& how,
-                                        const SweepOptions& options) {
+std::optional<RetryReport> retry_failed(const std::string& path, const RetryOptions& options) {
+  if (options.how) {
+    Spec asked;
+    asked.numerics = *options.how;
+    check_spec(asked);
+  }
   const Locking locking = options.lock ? Locking::required : Locking::if_possible;
   const std::string map = behind_links(path);
   Spec spec = [&] {
     const MapReader reader(map, locking);
     return spec_of(reader, map);
   }();
-  spec.numerics = retry_numerics(spec.numerics, how.value_or(spec.numerics));
-  return retry_with(map, spec, options.threads, locking, options.stop_requested);
+  spec.numerics = retry_numerics(spec.numerics, options.how.value_or(spec.numerics));
+  return retry_with(map, spec, options.threads, locking, latched(options.stop_requested));
 }
 
 }  // namespace leapmap

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sweep/solve.hpp"
+#include "leapmap/solve.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 
+#include "leapmap/spec.hpp"
 #include "leapmap/trace.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
@@ -30,41 +30,7 @@ Spec spec_of(const Scene& scene, const Options& options) {
   return spec;
 }
 
-/// Calls make_work()(solver, first, size) for each block of neighbours, on all threads.
-template <class MakeWork>
-void for_blocks(std::size_t count, const Scene& scene, const SolveOptions& options,
-                const MakeWork& make_work) {
-  const Spec spec = spec_of(scene, options);
-  parallel_for_each((count + designs_a_block - 1) / designs_a_block, options.threads, [&] {
-    return [&, solver = make_solver(spec), work = make_work()](std::size_t block) mutable {
-      const std::size_t first = block * designs_a_block;
-      work(solver, first, std::min(designs_a_block, count - first));
-      if (options.stop_requested && options.stop_requested()) throw Stopped("solve was asked to stop");
-      return true;
-    };
-  });
-}
-
-void check_designs(std::span<const Design> designs, const Scene& scene, std::size_t first) {
-  for (std::size_t i = 0; i < designs.size(); ++i)
-    if (!is_allowed(designs[i], scene)) check_design(designs[i], scene, fmt::format("design {}", first + i));
-}
-
 }  // namespace
-
-void solve_blocks(std::size_t count, const GiveDesigns& give, const TakeOutcomes& take, const Scene& scene,
-                  const SolveOptions& options) {
-  for_blocks(count, scene, options, [&] {
-    return [&, designs = std::vector<Design>(), outcomes = std::vector<Outcome>()](
-               const Solver& solver, std::size_t first, std::size_t size) mutable {
-      designs.resize(size), outcomes.resize(size);
-      give(first, designs);
-      check_designs(designs, scene, first);
-      solver(designs, outcomes);
-      take(first, outcomes);
-    };
-  });
-}
 
 Outcome solve(const Design& design, const Scene& scene, const SolveOptions& options) {
   const Spec spec = spec_of(scene, options);
@@ -74,21 +40,29 @@ Outcome solve(const Design& design, const Scene& scene, const SolveOptions& opti
   return outcome;
 }
 
-void solve(std::span<const Design> designs, std::span<Outcome> outcomes, const Scene& scene,
-           const SolveOptions& options) {
-  assert(designs.size() == outcomes.size());
-  for_blocks(designs.size(), scene, options, [&] {
-    return [&](const Solver& solver, std::size_t first, std::size_t size) {
+void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, const Scene& scene,
+                const SolveOptions& options) {
+  if (designs.size() != outcomes.size())
+    throw InputError(
+        fmt::format("{} outcomes for {} designs; allowed: as many", outcomes.size(), designs.size()));
+  const Spec spec = spec_of(scene, options);
+  parallel_for_each((designs.size() + designs_a_block - 1) / designs_a_block, options.threads, [&] {
+    return [&, solver = make_solver(spec)](std::size_t block) {
+      const std::size_t first = block * designs_a_block,
+                        size = std::min(designs_a_block, designs.size() - first);
       const std::span<const Design> some = designs.subspan(first, size);
-      check_designs(some, scene, first);
+      for (std::size_t i = 0; i < size; ++i)
+        if (!is_allowed(some[i], scene)) check_design(some[i], scene, fmt::format("design {}", first + i));
       solver(some, outcomes.subspan(first, size));
+      if (options.stop_requested && options.stop_requested()) throw Stopped("solve was asked to stop");
+      return true;
     };
   });
 }
 
 std::vector<Outcome> solve(std::span<const Design> designs, const Scene& scene, const SolveOptions& options) {
   std::vector<Outcome> outcomes(designs.size());
-  solve(designs, outcomes, scene, options);
+  solve_into(outcomes, designs, scene, options);
   return outcomes;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
@@ -40,9 +39,30 @@ void check_values(const Spec& spec, const std::vector<Axis>& axes) {
       refuse(spec, axis.key, fmt::format("has no use where the contact {}", model_of(spec.scene).meaning),
              fmt::format("with friction = {}", model_of(*option->only_of).name));
     if (axis.values.empty()) refuse(spec, axis.key, "has no values", "one or more");
-    for (const double value : axis.values)
-      if (!std::isnan(value) || option->key != "mu_kinetic") check_number(spec, *option, value);
+    for (const double value : axis.values) check_number(spec, *option, value);
   }
+}
+
+/// What all designs of the spec have in common.
+void check_common(const Spec& spec) {
+  Design common = spec.design;
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying) {
+      const auto member = std::get<ParameterSlot>(find_option("design", axis.key)->slot).member;
+      common.*member = Design{}.*member;
+    }
+  check_design(common, spec.scene, origin_of(spec));
+}
+
+void check_count(const Spec& spec) {
+  if (!spec.axes.empty() && (!spec.list.columns.empty() || !spec.points.empty()))
+    refuse(spec, "points", "and an axis exclude each other", "one of them");
+  if (!spec.points.empty() && spec.list.columns.empty())
+    refuse(spec, "points", "is a file that was not read", "read_spec, which reads it, or the list's columns");
+  if (spec.axes.empty() && spec.list.count == 0) refuse(spec, "list", "has no designs", "one or more");
+  double designs = 1.0;
+  for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
+  if (designs > 1e12) refuse(spec, "axes", fmt::format("make {:.3g} designs", designs), "at most 1e12");
 }
 
 }  // namespace
@@ -65,6 +85,11 @@ void check_spec(const Spec& spec) {
             for (const std::string& text : slot(copy)) check_text(spec, option, text);
         },
         option.slot);
+  if (resolved_method(spec.numerics) == "exact" &&
+      (spec.numerics.fixed_step > 0.0 || spec.numerics.absolute_tolerance > 0.0))
+    refuse(spec, "fixed_step or absolute_tolerance", "is set, and exact takes no steps",
+           "with method = \"gsl-...\"");
+  check_count(spec);
   check_values(spec, spec.axes);
   check_values(spec, spec.list.columns);
   if (spec.axes.empty())
@@ -72,6 +97,7 @@ void check_spec(const Spec& spec) {
       if (column.values.size() != spec.list.count)
         refuse(spec, column.key, fmt::format("has {} values", column.values.size()),
                fmt::format("one for each of the {} designs of the list", spec.list.count));
+  check_common(spec);
 }
 
 }  // namespace leapmap

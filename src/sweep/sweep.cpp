@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 
 #include "map/schema.hpp"
 #include "map/writer.hpp"
@@ -124,8 +123,8 @@ class Sweeping {
 Report report_on(const std::string& map, const Spec& spec, Locking locking) {
   const MapReader whole(map, locking);
   Report report{.whole = true, .was_whole = true, .designs = Tiling(shape_of(spec)).designs()};
-  report.statuses = whole.status_counts();
-  report.done = designs_in(report.statuses);
+  report.done = report.designs;
+  if (hdf5::has_attribute(whole.file(), "status_counts")) report.statuses = whole.status_counts();
   if (hdf5::has_attribute(whole.file(), "audit_first_mismatch")) report.audit = read_audit(whole);
   return report;
 }
@@ -140,7 +139,7 @@ Report fill(const Spec& spec, const MapLayout& layout, const Tiling& tiling, con
   report.statuses = writer.progress().statuses;
   report.seconds = sweeping.solving_seconds();
   report.audit = sweeping.audit();
-  report.whole = !(options.stop_requested && options.stop_requested());
+  report.whole = writer.progress().tiles == tiling.size();
   if (report.whole)
     report.durable = writer.finish({});
   else
@@ -150,8 +149,10 @@ Report fill(const Spec& spec, const MapLayout& layout, const Tiling& tiling, con
 
 }  // namespace
 
-Report sweep(const Spec& spec, const std::string& path, const SweepOptions& options) {
+Report sweep(const Spec& spec, const std::string& path, const SweepOptions& asked) {
   check_spec(spec);
+  SweepOptions options = asked;
+  options.stop_requested = latched(asked.stop_requested);
   if (path.empty())
     throw InputError(origin_of(spec) + ": output.file is not set; allowed: a file's name there or with -o");
   const std::string map = behind_links(path);
@@ -177,7 +178,5 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& opti
     throw KeptError(error.what(), writer.committed(), tiling.designs());
   }
 }
-
-Report sweep(const Spec& spec, const SweepOptions& options) { return sweep(spec, spec.output.file, options); }
 
 }  // namespace leapmap

@@ -82,6 +82,22 @@ void sweeps() {
   expect(map.read("jump_height")[123 * 8 + 4] == lm::solve(design).jump_height,
          "the map holds what solve says");
   expect(lm::resolved_text(map.spec()) == map.attribute("spec"), "and its spec");
+  const lm::Spec again = map.spec();
+  expect(lm::solve(again.design, again.scene).status == lm::Status::jumped, "whose design can be solved");
+  expect(lm::sweep(again, "map.h5", {.resume = true}).was_whole, "and which is that map's");
+}
+
+/// A stop that is asked for once is one, also if the question is answered otherwise afterwards.
+void stops_for_good() {
+  lm::Spec spec;  // not read from anywhere
+  spec.axes = {{"slope", {}}, {"mass_ratio", {1, 2, 3}}};
+  for (int i = 0; i < 2000; ++i) spec.axes[0].values.push_back(0.1 + 3e-4 * i);
+  std::atomic<int> asked = 0;
+  lm::Report report =
+      lm::sweep(spec, "stopped.h5", {.threads = 1, .stop_requested = [&] { return ++asked == 3; }});
+  expect(!report.whole && !std::filesystem::exists("stopped.h5"), "a stop stays one");
+  report = lm::sweep(spec, "stopped.h5", {.resume = true});
+  expect(report.whole && report.done == 6000, "a spec filled in by hand goes on as well");
 }
 
 /// What a newcomer gets wrong is told, with what to do about it.
@@ -103,6 +119,17 @@ void refuses() {
   expect(has(refusal([&] { lm::sweep(spec, "none.h5"); }), "mu_static"), "an axis that has no use");
   spec.scene.friction = lm::Friction::coulomb;
   expect(has(lm::resolved_text(spec), "friction = 'coulomb'"), "one truth for friction");
+  spec = {};
+  spec.design.offset_ratio = 2;
+  spec.axes = {{"slope", {0.1, 0.2}}};
+  expect(has(refusal([&] { lm::sweep(spec, "none.h5"); }), "offset_ratio = 2"), "what all designs share");
+  spec = lm::parse_spec("[design]\npoints = 'designs.csv'\n");
+  expect(has(refusal([&] { lm::sweep(spec, "none.h5"); }), "not read"), "a list that was not read");
+  expect(has(refusal([] { lm::retry_failed("map.h5", {.how = lm::Numerics{.method = "rk45"}}); }), "rk45"),
+         "an unknown method to retry by");
+  std::vector<lm::Outcome> few(1);
+  expect(has(refusal([&] { lm::solve_into(few, std::vector<lm::Design>(2)); }), "as many"),
+         "too few outcomes");
   expect(!std::filesystem::exists("none.h5") && !std::filesystem::exists("none.h5.part"),
          "and nothing written");
 }
@@ -114,6 +141,7 @@ int main() {
   solves_a_million();
   traces();
   sweeps();
+  stops_for_good();
   refuses();
   std::puts("all as it should be");
 }

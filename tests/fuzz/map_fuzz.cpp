@@ -218,7 +218,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Spec spec = fuzz_spec();
     spec.numerics.method = "gsl-rk2";
     spec.numerics.tolerance = 1e-3;
-    static_cast<void>(retry_failed(part, spec, 1));
+    static_cast<void>(retry_with(part, spec, 1));
   } catch (const IoError&) {
   } catch (const InputError&) {
   }
