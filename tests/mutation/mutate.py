@@ -18,7 +18,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = ["src/" + name + ".cpp" for name in
-           ("rolling/exact", "rolling/exact_times", "rolling/rolling_time", "rolling/rolling_integration", "coulomb/rolling_leg",
+           ("rolling/exact", "rolling/exact_times", "rolling/rolling_time", "rolling/rolling_integration", "physics/three_coordinates", "coulomb/rolling_leg",
             "coulomb/sliding_leg", "coulomb/sliding_panel", "coulomb/coulomb", "coulomb/coulomb_integration")] + ["tests/mutation/judge.cpp"]
 LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
 OFF = "T(1.001)"
@@ -94,7 +94,7 @@ def judged(name, folder, library):
     for source in SOURCES:
         at = folder / source if source.startswith("src") else ROOT / source
         objects.append(folder / (at.stem + ".o"))
-        subprocess.run(["g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-DLEAPMAP_KERNELS=kernels", "-DLEAPMAP_SCALARS", "-I", include, "-c", at, "-o", objects[-1]], check=True)
+        subprocess.run(["g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-isystem", "/usr/include/eigen3", "-DLEAPMAP_KERNELS=kernels", "-DLEAPMAP_SCALARS", "-I", include, "-c", at, "-o", objects[-1]], check=True)
     subprocess.run(["g++", "-fopenmp", *objects, library, *LIBRARIES, "-o", folder / "judge"], check=True)
     try:
         done = subprocess.run([folder / "judge"], capture_output=True, text=True, timeout=120)
