@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "map/journaled_file.hpp"
+#include "sweep/options.hpp"
 
 namespace leapmap::cli {
 
@@ -21,5 +22,8 @@ CLI::Validator named_file();
 
 /// --no-lock, of every command that opens files of ours.
 void add_no_lock(CLI::App& command, Locking& locking);
+
+/// The flag of a spec's key, which adds KEY=VALUE to overrides.
+void add_flag_of(CLI::App& command, const Option& option, std::vector<std::string>& overrides);
 
 }  // namespace leapmap::cli

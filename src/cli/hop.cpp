@@ -26,15 +26,14 @@ namespace {
 struct HopArguments {
   std::string spec, trace;
   double trace_interval = 1e-3;
-  std::vector<std::string> overrides;
-  std::vector<std::pair<const Option*, std::string>> parameters;
+  std::vector<std::string> overrides, flags;  // KEY=VALUE; flags hold whatever their place on the line
   bool json = false;
   Locking locking = Locking::required;
 };
 
 constexpr double check_tolerance = 1e-12;  // of the method that checks
 
-constexpr double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
+constexpr double in_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 std::string verdict(const Motion& motion, const Scene& scene) {
   switch (motion.outcome.status) {
@@ -99,7 +98,7 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
 /// Every phase, flights with how they go; and lift-offs after which the hoop is taken to roll on.
 void print_phases(const Motion& motion) {
   const auto begins = [](double t, double phi, double spin) {
-    return fmt::format("{:>12.6f} {:>12.4f} {:>14.6f}", t, degrees(phi), spin);
+    return fmt::format("{:>12.6f} {:>12.4f} {:>14.6f}", t, in_degrees(phi), spin);
   };
   std::size_t told = 0;
   const auto print_flight = [&](std::string_view what) {
@@ -136,7 +135,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked)
   for (const Option* parameter : design_parameters(spec)) {
     const double value = value_of(*parameter, spec.design);
     say("{:<15} {:<12.8g} {}\n", parameter->key, value,
-        parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", degrees(value))
+        parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", in_degrees(value))
         : parameter->unit == "1" ? ""
                                  : parameter->unit);
   }
@@ -168,17 +167,12 @@ std::string json_text(const Spec& spec, const Motion& motion, const Outcome& che
   for (const Field& field : map_fields()) {
     if (!has(spec.scene.friction, field.only_of)) continue;
     std::string value;
-    if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
-      value = json_number(motion.outcome.*quantity->member);
-    } else if (std::holds_alternative<Word>(field.source)) {
+    if (std::holds_alternative<Word>(field.source))
       value = fmt::format("\"{}\"", phase_letters(motion.outcome.phase_sequence));
-    } else if (field.name == "status") {
+    else if (field.name == "status")
       value = fmt::format("\"{}\"", name_of(motion.outcome.status));
-    } else {
-      const auto& code = std::get<Code>(field.source);
-      value =
-          code.value(motion.outcome) == code.fill ? "null" : fmt::format("{}", code.value(motion.outcome));
-    }
+    else
+      value = json_number(stored_number(field, motion.outcome));
     outcome.push_back(fmt::format("\"{}\": {}", field.name, value));
   }
   for (const Candidate& flown : motion.candidates)
@@ -215,8 +209,7 @@ std::string json_text(const Spec& spec, const Motion& motion, const Outcome& che
 
 int run(const HopArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
-  for (const auto& [option, value] : arguments.parameters)
-    overrides.push_back(fmt::format("{}.{}={}", option->section, option->key, value));
+  overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
   const Spec spec = read_spec(arguments.spec, overrides);
   if (!spec.axes.empty())
     throw InputError(
@@ -229,15 +222,9 @@ int run(const HopArguments& arguments) {
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval;
   if (!arguments.trace.empty() && !(interval > 0.0))
     throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
-  const bool exact = resolved_method(spec.numerics) == "exact";
-  const Model& model = model_of(spec.scene);
-  Motion motion = exact ? model.tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
-                        : model.tell_by_integration(spec.design, spec.scene,
-                                                    integration_options(spec.numerics), interval);
-  const Motion check =
-      exact ? model.tell_by_integration(spec.design, spec.scene, adaptive("gsl-rk8pd", check_tolerance), 0.0)
-            : model.tell_exactly(spec.design, spec.scene, check_tolerance, 0.0);
-  if (exact) motion.grazes = check.grazes;
+  Motion motion = tell(spec, interval);
+  const Motion check = tell(spec, audit_method(spec.numerics), check_tolerance);
+  if (resolved_method(spec.numerics) == "exact") motion.grazes = check.grazes;
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
     attributes.emplace_back("status", std::string(name_of(motion.outcome.status)));
@@ -259,12 +246,7 @@ void add_hop(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("hop", "solve one design and tell its phases, lift-offs and jump");
   auto arguments = std::make_shared<HopArguments>();
   command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop");
-  for (const Option* option : hop_options()) {
-    command->add_option_function<std::string>(
-        flag_of(*option),
-        [arguments, option](const std::string& value) { arguments->parameters.emplace_back(option, value); },
-        fmt::format("{}; {}", option->meaning, allowed_values(*option)));
-  }
+  for (const Option* option : hop_options()) add_flag_of(*command, *option, arguments->flags);
   command->add_option("--set", arguments->overrides, "KEY=VALUE: override a key of the spec")
       ->expected(1)
       ->take_all();

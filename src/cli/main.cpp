@@ -98,6 +98,15 @@ void leapmap::cli::add_no_lock(CLI::App& command, Locking& locking) {
       "a file in use is refused all the same");
 }
 
+void leapmap::cli::add_flag_of(CLI::App& command, const Option& option, std::vector<std::string>& overrides) {
+  command.add_option_function<std::string>(
+      flag_of(option),
+      [&option, &overrides](const std::string& value) {
+        overrides.push_back(fmt::format("{}.{}={}", option.section, option.key, value));
+      },
+      fmt::format("{}; {}", option.meaning, allowed_values(option)));
+}
+
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow (ulimit -f) is an error of the write, not an end
   try {

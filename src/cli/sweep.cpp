@@ -158,15 +158,8 @@ void add_sweep(CLI::App& app, int& status) {
                    "KEY=VALUE: override a key of the spec, for example --set tolerance=1e-12")
       ->expected(1)
       ->take_all();
-  for (const Option* option : hop_options()) {
-    if (option->section != "scene") continue;
-    command->add_option_function<std::string>(
-        flag_of(*option),
-        [arguments, option](const std::string& value) {
-          arguments->overrides.push_back(fmt::format("scene.{}={}", option->key, value));
-        },
-        fmt::format("{}; {}", option->meaning, allowed_values(*option)));
-  }
+  for (const Option* option : hop_options())
+    if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
   command->add_option("--threads", arguments->threads, "threads to use; default: all")
       ->check(CLI::Range(1, most_threads));
   auto* resume = command->add_flag("--resume", arguments->resume,

@@ -28,13 +28,10 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
     throw InputError(
         fmt::format("{}: is of other designs: {}; allowed: its own spec (leapmap info --spec {})", map,
                     *difference, shell_quoted(map)));
+  there.numerics = retry_numerics(there.numerics, spec.numerics);
   note_signals();
-  RetryOptions options;
-  options.how = spec.numerics;
-  options.threads = arguments.threads, options.lock = arguments.locking == Locking::required;
-  options.stop_requested = [] { return noted_signal() != 0; };
-  const Numerics numerics = retry_numerics(there.numerics, spec.numerics);
-  const auto report = retry_failed(map, options);
+  const auto report =
+      retry_with(map, there, arguments.threads, arguments.locking, [] { return noted_signal() != 0; });
   if (!report) {
     tell(fmt::format("interrupted; {} is as it was", map));
     return 128 + noted_signal();
@@ -42,7 +39,7 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
   if (!report->durable) tell_of_folder(map);
   if (arguments.quiet) return 0;
   say("retried  {} failed designs by {} at tolerance {:g}: {} settled, {} still failed\n",
-      grouped(report->retried), resolved_method(numerics), numerics.tolerance,
+      grouped(report->retried), resolved_method(there.numerics), there.numerics.tolerance,
       grouped(report->retried - report->still_failed), grouped(report->still_failed));
   print_totals(report->statuses);
   say("map      {}\n", map);

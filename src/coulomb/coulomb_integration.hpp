@@ -64,7 +64,7 @@ class CoulombIntegration {
   IntegrationOptions options_;
   System system_{};
   GslIntegrator<4> integrator_;
-  std::array<Falls<4>, 4> falls_;
+  std::array<Falls<4>, most_guards> falls_;
   long steps_ = 0;
 };
 

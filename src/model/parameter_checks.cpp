@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -27,14 +26,26 @@ std::string shown(double value, std::string_view unit) {
 
 [[noreturn]] void refuse_unused(std::string_view place, const Parameter& parameter, double value,
                                 const Scene& scene) {
-  const std::string_view name = model_of(*parameter.only_of).name;
-  refuse(place, parameter, value, fmt::format("has no use where the contact {}", model_of(scene).meaning),
-         fmt::format("with friction = {}, on the command line --friction {}", name, name));
+  refuse(place, parameter, value, no_use(scene), with_model(*parameter.only_of));
 }
 
-/// Whether a value is what a parameter has unless it is given; mu_kinetic then is mu_static's, or NaN.
-bool is_usual(double value, double usual) {
-  return value == usual || (std::isnan(usual) && (std::isnan(value) || value == Design{}.mu_static));
+[[noreturn]] void refuse_range(std::string_view place, const Parameter& parameter, double value) {
+  refuse(place, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
+}
+
+/// Whether a design may have that value in the scene, used or not.
+bool is_allowed(const Parameter& parameter, double value, double usual, const Scene& scene) {
+  if (!has(scene.friction, parameter.only_of)) return is_usual(value, usual);
+  return parameter.range.holds(value) || (std::isnan(value) && std::isnan(usual));
+}
+
+/// The first parameter whose value the design may not have, or nullptr.
+const Parameter* first_refused(const Design& design, const Scene& scene) {
+  constexpr Design usual;
+  for (const Parameter& parameter : parameters())
+    if (const auto* member = std::get_if<double Design::*>(&parameter.member))
+      if (!is_allowed(parameter, design.**member, usual.**member, scene)) return &parameter;
+  return nullptr;
 }
 
 }  // namespace
@@ -45,6 +56,20 @@ std::string allowed_values(const Range& range, std::string_view unit, std::strin
                      unit == "rad" ? ", in rad or as \"... deg\"" : "");
 }
 
+std::string no_use(const Scene& scene) {
+  return fmt::format("has no use where the contact {}", model_of(scene).meaning);
+}
+
+std::string with_model(Friction model) {
+  const std::string_view name = model_of(model).name;
+  return fmt::format("with friction = \"{}\", on the command line --friction {} or --set friction={}", name,
+                     name, name);
+}
+
+bool is_usual(double value, double usual) {
+  return value == usual || (std::isnan(usual) && (std::isnan(value) || value == Design{}.mu_static));
+}
+
 void check_scene(const Scene& scene) {
   constexpr Scene usual;
   for (const Parameter& parameter : parameters()) {
@@ -53,42 +78,18 @@ void check_scene(const Scene& scene) {
     const double value = scene.**member;
     if (!has(scene.friction, parameter.only_of) && value != usual.**member)
       refuse_unused({}, parameter, value, scene);
-    if (!parameter.range.holds(value))
-      refuse({}, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
+    if (!parameter.range.holds(value)) refuse_range({}, parameter, value);
   }
 }
 
-namespace {
-
-/// What keeps a design's parameter from being allowed in the scene, if anything does.
-enum class Fault { none, unused, out_of_range };
-Fault fault_of(const Parameter& parameter, double value, double usual, const Scene& scene) {
-  if (!has(scene.friction, parameter.only_of)) return is_usual(value, usual) ? Fault::none : Fault::unused;
-  const bool follows = std::isnan(value) && std::isnan(usual);
-  return follows || parameter.range.holds(value) ? Fault::none : Fault::out_of_range;
-}
-
-}  // namespace
-
-bool is_allowed(const Design& design, const Scene& scene) {
-  constexpr Design usual;
-  return std::ranges::all_of(parameters(), [&](const Parameter& parameter) {
-    const auto* member = std::get_if<double Design::*>(&parameter.member);
-    return !member || fault_of(parameter, design.**member, usual.**member, scene) == Fault::none;
-  });
-}
+bool is_allowed(const Design& design, const Scene& scene) { return !first_refused(design, scene); }
 
 void check_design(const Design& design, const Scene& scene, std::string_view place) {
-  constexpr Design usual;
-  for (const Parameter& parameter : parameters()) {
-    const auto* member = std::get_if<double Design::*>(&parameter.member);
-    if (!member) continue;
-    const double value = design.**member;
-    const Fault fault = fault_of(parameter, value, usual.**member, scene);
-    if (fault == Fault::unused) refuse_unused(place, parameter, value, scene);
-    if (fault == Fault::out_of_range)
-      refuse(place, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
-  }
+  const Parameter* refused = first_refused(design, scene);
+  if (!refused) return;
+  const double value = design.*std::get<double Design::*>(refused->member);
+  if (has(scene.friction, refused->only_of)) refuse_range(place, *refused, value);
+  refuse_unused(place, *refused, value, scene);
 }
 
 }  // namespace leapmap

@@ -40,6 +40,14 @@ std::span<const Parameter> parameters();
 /// "a number in [0, 1]" and the like.
 std::string allowed_values(const Range& range, std::string_view unit, std::string_view what = "a number");
 
+/// What is wrong with giving something that the scene's model has no use for, and what is allowed instead.
+std::string no_use(const Scene& scene);
+std::string with_model(Friction model);
+
+/// Whether a value is what a parameter has unless it is given: `usual`. Of mu_kinetic that is NaN, which is
+/// mu_static's.
+bool is_usual(double value, double usual);
+
 /// Throws InputError if a number of the scene is out of its range.
 void check_scene(const Scene& scene);
 

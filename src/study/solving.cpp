@@ -5,10 +5,10 @@
 #include <cmath>
 #include <memory>
 
-#include "coulomb/coulomb.hpp"
 #include "coulomb/coulomb_integration.hpp"
+#include "coulomb/model.hpp"
 #include "numerics/game_steppers.hpp"
-#include "rolling/exact.hpp"
+#include "rolling/model.hpp"
 #include "rolling/rolling_integration.hpp"
 
 namespace leapmap {
@@ -36,12 +36,7 @@ IntegrationOptions options_of(const Contestant& contestant, long max_steps) {
 template <class Model>
 Solving integrate(const IntegrationOptions& options, const Scene& scene) {
   const auto integration = std::make_shared<Integration<Model>>(options);
-  Solving solving{[integration, scene](auto designs, auto outcomes) {
-                    for (std::size_t i = 0; i < designs.size(); ++i)
-                      outcomes[i] = integration->solve(designs[i], scene);
-                  },
-                  [integration] { return integration->evaluations(); },
-                  {}};
+  Solving solving{one_by_one(integration, scene), [integration] { return integration->evaluations(); }, {}};
   if constexpr (Model::dimension > 2)
     solving.drift = [integration, scene](const Design& design) {
       Model model;
@@ -59,7 +54,7 @@ Solving integrate(const IntegrationOptions& options, const Scene& scene) {
 
 Solving make_slipping(const Contestant& contestant, const Scene& scene, long max_steps) {
   if (contestant.model == RollingModel::energy_integral)
-    return {one_by_one(std::make_shared<CoulombSolver<double>>(contestant.setting), scene), {}, {}};
+    return {coulomb::exact(scene, contestant.setting, {}), {}, {}};
   const auto integration = std::make_shared<CoulombIntegration>(options_of(contestant, max_steps));
   return {one_by_one(integration, scene), [integration] { return integration->evaluations(); }, {}};
 }
@@ -70,11 +65,8 @@ Solving solving_of(const Contestant& contestant, const Scene& scene, long max_st
   if (scene.friction == Friction::coulomb) return make_slipping(contestant, scene, max_steps);
   const IntegrationOptions options = options_of(contestant, max_steps);
   switch (contestant.model) {
-    case RollingModel::energy_integral: {
-      const auto exact = std::make_shared<ExactSolver<Batch>>(contestant.setting);
-      return {
-          [exact, scene](auto designs, auto outcomes) { exact->solve(designs, scene, outcomes); }, {}, {}};
-    }
+    case RollingModel::energy_integral:
+      return {rolling::exact(scene, contestant.setting, {}), {}, {}};
     case RollingModel::multipliers:
       return integrate<Multipliers<false, false>>(options, scene);
     case RollingModel::multipliers_projected:

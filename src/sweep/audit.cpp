@@ -146,6 +146,15 @@ std::string audit_method(const Numerics& numerics) {
   return resolved_method(numerics) == "exact" ? "gsl-rk8pd" : "exact";
 }
 
+AuditReport begin_audit(const Spec& spec) {
+  AuditReport report;
+  report.method = audit_method(spec.numerics);
+  const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
+  const double slack = report.method == "exact" ? adaptive_slack : 1.0;
+  report.allowed_error = std::max(spec.numerics.tolerance * slack, own_error) + rounding;
+  return report;
+}
+
 namespace {
 
 Solver solver_by_referee(const Scene& scene, double tolerance) {
@@ -164,21 +173,12 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
               make_solver(spec, audit_method(spec.numerics), coarser_tolerance)},
       referee_{solver_by_referee(spec.scene, audit_tolerance),
                solver_by_referee(spec.scene, coarser_tolerance)},
-      referee_every_(referee_every) {
+      referee_every_(referee_every),
+      allowed_(begin_audit(spec).allowed_error) {
   if (referee_every == 0) {
     const double audited = spec.numerics.audit * static_cast<double>(Tiling(shape_of(spec)).designs());
     referee_every_ = audited <= 3.0 * usual_referee_every ? 1 : usual_referee_every;
   }
-  const bool integrates = audit_method(spec.numerics) != "exact";
-  const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
-  allowed_ = std::max(spec.numerics.tolerance * (integrates ? 1.0 : adaptive_slack), own_error) + rounding;
-}
-
-AuditReport Auditor::begin() const {
-  AuditReport report;
-  report.method = audit_method(spec_.numerics);
-  report.allowed_error = allowed_;
-  return report;
 }
 
 /// What a judge itself makes of the design with one unit in the last place of each input changed, and at a
@@ -307,7 +307,7 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
 
 AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
                   const std::function<bool()>& stop_requested, std::size_t referee_every) {
-  AuditReport report = Auditor(spec).begin();
+  AuditReport report = begin_audit(spec);
   std::mutex reporting;
   parallel_for_each(samples.size(), threads, [&] {
     return [&, auditor = Auditor(spec, referee_every)](std::size_t i) {

@@ -48,6 +48,9 @@ struct AuditDifference {
 /// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact.
 std::string audit_method(const Numerics& numerics);
 
+/// A report on no design yet.
+AuditReport begin_audit(const Spec& spec);
+
 /// Solves samples again, one after the other, and compares. One a thread.
 class Auditor {
  public:
@@ -59,8 +62,6 @@ class Auditor {
   /// own error), and larger than 10 times what one unit in the last place of the inputs, or a coarser
   /// tolerance, makes of the second method's own answer. A map in f4 is allowed a rounding of f4 on top.
   void look_at(const AuditSample& sample, AuditReport& report) const;
-  /// A report on no design yet.
-  AuditReport begin() const;
 
  private:
   /// A method that judges another, and itself at a coarser tolerance.

@@ -89,7 +89,7 @@ void check_sample(Check& check) {
   const double share =
       std::min(1.0, static_cast<double>(check.options.sample) / static_cast<double>(check.tiling.designs()));
   const Solver solve = make_solver(check.spec);
-  AuditReport audited = Auditor(check.spec).begin();
+  AuditReport audited = begin_audit(check.spec);
   std::vector<AuditSample> samples;
   const auto look_at_samples = [&] {
     constexpr std::size_t by_referee_all = 1;

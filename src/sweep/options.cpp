@@ -8,17 +8,15 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
 #include "leapmap/errors.hpp"
+#include "leapmap/units.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "numerics/gsl_integrator.hpp"
 
 namespace leapmap {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 std::vector<std::string_view> frictions() {
   std::vector<std::string_view> names;
@@ -239,7 +237,7 @@ double parse_number(const Option& option, std::string_view text) {
   };
   std::string_view digits = trim(text);
   double unit = 1.0;
-  for (const auto& [suffix, factor] : {std::pair{"deg", degree}, std::pair{"rad", 1.0}}) {
+  for (const auto& [suffix, factor] : {std::pair{"deg", degrees(1.0)}, std::pair{"rad", 1.0}}) {
     if (option.unit != "rad" || !digits.ends_with(suffix)) continue;
     digits = trim(digits.substr(0, digits.size() - 3));
     unit = factor;

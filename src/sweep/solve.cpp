@@ -7,7 +7,6 @@
 
 #include "leapmap/spec.hpp"
 #include "leapmap/trace.hpp"
-#include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
@@ -67,15 +66,13 @@ std::vector<Outcome> solve(std::span<const Design> designs, const Scene& scene, 
 }
 
 Motion trace(const Design& design, const Scene& scene, const TraceOptions& options) {
-  const Spec spec = spec_of(scene, options);
+  Spec spec = spec_of(scene, options);
   check_design(design, scene);
   if (!(options.interval >= 0.0 && options.interval < 1e9))
     throw InputError(fmt::format("interval = {} is out of range; allowed: a number of seconds in [0, 1e9)",
                                  options.interval));
-  const Model& model = model_of(scene);
-  return resolved_method(spec.numerics) == "exact"
-             ? model.tell_exactly(design, scene, options.tolerance, options.interval)
-             : model.tell_by_integration(design, scene, integration_options(spec.numerics), options.interval);
+  spec.design = design;
+  return tell(spec, options.interval);
 }
 
 }  // namespace leapmap

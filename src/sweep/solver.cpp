@@ -30,4 +30,19 @@ Solver make_solver(const Spec& spec, std::string_view method, double tolerance) 
                            : model.integration(spec.scene, adaptive(method, tolerance));
 }
 
+Motion tell(const Spec& spec, double interval) {
+  const Model& model = model_of(spec.scene);
+  return resolved_method(spec.numerics) == "exact"
+             ? model.tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
+             : model.tell_by_integration(spec.design, spec.scene, integration_options(spec.numerics),
+                                         interval);
+}
+
+Motion tell(const Spec& spec, std::string_view method, double tolerance) {
+  const Model& model = model_of(spec.scene);
+  return method == "exact"
+             ? model.tell_exactly(spec.design, spec.scene, tolerance, 0.0)
+             : model.tell_by_integration(spec.design, spec.scene, adaptive(method, tolerance), 0.0);
+}
+
 }  // namespace leapmap

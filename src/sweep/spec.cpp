@@ -240,25 +240,13 @@ void override_with(std::vector<Entry>& entries, const Entry& entry) {
   found == entries.end() ? entries.push_back(entry) : void(*found = entry);
 }
 
-std::string no_use(const Scene& scene) {
-  return fmt::format("has no use where the contact {}", model_of(scene).meaning);
-}
-
-/// How to get the model that has the option.
-std::string with_its_model(const Option& option) {
-  const std::string_view name = model_of(*option.only_of).name;
-  return fmt::format("with friction = \"{}\", on the command line --friction {} or --set friction={}", name,
-                     name, name);
-}
-
 /// Whether a key says no more than its default.
 bool is_default(const Option& option, const Entry& entry) {
   const auto value = entry.node->value<double>();
   if (!value) return false;
-  if (const auto* slot = std::get_if<SceneSlot>(&option.slot)) return *value == Scene{}.*slot->member;
-  constexpr Design design;
-  const double usual = design.*std::get<ParameterSlot>(option.slot).member;
-  return *value == (std::isnan(usual) ? design.mu_static : usual);
+  const auto* of_scene = std::get_if<SceneSlot>(&option.slot);
+  return is_usual(
+      *value, of_scene ? Scene{}.*of_scene->member : Design{}.*std::get<ParameterSlot>(option.slot).member);
 }
 
 /// Nothing given is ignored without a word. A file may spell defaults out.
@@ -266,7 +254,7 @@ void refuse_what_has_no_use(const std::vector<Entry>& entries, const Spec& spec)
   for (const Entry& entry : entries)
     if (!has(spec.scene.friction, entry.option->only_of) &&
         (entry.place == command_line || !is_default(*entry.option, entry)))
-      refuse(entry, no_use(spec.scene), with_its_model(*entry.option));
+      refuse(entry, no_use(spec.scene), with_model(*entry.option->only_of));
 }
 
 /// A points file is looked for beside the spec first, then from the working folder.
@@ -290,7 +278,7 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
   for (const Axis& column : spec.list.columns)
     if (const Option& option = *find_option("design", column.key); !has(spec.scene.friction, option.only_of))
       throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
-                                   no_use(spec.scene), with_its_model(option)));
+                                   no_use(spec.scene), with_model(*option.only_of)));
   return spec;
 }
 

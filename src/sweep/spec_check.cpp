@@ -36,8 +36,7 @@ void check_values(const Spec& spec, const std::vector<Axis>& axes) {
       refuse(spec, axis.key, "is no parameter of a design", "an axis of one");
     if (std::ranges::count(axes, axis.key, &Axis::key) > 1) refuse(spec, axis.key, "is there twice", "once");
     if (!has(spec.scene.friction, option->only_of))
-      refuse(spec, axis.key, fmt::format("has no use where the contact {}", model_of(spec.scene).meaning),
-             fmt::format("with friction = {}", model_of(*option->only_of).name));
+      refuse(spec, axis.key, no_use(spec.scene), with_model(*option->only_of));
     if (axis.values.empty()) refuse(spec, axis.key, "has no values", "one or more");
     for (const double value : axis.values) check_number(spec, *option, value);
   }

@@ -44,7 +44,7 @@ class Sweeping {
         writer_(writer),
         seconds_before_(writer.progress().seconds) {
     if (spec.numerics.audit > 0.0)
-      audit_ = writer.progress().tiles > 0 ? read_audit(writer.reader()) : Auditor(spec).begin();
+      audit_ = writer.progress().tiles > 0 ? read_audit(writer.reader()) : begin_audit(spec);
   }
 
   /// Solves and audits what is missing in the map, committing now and then.
@@ -85,7 +85,7 @@ class Sweeping {
   bool look_at(const Auditor& auditor, const Tile& tile, std::span<const Outcome> outcomes,
                FinishedTile& finished) const {
     const auto begin = Clock::now();
-    finished.audit = auditor.begin();
+    finished.audit = begin_audit(spec_);
     for (const AuditSample& sample : audit_samples(spec_, tiling_, tile, outcomes)) {
       if (stop_requested()) return false;
       auditor.look_at(sample, finished.audit);
