@@ -18,83 +18,107 @@ RollingLeg<S>::RollingLeg(double tolerance)
   }
 }
 
+namespace {
+
+/// E and the guards of sticking at an angle of a leg.
+template <class S>
+struct Look {
+  S angle;
+  Sample<S> vis_viva;
+  StickGuards<S> guards;
+};
+
+/// What a leg looks like at its angles.
+template <class S>
+class LegView {
+ public:
+  LegView(const Roll<S>& roll, const S& mu_static) : roll_(roll), mu_static_(mu_static) {}
+
+  Look<S> at(const S& angle) const {
+    const Trig<S> phi = trig(angle);
+    const S E = vis_viva(roll_, angle, phi);
+    return {angle, {E, S(2) * torque(roll_.hoop, phi)}, stick_guards(roll_.hoop, phi, E, mu_static_)};
+  }
+
+  /// From rest E's first zero is the release itself, known by its push.
+  Look<S> at_release() const {
+    Look<S> look = at(roll_.release);
+    look.vis_viva = {roll_.released, S(2) * roll_.push};
+    return look;
+  }
+
+  /// Whichever comes first between two angles near each other: friction used up either way, or the spin.
+  LegEnd<S> first_end(const Look<S>& left, const Look<S>& right) const {
+    const auto fall_of = [&](Sample<S> StickGuards<S>::*guard) {
+      return first_fall([&](const S& x) { return at(x).guards.*guard; }, left.angle, right.angle,
+                        left.guards.*guard, right.guards.*guard);
+    };
+    const auto vis_viva_at = [&](const S& x) {
+      return Sample<S>{vis_viva_past_release(roll_, S(x - roll_.release)),
+                       S(2) * torque(roll_.hoop, trig(x))};
+    };
+    const S backwards = fall_of(&StickGuards<S>::downhill), forwards = fall_of(&StickGuards<S>::uphill);
+    const S stall = first_fall(vis_viva_at, left.angle, right.angle, left.vis_viva, right.vis_viva);
+    // NaN is never before anything.
+    if (!std::isnan(stall) && !(backwards <= stall) && !(forwards <= stall)) return {PhaseEnd::stalls, stall};
+    if (!std::isnan(backwards) && !(forwards < backwards)) return {PhaseEnd::slips_backwards, backwards};
+    return {PhaseEnd::slips_forwards, forwards};
+  }
+
+ private:
+  const Roll<S>& roll_;
+  S mu_static_;
+};
+
+}  // namespace
+
 template <class S>
 PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at,
                             const S& runway) const {
   const Roll<S> roll = begin_roll(hoop, at.angle, at.spin);
-  const S start = at.angle, last = at.angle + (runway - at.travel);
-  const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
-
-  struct Look {
-    S angle;
-    Sample<S> vis_viva;
-    StickGuards<S> guards;
-  };
-  const auto guards_at = [&](const S& angle) {
-    const Trig<S> phi = trig(angle);
-    return stick_guards(hoop, phi, vis_viva(roll, angle, phi), mu_static);
-  };
-  const auto look_at = [&](const S& angle) {
-    const Trig<S> phi = trig(angle);
-    const S E = vis_viva(roll, angle, phi);
-    return Look{angle, {E, S(2) * torque(hoop, phi)}, stick_guards(hoop, phi, E, mu_static)};
-  };
-  const auto end_at = [&](const S& angle, PhaseEnd end) {
-    const S x = angle - start;
-    at.travel += x;
-    at.angle = angle;
-    at.spin = S(0);
-    if (end == PhaseEnd::stalls) return end;  // when nobody asks, and the integral is hard
-    const S taken = x > S(0) ? duration(roll, x) : S(0);
-    at.time += taken;
-    at.spin = std::sqrt(std::max(vis_viva_past_release(roll, x), S(0)) / contact_inertia(hoop, trig(angle)));
-    return taken >= S(0) ? end : PhaseEnd::failed;
-  };
-
-  // From rest E's first zero is the release itself, known by its push.
   if (at.spin < S(0) || (at.spin == S(0) && !(roll.push > S(0)))) return PhaseEnd::stalls;
-  Look left = look_at(start);
-  left.vis_viva = {roll.released, S(2) * roll.push};
+  const auto [end, angle] = first_end(roll, mu_static, at.angle + (runway - at.travel));
+  const S x = angle - at.angle;
+  at.travel += x;
+  at.angle = angle;
+  at.spin = S(0);
+  if (end == PhaseEnd::stalls) return end;  // when nobody asks, and the integral is hard
+  const S taken = x > S(0) ? duration(roll, x) : S(0);
+  at.time += taken;
+  at.spin = std::sqrt(std::max(vis_viva_past_release(roll, x), S(0)) / contact_inertia(hoop, trig(angle)));
+  return taken >= S(0) ? end : PhaseEnd::failed;
+}
 
-  // The grid in lanes, so many nodes at once; the end of the runway comes as a node of its own.
+/// Walks from node to node, so many at once as there are lanes; the end of the runway, `last`, comes as a
+/// node of its own.
+template <class S>
+LegEnd<S> RollingLeg<S>::first_end(const Roll<S>& roll, const S& mu_static, const S& last) const {
   using T = typename SpectralPanel<S, nodes>::T;
-  constexpr std::size_t width = Lanes<T>::count;
+  constexpr long width = Lanes<T>::count, turn = nodes_a_turn;
+  const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
+  const LegView<S> view(roll, mu_static);
   const Roll<T> rolls = widened<T>(roll);
-  for (long node = static_cast<long>(std::floor(start / step)) + 1;; node += long{width}) {
-    const auto first =
-        static_cast<std::size_t>(((node % long{nodes_a_turn}) + long{nodes_a_turn}) % long{nodes_a_turn});
+  Look<S> left = view.at_release();
+  for (long node = static_cast<long>(std::floor(roll.release / step)) + 1;; node += width) {
+    const auto first = static_cast<std::size_t>((node % turn + turn) % turn);
     const Trig<T> phi{Lanes<T>::load(grid_.sin.data() + first), Lanes<T>::load(grid_.cos.data() + first),
                       Lanes<T>::load(grid_.versine.data() + first)};
     LaneArray<T> angles;
-    for (std::size_t k = 0; k < width; ++k) angles[k] = S(node + static_cast<long>(k)) * step;
+    for (std::size_t k = 0; k < angles.size(); ++k) angles[k] = S(node + static_cast<long>(k)) * step;
     const T E = vis_viva(rolls, Lanes<T>::load(angles.data()), phi);
     const StickGuards<T> guards = stick_guards(rolls.hoop, phi, E, T(mu_static));
     const auto Es = lanes_of(E), pushes = lanes_of(torque(rolls.hoop, phi)),
                back = lanes_of(guards.downhill.value), back_rate = lanes_of(guards.downhill.rate),
                forth = lanes_of(guards.uphill.value), forth_rate = lanes_of(guards.uphill.rate);
-    for (std::size_t k = 0; k < width; ++k) {
+    for (std::size_t k = 0; k < angles.size(); ++k) {
       const bool ends = !(angles[k] < last);
       if (!ends && angles[k] <= left.angle) continue;
-      const Look right = ends ? look_at(last)
-                              : Look{angles[k],
-                                     {Es[k], S(2) * pushes[k]},
-                                     {{back[k], back_rate[k]}, {forth[k], forth_rate[k]}}};
-      const S backwards = first_fall([&](const S& x) { return guards_at(x).downhill; }, left.angle,
-                                     right.angle, left.guards.downhill, right.guards.downhill);
-      const S forwards = first_fall([&](const S& x) { return guards_at(x).uphill; }, left.angle, right.angle,
-                                    left.guards.uphill, right.guards.uphill);
-      const S stall = first_fall(
-          [&](const S& x) {
-            return Sample<S>{vis_viva_past_release(roll, S(x - start)), S(2) * torque(hoop, trig(x))};
-          },
-          left.angle, right.angle, left.vis_viva, right.vis_viva);
-      // Whichever comes first; NaN never does.
-      if (!std::isnan(stall) && !(backwards <= stall) && !(forwards <= stall))
-        return end_at(stall, PhaseEnd::stalls);
-      if (!std::isnan(backwards) && !(forwards < backwards))
-        return end_at(backwards, PhaseEnd::slips_backwards);
-      if (!std::isnan(forwards)) return end_at(forwards, PhaseEnd::slips_forwards);
-      if (ends) return end_at(last, PhaseEnd::runway_ends);
+      const Look<S> right = ends ? view.at(last)
+                                 : Look<S>{angles[k],
+                                           {Es[k], S(2) * pushes[k]},
+                                           {{back[k], back_rate[k]}, {forth[k], forth_rate[k]}}};
+      if (const LegEnd<S> found = view.first_end(left, right); !std::isnan(found.angle)) return found;
+      if (ends) return {PhaseEnd::runway_ends, last};
       left = right;
     }
   }

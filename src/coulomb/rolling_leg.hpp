@@ -10,6 +10,13 @@
 
 namespace leapmap {
 
+/// How a leg ends, and at what angle.
+template <class S>
+struct LegEnd {
+  PhaseEnd end;
+  S angle;  ///< NaN: it goes on
+};
+
 template <class S>
 class RollingLeg {
  public:
@@ -23,6 +30,7 @@ class RollingLeg {
   static constexpr std::size_t nodes_a_turn = 48;
   static constexpr std::size_t nodes = 24;
 
+  LegEnd<S> first_end(const Roll<S>& roll, const S& mu_static, const S& last) const;
   S duration(const Roll<S>& roll, const S& length) const;
   /// enough: an error that does not matter.
   S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, const S& enough, int halvings,

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <numbers>
 #include <xsimd/xsimd.hpp>
 
@@ -107,68 +106,6 @@ template <class S, class A>
 SinCos<xsimd::batch<S, A>> sincos_of(const xsimd::batch<S, A>& x) {
   const auto [s, c] = xsimd::sincos(x);
   return {s, c};
-}
-
-/// Eight numbers of one item, together in memory.
-template <class S>
-using Row = std::array<S, 8>;
-
-#ifdef __AVX512F__
-/// Eight registers of eight numbers as a matrix, transposed.
-template <class A>
-void transpose(std::array<xsimd::batch<double, A>, 8>& m) {
-  std::array<xsimd::batch<double, A>, 8> pairs, quads;
-  for (std::size_t i = 0; i < 8; i += 2) {
-    pairs[i] = _mm512_unpacklo_pd(m[i], m[i + 1]);
-    pairs[i + 1] = _mm512_unpackhi_pd(m[i], m[i + 1]);
-  }
-  for (const std::size_t i : {0, 4})
-    for (std::size_t j = 0; j < 2; ++j) {
-      quads[i + j] = _mm512_shuffle_f64x2(pairs[i + j], pairs[i + j + 2], 0x88);
-      quads[i + j + 2] = _mm512_shuffle_f64x2(pairs[i + j], pairs[i + j + 2], 0xdd);
-    }
-  for (std::size_t i = 0; i < 4; ++i) {
-    m[i] = _mm512_shuffle_f64x2(quads[i], quads[i + 4], 0x88);
-    m[i + 4] = _mm512_shuffle_f64x2(quads[i], quads[i + 4], 0xdd);
-  }
-}
-#endif
-
-/// The rows of as many items as T has lanes, number k of all of them in column k.
-template <class T>
-std::array<T, 8> load_rows(const Row<ScalarOf<T>>* rows, const std::uint32_t* index) {
-  std::array<T, 8> columns;
-#ifdef __AVX512F__
-  if constexpr (std::is_same_v<T, Batch>) {
-    for (std::size_t i = 0; i < 8; ++i) columns[i] = Batch::load_unaligned(rows[index[i]].data());
-    transpose(columns);
-    return columns;
-  }
-#endif
-  std::array<ScalarOf<T>, Lanes<T>::count> lanes;
-  for (std::size_t k = 0; k < 8; ++k) {
-    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = rows[index[i]][k];
-    columns[k] = Lanes<T>::load(lanes.data());
-  }
-  return columns;
-}
-
-/// The reverse, for the first `count` lanes.
-template <class T>
-void store_rows(std::array<T, 8> columns, Row<ScalarOf<T>>* rows, const std::uint32_t* index,
-                std::size_t count) {
-#ifdef __AVX512F__
-  if constexpr (std::is_same_v<T, Batch>) {
-    transpose(columns);
-    for (std::size_t i = 0; i < count; ++i) columns[i].store_unaligned(rows[index[i]].data());
-    return;
-  }
-#endif
-  std::array<ScalarOf<T>, Lanes<T>::count> lanes;
-  for (std::size_t k = 0; k < 8; ++k) {
-    Lanes<T>::store(columns[k], lanes.data());
-    for (std::size_t i = 0; i < count; ++i) rows[index[i]][k] = lanes[i];
-  }
 }
 
 /// 1 / sqrt(x) for x > 0, to a few roundings.

@@ -113,29 +113,54 @@ S stall_angle(const Roll<S>& roll, const S& minimum, const S& crest) {
   return polish_root(vis_viva_at, from, minimum, S(0.5L) * (from + minimum), false, resolution);
 }
 
+/// What G is made of, G = P J + rho K E, with rates by the angle.
+template <class T>
+struct LiftTerms {
+  T q, J, J1, P, P1, K, K1;
+  T bend;  ///< d(s q)/dphi
+};
+
+template <class T>
+LiftTerms<T> lift_terms(const Hoop<T>& h, const Trig<T>& phi) {
+  const T s = phi.sin, c = phi.cos;
+  const T J = contact_inertia(h, phi), q = h.clearance + h.rho * phi.versine;
+  const T bend = h.rho * s * s + c * q;
+  return {.q = q,
+          .J = J,
+          .J1 = T(2) * h.rho * s,
+          .P = h.cos_slope * (h.Ic + q * q) + h.rho * h.sin_slope * s * q,
+          .P1 = h.rho * (T(2) * h.cos_slope * s * q + h.sin_slope * bend),
+          .K = h.J_min * c - h.rho * phi.versine * phi.versine,
+          .K1 = -s * J,
+          .bend = bend};
+}
+
+/// G and G', given E and E' at that angle.
+template <class T>
+Sample<T> lift(const Hoop<T>& h, const LiftTerms<T>& t, const T& E, const T& E1) {
+  return {t.P * t.J + h.rho * t.K * E, t.P1 * t.J + t.P * t.J1 + h.rho * (t.K1 * E + t.K * E1)};
+}
+
 /// G and its first three derivatives at an angle.
 template <class T>
 CurvedSample<T> lift(const Roll<T>& roll, const T& angle) {
   const Hoop<T>& h = roll.hoop;
   const Trig<T> phi = trig(angle);
   const T s = phi.sin, c = phi.cos;
-  const T J = contact_inertia(h, phi), J1 = T(2) * h.rho * s, J2 = T(2) * h.rho * c;
-  const T q = h.clearance + h.rho * phi.versine;
-  const T P = h.cos_slope * (h.Ic + q * q) + h.rho * h.sin_slope * s * q;
-  const T bend = h.rho * s * s + c * q;  // d(s q)/dphi
-  const T P1 = h.rho * (T(2) * h.cos_slope * s * q + h.sin_slope * bend);
-  const T bend1 = s * (T(3) * h.rho * c - q);  // d(bend)/dphi
-  const T P2 = h.rho * (T(2) * h.cos_slope * bend + h.sin_slope * bend1);
-  const T bend2 = c * (T(3) * h.rho * c - q) - T(4) * h.rho * s * s;
+  const LiftTerms<T> t = lift_terms(h, phi);
+  const T J2 = T(2) * h.rho * c;
+  const T bend1 = s * (T(3) * h.rho * c - t.q);  // d(bend)/dphi
+  const T P2 = h.rho * (T(2) * h.cos_slope * t.bend + h.sin_slope * bend1);
+  const T bend2 = c * (T(3) * h.rho * c - t.q) - T(4) * h.rho * s * s;
   const T P3 = h.rho * (T(2) * h.cos_slope * bend1 + h.sin_slope * bend2);
-  const T K = h.J_min * c - h.rho * phi.versine * phi.versine, K1 = -s * J, K2 = -c * J - s * J1;
-  const T K3 = s * J - T(3) * c * J1;
+  const T K2 = -c * t.J - s * t.J1, K3 = s * t.J - T(3) * c * t.J1;
   const T steep = T(2) * h.rho * sin_from_vertical(h, phi), high = T(2) * h.rho * cos_from_vertical(h, phi);
   const T E = roll.level + T(2) * angle * h.sin_slope + high, E1 = T(2) * h.sin_slope - steep;
-  return {P * J + h.rho * K * E, P1 * J + P * J1 + h.rho * (K1 * E + K * E1),
-          P2 * J + T(2) * P1 * J1 + P * J2 + h.rho * (K2 * E + T(2) * K1 * E1 - K * high),
-          P3 * J + T(3) * (P2 * J1 + P1 * J2) - P * J1 +
-              h.rho * (K3 * E + T(3) * (K2 * E1 - K1 * high) + K * steep)};
+  const Sample<T> G = lift(h, t, E, E1);
+  return {G.value, G.rate,
+          P2 * t.J + T(2) * t.P1 * t.J1 + t.P * J2 + h.rho * (K2 * E + T(2) * t.K1 * E1 - t.K * high),
+          P3 * t.J + T(3) * (P2 * t.J1 + t.P1 * J2) - t.P * t.J1 +
+              h.rho * (K3 * E + T(3) * (K2 * E1 - t.K1 * high) + t.K * steep)};
 }
 
 /// Bounds of |G''| and |G'''| over all angles of one revolution.

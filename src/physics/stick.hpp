@@ -25,24 +25,21 @@ struct StickGuards {
 template <class T>
 StickGuards<T> stick_guards(const Hoop<T>& h, const Trig<T>& phi, const T& E, const T& mu) {
   using S = ScalarOf<T>;
-  const T s = phi.sin, c = phi.cos, sin_above = sin_from_vertical(h, phi);
-  const T J = contact_inertia(h, phi), J1 = T(2) * h.rho * s;
-  const T q = h.clearance + h.rho * phi.versine, q1 = h.rho * s;
-  const T tau = h.sin_slope - h.rho * sin_above, tau1 = -h.rho * cos_from_vertical(h, phi), E1 = T(2) * tau;
+  const T s = phi.sin, c = phi.cos;
+  const LiftTerms<T> t = lift_terms(h, phi);
+  const T tau = torque(h, phi), tau1 = -h.rho * cos_from_vertical(h, phi), E1 = T(2) * tau;
+  const Sample<T> N = lift(h, t, E, E1);
 
-  const T P = h.cos_slope * (h.Ic + q * q) + h.rho * h.sin_slope * s * q;
-  const T P1 = h.rho * (T(2) * h.cos_slope * s * q + h.sin_slope * (h.rho * s * s + c * q));
-  const T K = h.J_min * c - h.rho * phi.versine * phi.versine, K1 = -s * J;
-  const T N = P * J + h.rho * K * E, N1 = P1 * J + P * J1 + h.rho * (K1 * E + K * E1);
-
-  const T pull = q * tau - h.sin_slope * J, pull1 = q1 * tau + q * tau1 - h.sin_slope * J1;
-  const T swing = s * (J - q), swing1 = c * (J - q) + s * (J1 - q1);
-  const T F = pull * J + h.rho * swing * E, F1 = pull1 * J + pull * J1 + h.rho * (swing1 * E + swing * E1);
+  const T q1 = h.rho * s;
+  const T pull = t.q * tau - h.sin_slope * t.J, pull1 = q1 * tau + t.q * tau1 - h.sin_slope * t.J1;
+  const T swing = s * (t.J - t.q), swing1 = c * (t.J - t.q) + s * (t.J1 - q1);
+  const T F = pull * t.J + h.rho * swing * E,
+          F1 = pull1 * t.J + pull * t.J1 + h.rho * (swing1 * E + swing * E1);
   using std::abs;
-  const T terms =
-      mu * (P * J + h.rho * abs(K) * E) + (abs(q * tau) + h.sin_slope * J) * J + h.rho * abs(swing) * E;
+  const T terms = mu * (t.P * t.J + h.rho * abs(t.K) * E) + (abs(t.q * tau) + h.sin_slope * t.J) * t.J +
+                  h.rho * abs(swing) * E;
   const T slack = T(S(32) * std::numeric_limits<S>::epsilon()) * terms;
-  return {{mu * N - F + slack, mu * N1 - F1}, {mu * N + F + slack, mu * N1 + F1}};
+  return {{mu * N.value - F + slack, mu * N.rate - F1}, {mu * N.value + F + slack, mu * N.rate + F1}};
 }
 
 }  // namespace leapmap

@@ -4,38 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rolling/halved_time.hpp"
+
 namespace leapmap {
 namespace {
 
 constexpr std::size_t most_starts = 64;  // beyond it the spans met are forgotten: memory stays bounded
-
-/// sqrt(J / E) = dt / dphi.
-template <class T>
-T slowness(const T& inertia, const T& vis_viva) {
-  return inertia * reciprocal_sqrt(inertia * vis_viva);
-}
-
-/// E near the release, released + 2 push x + bend x^2, and its zeros.
-template <class T>
-struct ReleaseParabola {
-  T bend, discriminant, root;
-  MaskOf<T> real;  ///< whether it has zeros
-  /// The nearer zero. Without one E is far from zero if its least value is, over the distance that takes: -1
-  /// will do.
-  T nearer;
-};
-
-template <class T>
-ReleaseParabola<T> parabola_at_release(const Roll<T>& roll) {
-  using std::sqrt;
-  ReleaseParabola<T> p;
-  p.bend = -roll.hoop.rho * cos_from_vertical(roll.hoop, roll.release_trig);
-  p.discriminant = roll.push * roll.push - roll.released * p.bend;
-  p.root = sqrt(larger(p.discriminant, T(0)));
-  p.real = p.discriminant >= T(0);
-  p.nearer = select(p.real, -roll.released / (roll.push + p.root), T(-1));
-  return p;
-}
 
 /// The square of acosh(1 + x), from below; within 1 % for x < 1. Without a logarithm: it is only for node
 /// numbers.
@@ -239,79 +213,9 @@ T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int
 
 template <class T>
 ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
-  using std::abs, std::asin, std::atan2, std::floor, std::sqrt;
-  constexpr S epsilon = std::numeric_limits<S>::epsilon();
-  constexpr int most_halvings = 60;
-  long panels_left = 20'000;
   // The last resort of hard designs, so that a loose tolerance saves no nodes here: too few would miss a
   // spike.
-  const S tolerance = std::min(tolerance_, S(1e-8L));
-  const GaussRule<S>& gauss = rules_[sizeof(S) > 8 ? 30 : 20];
-
-  const Hoop<S>& hoop = roll.hoop;
-  const S x1 = roll.push > S(0) ? parabola_at_release(roll).nearer : S(-1);
-  const S q0 = sqrt(-x1);
-  const S release = atan2(roll.release_trig.sin, roll.release_trig.cos);  // of whole turns nothing depends
-  S unsure(
-      0);  // of J / E in the panel at hand, relative: roundings of E's largest terms, and of the angle in J
-  const auto slowness_past = [&](const S& x) {
-    const S E = vis_viva_past_release(roll, x);
-    const S terms = roll.released + S(2) * x * (abs(roll.push) + hoop.rho * std::min(x, S(1)));
-    const Trig<S> phi = trig(release + x);
-    const S J = contact_inertia(hoop, phi);
-    const S in_J = hoop.rho * abs(phi.sin) * (S(4) + x) / J;
-    unsure =
-        std::max(unsure, E > S(0) ? S(4) * epsilon * (terms / E + in_J) : std::numeric_limits<S>::infinity());
-    return slowness(J, E);
-  };
-  const auto near_release = [&](const S& past) {
-    return S(2) * (q0 + past) * slowness_past(past * (S(2) * q0 + past));
-  };
-
-  S total(0);
-  const auto rule = [&](const auto& f, S a, S b) {
-    S sum(0);
-    for (std::size_t i = 0; i < gauss.node.size(); ++i)
-      sum += gauss.weight[i] * f(a + (b - a) * gauss.node[i]);
-    --panels_left;
-    return sum * (b - a);
-  };
-  const auto halve = [&](const auto& self, const auto& f, S a, S b, S whole, int depth) -> void {
-    const S middle = a + (b - a) * S(0.5L);
-    unsure = S(0);
-    const S left = rule(f, a, middle), right = rule(f, middle, b), sum = left + right;
-    const bool agree = abs(sum - whole) <= std::max(S(0.1L) * tolerance * (total + sum), unsure * sum);
-    if (agree || depth == 0 || panels_left <= 0 || !(unsure < S(1))) {
-      total += agree ? sum : std::numeric_limits<S>::quiet_NaN();
-      return;
-    }
-    self(self, f, a, middle, left, depth - 1);
-    self(self, f, middle, b, right, depth - 1);
-  };
-
-  // Edges where the integrand may be sharp: the needles at 2 pi k, among eighths of a turn, and the minima of
-  // E.
-  const S eighth = pi_of<S> / S(4), turn = S(2) * pi_of<S>;
-  const S minimum = pi_of<S> - asin(std::min(S(1), hoop.sin_slope / hoop.rho)) - hoop.slope;
-  const S end = to - roll.release;
-  for (S x(0); x < end;) {
-    const S angle = release + x;
-    const auto next = [&](const S& first, const S& step) {
-      const S after = first + step * (floor((angle - first) / step) + S(1)) - release;
-      return after > x + S(1e-9L) ? after : after + step;
-    };
-    S b = std::min({end, next(S(0), eighth), next(minimum, turn)});
-    if (x < S(1)) {
-      b = std::min(b, S(1));
-      const auto past = [&](const S& at) { return at > S(0) ? at / (q0 + sqrt(q0 * q0 + at)) : S(0); };
-      const S from = past(x), until = past(b);
-      halve(halve, near_release, from, until, rule(near_release, from, until), most_halvings);
-    } else {
-      halve(halve, slowness_past, x, b, rule(slowness_past, x, b), most_halvings);
-    }
-    x = b;
-  }
-  return total;
+  return HalvedTime<S>(roll, std::min(tolerance_, S(1e-8L)), rules_[sizeof(S) > 8 ? 30 : 20]).until(to);
 }
 
 template class RollingTime<double>;

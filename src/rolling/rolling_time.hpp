@@ -69,8 +69,8 @@ class RollingTime {
   /// The time from `angle` for less than a part.
   T rest(const Roll<T>& roll, const S& angle, const T& length, int nodes) const;
 
-  /// The time from release to an angle by halving intervals until they agree: for any design. NaN where it
-  /// cannot be told: so near a stall that E is lost in its roundings.
+  /// The time from release to an angle by halving intervals until they agree (halved_time.hpp): for any
+  /// design. NaN where it cannot be told: so near a stall that E is lost in its roundings.
   S halving(const Roll<S>& roll, const S& to) const;
 
  private:

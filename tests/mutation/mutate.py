@@ -18,7 +18,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = ["src/" + name + ".cpp" for name in
-           ("rolling/exact", "rolling/exact_times", "rolling/rolling_time", "rolling/rolling_integration", "physics/three_coordinates", "coulomb/rolling_leg",
+           ("rolling/clock", "rolling/exact", "rolling/find", "rolling/halved_time", "rolling/interval_search", "rolling/prepare", "rolling/rolling_time",
+            "rolling/take_off", "rolling/rolling_integration", "physics/three_coordinates", "coulomb/rolling_leg",
             "coulomb/sliding_leg", "coulomb/sliding_panel", "coulomb/coulomb", "coulomb/coulomb_integration")] + ["tests/mutation/judge.cpp"]
 LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
 OFF = "T(1.001)"
@@ -39,10 +40,9 @@ MUTATIONS = {
     "w^2 by angle": ("rolling_by_angle", "T(2) * (roll.push * x +", "T(2.002) * (roll.push * x +"),
     "level of energy": ("rolling_by_angle", "released - T(2) * (release *", "released - T(2.002) * (release *"),
     "energy's slope": ("rolling_by_angle", "return hoop.sin_slope - hoop.rho * sin_from", f"return hoop.sin_slope - {OFF} * hoop.rho * sin_from"),
-    "G, rest": ("rolling_by_angle", "h.cos_slope * (h.Ic + q * q) + h.rho * h.sin_slope * s * q;\n  const T bend", f"h.cos_slope * ({OFF} * h.Ic + q * q) + h.rho * h.sin_slope * s * q;\n  const T bend"),
-    "G, energy": ("rolling_by_angle", "const T K = h.J_min * c - h.rho", f"const T K = {OFF} * h.J_min * c - h.rho"),
-    "stick, N": ("stick", "const T K = h.J_min * c - h.rho", f"const T K = {OFF} * h.J_min * c - h.rho"),
-    "stick, F": ("stick", "const T pull = q * tau - h.sin_slope * J", f"const T pull = q * tau - {OFF} * h.sin_slope * J"),
+    "G, rest": ("rolling_by_angle", "h.cos_slope * (h.Ic + q * q)", f"h.cos_slope * ({OFF} * h.Ic + q * q)"),
+    "G, energy": ("rolling_by_angle", ".K = h.J_min * c - h.rho", f".K = {OFF} * h.J_min * c - h.rho"),
+    "stick, F": ("stick", "const T pull = t.q * tau - h.sin_slope * t.J", f"const T pull = t.q * tau - {OFF} * h.sin_slope * t.J"),
     "slide, lever": ("sliding", "return hoop.rho * phi.sin - friction", f"return {OFF} * hoop.rho * phi.sin - friction"),
     "slide, pivot": ("sliding", "pivot = hoop.Ic + hoop.rho", f"pivot = {OFF} * hoop.Ic + hoop.rho"),
     "slide, N": ("sliding", "phi, friction) / pivot, hoop.Ic / pivot", f"phi, friction) / pivot, {OFF} * hoop.Ic / pivot"),

@@ -23,23 +23,6 @@ TEST(Lanes, BitsTellEachLaneOfAMask) {
   EXPECT_EQ(Lanes<double>::bits(true), 1u);
 }
 
-TEST(Lanes, RowsComeBackAsColumnsWhateverTheirOrder) {
-  std::array<Row<double>, 20> rows;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t k = 0; k < 8; ++k) rows[i][k] = static_cast<double>(10 * i + k);
-  std::array<std::uint32_t, width> index;
-  for (std::size_t i = 0; i < width; ++i) index[i] = static_cast<std::uint32_t>((7 * i + 3) % 20);
-  const auto columns = load_rows<Batch>(rows.data(), index.data());
-  for (std::size_t k = 0; k < 8; ++k)
-    for (std::size_t i = 0; i < width; ++i)
-      EXPECT_EQ(lanes_of(columns[k])[i], 10.0 * index[i] + static_cast<double>(k));
-
-  std::array<Row<double>, 20> copy{};
-  store_rows(columns, copy.data(), index.data(), width - 1);
-  for (std::size_t i = 0; i + 1 < width; ++i) EXPECT_EQ(copy[index[i]], rows[index[i]]);
-  EXPECT_EQ(copy[index[width - 1]], Row<double>{}) << "lanes to spare are not stored";
-}
-
 TEST(Lanes, ReciprocalSquareRootIsGoodToTwoRoundings) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 10'000; ++i) {

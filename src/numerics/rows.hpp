@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Numbers of many items, those of one item together in memory, so that any items make up a batch at the cost
+/// of a transposition.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "numerics/lanes.hpp"
+
+namespace leapmap {
+
+/// Eight numbers of one item, together in memory.
+template <class S>
+using Row = std::array<S, 8>;
+
+#ifdef __AVX512F__
+/// Eight registers of eight numbers as a matrix, transposed.
+template <class A>
+void transpose(std::array<xsimd::batch<double, A>, 8>& m) {
+  std::array<xsimd::batch<double, A>, 8> pairs, quads;
+  for (std::size_t i = 0; i < 8; i += 2) {
+    pairs[i] = _mm512_unpacklo_pd(m[i], m[i + 1]);
+    pairs[i + 1] = _mm512_unpackhi_pd(m[i], m[i + 1]);
+  }
+  for (const std::size_t i : {0, 4})
+    for (std::size_t j = 0; j < 2; ++j) {
+      quads[i + j] = _mm512_shuffle_f64x2(pairs[i + j], pairs[i + j + 2], 0x88);
+      quads[i + j + 2] = _mm512_shuffle_f64x2(pairs[i + j], pairs[i + j + 2], 0xdd);
+    }
+  for (std::size_t i = 0; i < 4; ++i) {
+    m[i] = _mm512_shuffle_f64x2(quads[i], quads[i + 4], 0x88);
+    m[i + 4] = _mm512_shuffle_f64x2(quads[i], quads[i + 4], 0xdd);
+  }
+}
+#endif
+
+/// The rows of as many items as T has lanes, number k of all of them in column k. An item has `stride` rows.
+template <class T, std::size_t stride = 1>
+std::array<T, 8> load_rows(const Row<ScalarOf<T>>* rows, const std::uint32_t* index) {
+  std::array<T, 8> columns;
+#ifdef __AVX512F__
+  if constexpr (std::is_same_v<T, Batch>) {
+    for (std::size_t i = 0; i < 8; ++i) columns[i] = Batch::load_unaligned(rows[stride * index[i]].data());
+    transpose(columns);
+    return columns;
+  }
+#endif
+  std::array<ScalarOf<T>, Lanes<T>::count> lanes;
+  for (std::size_t k = 0; k < 8; ++k) {
+    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = rows[stride * index[i]][k];
+    columns[k] = Lanes<T>::load(lanes.data());
+  }
+  return columns;
+}
+
+/// The reverse, for the first `count` lanes.
+template <class T, std::size_t stride = 1>
+void store_rows(std::array<T, 8> columns, Row<ScalarOf<T>>* rows, const std::uint32_t* index,
+                std::size_t count) {
+#ifdef __AVX512F__
+  if constexpr (std::is_same_v<T, Batch>) {
+    transpose(columns);
+    for (std::size_t i = 0; i < count; ++i) columns[i].store_unaligned(rows[stride * index[i]].data());
+    return;
+  }
+#endif
+  std::array<ScalarOf<T>, Lanes<T>::count> lanes;
+  for (std::size_t k = 0; k < 8; ++k) {
+    Lanes<T>::store(columns[k], lanes.data());
+    for (std::size_t i = 0; i < count; ++i) rows[stride * index[i]][k] = lanes[i];
+  }
+}
+
+/// N numbers of each item, padded to whole rows.
+template <class S, std::size_t N>
+class PackedRows {
+ public:
+  explicit PackedRows(std::size_t items) : rows_(items * rows_an_item) {}
+
+  /// Puts lane i of the numbers into item index[i], for the first `count` lanes.
+  template <class T>
+  void store(const std::array<T, N>& numbers, const std::uint32_t* index, std::size_t count) {
+    for (std::size_t r = 0; r < rows_an_item; ++r) {
+      std::array<T, 8> row;
+      for (std::size_t k = 0; k < 8; ++k) row[k] = 8 * r + k < N ? numbers[8 * r + k] : T(0);
+      store_rows<T, rows_an_item>(row, rows_.data() + r, index, count);
+    }
+  }
+
+  template <class T>
+  std::array<T, N> load(const std::uint32_t* index) const {
+    std::array<T, N> numbers;
+    for (std::size_t r = 0; r < rows_an_item; ++r) {
+      const std::array<T, 8> row = load_rows<T, rows_an_item>(rows_.data() + r, index);
+      for (std::size_t k = 0; k < 8 && 8 * r + k < N; ++k) numbers[8 * r + k] = row[k];
+    }
+    return numbers;
+  }
+
+ private:
+  static constexpr std::size_t rows_an_item = (N + 7) / 8;
+  std::vector<Row<S>> rows_;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What the stages of the exact solver pass on: of each design of a block its roll, its search and its last
+/// lift-off.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "numerics/rows.hpp"
+#include "physics/flight_search.hpp"
+#include "physics/rolling_by_angle.hpp"
+#include "rolling/interval_search.hpp"
+#include "rolling/rolling_time.hpp"
+
+namespace leapmap {
+
+/// Designs of the block, by their place in it.
+using DesignList = std::vector<std::uint32_t>;
+
+/// The designs in the lanes of a batch; lanes to spare repeat the first.
+template <class T>
+using DesignLanes = std::array<std::uint32_t, Lanes<T>::count>;
+
+template <class T>
+DesignLanes<T> lanes_from(const DesignList& designs, std::size_t first) {
+  DesignLanes<T> lanes;
+  for (std::size_t i = 0; i < lanes.size(); ++i)
+    lanes[i] = designs[first + i < designs.size() ? first + i : first];
+  return lanes;
+}
+
+/// A lift-off and the flight from it, up to the apex.
+template <class T>
+struct TakenOff {
+  T angle, spin;
+  Ascent<T> ascent;  ///< its height is not kept
+};
+
+template <class T>
+struct Block {
+  using S = ScalarOf<T>;
+  static constexpr std::size_t most_designs = 1024;
+
+  struct Found {
+    S turned_back;              ///< whole turns removed from the release angle; added back on output
+    bool stalls;                ///< at the end of the search, rather than the runway's
+    S first_angle, jump_angle;  ///< of the lift-offs so far: the first one, the last one
+  };
+
+  std::vector<IntervalSearch<S>> searches = std::vector<IntervalSearch<S>>(most_designs);
+  std::vector<Found> found = std::vector<Found>(most_designs);
+  DesignList searching;  ///< designs whose search is not over
+
+  void store(const Roll<T>& roll, const Quiet<T>& quiet, const std::uint32_t* index, std::size_t count) {
+    const Hoop<T>& h = roll.hoop;
+    const Trig<T>& phi = roll.release_trig;
+    paths_.template store<T>(
+        {h.sin_slope, h.cos_slope, h.rho, h.clearance, h.Ic, h.J_min, roll.level, h.slope}, index, count);
+    releases_.template store<T>({roll.release, phi.sin, phi.cos, phi.versine, roll.released, roll.push,
+                                 quiet.vis_viva, quiet.distance},
+                                index, count);
+  }
+
+  /// Hoop and level only, which all that depends on the angle alone is made of. U is T, or S for one design.
+  template <class U>
+  Roll<U> load_path(const std::uint32_t* index) const {
+    const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, level, slope] =
+        paths_.template load<U>(index);
+    Roll<U> roll;
+    roll.hoop = {slope, sin_slope, cos_slope, rho, clearance, Ic, J_min};
+    roll.level = level;
+    return roll;
+  }
+  template <class U>
+  Roll<U> load_roll(const std::uint32_t* index) const {
+    Roll<U> roll = load_path<U>(index);
+    const std::array<U, 8> r = releases_.template load<U>(index);
+    roll.release = r[0], roll.release_trig = {r[1], r[2], r[3]}, roll.released = r[4], roll.push = r[5];
+    return roll;
+  }
+  Quiet<T> load_quiet(const std::uint32_t* index) const {
+    const std::array<T, 8> r = releases_.template load<T>(index);
+    return {r[6], r[7]};
+  }
+
+  void store(const TakenOff<T>& off, const std::uint32_t* index, std::size_t count) {
+    const Ascent<T>& ascent = off.ascent;
+    lift_offs_.template store<T>(
+        {off.angle, off.spin, ascent.apex, ascent.last_apex, ascent.sunk, ascent.dip}, index, count);
+  }
+  TakenOff<T> load_lift_off(const std::uint32_t* index) const {
+    const auto [angle, spin, apex, last_apex, sunk, dip] = lift_offs_.template load<T>(index);
+    return {angle, spin, {T(0), apex, last_apex, sunk, dip}};
+  }
+
+ private:
+  PackedRows<S, 8> paths_{most_designs}, releases_{most_designs};
+  PackedRows<S, 6> lift_offs_{most_designs};
+};
+
+}  // namespace leapmap

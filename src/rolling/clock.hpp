@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Times from the release to angles, of all designs of a block in lanes.
+#pragma once
+
+#include <vector>
+
+#include "rolling/block.hpp"
+
+namespace leapmap {
+
+/// The time that a design takes from its release to an angle.
+template <class S>
+struct Reading {
+  std::uint32_t design;  ///< of the block
+  S angle;
+  S time;  ///< NaN where it cannot be told: too near a stall
+};
+
+/// Designs whose angles lie in the same part of a half-turn are timed together: they have the panels of
+/// RollingTime in common. Those that would need too many nodes are timed one at a time.
+template <class T>
+class Clock {
+ public:
+  using S = ScalarOf<T>;
+
+  /// Times will be good to the tolerance, relative, or to some roundings.
+  explicit Clock(double tolerance) : time_(tolerance), dials_(Block<T>::most_designs) {}
+
+  /// At the release of each design.
+  void start(const Block<T>& block, const DesignList& designs);
+
+  /// Fills in the times. From one call to the next a design's angle must not fall.
+  void read(const Block<T>& block, std::vector<Reading<S>>& readings);
+
+ private:
+  /// How far a design has been timed: to the angle `panel` pi. `panel_nodes`, `rest_nodes`: that its panels
+  /// and rests need; no panel_nodes: it is timed by halving.
+  struct Dial {
+    long panel;
+    S time;
+    int panel_nodes, rest_nodes;
+  };
+  struct Part {
+    long number;  ///< of the part of a panel in which the angle lies, from angle 0 on
+    Reading<S>* reading;
+  };
+  /// As many readings of one part as there are lanes; lanes to spare repeat the first.
+  struct Together {
+    std::size_t count;
+    DesignLanes<T> designs;
+    T to;
+  };
+
+  static S halve(const RollingTime<T>& time, const Block<T>& block, const Reading<S>& reading) {
+    return time.halving(block.template load_roll<S>(&reading.design), reading.angle);
+  }
+  static Together together(const std::vector<Part>& parts, std::size_t first);
+  void sort(std::vector<Part>& parts);
+  void read_early(const Block<T>& block);
+  void read_due(const Block<T>& block);
+
+  RollingTime<T> time_;
+  std::vector<Dial> dials_;
+  std::vector<Part> early_, due_, sorted_;  // early: before the first panel's edge
+  std::vector<std::uint32_t> places_;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The time that rolling takes, of one design, by halving intervals until they agree: for designs whose spin
+/// has a needle, or that are a hair past an equilibrium or from a stall.
+#pragma once
+
+#include "numerics/quadrature.hpp"
+#include "physics/rolling_by_angle.hpp"
+
+namespace leapmap {
+
+/// E near the release, released + 2 push x + bend x^2, and its zeros.
+template <class T>
+struct ReleaseParabola {
+  T bend, discriminant, root;
+  MaskOf<T> real;  ///< whether it has zeros
+  /// The nearer zero. Without one E is far from zero if its least value is, over the distance that takes: -1
+  /// will do.
+  T nearer;
+};
+
+template <class T>
+ReleaseParabola<T> parabola_at_release(const Roll<T>& roll) {
+  using std::sqrt;
+  ReleaseParabola<T> p;
+  p.bend = -roll.hoop.rho * cos_from_vertical(roll.hoop, roll.release_trig);
+  p.discriminant = roll.push * roll.push - roll.released * p.bend;
+  p.root = sqrt(larger(p.discriminant, T(0)));
+  p.real = p.discriminant >= T(0);
+  p.nearer = select(p.real, -roll.released / (roll.push + p.root), T(-1));
+  return p;
+}
+
+/// sqrt(J / E) = dt / dphi.
+template <class T>
+T slowness(const T& inertia, const T& vis_viva) {
+  return inertia * reciprocal_sqrt(inertia * vis_viva);
+}
+
+template <class S>
+class HalvedTime {
+ public:
+  /// The rule is applied to each half.
+  HalvedTime(const Roll<S>& roll, const S& tolerance, const GaussRule<S>& rule);
+
+  /// From the release to an angle. NaN where it cannot be told: so near a stall that E is lost in its
+  /// roundings. To be called once.
+  S until(const S& angle);
+
+ private:
+  S slowness_past(const S& x);
+  S stretched_slowness(const S& past);
+  S edge_after(const S& x, const S& end) const;
+  template <class F>
+  S rule(const F& f, const S& a, const S& b);
+  template <class F>
+  void halve(const F& f, const S& a, const S& b, const S& whole, int depth);
+
+  static constexpr S epsilon = std::numeric_limits<S>::epsilon();
+  static constexpr int most_halvings = 60;
+
+  const Roll<S>& roll_;
+  const GaussRule<S>& gauss_;
+  S tolerance_;
+  S release_;    // less whole turns, of which nothing depends
+  S q0_;         // x = q (2 q0 + q) takes out E's zero before the release
+  S unsure_{0};  // relative, of J / E in the panel at hand: roundings of E's terms, and of the angle in J
+  S total_{0};
+  long panels_left_ = 20'000;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The first stage of the exact solver.
+#pragma once
+
+#include <span>
+
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "rolling/block.hpp"
+
+namespace leapmap {
+
+/// Derives every design's roll and begins its search. Designs that do not set out are settled here.
+template <class T>
+void prepare(std::span<const Design> designs, const Scene& scene, Block<T>& block,
+             std::span<Outcome> outcomes);
+
+}  // namespace leapmap

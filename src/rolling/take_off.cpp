@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rolling/take_off.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "physics/flight_search.hpp"
+#include "rolling/find.hpp"
+#include "trajectory/jump_rule.hpp"
+
+namespace leapmap {
+
+template <class T>
+void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Scene& scene,
+                     std::span<Outcome> outcomes, DesignList& going_on) {
+  using std::abs, std::sqrt;
+  using S = ScalarOf<T>;
+  const T epsilon(std::numeric_limits<S>::epsilon());
+  for (std::size_t first = 0; first < falls.size(); first += Lanes<T>::count) {
+    const std::size_t count = std::min(Lanes<T>::count, falls.size() - first);
+    const IntervalLanes<T> lanes = lanes_from<T>(falls, first);
+    const T &a = lanes.from, &b = lanes.to;
+    const Roll<T> roll = block.template load_path<T>(lanes.index.data());
+    const MaskOf<T> all_lanes = a == a;
+    const T angle = polish_root([&](const T& x) { return lift(roll, x); }, a, b, lanes.guess, !all_lanes,
+                                T(2) * epsilon * larger(T(1), abs(b)), all_lanes);
+    const Trig<T> phi = trig(angle);
+    const T spin = sqrt(vis_viva(roll, angle, phi) / contact_inertia(roll.hoop, phi));
+    const Ascent<T> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), all_lanes);
+    const T height = T(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
+    const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
+               apexes = lanes_of(apex_time);
+    block.store(TakenOff<T>{angle, spin, ascent}, lanes.index.data(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t design = lanes.index[i];
+      auto& found = block.found[design];
+      Outcome& outcome = outcomes[design];
+      if (!std::isfinite(angles[i]) || !std::isfinite(spins[i]) || !std::isfinite(heights[i])) {
+        outcome = failed_outcome("a lift-off could not be solved");
+        continue;
+      }
+      // Between two falls so near each other the normal force rises by less than rounding: they are one.
+      constexpr S one_fall = S(1e-6);
+      const bool again = outcome.candidates > 0 &&
+                         angles[i] - found.jump_angle < one_fall * std::max(S(1), std::abs(angles[i]));
+      if (!again) {
+        if (outcome.candidates == 0) found.first_angle = angles[i];
+        found.jump_angle = angles[i];
+        const LiftOff<double> lift_off{Outcome::none, static_cast<double>(angles[i] + found.turned_back),
+                                       static_cast<double>(spins[i])};
+        if (told) told->push_back(lift_off);
+        const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]),
+                                    Outcome::none, Outcome::none};
+        if (consider(outcome, scene, designs[design], lift_off, flight)) continue;
+      }
+      block.searches[design].advance();
+      going_on.push_back(design);
+    }
+  }
+}
+
+template <class T>
+void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes) {
+  for (std::size_t first = 0; first < jumped.size(); first += Lanes<T>::count) {
+    const std::size_t count = std::min(Lanes<T>::count, jumped.size() - first);
+    const DesignLanes<T> index = lanes_from<T>(jumped, first);
+    const Roll<T> roll = block.template load_path<T>(index.data());
+    const TakenOff<T> off = block.load_lift_off(index.data());
+    const Toss<T> toss = toss_of(roll.hoop, off.angle, trig(off.angle), off.spin);
+    const Flight<T> flight = scaled(descend(toss, off.ascent, off.spin == off.spin), roll.hoop, off.spin);
+    const auto landings = lanes_of(flight.flight_time), dips = lanes_of(flight.dip);
+    for (std::size_t i = 0; i < count; ++i) {
+      outcomes[index[i]].flight_time = static_cast<double>(landings[i]);
+      outcomes[index[i]].dip = static_cast<double>(dips[i]);
+    }
+  }
+}
+
+#ifdef LEAPMAP_KERNELS
+template struct TakeOff<Batch>;
+template void land(const Block<Batch>&, const DesignList&, std::span<Outcome>);
+#endif
+#ifdef LEAPMAP_SCALARS
+template struct TakeOff<double>;
+template struct TakeOff<long double>;
+template void land(const Block<double>&, const DesignList&, std::span<Outcome>);
+template void land(const Block<long double>&, const DesignList&, std::span<Outcome>);
+#endif
+
+}  // namespace leapmap

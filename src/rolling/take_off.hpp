@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Stages of the exact solver: polish a lift-off and fly up to the apex; fly jumps down to the landing.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "rolling/block.hpp"
+
+namespace leapmap {
+
+template <class T>
+struct TakeOff {
+  std::vector<Interval<ScalarOf<T>>> falls;      ///< with one lift-off each, at most one a design
+  std::vector<LiftOff<double>>* told = nullptr;  ///< told every lift-off, if there; without times
+
+  /// Adds designs whose search goes on, because that was not the jump, to `going_on`.
+  void run(Block<T>& block, std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
+           DesignList& going_on);
+};
+
+/// Flight time and dip of the jumps.
+template <class T>
+void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes);
+
+}  // namespace leapmap
