@@ -10,6 +10,7 @@
 #include "model/parameters.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
+#include "sweep/solve_blocks.hpp"
 #include "sweep/solver.hpp"
 
 namespace leapmap {
@@ -29,6 +30,27 @@ Spec spec_of(const Scene& scene, const Options& options) {
   return spec;
 }
 
+/// Refuses what is no hoop by the design's number, if it is one of many.
+void check_designs(std::span<const Design> block, const Scene& scene, std::size_t first, std::size_t designs) {
+  for (std::size_t i = 0; i < block.size(); ++i)
+    if (!is_allowed(block[i], scene))
+      check_design(block[i], scene, designs > 1 ? fmt::format("design {}", first + i) : "");
+}
+
+/// make_block() once a thread, and what it returns with a solver, the first design and how many.
+template <class MakeBlock>
+void solve_in_blocks(const Spec& spec, std::size_t designs, const SolveOptions& options,
+                     const MakeBlock& make_block) {
+  parallel_for_each((designs + designs_a_block - 1) / designs_a_block, options.threads, [&] {
+    return [&, solver = make_solver(spec), solve_block = make_block()](std::size_t block) mutable {
+      const std::size_t first = block * designs_a_block;
+      solve_block(solver, first, std::min(designs_a_block, designs - first));
+      if (options.stop_requested && options.stop_requested()) throw Stopped("solve was asked to stop");
+      return true;
+    };
+  });
+}
+
 }  // namespace
 
 Outcome solve(const Design& design, const Scene& scene, const SolveOptions& options) {
@@ -44,17 +66,27 @@ void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, co
   if (designs.size() != outcomes.size())
     throw InputError(
         fmt::format("{} outcomes for {} designs; allowed: as many", outcomes.size(), designs.size()));
-  const Spec spec = spec_of(scene, options);
-  parallel_for_each((designs.size() + designs_a_block - 1) / designs_a_block, options.threads, [&] {
-    return [&, solver = make_solver(spec)](std::size_t block) {
-      const std::size_t first = block * designs_a_block,
-                        size = std::min(designs_a_block, designs.size() - first);
-      const std::span<const Design> some = designs.subspan(first, size);
-      for (std::size_t i = 0; i < size; ++i)
-        if (!is_allowed(some[i], scene)) check_design(some[i], scene, fmt::format("design {}", first + i));
-      solver(some, outcomes.subspan(first, size));
-      if (options.stop_requested && options.stop_requested()) throw Stopped("solve was asked to stop");
-      return true;
+  solve_in_blocks(spec_of(scene, options), designs.size(), options, [&] {
+    return [&](const Solver& solver, std::size_t first, std::size_t size) {
+      check_designs(designs.subspan(first, size), scene, first, designs.size());
+      solver(designs.subspan(first, size), outcomes.subspan(first, size));
+    };
+  });
+}
+
+void solve_blocks(std::size_t designs, const Scene& scene, const SolveOptions& options,
+                  const std::vector<std::string>& fields, const BlockEnds& ends) {
+  Spec spec = spec_of(scene, options);
+  spec.output.fields = fields;
+  solve_in_blocks(spec, designs, options, [&] {
+    const std::size_t most = std::min(designs, designs_a_block);
+    return [&, some = std::vector<Design>(most), outcomes = std::vector<Outcome>(most)](
+               const Solver& solver, std::size_t first, std::size_t size) mutable {
+      const std::span<Design> block = std::span(some).first(size);
+      ends.fill(first, block);
+      check_designs(block, scene, first, designs);
+      solver(block, std::span(outcomes).first(size));
+      ends.take(first, std::span(outcomes).first(size));
     };
   });
 }

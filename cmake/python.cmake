@@ -1,0 +1,30 @@
+# The Python package leapmap: src/python/leapmap with its compiled core, the charts and the page's parts beside it.
+set(package ${PROJECT_BINARY_DIR}/python/leapmap)
+pybind11_add_module(leapmap-python MODULE NO_EXTRAS src/python/arguments.cpp src/python/module.cpp src/python/results.cpp)
+set_target_properties(leapmap-python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${package}
+                                                CXX_VISIBILITY_PRESET hidden)
+target_link_libraries(leapmap-python PRIVATE leapmap leapmap-options)
+
+file(GLOB modules CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src/python/leapmap ${PROJECT_SOURCE_DIR}/src/python/leapmap/*.py)
+file(MAKE_DIRECTORY ${package})
+foreach(module ${modules})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/src/python/leapmap/${module} ${package}/${module} SYMBOLIC)
+endforeach()
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/analysis ${package}/analysis SYMBOLIC)
+
+# Type stubs for editors, from the tables of parameters and fields.
+add_custom_command(TARGET leapmap-python POST_BUILD VERBATIM
+  COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${PROJECT_BINARY_DIR}/python
+          ${Python_EXECUTABLE} -P ${PROJECT_SOURCE_DIR}/src/python/stubs.py ${package}/__init__.pyi
+  COMMENT "Type stubs of the Python module")
+
+# Found by Debian's interpreter under /usr and /usr/local; under another prefix by PYTHONPATH.
+set(LEAPMAP_PYTHON_DIR lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/dist-packages CACHE PATH
+    "Where the Python package is installed, under the prefix")
+install(TARGETS leapmap-python DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
+install(DIRECTORY src/python/leapmap/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap FILES_MATCHING PATTERN "*.py"
+        PATTERN __pycache__ EXCLUDE)
+install(FILES ${package}/__init__.pyi DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
+install(DIRECTORY analysis/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap/analysis USE_SOURCE_PERMISSIONS
+        PATTERN __pycache__ EXCLUDE PATTERN pictures EXCLUDE PATTERN "*.sh" EXCLUDE PATTERN rivals.py EXCLUDE
+        PATTERN boost_rival.cpp EXCLUDE)

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Python's keyword arguments as designs and a scene: numbers, arrays that broadcast, angles like "30 deg".
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
+
+namespace leapmap::python {
+
+/// The designs of one call: one number or one array for each parameter, of shapes that broadcast.
+class Designs {
+ public:
+  /// Reads the parameters of designs and of the scene from `given`. Throws InputError, naming the parameter,
+  /// for one that is not known, is no number, or has a shape that does not fit.
+  Designs(const pybind11::dict& given, Scene scene);
+
+  const Scene& scene() const { return scene_; }
+  const std::vector<pybind11::ssize_t>& shape() const { return shape_; }  ///< empty: all are numbers
+  std::size_t count() const { return count_; }
+
+  /// Designs first, first + 1, ... in C order, the last dimension fastest. From any thread, Python's lock not
+  /// needed.
+  void fill(std::size_t first, std::span<Design> designs) const;
+
+ private:
+  using Numbers = pybind11::array_t<double, pybind11::array::forcecast>;
+  struct Column {
+    std::string name;
+    double Design::*member;
+    Numbers numbers;  // keeps the memory
+    const char* begin;
+    std::vector<pybind11::ssize_t> strides;  // of the broadcast shape, in bytes; 0 along what is repeated
+  };
+
+  void take(const std::string& name, const pybind11::handle& value);
+  void broadcast();
+
+  Scene scene_;
+  Design common_;
+  std::vector<Column> columns_;
+  std::vector<pybind11::ssize_t> shape_;
+  std::size_t count_ = 1;
+};
+
+}  // namespace leapmap::python

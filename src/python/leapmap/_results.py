@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What solve and trace return."""
+from enum import IntEnum
+
+import numpy as np
+
+from leapmap import _core
+
+_FIELDS = {row["name"]: row for row in _core.fields()}
+_PARAMETERS = {row["name"]: row for row in _core.parameters()}
+Status = IntEnum("Status", {name: code for code, name in enumerate(_FIELDS["status"]["codes"])})
+Status.__doc__ = "How a design ended, as maps store it: numbers are never reused or changed."
+_PHASES = {1: "rolling", 2: "sliding", 3: "flight"}
+_POINTS = {"t": ("s", "since release"), "phi": ("rad", "angle; 0: mass on the plane"), "spin": ("rad s-1", "positive downhill"),
+           "x": ("m", "travel of the hoop's centre along the plane since release"),
+           "y": ("m", "height of the hoop's lowest point above the plane"),
+           "normal_force": ("1", "over the weight; negative: rolling on would need a plane that pulls"),
+           "friction": ("1", "over the weight, positive downhill"), "phase": ("1", "1 rolling, 2 sliding, 3 flight")}
+
+
+def _described(name):
+    row = _FIELDS[name]
+    about = {"long_name": row["meaning"], "units": row["unit"]}
+    if row["codes"]:
+        about |= {"flag_values": np.arange(len(row["codes"]), dtype=np.uint8), "flag_meanings": " ".join(row["codes"])}
+    return about
+
+
+class Outcomes:
+    """Outcomes of many designs: an array for each field, in the shape the parameters broadcast to; of one design, numbers.
+
+    Quantities are float64, NaN where they do not apply; `status` and the other codes are uint8."""
+
+    def __init__(self, fields, given):
+        self.__dict__.update(fields)
+        self.__dict__["_fields"], self.__dict__["_given"] = fields, given
+
+    def __getattr__(self, name):
+        if name in _FIELDS:
+            needs = _FIELDS[name]["friction"]
+            raise AttributeError(f"{name} was not computed: " + (
+                f"it needs friction={needs!r}" if needs and needs != self._given.get("friction", "sticking") else "name it in fields"))
+        raise AttributeError(f"outcomes have no {name!r}; they have {', '.join(self._fields)}")
+
+    def __repr__(self):
+        shape = np.shape(next(iter(self._fields.values())))
+        if not shape:
+            return "\n".join(["one design:", *(f"  {name:20} {value!s}" for name, value in self._fields.items())])
+        counts = ""
+        if "status" in self._fields:
+            codes, numbers = np.unique(self.status, return_counts=True)
+            counts = ": " + ", ".join(f"{n} {Status(c).name}" for c, n in zip(codes, numbers))
+        return f"<outcomes of {' x '.join(map(str, shape))} designs{counts}; fields {', '.join(self._fields)}>"
+
+    def to_xarray(self):
+        """An xarray.Dataset. A dimension along which one parameter alone varies takes its name and its values; another is
+        called dim_0, dim_1, ... and the parameters along it are coordinates."""
+        import xarray
+
+        shape = np.shape(next(iter(self._fields.values())))
+        given = {name: np.asarray(value, float) for name, value in self._given.items()
+                 if name in _PARAMETERS and not isinstance(value, str)}
+        along = {name: tuple(d for d, n in enumerate(value.shape, len(shape) - value.ndim) if n > 1) for name, value in given.items()}
+        dims = [f"dim_{d}" for d in range(len(shape))]
+        for d in range(len(shape)):
+            varying = [name for name, axes in along.items() if d in axes]
+            if len(varying) == 1 and along[varying[0]] == (d,):
+                dims[d] = varying[0]
+        coordinates = {}
+        for name, value in given.items():
+            if value.ndim:
+                values = np.squeeze(value) if value.size > 1 else value.reshape(())
+                about = {"long_name": _PARAMETERS[name]["meaning"], "units": _PARAMETERS[name]["unit"]}
+                coordinates[name] = ([dims[d] for d in along[name]], values, about)
+        scalars = {name: value if isinstance(value, str) else float(value) for name, value in self._given.items()
+                   if isinstance(value, str) or np.ndim(value) == 0}
+        return xarray.Dataset({name: (dims, values, _described(name)) for name, values in self._fields.items()}, coordinates, scalars)
+
+
+class Motion:
+    """One design's motion. SI units.
+
+    t, phi, spin, x, y, normal_force, friction, phase: arrays, a sample each interval, and at the jump's lift-off and landing.
+    phases: where each begins; candidates: every lift-off looked at. Both lists of dictionaries.
+    outcome: as solve's, of one design."""
+
+    def __init__(self, told, given):
+        self.__dict__.update(told["points"])
+        self.outcome = Outcomes({name: value[()] for name, value in told["outcome"].items()}, given)
+        self.phases = [row | {"phase": _PHASES[row["phase"]]} for row in _rows(told["phases"])]
+        self.candidates = _rows(told["candidates"])
+        self.failure = told["failure"]
+
+    def __repr__(self):
+        return (f"<motion: {Status(self.outcome.status).name}; {len(self.t)} samples, {len(self.phases)} phases, "
+                f"{len(self.candidates)} lift-offs>")
+
+    def to_xarray(self):
+        """An xarray.Dataset of the samples along t."""
+        import xarray
+
+        columns = {name: ("t", getattr(self, name), {"units": unit, "long_name": meaning})
+                   for name, (unit, meaning) in _POINTS.items()}
+        return xarray.Dataset({name: column for name, column in columns.items() if name != "t"}, {"t": columns["t"]})
+
+
+def _rows(columns):
+    return [dict(zip(columns, (value.item() for value in row))) for row in zip(*columns.values())]

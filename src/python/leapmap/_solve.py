@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""solve and trace, with what they take written into their docstrings and signatures from leapmap's own tables."""
+import inspect
+
+from leapmap import _core
+from leapmap._results import Motion, Outcomes
+
+
+def solve(*, friction="sticking", fields=None, method="auto", tolerance=1e-10, max_steps=1_000_000, threads=0, **parameters):
+    """Solves designs: when and how high does each of them jump?
+
+    Every parameter of a design is a number, an angle like "30 deg", or an array; arrays broadcast as numpy's do. Those of the
+    scene are one number for the call. What is not given is the paper's hoop.
+    {parameters}
+    friction: "sticking", the contact never slips, or "coulomb".
+    fields: names of those wanted; what only others need is not computed. Default: all.
+    method: "auto", "exact", or a stepper like "gsl-rk8pd"; tolerance: relative error of times, a stepper's per step.
+    max_steps: of a stepper; a design that needs more has status failed. threads: 0 for all cores.
+
+    Returns Outcomes, arrays in the shape all parameters broadcast to:
+    {fields}
+
+    Raises ValueError, naming the parameter, its value and what is allowed. Ctrl-C ends it."""
+    columns = _core.solve(parameters, friction, fields or [], method, tolerance, max_steps, threads)
+    parameters["friction"] = friction
+    return Outcomes({name: column[()] for name, column in columns.items()}, parameters)
+
+
+def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10, max_steps=1_000_000, **parameters):
+    """One design's motion over time, sampled every interval [s]; 0: phases and lift-offs only.
+
+    Parameters are numbers, or angles like "30 deg"; what is not given is the paper's hoop.
+    {parameters}
+    friction, method, tolerance, max_steps: as in solve.
+
+    Returns a Motion. Raises ValueError, naming the parameter, its value and what is allowed."""
+    told = _core.trace(parameters, friction, interval, method, tolerance, max_steps)
+    return Motion(told, parameters | {"friction": friction})
+
+
+def _parameter_line(row):
+    only = f"; {row['friction']} only" if row["friction"] and not row["meaning"].startswith(row["friction"]) else ""
+    return f"{row['name']}: {row['meaning']}{only}. {row['allowed'][0].upper() + row['allowed'][1:]}; default {row['default']:.6g}" + (
+        "." if row["array"] else ", one for all designs.")
+
+
+def _field_line(row):
+    return f"{row['name']} [{row['unit']}]: {row['meaning']}" + (f"; {row['friction']} only" if row["friction"] else "") + (
+        "; " + ", ".join(f"{code} {name}" for code, name in enumerate(row["codes"])) if row["codes"] else "")
+
+
+def _document(function):
+    rows = _core.parameters()
+    lines = {"parameters": "\n    ".join(map(_parameter_line, rows)), "fields": "\n    ".join(map(_field_line, _core.fields()))}
+    for name, text in lines.items():
+        function.__doc__ = function.__doc__.replace("{" + name + "}", text)
+    signature = inspect.signature(function)
+    own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+    of_hoop = [inspect.Parameter(row["name"], inspect.Parameter.KEYWORD_ONLY, default=row["default"]) for row in rows]
+    function.__signature__ = signature.replace(parameters=of_hoop + own)
+
+
+_document(solve)
+_document(trace)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws charts of maps, traces and tables, and makes the page to explore a map with.
+
+    python3 -m leapmap.charts design MAP.h5 -o chart
+    python3 -m leapmap.charts CHART --help
+"""
+import os
+import runpy
+import sys
+
+from leapmap._analysis import FOLDER
+
+CHARTS = {name: name + "_chart.py" for name in ("adequacy", "cut", "design", "experiment", "precision", "stability", "status", "trace")}
+CHARTS["explorer"] = "explorer"
+
+
+def main():
+    words = sys.argv[1:]
+    if not words or words[0] in ("-h", "--help"):
+        print(__doc__.strip(), "\n\nCHART is one of: ", ", ".join(CHARTS), sep="")
+        return 0 if words else 2
+    if words[0] not in CHARTS:
+        print(f"leapmap.charts: {words[0]!r} is no chart; allowed: {', '.join(CHARTS)}", file=sys.stderr)
+        return 2
+    script = os.path.join(FOLDER, CHARTS[words[0]])
+    sys.argv = [script, *words[1:]]
+    sys.path.insert(0, FOLDER)
+    runpy.run_path(script, run_name="__main__")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/results.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+
+#include "leapmap/errors.hpp"
+#include "model/model.hpp"
+
+namespace py = pybind11;
+
+namespace leapmap::python {
+namespace {
+
+py::dtype type_of(const Field& field) {
+  if (std::holds_alternative<Code>(field.source)) return py::dtype::of<std::uint8_t>();
+  return std::holds_alternative<Word>(field.source) ? py::dtype::of<std::uint64_t>()
+                                                    : py::dtype::of<double>();
+}
+
+/// A member of each item as an array.
+template <class Item, class Value>
+py::array_t<Value> column(const std::vector<Item>& items, Value Item::*member) {
+  py::array_t<Value> array(static_cast<py::ssize_t>(items.size()));
+  std::ranges::transform(items, array.mutable_data(), [&](const Item& item) { return item.*member; });
+  return array;
+}
+
+template <class Item>
+py::array_t<std::uint8_t> phase_column(const std::vector<Item>& items) {
+  py::array_t<std::uint8_t> array(static_cast<py::ssize_t>(items.size()));
+  std::ranges::transform(items, array.mutable_data(),
+                         [](const Item& item) { return static_cast<std::uint8_t>(item.phase); });
+  return array;
+}
+
+}  // namespace
+
+Columns::Columns(const std::vector<std::string>& fields, const Scene& scene,
+                 const std::vector<py::ssize_t>& shape) {
+  std::vector<std::string_view> known;
+  for (const Field& field : map_fields())
+    if (has(scene.friction, field.only_of)) known.push_back(field.name);
+  for (const std::string& name : fields)
+    if (std::ranges::find(known, name) == known.end())
+      throw InputError(
+          fmt::format("fields = {}: is no field of this model; allowed: {}", name, fmt::join(known, ", ")));
+  for (const Field& field : map_fields()) {
+    const bool wanted = fields.empty() ? has(scene.friction, field.only_of)
+                                       : std::ranges::find(fields, field.name) != fields.end();
+    if (!wanted) continue;
+    py::array array(type_of(field), shape);
+    columns_.push_back({&field, array, array.mutable_data()});
+  }
+}
+
+std::vector<std::string> Columns::names() const {
+  std::vector<std::string> names;
+  for (const Column& column : columns_) names.emplace_back(column.field->name);
+  return names;
+}
+
+void Columns::take(std::size_t first, std::span<const Outcome> outcomes) {
+  for (const Column& column : columns_) {
+    const auto put = [&]<class Value>(Value*, const auto& value_of) {
+      std::ranges::transform(outcomes, static_cast<Value*>(column.begin) + first, value_of);
+    };
+    if (const auto* quantity = std::get_if<Quantity>(&column.field->source)) {
+      put(static_cast<double*>(nullptr), [&](const Outcome& outcome) { return outcome.*quantity->member; });
+    } else if (const auto* code = std::get_if<Code>(&column.field->source)) {
+      put(static_cast<std::uint8_t*>(nullptr), code->value);
+    } else {
+      const auto& word = std::get<Word>(column.field->source);
+      put(static_cast<std::uint64_t*>(nullptr), [&](const Outcome& outcome) { return outcome.*word.member; });
+    }
+  }
+}
+
+py::dict Columns::arrays() const {
+  py::dict arrays;
+  for (const Column& column : columns_) arrays[py::str(std::string(column.field->name))] = column.array;
+  return arrays;
+}
+
+py::dict dict_of(const Motion& motion, const Scene& scene) {
+  py::dict told, points, phases, lift_offs;
+  Columns outcome({}, scene, {});
+  outcome.take(0, {&motion.outcome, 1});
+  told["outcome"] = outcome.arrays();
+  points["t"] = column(motion.points, &MotionPoint::t),
+  points["phi"] = column(motion.points, &MotionPoint::phi);
+  points["spin"] = column(motion.points, &MotionPoint::spin),
+  points["x"] = column(motion.points, &MotionPoint::x);
+  points["y"] = column(motion.points, &MotionPoint::y);
+  points["normal_force"] = column(motion.points, &MotionPoint::normal_force);
+  points["friction"] = column(motion.points, &MotionPoint::friction);
+  points["phase"] = phase_column(motion.points);
+  told["points"] = points;
+  phases["t"] = column(motion.phases, &PhaseStart::t),
+  phases["phi"] = column(motion.phases, &PhaseStart::phi);
+  phases["spin"] = column(motion.phases, &PhaseStart::spin),
+  phases["x"] = column(motion.phases, &PhaseStart::x);
+  phases["direction"] = column(motion.phases, &PhaseStart::direction);
+  phases["phase"] = phase_column(motion.phases);
+  told["phases"] = phases;
+  lift_offs["t"] = column(motion.candidates, &Candidate::t);
+  lift_offs["phi"] = column(motion.candidates, &Candidate::phi);
+  lift_offs["spin"] = column(motion.candidates, &Candidate::spin);
+  lift_offs["height"] = column(motion.candidates, &Candidate::height);
+  lift_offs["apex_time"] = column(motion.candidates, &Candidate::apex_time);
+  lift_offs["flight_time"] = column(motion.candidates, &Candidate::flight_time);
+  lift_offs["dip"] = column(motion.candidates, &Candidate::dip);
+  told["candidates"] = lift_offs;
+  told["failure"] = motion.outcome.failure ? py::object(py::str(motion.outcome.failure)) : py::none();
+  return told;
+}
+
+py::dict dict_of(const Report& report) {
+  py::dict told, statuses;
+  told["whole"] = report.whole, told["was_whole"] = report.was_whole;
+  told["designs"] = report.designs, told["done"] = report.done, told["solved"] = report.solved;
+  told["seconds"] = report.seconds, told["durable"] = report.durable;
+  for (int i = 0; i < status_count; ++i)
+    statuses[py::str(std::string(name_of(static_cast<Status>(i))))] =
+        report.statuses[static_cast<std::size_t>(i)];
+  told["statuses"] = statuses;
+  return told;
+}
+
+}  // namespace leapmap::python
