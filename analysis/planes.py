@@ -57,6 +57,8 @@ class Planes:
         rest = lambda taken, wish: wish if wish in free and wish != taken else next((n for n in free if n != taken), None)
         self.x = x or rest(y, "slope")
         self.y = y or rest(self.x, "mass_ratio")
+        if len(free) < 2:
+            raise NotAMap(f"{m.path}: --at fixes all axes but {free[0] if free else 'none'}; leave two free to draw over")
         for name in (self.x, self.y):
             if name not in free:
                 raise NotAMap(f"{m.path}: has no axis {name} to draw; it has {', '.join(free) or 'none that --at does not fix'}")

@@ -18,12 +18,17 @@ echo
 echo "== 123,904 designs over slope x mass ratio x L/R"
 $leapmap sweep sweeps/slope_mass_ratio_offset.toml --overwrite || [ $? = 1 ]  # 1: the audit disagrees, and says so
 echo
+echo "== 74,240 designs with friction, over slope x mass ratio x friction coefficient"
+$leapmap sweep sweeps/adequacy_coulomb.toml --overwrite || [ $? = 1 ]
+echo
 echo "== charts"
 /usr/bin/python3 analysis/design_chart.py maps/slope_mass_ratio_offset.h5 -o maps/design_chart
+/usr/bin/python3 analysis/design_chart.py maps/adequacy_coulomb.h5 -o maps/design_chart_friction
 /usr/bin/python3 analysis/status_chart.py maps/slope_mass_ratio_offset.h5 -o maps/status
 /usr/bin/python3 analysis/cut_chart.py maps/slope_mass_ratio_offset.h5 -o maps/cut
 /usr/bin/python3 analysis/trace_chart.py maps/paper_figures.h5 --paper -o maps/paper_figures
 /usr/bin/python3 analysis/explorer maps/slope_mass_ratio_offset.h5
 echo
 echo "The design chart: $PWD/maps/design_chart_jump_height.png"
+echo "The same with friction:   $PWD/maps/design_chart_friction_jump_height.png"
 echo "The page to explore, for any browser: $PWD/maps/slope_mass_ratio_offset.html"

@@ -252,6 +252,11 @@ void add_info(CLI::App& app, int& status) {
   command->add_option("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
       ->check(CLI::Range(0.0, 1e15));
   add_no_lock(*command, arguments->locking);
+  command->footer(
+      "Examples:\n"
+      "  leapmap info m.h5                                       axes, statuses, extremes\n"
+      "  leapmap info m.h5 --spec > again.toml                   the spec that makes it again\n"
+      "  leapmap info m.h5 --failed --limit 3                    commands that show what failed");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

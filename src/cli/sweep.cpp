@@ -96,8 +96,9 @@ int run(const SweepArguments& arguments) {
 }  // namespace
 
 std::string sweep_command(const SweepArguments& arguments, const std::string& map, std::string_view how) {
-  std::string command =
-      fmt::format("leapmap sweep {} -o {} {}", shell_quoted(arguments.spec), shell_quoted(map), how);
+  std::string command = "leapmap sweep";
+  if (!arguments.spec.empty()) command += " " + shell_quoted(arguments.spec);
+  command += fmt::format(" -o {} {}", shell_quoted(map), how);
   for (const std::string& set : arguments.overrides) command += " --set " + shell_quoted(set);
   if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
   if (arguments.commit_interval != SweepArguments{}.commit_interval)
@@ -148,7 +149,8 @@ void print_totals(const StatusCounts& totals) {
 void add_sweep(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("sweep", "solve the designs of a spec into a map (HDF5)");
   auto arguments = std::make_shared<SweepArguments>();
-  command->add_option("SPEC", arguments->spec, "the sweep's spec, TOML")->required();
+  command->add_option("SPEC", arguments->spec,
+                      "the sweep's spec, TOML; default: every key at its default, the paper's hoop");
   command
       ->add_option("-o,--output", arguments->map,
                    "the map to write, in a folder made if need be; default: output.file of the spec")

@@ -15,6 +15,7 @@
 #include "support/posix.hpp"
 #include "sweep/options.hpp"
 #include "sweep/point_list.hpp"
+#include "sweep/spacing.hpp"
 
 namespace leapmap {
 namespace {
@@ -76,32 +77,48 @@ std::optional<std::int64_t> to_whole(const toml::node& node) {
   return static_cast<std::int64_t>(*value);
 }
 
-/// { from, to, count, scale } or { values }.
-std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
-  constexpr std::string_view forms =
-      "{ from, to, count, scale = \"linear\" | \"log\" } or { values = [...] }";
-  const bool list = table.contains("values");
-  for (const auto& [key, node] : table) {
-    const std::string_view name = key.str();
-    const bool known =
-        list ? name == "values" : name == "from" || name == "to" || name == "count" || name == "scale";
-    if (!known) refuse(entry, fmt::format("'{}' does not belong to this axis", name), forms);
-  }
+constexpr std::string_view axis_forms =
+    "{ from, to, count, scale = \"linear\" | \"log\" }, { from, to, step } or { values = [...] }";
+
+/// { values }.
+std::vector<double> to_list(const Entry& entry, const toml::table& table) {
+  const toml::array* array = table["values"].as_array();
+  if (!array || array->empty()) refuse(entry, "'values' is not a list of numbers", axis_forms);
   std::vector<double> values;
-  if (list) {
-    const toml::array* array = table["values"].as_array();
-    if (!array || array->empty()) refuse(entry, "'values' is not a list of numbers", forms);
-    for (const toml::node& node : *array) values.push_back(to_number(entry, node, "values"));
-    std::vector<double> sorted = values;
-    std::ranges::sort(sorted);
-    if (std::ranges::adjacent_find(sorted) != sorted.end())
-      refuse(entry, "a value is there twice", "each once");
-    return values;
+  for (const toml::node& node : *array) values.push_back(to_number(entry, node, "values"));
+  std::vector<double> sorted = values;
+  std::ranges::sort(sorted);
+  if (std::ranges::adjacent_find(sorted) != sorted.end())
+    refuse(entry, "a value is there twice", "each once");
+  return values;
+}
+
+/// How many steps lead from one bound to the other.
+std::size_t count_of_steps(const Entry& entry, const toml::table& table, double from, double to) {
+  const double step = to_number(entry, *table.get("step"), "step"), steps = std::abs(to - from) / step;
+  // Bounds and step are rounded, so that a whole number of steps is one but for some roundings.
+  if (!(steps >= 1.0 && std::abs(steps - std::round(steps)) < 1e-9 * steps))
+    refuse(entry, fmt::format("'step' leads {} steps from 'from' to 'to'", steps),
+           "a whole number of steps, or count in place of step");
+  if (steps >= most_axis_values)
+    refuse(entry, "'step' is too small", fmt::format("up to {} values", most_axis_values));
+  return static_cast<std::size_t>(std::round(steps)) + 1;
+}
+
+/// { from, to, count, scale } or { from, to, step }.
+Spacing to_spacing(const Entry& entry, const toml::table& table) {
+  const bool steps = table.contains("step");
+  for (const std::string_view part : {"from", "to", "count"})
+    if (!table.contains(part) && !(steps && part == "count"))
+      refuse(entry, fmt::format("'{}' is missing", part), axis_forms);
+  Spacing spacing{.from = to_number(entry, *table.get("from"), "from"),
+                  .to = to_number(entry, *table.get("to"), "to"),
+                  .count = 1};
+  const auto& [from, to, ignored, log] = spacing;
+  if (steps) {
+    spacing.count = count_of_steps(entry, table, from, to);
+    return spacing;
   }
-  for (const std::string_view bound : {"from", "to", "count"})
-    if (!table.contains(bound)) refuse(entry, fmt::format("'{}' is missing", bound), forms);
-  const double from = to_number(entry, *table.get("from"), "from"),
-               to = to_number(entry, *table.get("to"), "to");
   const auto count = to_whole(*table.get("count"));
   if (!count || *count < 1 || *count > most_axis_values)
     refuse(entry, "'count' is not a number of values",
@@ -111,20 +128,22 @@ std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
   if (*count == 1 && from != to) refuse(entry, "'count' is 1", "2 or more, or 'from' equal to 'to'");
   const std::string scale = table["scale"].value_or(std::string(table.contains("scale") ? "?" : "linear"));
   if (scale != "linear" && scale != "log") refuse(entry, "'scale' is unknown", "\"linear\" or \"log\"");
-  const bool log = scale == "log";
+  spacing.log = scale == "log";
   if (log && !(from > 0.0 && to > 0.0))
     refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
+  spacing.count = static_cast<std::size_t>(*count);
+  return spacing;
+}
 
-  const auto last = static_cast<double>(*count - 1);
-  values.reserve(static_cast<std::size_t>(*count));
-  for (std::int64_t i = 0; i < *count; ++i) {
-    const double x = *count > 1 ? static_cast<double>(i) / last : 0.0;
-    values.push_back(log ? std::exp(std::log(from) * (1.0 - x) + std::log(to) * x)
-                         : from * (1.0 - x) + to * x);
-  }
-  values.front() = from;
-  values.back() = to;
-  return values;
+std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
+  using Names = std::vector<std::string_view>;
+  const Names names = table.contains("values") ? Names{"values"}
+                      : table.contains("step") ? Names{"from", "to", "step"}
+                                               : Names{"from", "to", "count", "scale"};
+  for (const auto& [key, node] : table)
+    if (std::ranges::find(names, key.str()) == names.end())
+      refuse(entry, fmt::format("'{}' does not belong to this axis", key.str()), axis_forms);
+  return table.contains("values") ? to_list(entry, table) : values_of(to_spacing(entry, table));
 }
 
 /// Puts one key's value where its option says.

@@ -9,6 +9,7 @@
 
 #include "model/model.hpp"
 #include "sweep/options.hpp"
+#include "sweep/spacing.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap {
@@ -37,6 +38,12 @@ std::string resolved_text(const Spec& original) {
   };
   const auto axes = [&] {  // in spec order, which is the order of the map's dimensions
     for (const Axis& axis : spec.axes) {
+      if (const auto spacing = spacing_of(axis.values)) {
+        line_below("design", axis.key,
+                   fmt::format("{{ from = {}, to = {}, count = {}{} }}", number(spacing->from),
+                               number(spacing->to), spacing->count, spacing->log ? ", scale = \"log\"" : ""));
+        continue;
+      }
       std::vector<std::string> values;
       for (const double value : axis.values) values.push_back(number(value));
       line_below("design", axis.key, fmt::format("{{ values = [{}] }}", fmt::join(values, ", ")));

@@ -85,6 +85,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadSpec{
             "scale_not_text", "[design]\nmass_ratio = { from = 1, to = 2, count = 4, scale = 3 }", {"scale"}},
         BadSpec{"axis_typo", "[design]\nslope = { form = 0.1, to = 0.2, count = 3 }", {"'form'", "allowed"}},
+        BadSpec{"step_that_misses_the_end",
+                "[design]\nslope = { from = 0.1, to = 0.2, step = 0.03 }",
+                {"'step' leads 3.33", "whole number of steps"}},
+        BadSpec{"step_of_0", "[design]\nslope = { from = 0.1, to = 0.2, step = 0 }", {"'step'"}},
+        BadSpec{
+            "tiny_step", "[design]\nslope = { from = 0.0, to = 1.0, step = 1e-9 }", {"'step' is too small"}},
+        BadSpec{"step_and_count",
+                "[design]\nslope = { from = 0.1, to = 0.2, step = 0.1, count = 2 }",
+                {"'count' does not belong"}},
         BadSpec{"values_and_bounds", "[design]\nslope = { values = [0.1], to = 0.2 }", {"'to'"}},
         BadSpec{"no_values", "[design]\nslope = { values = [] }", {"values"}},
         BadSpec{"too_many_designs",

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/spacing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace leapmap {
+
+std::vector<double> values_of(const Spacing& spacing) {
+  const auto& [from, to, count, log] = spacing;
+  std::vector<double> values(count);
+  const auto last = static_cast<double>(count - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = count > 1 ? static_cast<double>(i) / last : 0.0;
+    values[i] = log ? std::exp(std::log(from) * (1.0 - x) + std::log(to) * x) : from * (1.0 - x) + to * x;
+  }
+  values.front() = from;
+  values.back() = to;
+  return values;
+}
+
+std::optional<Spacing> spacing_of(std::span<const double> values) {
+  if (values.size() <= 3) return {};
+  for (const bool log : {false, true}) {
+    const Spacing spacing{values.front(), values.back(), values.size(), log};
+    if (log && !(spacing.from > 0.0 && spacing.to > 0.0)) continue;
+    if (std::ranges::equal(values_of(spacing), values)) return spacing;
+  }
+  return {};
+}
+
+}  // namespace leapmap

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// An axis's values by their bounds: { from, to, count, scale } of a spec.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace leapmap {
+
+struct Spacing {
+  double from, to;
+  std::size_t count;
+  bool log = false;  ///< equal ratios in place of equal steps
+};
+
+/// The values, both bounds among them to the last bit.
+std::vector<double> values_of(const Spacing& spacing);
+
+/// The spacing that gives these very values, to the last bit; nothing for three values or fewer, which are as
+/// soon written out.
+std::optional<Spacing> spacing_of(std::span<const double> values);
+
+}  // namespace leapmap
