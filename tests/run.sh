@@ -10,10 +10,10 @@ git ls-files 'src/*.[ch]pp' 'tests/*.[ch]pp' | xargs -r clang-format --dry-run -
 
 cmake --preset dev -DLEAPMAP_TESTS=ON
 cmake --build --preset dev --target leapmap-tests
-ctest --preset dev --no-tests=error -j 2 -E '^(cli|analysis|mutation)\.'
+ctest --preset dev --no-tests=error -j 2 -LE slow -E '^(cli|python|analysis|mutation)\.'
 
 sh tests/fuzz/run.sh 10
 
 cmake --preset release -DLEAPMAP_STRICT=ON -DLEAPMAP_TESTS=ON -DLEAPMAP_BENCHMARKS=ON
 cmake --build --preset release
-ctest --preset release --no-tests=error -j 2
+ctest --preset release --no-tests=error -j 2 -LE slow

@@ -98,12 +98,13 @@ def tiles_done(part):
         return int(p.attrs.get("tiles_done", 10**9))
 
 
-def test_killed_at_20_random_moments_it_is_gone_on_with_to_the_same_bits(uninterrupted, tmp_path):
+def test_killed_at_random_moments_it_is_gone_on_with_to_the_same_bits(uninterrupted, tmp_path):
     whole, duration = uninterrupted
     expected = values(whole)
     moments = random.Random(4)
     resumed_in_the_middle = 0
-    for run in range(20):
+    kills = int(os.environ.get("LEAPMAP_KILLS", 8))  # slow.kills: 40
+    for run in range(kills):
         folder = tmp_path / str(run)
         folder.mkdir()
         (folder / "spec.toml").write_text(SPEC)
@@ -122,7 +123,7 @@ def test_killed_at_20_random_moments_it_is_gone_on_with_to_the_same_bits(uninter
         assert values(folder / "map.h5") == expected
         assert not (folder / "map.h5.part").exists()
         shutil.rmtree(folder)
-    assert resumed_in_the_middle >= 5, "kills were to fall into the work"
+    assert resumed_in_the_middle >= kills // 4, "kills were to fall into the work"
 
 
 def test_a_part_cut_anywhere_is_refused_with_a_line_or_gone_on_with(uninterrupted, tmp_path):
@@ -200,7 +201,7 @@ def test_a_second_signal_stops_at_once_and_leaves_a_part_to_go_on_with(second, t
 def test_ctrl_c_while_a_resumed_sweep_gathers_its_audit(tmp_path):
     slow = SPEC.replace("audit = 1e-4", 'method = "gsl-rk8pd"\naudit = 0.2')
     (tmp_path / "spec.toml").write_text(slow)
-    assert stopped(tmp_path, 1_000_000)[0] == 130  # about 100,000 designs, some seconds to solve again
+    assert stopped(tmp_path, 300_000)[0] == 130  # about 30,000 designs, a second or more to solve again
     tiles = tiles_done(tmp_path / "map.h5.part")
     assert killed(tmp_path, 0.4, signal.SIGINT, "--resume")[0] in (130, -signal.SIGINT)  # the latter: even before that
     assert tiles_done(tmp_path / "map.h5.part") == tiles
