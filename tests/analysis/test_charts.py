@@ -253,3 +253,25 @@ def test_the_experiment_chart_marks_what_was_measured(tmp_path):
     assert done.returncode == 0, done.stderr
     found = " ".join(texts(tmp_path / "chart.svg"))
     assert "apex 0.129 s" in found and "release angle" in found and "small hops" in found
+
+
+def test_a_list_of_designs_is_drawn_a_dot_each_over_a_parameter_that_varies(tmp_path):
+    (tmp_path / "designs.csv").write_text("slope,mass_ratio\n" + "".join(f"{5 + i} deg,{0.05 * 1.2**i}\n" for i in range(25)))
+    path = sweep(tmp_path, '[design]\npoints = "designs.csv"\n')
+    done = draw("list_chart.py", path, "-o", tmp_path / "list")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "list.svg")
+    for word in ("slope [degrees]", "first lift-off is the jump", "first lift-off is spurious"):
+        assert word in words, word
+    with h5py.File(path) as m:
+        jumps, spurious = m["status"][()] == 1, m["spurious_first_jump"][()] == 1
+    assert f"no jump on the runway: {(~jumps).sum()}" in words and 0 < jumps.sum() < 25
+    svg = ElementTree.parse(tmp_path / "list.svg")
+    dots = [use for use in svg.iter("{http://www.w3.org/2000/svg}use") if "#e08214" in use.get("style", "")]
+    assert len(dots) == 3 * (jumps & spurious).sum() + 1, "three panels, and the legend's"
+    over_number = draw("list_chart.py", path, "-x", "design", "--fields", "jump_height", "-o", tmp_path / "number")
+    assert over_number.returncode == 0 and "number in the list, from 0" in texts(tmp_path / "number.svg")
+    wrong = draw("list_chart.py", path, "-x", "gravity", "-o", tmp_path / "wrong")
+    assert wrong.returncode == 2 and "allowed: design, " in wrong.stderr
+    grid = draw("list_chart.py", sweep(tmp_path, CHART, name="grid.h5"), "-o", tmp_path / "grid")
+    assert grid.returncode == 2 and "is no list of designs" in grid.stderr

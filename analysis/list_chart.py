@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws a list of designs: quantities over a parameter, a dot for each design, filled where the first lift-off is the jump and
+hollow where it is spurious. Designs that do not jump stand at the bottom, by the reason. Wants a map of a spec with design.points.
+"""
+import numpy as np
+
+import looks
+import planes
+import style
+from read_map import NotAMap, read_map
+from style import plt
+
+FIELDS = ("jump_height", "jump_time", "agility")
+
+
+def values_along(m, name):
+    """What the designs are drawn over, as shown, and its label: a parameter of the list, or their number in it."""
+    if name == "design":
+        return m.dims["design"], "number in the list, from 0"
+    if name not in m.fields or name not in looks.PARAMETERS:
+        listed = [n for n in m.fields if n in looks.PARAMETERS]
+        raise NotAMap(f"{m.path}: -x {name}: is no parameter of this list; allowed: {', '.join(['design', *listed])}")
+    return looks.as_shown(name, m.fields[name]), planes.axis_label(name)
+
+
+def chart(m, along, fields):
+    if "design" not in m.dims:
+        raise NotAMap(f"{m.path}: is no list of designs but a grid; design_chart.py and cut_chart.py draw it")
+    along = along or next((n for n in looks.PARAMETERS if n in m.fields and len(np.unique(m.fields[n])) > 1), "design")
+    x, label = values_along(m, along)
+    drawn = {f: values for f in fields if (values := looks.quantity(m, f)) is not None and np.isfinite(values).any()}
+    if not drawn:
+        raise NotAMap(f"{m.path}: has none of {', '.join(fields)} to draw; it has {', '.join(m.fields)}")
+    spurious = m.fields["spurious_first_jump"] == 1 if "spurious_first_jump" in m.fields else np.zeros(len(x), bool)
+    reasons = {code: m.code("status", code) for code in looks.STATUSES} if "status" in m.fields else {}
+
+    figure, axes = plt.subplots(len(drawn), 1, sharex=True, squeeze=False, figsize=(6.6, 2.5 * len(drawn) + 1.4), layout="constrained")
+    for axis, (field, values) in zip(axes[:, 0], drawn.items()):
+        axis.plot(x[~spurious], values[~spurious], "o", markersize=4, color="#1b7837")
+        axis.plot(x[spurious], values[spurious], "o", markersize=4, markerfacecolor="none", color="#e08214")
+        for code, there in reasons.items():
+            axis.plot(x[there], np.full(there.sum(), 0.02), "x", markersize=4, color=looks.STATUSES[code][0],
+                      transform=axis.get_xaxis_transform(), in_layout=False)
+        axis.set_ylabel("\n[".join(looks.LOOKS[field].title.replace(": height over time from release to apex", "").split(" [")))
+        axis.grid(alpha=0.25)
+    if along != "design" and looks.is_log(np.unique(x)):
+        style.log_scale(axes[-1, 0].xaxis)
+    axes[-1, 0].set_xlabel(label)
+    marker = lambda sign, colour, words, fill="full": plt.Line2D([], [], linestyle="", marker=sign, color=colour, fillstyle=fill, label=words)
+    handles = [marker("o", "#1b7837", "first lift-off is the jump"), marker("o", "#e08214", "first lift-off is spurious", "none")]
+    handles += [marker("x", looks.STATUSES[code][0], f"{looks.STATUSES[code][1]}: {there.sum()}") for code, there in reasons.items() if there.any()]
+    style.legend_above(figure, handles)
+    return figure
+
+
+def main():
+    p = style.parser(__doc__, "a map of a list of designs", "maps/list")
+    p.add_argument("-x", metavar="PARAMETER", help="what is drawn to the right; design: the number in the list (default: the first parameter that varies)")
+    p.add_argument("--fields", default=",".join(FIELDS), help=f"what to draw, of {', '.join(looks.LOOKS)} (default: %(default)s)")
+    arguments = p.parse_args()
+    fields = arguments.fields.split(",")
+    unknown = [f for f in fields if f not in looks.LOOKS]
+    if unknown:
+        raise NotAMap(f"--fields {unknown[0]}: is unknown; allowed: {', '.join(looks.LOOKS)}")
+    style.save(chart(read_map(arguments.source), arguments.x, fields), arguments.output)
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError)
