@@ -36,7 +36,7 @@ struct Contestant {
   int order = 0;  ///< theoretical, of the error at fixed steps; 0: it varies or does not apply
   RollingModel model = RollingModel::one_coordinate;  ///< energy_integral for exact, and only for exact
 
-  /// Of one series, of which only the setting differs.
+  /// True if only the setting differs.
   bool same_series(const Contestant& other) const {
     return method == other.method && fixed_step == other.fixed_step && model == other.model;
   }

@@ -44,6 +44,12 @@ DESIGN = ("slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angl
 
 
 @pytest.mark.parametrize("set_name", SETS)
+def test_an_error_thrown_inside_a_set_is_told_in_one_line(set_name, tmp_path):
+    done = leapmap("--instruction-set", set_name, "hop", "--trace", tmp_path / "t.h5", "--trace-interval", "1e-9")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "allowed: a longer interval" in done.stderr
+
+
+@pytest.mark.parametrize("set_name", SETS)
 def test_each_set_solves_the_reference_tables(set_name):
     for row in rows("noslip_general.csv", 12):
         done = leapmap("--instruction-set", set_name, "hop", "--json", *flags(row, DESIGN))
