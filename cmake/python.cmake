@@ -5,7 +5,8 @@ set_target_properties(leapmap-python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT
                                                 CXX_VISIBILITY_PRESET hidden)
 target_link_libraries(leapmap-python PRIVATE leapmap leapmap-options)
 
-file(GLOB modules CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src/python/leapmap ${PROJECT_SOURCE_DIR}/src/python/leapmap/*.py)
+file(GLOB modules CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src/python/leapmap ${PROJECT_SOURCE_DIR}/src/python/leapmap/*.py
+     ${PROJECT_SOURCE_DIR}/src/python/leapmap/py.typed)
 file(MAKE_DIRECTORY ${package})
 foreach(module ${modules})
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/src/python/leapmap/${module} ${package}/${module} SYMBOLIC)
@@ -13,16 +14,18 @@ endforeach()
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/analysis ${package}/analysis SYMBOLIC)
 
 # Type stubs for editors, from the tables of parameters and fields.
-add_custom_command(TARGET leapmap-python POST_BUILD VERBATIM
+list(TRANSFORM modules PREPEND ${PROJECT_SOURCE_DIR}/src/python/leapmap/ OUTPUT_VARIABLE sources)
+add_custom_command(OUTPUT ${package}/__init__.pyi DEPENDS leapmap-python src/python/stubs.py ${sources} VERBATIM
   COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${PROJECT_BINARY_DIR}/python
           ${Python_EXECUTABLE} -P ${PROJECT_SOURCE_DIR}/src/python/stubs.py ${package}/__init__.pyi
   COMMENT "Type stubs of the Python module")
+add_custom_target(leapmap-stubs ALL DEPENDS ${package}/__init__.pyi)
 
 # Found by Debian's interpreter under /usr and /usr/local; under another prefix by PYTHONPATH.
-set(LEAPMAP_PYTHON_DIR lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/dist-packages CACHE PATH
+set(LEAPMAP_PYTHON_DIR lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/dist-packages CACHE STRING
     "Where the Python package is installed, under the prefix")
 install(TARGETS leapmap-python DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
-install(DIRECTORY src/python/leapmap/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap FILES_MATCHING PATTERN "*.py"
+install(DIRECTORY src/python/leapmap/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap FILES_MATCHING PATTERN "*.py" PATTERN py.typed
         PATTERN __pycache__ EXCLUDE)
 install(FILES ${package}/__init__.pyi DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
 install(DIRECTORY analysis/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap/analysis USE_SOURCE_PERMISSIONS

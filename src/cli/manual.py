@@ -45,7 +45,7 @@ _leapmap() {{
   if [[ -z "$command" || "$current" == -* ]]; then
     COMPREPLY=($(compgen -W "$words" -- "$current"))
   else
-    COMPREPLY=($(compgen -f -- "$current"))
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
   fi
 }}
 complete -o filenames -F _leapmap leapmap

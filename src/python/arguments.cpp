@@ -17,9 +17,17 @@ namespace leapmap::python {
 namespace {
 
 std::string shown(const py::handle& value) {
-  std::string text = py::repr(value);
-  constexpr std::size_t most = 60;
-  return text.size() > most ? text.substr(0, most) + "..." : text;
+  const py::object text = py::repr(value);  // cut by characters, not by bytes
+  constexpr int most = 60;
+  const auto begin = py::reinterpret_steal<py::str>(PyUnicode_Substring(text.ptr(), 0, most));
+  return std::string(begin) + (py::len(text) > most ? "..." : "");
+}
+
+/// Real numbers without holes; anything else that numpy would turn into numbers is a mistake.
+bool is_numbers(const py::handle& value, const py::array& array) {
+  const char kind = array.dtype().kind();
+  return (kind == 'f' || kind == 'i' || kind == 'u') &&
+         !py::module_::import("numpy").attr("ma").attr("isMaskedArray")(value).cast<bool>();
 }
 
 const Parameter& parameter_of(const std::string& name) {
@@ -53,12 +61,15 @@ void Designs::take(const std::string& name, const py::handle& value) {
   if (py::isinstance<py::str>(value)) {
     try {
       return put(parse_number(*find_option({}, name), py::cast<std::string>(value)));
+    } catch (const py::cast_error&) {  // no UTF-8
+      throw InputError(fmt::format("{} = {} is not a number", name, shown(value)));
     } catch (const InputError& error) {
       throw InputError(fmt::format("{} = {}", name, error.what()));
     }
   }
-  const auto numbers = Numbers::ensure(value);
-  if (!numbers) {
+  const auto array = py::array::ensure(value);
+  const auto numbers = array && is_numbers(value, array) ? Numbers::ensure(array) : Numbers();
+  if (!array || !is_numbers(value, array) || !numbers) {
     PyErr_Clear();
     throw InputError(fmt::format("{} = {} is no number and no array of numbers; allowed: {}", name,
                                  shown(value), allowed_values(parameter.range, parameter.unit)));

@@ -31,7 +31,8 @@ class Designs {
   void fill(std::size_t first, std::span<Design> designs) const;
 
  private:
-  using Numbers = pybind11::array_t<double, pybind11::array::forcecast>;
+  static constexpr int aligned = pybind11::detail::npy_api::NPY_ARRAY_ALIGNED_;
+  using Numbers = pybind11::array_t<double, int{pybind11::array::forcecast} | aligned>;
   struct Column {
     std::string name;
     double Design::*member;

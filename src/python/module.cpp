@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// leapmap._core: what the Python package (leapmap/__init__.py) is made of. Arrays in, arrays out; everything
-/// that computes lets go of Python's lock, and Ctrl-C ends it.
+/// that computes lets go of Python's lock, and Ctrl-C ends solve and sweep.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pybind11/pybind11.h>
@@ -17,7 +17,9 @@
 #include "model/parameters.hpp"
 #include "python/arguments.hpp"
 #include "python/results.hpp"
+#include "sweep/options.hpp"
 #include "sweep/solve_blocks.hpp"
+#include "sweep/spec.hpp"
 
 namespace py = pybind11;
 
@@ -35,18 +37,6 @@ class Interrupts {
     const py::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() != 0) caught_.emplace(), stopped_ = true;
     return stopped_;
-  }
-
-  /// Calls something of Python's; what it raises ends the work.
-  template <class Call>
-  void call(const Call& of_python) {
-    const py::gil_scoped_acquire lock;
-    try {
-      of_python();
-    } catch (py::error_already_set& error) {
-      if (!caught_) caught_.emplace(error);
-      stopped_ = true;
-    }
   }
 
   /// What Python raised meanwhile is raised now.
@@ -72,12 +62,17 @@ Scene scene_of(const std::string& friction) {
   throw InputError(fmt::format("friction = '{}' is no model; allowed: {}", friction, fmt::join(names, ", ")));
 }
 
+/// OpenMP's threads are not there in a process that was forked of one that had them: one does all there.
+bool forked = false;
+int threads_here(int threads) { return forked ? 1 : threads; }
+
 py::dict solve(const py::dict& given, const std::string& friction, const std::vector<std::string>& fields,
                const std::string& method, double tolerance, long max_steps, int threads) {
   const Designs designs(given, scene_of(friction));
   Columns columns(fields, designs.scene(), designs.shape());
   Interrupts interrupts;
-  SolveOptions options{.method = method, .tolerance = tolerance, .max_steps = max_steps, .threads = threads};
+  SolveOptions options{
+      .method = method, .tolerance = tolerance, .max_steps = max_steps, .threads = threads_here(threads)};
   options.stop_requested = [&] { return interrupts(); };
   try {
     const py::gil_scoped_release unlocked;
@@ -111,27 +106,34 @@ py::dict trace(const py::dict& given, const std::string& friction, double interv
 /// The spec of a file, or of a text if `origin` is given.
 Spec spec_of(const std::string& path_or_text, const std::optional<std::string>& origin,
              const std::vector<std::string>& overrides) {
-  return origin ? parse_spec(path_or_text, *origin, overrides) : read_spec(path_or_text, overrides);
+  if (!origin) return read_spec(path_or_text, overrides);
+  Spec spec = parse_spec(path_or_text, *origin, overrides);
+  read_points_of(spec);
+  return spec;
 }
 
-py::dict sweep(const std::string& path_or_text, const std::optional<std::string>& origin,
-               const std::vector<std::string>& overrides, const std::string& file, bool resume,
-               bool overwrite, int threads, const py::object& progress) {
+/// How far a sweep has come, for a thread of Python's to look at; and its order to stop.
+struct Watch {
+  std::atomic<std::size_t> done = 0, total = 0;
+  std::atomic<bool> stop = false;
+};
+
+/// False: a power cut may undo the map's taking its place.
+bool sweep(const std::string& path_or_text, const std::optional<std::string>& origin,
+           const std::vector<std::string>& overrides, const std::string& file, bool resume, bool overwrite,
+           int threads, Watch& watch) {
   const Spec spec = spec_of(path_or_text, origin, overrides);
   Interrupts interrupts;
-  SweepOptions options{.resume = resume, .overwrite = overwrite, .threads = threads};
-  options.stop_requested = [&] { return interrupts(); };
-  if (!progress.is_none())
-    options.progress = [&](std::size_t done, std::size_t total) {
-      interrupts.call([&] { progress(done, total); });
-    };
+  SweepOptions options{.resume = resume, .overwrite = overwrite, .threads = threads_here(threads)};
+  options.stop_requested = [&] { return watch.stop || interrupts(); };
+  options.progress = [&](std::size_t done, std::size_t total) { watch.done = done, watch.total = total; };
   Report report;
   {
     const py::gil_scoped_release unlocked;
     report = leapmap::sweep(spec, file, options);
   }
   interrupts.rethrow();
-  return dict_of(report);
+  return report.durable;
 }
 
 py::list parameter_rows() {
@@ -185,10 +187,6 @@ PYBIND11_MODULE(_core, module) {
   module.def("solve", &python::solve);
   module.def("trace", &python::trace);
   module.def("sweep", &python::sweep);
-  module.def("spec_text", [](const std::string& path_or_text, const std::optional<std::string>& origin,
-                             const std::vector<std::string>& overrides) {
-    return resolved_text(python::spec_of(path_or_text, origin, overrides));
-  });
   module.def("spec_file", [](const std::string& path_or_text, const std::optional<std::string>& origin,
                              const std::vector<std::string>& overrides) {
     return python::spec_of(path_or_text, origin, overrides).output.file;
@@ -197,7 +195,15 @@ PYBIND11_MODULE(_core, module) {
   module.def("fields", &python::field_rows);
   module.def("phase_letters", &phase_letters);
   module.def("program_version", &program_version);
-  module.def("git_revision", &git_revision);
+  module.def("number", [](const std::string& name, const std::string& text) {
+    return parse_number(*find_option({}, name), text);
+  });
+  module.def("after_fork_in_child", [] { python::forked = true; });
+  py::class_<python::Watch>(module, "Watch")
+      .def(py::init<>())
+      .def_property_readonly("done", [](const python::Watch& watch) { return watch.done.load(); })
+      .def_property_readonly("total", [](const python::Watch& watch) { return watch.total.load(); })
+      .def("stop", [](python::Watch& watch) { watch.stop = true; });
   module.def("instruction_set", &instruction_set);
   module.def("instruction_sets", &instruction_sets);
   module.def("use_instruction_set", &use_instruction_set);

@@ -118,16 +118,4 @@ py::dict dict_of(const Motion& motion, const Scene& scene) {
   return told;
 }
 
-py::dict dict_of(const Report& report) {
-  py::dict told, statuses;
-  told["whole"] = report.whole, told["was_whole"] = report.was_whole;
-  told["designs"] = report.designs, told["done"] = report.done, told["solved"] = report.solved;
-  told["seconds"] = report.seconds, told["durable"] = report.durable;
-  for (int i = 0; i < status_count; ++i)
-    statuses[py::str(std::string(name_of(static_cast<Status>(i))))] =
-        report.statuses[static_cast<std::size_t>(i)];
-  told["statuses"] = statuses;
-  return told;
-}
-
 }  // namespace leapmap::python

@@ -11,7 +11,6 @@
 #include "leapmap/motion.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
-#include "leapmap/sweep.hpp"
 #include "model/fields.hpp"
 
 namespace leapmap::python {
@@ -41,6 +40,5 @@ class Columns {
 };
 
 pybind11::dict dict_of(const Motion& motion, const Scene& scene);
-pybind11::dict dict_of(const Report& report);
 
 }  // namespace leapmap::python

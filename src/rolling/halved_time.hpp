@@ -3,6 +3,9 @@
 /// has a needle, or that are a hair past an equilibrium or from a stall.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "numerics/quadrature.hpp"
 #include "physics/rolling_by_angle.hpp"
 

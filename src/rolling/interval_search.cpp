@@ -2,6 +2,9 @@
 #include "rolling/interval_search.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <numbers>
 
 namespace leapmap {
 namespace {

@@ -36,8 +36,8 @@ struct IntervalSearch {
   int turn, node, halvings;
   std::uint64_t part;
 
-  /// From `release` to `end`. `past`: the scan's first node past the release, `on_node`: it is the same
-  /// place.
+  /// Begins at the release, `from`, to end at `to`. past: the scan's first node past the release; on_node:
+  /// whether that is the same place.
   void begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past, bool on_node);
 
   /// Takes over what a scan of `turns` revolutions found in a lane.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rolling/prepare.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace leapmap {
 

@@ -16,12 +16,16 @@
 namespace leapmap {
 namespace {
 
-constexpr std::size_t designs_a_block = 2048;
+/// Few of a stepper, which may take a second for one: whoever asks for a stop waits for a block.
+std::size_t designs_a_block(const Spec& spec) {
+  return resolved_method(spec.numerics) == "exact" ? 2048 : 16;
+}
 
 /// The spec of one call: what its method and tolerance come to, checked.
 template <class Options>
 Spec spec_of(const Scene& scene, const Options& options) {
   Spec spec;
+  spec.origin = "options";  // for messages
   spec.scene = scene;
   spec.numerics.method = options.method;
   spec.numerics.tolerance = options.tolerance;
@@ -31,7 +35,8 @@ Spec spec_of(const Scene& scene, const Options& options) {
 }
 
 /// Refuses what is no hoop by the design's number, if it is one of many.
-void check_designs(std::span<const Design> block, const Scene& scene, std::size_t first, std::size_t designs) {
+void check_designs(std::span<const Design> block, const Scene& scene, std::size_t first,
+                   std::size_t designs) {
   for (std::size_t i = 0; i < block.size(); ++i)
     if (!is_allowed(block[i], scene))
       check_design(block[i], scene, designs > 1 ? fmt::format("design {}", first + i) : "");
@@ -41,10 +46,11 @@ void check_designs(std::span<const Design> block, const Scene& scene, std::size_
 template <class MakeBlock>
 void solve_in_blocks(const Spec& spec, std::size_t designs, const SolveOptions& options,
                      const MakeBlock& make_block) {
-  parallel_for_each((designs + designs_a_block - 1) / designs_a_block, options.threads, [&] {
+  const std::size_t most = designs_a_block(spec);
+  parallel_for_each((designs + most - 1) / most, options.threads, [&] {
     return [&, solver = make_solver(spec), solve_block = make_block()](std::size_t block) mutable {
-      const std::size_t first = block * designs_a_block;
-      solve_block(solver, first, std::min(designs_a_block, designs - first));
+      const std::size_t first = block * most;
+      solve_block(solver, first, std::min(most, designs - first));
       if (options.stop_requested && options.stop_requested()) throw Stopped("solve was asked to stop");
       return true;
     };
@@ -79,7 +85,7 @@ void solve_blocks(std::size_t designs, const Scene& scene, const SolveOptions& o
   Spec spec = spec_of(scene, options);
   spec.output.fields = fields;
   solve_in_blocks(spec, designs, options, [&] {
-    const std::size_t most = std::min(designs, designs_a_block);
+    const std::size_t most = std::min(designs, designs_a_block(spec));
     return [&, some = std::vector<Design>(most), outcomes = std::vector<Outcome>(most)](
                const Solver& solver, std::size_t first, std::size_t size) mutable {
       const std::span<Design> block = std::span(some).first(size);

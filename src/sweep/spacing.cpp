@@ -2,7 +2,9 @@
 #include "sweep/spacing.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace leapmap {
 
@@ -24,7 +26,10 @@ std::optional<Spacing> spacing_of(std::span<const double> values) {
   for (const bool log : {false, true}) {
     const Spacing spacing{values.front(), values.back(), values.size(), log};
     if (log && !(spacing.from > 0.0 && spacing.to > 0.0)) continue;
-    if (std::ranges::equal(values_of(spacing), values)) return spacing;
+    const auto same_bits = [](double a, double b) {
+      return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+    };
+    if (std::ranges::equal(values_of(spacing), values, same_bits)) return spacing;
   }
   return {};
 }

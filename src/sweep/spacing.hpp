@@ -15,11 +15,12 @@ struct Spacing {
   bool log = false;  ///< equal ratios in place of equal steps
 };
 
-/// The values, both bounds among them to the last bit.
+/// The values, both bounds among them to the last bit; the others of a log axis hang on the machine's exp and
+/// log.
 std::vector<double> values_of(const Spacing& spacing);
 
-/// The spacing that gives these very values, to the last bit; nothing for three values or fewer, which are as
-/// soon written out.
+/// The spacing that on this machine gives these very values, to the last bit; nothing for three values or
+/// fewer, which are as soon written out.
 std::optional<Spacing> spacing_of(std::span<const double> values);
 
 }  // namespace leapmap

@@ -95,12 +95,13 @@ std::vector<double> to_list(const Entry& entry, const toml::table& table) {
 
 /// How many steps lead from one bound to the other.
 std::size_t count_of_steps(const Entry& entry, const toml::table& table, double from, double to) {
-  const double step = to_number(entry, *table.get("step"), "step"), steps = std::abs(to - from) / step;
+  const double step = std::abs(to_number(entry, *table.get("step"), "step")),
+               steps = std::abs(to - from) / step;
   // Bounds and step are rounded, so that a whole number of steps is one but for some roundings.
   if (!(steps >= 1.0 && std::abs(steps - std::round(steps)) < 1e-9 * steps))
     refuse(entry, fmt::format("'step' leads {} steps from 'from' to 'to'", steps),
            "a whole number of steps, or count in place of step");
-  if (steps >= most_axis_values)
+  if (std::round(steps) >= most_axis_values)
     refuse(entry, "'step' is too small", fmt::format("up to {} values", most_axis_values));
   return static_cast<std::size_t>(std::round(steps)) + 1;
 }
@@ -114,7 +115,7 @@ Spacing to_spacing(const Entry& entry, const toml::table& table) {
   Spacing spacing{.from = to_number(entry, *table.get("from"), "from"),
                   .to = to_number(entry, *table.get("to"), "to"),
                   .count = 1};
-  const auto& [from, to, ignored, log] = spacing;
+  const double from = spacing.from, to = spacing.to;
   if (steps) {
     spacing.count = count_of_steps(entry, table, from, to);
     return spacing;
@@ -129,7 +130,7 @@ Spacing to_spacing(const Entry& entry, const toml::table& table) {
   const std::string scale = table["scale"].value_or(std::string(table.contains("scale") ? "?" : "linear"));
   if (scale != "linear" && scale != "log") refuse(entry, "'scale' is unknown", "\"linear\" or \"log\"");
   spacing.log = scale == "log";
-  if (log && !(from > 0.0 && to > 0.0))
+  if (spacing.log && !(from > 0.0 && to > 0.0))
     refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
   spacing.count = static_cast<std::size_t>(*count);
   return spacing;
@@ -288,9 +289,8 @@ std::string find_points(const Spec& spec) {
 
 std::string origin_of(const Spec& spec) { return spec.origin.empty() ? "command line" : spec.origin; }
 
-Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {
-  Spec spec = parse_spec(path.empty() ? "" : TextFile(path, "a spec in TOML").rest(), path, overrides);
-  if (spec.points.empty()) return spec;
+void read_points_of(Spec& spec) {
+  if (spec.points.empty()) return;
   spec.points =
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
   spec.list = read_points(spec.points, origin_of(spec));
@@ -298,6 +298,11 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
     if (const Option& option = *find_option("design", column.key); !has(spec.scene.friction, option.only_of))
       throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
                                    no_use(spec.scene), with_model(*option.only_of)));
+}
+
+Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {
+  Spec spec = parse_spec(path.empty() ? "" : TextFile(path, "a spec in TOML").rest(), path, overrides);
+  read_points_of(spec);
   return spec;
 }
 

@@ -13,6 +13,14 @@ Spec parse_map_spec(std::string_view text, const std::string& origin);
 /// The spec's file, for messages; "command line" if there is none.
 std::string origin_of(const Spec& spec);
 
+/// Reads the list that spec.points names, if it names one: a path beside the spec's file, or from the working
+/// folder. Throws as read_points does, and InputError for a column that the scene has no use for.
+void read_points_of(Spec& spec);
+
+/// As resolved_text, but for people: axes by their bounds where those give the same values here. Another
+/// machine's exp and log may differ in the last bits of a log axis.
+std::string readable_text(const Spec& spec);
+
 /// Whether output.fields names that field, or is left out.
 bool stores(const Output& output, std::string_view field);
 

@@ -13,8 +13,10 @@
 #include "sweep/spec.hpp"
 
 namespace leapmap {
+namespace {
 
-std::string resolved_text(const Spec& original) {
+/// spaced: axes by their bounds where those give the same bits.
+std::string text_of(const Spec& original, bool spaced) {
   Spec spec = original;
   spec.numerics.method = resolved_method(spec.numerics);
   std::string text;
@@ -38,7 +40,7 @@ std::string resolved_text(const Spec& original) {
   };
   const auto axes = [&] {  // in spec order, which is the order of the map's dimensions
     for (const Axis& axis : spec.axes) {
-      if (const auto spacing = spacing_of(axis.values)) {
+      if (const auto spacing = spaced ? spacing_of(axis.values) : std::nullopt) {
         line_below("design", axis.key,
                    fmt::format("{{ from = {}, to = {}, count = {}{} }}", number(spacing->from),
                                number(spacing->to), spacing->count, spacing->log ? ", scale = \"log\"" : ""));
@@ -80,6 +82,12 @@ std::string resolved_text(const Spec& original) {
   }
   return text;
 }
+
+}  // namespace
+
+std::string resolved_text(const Spec& spec) { return text_of(spec, false); }
+
+std::string readable_text(const Spec& spec) { return text_of(spec, true); }
 
 bool stores(const Output& output, std::string_view field) {
   return output.fields.empty() || std::ranges::find(output.fields, field) != output.fields.end();

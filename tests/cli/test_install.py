@@ -54,13 +54,16 @@ def test_the_python_module_the_charts_and_the_page_are_installed(prefix, tmp_pat
     assert "is no chart" in subprocess.run([sys.executable, "-m", "leapmap.charts", "pie"], env=environment, capture_output=True, text=True).stderr
 
 
-def test_the_man_page_and_completion_know_every_command(prefix):
+def test_the_man_page_and_completion_know_every_command(prefix, tmp_path):
     page = gzip.decompress((prefix / "share/man/man1/leapmap.1.gz").read_bytes()).decode()
     script = prefix / "share/bash-completion/completions/leapmap"
     for command in ("sweep", "hop", "info", "check", "precision", "stability"):
         assert f".SH LEAPMAP {command.upper()}" in page
     typed = f"source {script}; COMP_WORDS=(leapmap hop --offset); COMP_CWORD=2; _leapmap; echo ${{COMPREPLY[@]}}"
     assert run("bash", "-c", typed).strip() == "--offset-ratio"
+    (tmp_path / "my map.h5").touch()
+    typed = f"source {script}; COMP_WORDS=(leapmap info my); COMP_CWORD=2; _leapmap; printf '%s|' \"${{COMPREPLY[@]}}\""
+    assert run("bash", "-c", typed, cwd=tmp_path) == "my map.h5|"
 
 
 @pytest.mark.parametrize("flags", ["", "-O0"])

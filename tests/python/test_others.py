@@ -14,7 +14,7 @@ def test_scipys_differential_evolution_finds_the_highest_jump_by_vectorised_call
     bounds = [(np.radians(5), np.radians(40)), (0.5, 10.0)]
     best = optimize.differential_evolution(worse, bounds, vectorized=True, updating="deferred", seed=1, maxiter=60, polish=False)
     grid = leapmap.solve(slope=np.linspace(*bounds[0], 300)[:, None], mass_ratio=np.linspace(*bounds[1], 300), fields=["jump_height"])
-    assert -best.fun > np.nanmax(grid.jump_height) - 1e-3  # a search is no worse than 90,000 designs at random
+    assert -best.fun > np.nanmax(grid.jump_height) - 1e-3  # a search is no worse than a grid of 90,000
 
 
 def test_openturns_propagates_tolerances_through_a_python_function():

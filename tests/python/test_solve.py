@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """leapmap.solve and leapmap.trace against tables made by other programs, and what they refuse."""
+import copy
 import csv
 import inspect
+import multiprocessing
 import os
+import pickle
+import re
 import subprocess
 import sys
 import threading
@@ -102,6 +106,17 @@ def test_angles_may_be_texts_and_fields_may_be_chosen():
     ({"mass": 3.0}, "mass: is no parameter; allowed: "),
     ({"slope": "steep"}, "slope = 'steep' is not a number; allowed: .* deg"),
     ({"slope": object()}, "slope = <object object at"),
+    ({"slope": True}, "slope = True is no number"),
+    ({"slope": None}, "slope = None is no number"),
+    ({"slope": np.array([0.3 + 0.5j])}, "slope = array.* is no number"),
+    ({"slope": np.ma.array([0.3, 0.4], mask=[0, 1])}, "is no number"),
+    ({"slope": ["0.3"]}, "is no number"),
+    ({"slope": "\udc80"}, "slope"),
+    ({"friction": "coulomb", "mu_static": "é" * 100}, "mu_static = "),
+    ({"fields": []}, "fields = .* names none"),
+    ({"threads": -3}, "threads = -3 is out of range"),
+    ({"threads": "2"}, "threads = '2' is out of range"),
+    ({"max_steps": 0.5}, "max_steps = 0.5 is out of range"),
     ({"slope": [0.1, 0.2], "mass_ratio": [1, 2, 3]}, r"shapes do not broadcast: slope \(2\), mass_ratio \(3\)"),
     ({"runway": [1.0, 2.0]}, "runway = .* is an array; allowed: one number"),
     ({"runway": -1.0}, "runway = -1"),
@@ -122,6 +137,39 @@ def test_to_xarray_names_dimensions_after_the_parameter_that_varies_along_them()
     assert both.jump_height.dims == ("dim_0",) and set(both.coords) == {"slope", "mass_ratio"}
     assert both.status.attrs["flag_meanings"].split()[1] == "jumped"
     assert isinstance(leapmap.solve().to_xarray(), xarray.Dataset)
+
+
+def test_to_xarray_bears_empty_shapes_texts_and_arrays_that_change_later():
+    assert leapmap.solve(slope=np.zeros((0, 3))).to_xarray().jump_height.shape == (0, 3)
+    slope = np.array([0.3, 0.4])
+    o = leapmap.solve(slope=slope, release_angle="180 deg", fields="jump_height")
+    slope[:] = 9.0
+    ds = o.to_xarray()
+    assert ds.slope.values.tolist() == [0.3, 0.4] and ds.attrs["release_angle"] == np.pi
+
+
+def test_results_can_be_copied_and_pickled():
+    for result in (leapmap.solve(slope=[0.3, 0.4]), leapmap.trace().outcome):
+        for again in (copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
+            np.testing.assert_array_equal(again.jump_height, result.jump_height)
+    assert len(pickle.loads(pickle.dumps(leapmap.trace())).t) > 100
+
+
+def heights_of(slope):
+    return leapmap.solve(slope=slope, fields=["jump_height"]).jump_height.sum()
+
+
+def test_a_forked_process_solves_too():
+    slope = np.linspace(0.3, 0.8, 10_000)
+    expected = heights_of(slope)  # starts OpenMP's threads, which the children do not have
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        assert pool.map_async(heights_of, [slope, slope]).get(timeout=60) == [expected, expected]
+
+
+def test_fields_of_packed_structures_are_read():
+    packed = np.zeros(5, dtype=[("tag", "u1"), ("slope", "f8")])
+    packed["slope"] = np.linspace(0.3, 0.5, 5)
+    np.testing.assert_array_equal(leapmap.solve(slope=packed["slope"]).jump_height, leapmap.solve(slope=np.linspace(0.3, 0.5, 5)).jump_height)
 
 
 def test_trace_tells_the_motion_that_solve_told_the_end_of():
@@ -171,5 +219,6 @@ def test_help_and_stubs_know_every_parameter_and_field():
     text = open(stub, encoding="utf-8").read()
     compile(text, stub, "exec")
     for row in [*_core.parameters(), *_core.fields()]:
-        assert row["name"] in leapmap.solve.__doc__ and row["name"] + ":" in text
+        name = row["name"]
+        assert re.search(rf"^ *{name}( \[.*\])?: ", leapmap.solve.__doc__, re.M) and re.search(rf"\b{name}: ", text), name
     assert "slope" in inspect.signature(leapmap.solve).parameters

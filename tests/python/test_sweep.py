@@ -3,7 +3,9 @@
 import os
 import subprocess
 import sys
+import types
 
+import h5py
 import numpy as np
 import pytest
 
@@ -14,13 +16,33 @@ GRID = {"design": {"slope": np.linspace(0.1, 0.8, 9), "mass_ratio": [1, 2, 3]}, 
 
 
 def test_a_dictionary_is_swept_in_memory_and_agrees_with_solve():
-    seen = []
-    ds = leapmap.sweep(GRID, progress=lambda done, total: seen.append((done, total)))
+    ds = leapmap.sweep(GRID)
     o = leapmap.solve(slope=GRID["design"]["slope"][:, None], mass_ratio=[1.0, 2.0, 3.0])
     assert ds.jump_height.dims == ("slope", "mass_ratio") and ds.jump_height.values.shape == (9, 3)
     np.testing.assert_array_equal(ds.status, o.status)
     np.testing.assert_allclose(ds.jump_height, o.jump_height, rtol=1e-13)  # lanes and neighbours move roundings
-    assert seen[0] == (0, 27) and seen[-1] == (27, 27) and ds.attrs["audit_designs"] > 0
+    assert ds.attrs["audit_designs"] > 0
+
+
+def test_progress_is_told_and_may_use_h5py(tmp_path):
+    seen = []
+
+    def tell(done, total):
+        with h5py.File(tmp_path / "log.h5", "a") as log:
+            log.attrs["done"] = done
+        seen.append((done, total))
+    leapmap.sweep(GRID, progress=tell)
+    assert seen == sorted(seen) and seen[-1] == (27, 27)
+
+
+def test_keys_and_values_of_a_dictionary_are_those_of_a_spec(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "x.csv").write_text("slope\n0.3\n0.4\n")
+    assert leapmap.sweep({"design": {"points": "x.csv"}}).jump_height.shape == (2,)
+    by_values = leapmap.sweep({"design": {"slope": {"values": [0.3, 0.4]}}})
+    by_texts = leapmap.sweep({"design": {"slope": {"from": "10 deg", "to": "20 deg", "step": "5 deg"}}, "scene": {"runway": np.int64(5)}})
+    assert by_values.slope.values.tolist() == [0.3, 0.4] and by_texts.slope.shape == (3,)
+    assert leapmap.sweep(types.MappingProxyType(GRID)).equals(leapmap.sweep(GRID))
 
 
 def test_a_specs_file_is_written_read_refused_overwritten_and_resumed(tmp_path):
@@ -43,11 +65,30 @@ def test_a_specs_file_is_written_read_refused_overwritten_and_resumed(tmp_path):
     ({"design": {"slope": "steep"}}, "slope"),
     ({"design": {"slop": 1.0}}, "slop"),
     ({"design": 1.0}, "design = 1.0 is no section"),
-    ({"design": {"slope": np.zeros((2, 2))}}, "has 2 dimensions"),
+    ({"design": {"slope": np.zeros((2, 2))}}, "is no value of a spec"),
+    ({"design": {"slope": ["10 deg", 0.2]}}, "slope = .* is no value of a spec"),
+    ({"design": {"slope": None}}, "slope = None is no value of a spec"),
+    ({"design": {"bad key\n": 1.0}}, "bad key"),
+    ({"output": {"file": "a\rb\x7f.h5", "precision": "f2"}}, "f2"),
 ])
 def test_refuses_what_is_no_spec(spec, says):
     with pytest.raises(ValueError, match=says):
         leapmap.sweep(spec)
+
+
+def test_resume_and_overwrite_have_no_use_in_memory():
+    for given in ({"resume": True}, {"overwrite": True}):
+        with pytest.raises(ValueError, match="no use in memory"):
+            leapmap.sweep(GRID, **given)
+
+
+def test_ctrl_c_of_a_sweep_in_memory_promises_no_file():
+    code = ("import leapmap, os, signal, threading\nthreading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
+            "try:\n    leapmap.sweep({'design': {'mass_ratio': {'from': 1, 'to': 9, 'count': 900000}}, 'scene': {'friction': 'coulomb'}})\n"
+            "except KeyboardInterrupt as error:\n    print('interrupted:', error)\n")
+    path = "import os, sys; sys.path.insert(0, os.environ['LEAPMAP_BUILD'] + '/python')\n"
+    done = subprocess.run([sys.executable, "-c", path + code], capture_output=True, text=True, timeout=120)
+    assert done.stdout == "interrupted: stopped\n", done.stderr
 
 
 def test_files_that_are_no_maps_or_cannot_be_written_are_told(tmp_path):

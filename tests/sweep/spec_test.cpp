@@ -188,23 +188,29 @@ TEST(Spec, DesignsAreNumberedWithTheLastAxisFastest) {
 TEST(Spec, AnAxisByStepsHasBothBounds) {
   const Spec spec = parse(
       "[design]\nslope = { from = \"10 deg\", to = \"40 deg\", step = \"0.1 deg\" }\n"
-      "mass_ratio = { from = 3, to = 1, step = 0.5 }\n");  // the step's sign is the bounds'
+      "mass_ratio = { from = 3, to = 1, step = 0.5 }\n"
+      "release_spin = { from = 1, to = -1, step = -1 }\n");
   ASSERT_EQ(spec.axes[0].values.size(), 301u);
   EXPECT_EQ(spec.axes[0].values.back(), 40.0 * degree);
   EXPECT_NEAR(spec.axes[0].values[1], 10.1 * degree, 1e-15);
   EXPECT_EQ(spec.axes[1].values, (std::vector{3.0, 2.5, 2.0, 1.5, 1.0}));
+  EXPECT_EQ(spec.axes[2].values, (std::vector{1.0, 0.0, -1.0}));
 }
 
-TEST(Spec, AResolvedAxisIsItsBoundsWhereTheyGiveTheSameBits) {
+TEST(Spec, AnAxisIsShownByItsBoundsWhereTheyGiveTheSameBits) {
   const Spec spec = parse(
       "[design]\nslope = { from = \"2 deg\", to = \"50 deg\", count = 241 }\n"
       "mass_ratio = { from = 0.1, to = 20, count = 256, scale = \"log\" }\n"
       "offset_ratio = { values = [0.6, 0.7, 0.9, 1.0] }\n");
-  const std::string text = resolved_text(spec);
+  EXPECT_EQ(resolved_text(spec).find("from"), std::string::npos) << "a map keeps the values themselves";
+  const std::string text = readable_text(spec);
   EXPECT_NE(text.find("mass_ratio = { from = 0.1, to = 20.0, count = 256, scale = \"log\" }"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("offset_ratio = { values = [0.6, 0.7, 0.9, 1.0] }"), std::string::npos) << text;
+  EXPECT_NE(readable_text(parse("[design]\nrelease_spin = { values = [-1.0, -0.5, -0.0, 0.5, 1.0] }\n"))
+                .find("-0.0"),
+            std::string::npos);
   const Spec again = parse(text);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(again.axes[i].values, spec.axes[i].values);
 }

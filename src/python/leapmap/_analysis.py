@@ -3,14 +3,25 @@
 import importlib
 import os
 import sys
+import threading
 
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "analysis")
+_NEIGHBOURS = ("read_map", "open_file")
+_lock, _loaded = threading.Lock(), {}
 
 
-def module(name):
-    """One of its modules, which find each other as neighbours on the path."""
-    sys.path.insert(0, FOLDER)
-    try:
-        return importlib.import_module(name)
-    finally:
-        sys.path.remove(FOLDER)
+def reader():
+    """analysis/read_map.py. It finds its neighbour open_file on the path, as scripts do; neither name is left in sys.modules, where
+    a user's own modules of those names may be."""
+    with _lock:
+        if not _loaded:
+            others = {name: sys.modules.pop(name) for name in _NEIGHBOURS if name in sys.modules}
+            sys.path.insert(0, FOLDER)
+            try:
+                _loaded["read_map"] = importlib.import_module("read_map")
+            finally:
+                sys.path.remove(FOLDER)
+                for name in _NEIGHBOURS:
+                    sys.modules.pop(name, None)
+                sys.modules.update(others)
+        return _loaded["read_map"]

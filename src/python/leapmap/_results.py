@@ -36,6 +36,8 @@ class Outcomes:
         self.__dict__["_fields"], self.__dict__["_given"] = fields, given
 
     def __getattr__(self, name):
+        if name.startswith("_"):  # while it is unpickled there is nothing yet
+            raise AttributeError(name)
         if name in _FIELDS:
             needs = _FIELDS[name]["friction"]
             raise AttributeError(f"{name} was not computed: " + (
@@ -58,9 +60,9 @@ class Outcomes:
         import xarray
 
         shape = np.shape(next(iter(self._fields.values())))
-        given = {name: np.asarray(value, float) for name, value in self._given.items()
-                 if name in _PARAMETERS and not isinstance(value, str)}
-        along = {name: tuple(d for d, n in enumerate(value.shape, len(shape) - value.ndim) if n > 1) for name, value in given.items()}
+        given = {name: np.asarray(_core.number(name, value) if isinstance(value, str) else value, float)
+                 for name, value in self._given.items() if name in _PARAMETERS}
+        along = {name: tuple(d for d, n in enumerate(value.shape, len(shape) - value.ndim) if n != 1) for name, value in given.items()}
         dims = [f"dim_{d}" for d in range(len(shape))]
         for d in range(len(shape)):
             varying = [name for name, axes in along.items() if d in axes]
@@ -69,11 +71,11 @@ class Outcomes:
         coordinates = {}
         for name, value in given.items():
             if value.ndim:
-                values = np.squeeze(value) if value.size > 1 else value.reshape(())
+                ones = tuple(d for d, n in enumerate(value.shape, len(shape) - value.ndim) if d not in along[name])
+                values = np.squeeze(value, tuple(d - (len(shape) - value.ndim) for d in ones))
                 about = {"long_name": _PARAMETERS[name]["meaning"], "units": _PARAMETERS[name]["unit"]}
                 coordinates[name] = ([dims[d] for d in along[name]], values, about)
-        scalars = {name: value if isinstance(value, str) else float(value) for name, value in self._given.items()
-                   if isinstance(value, str) or np.ndim(value) == 0}
+        scalars = {name: value.item() for name, value in given.items() if value.ndim == 0} | {"friction": self._given["friction"]}
         return xarray.Dataset({name: (dims, values, _described(name)) for name, values in self._fields.items()}, coordinates, scalars)
 
 

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """solve and trace, with what they take written into their docstrings and signatures from leapmap's own tables."""
 import inspect
+import numbers
+import os
+
+import numpy as np
 
 from leapmap import _core
 from leapmap._results import Motion, Outcomes
@@ -15,15 +19,17 @@ def solve(*, friction="sticking", fields=None, method="auto", tolerance=1e-10, m
     friction: "sticking", the contact never slips, or "coulomb".
     fields: names of those wanted; what only others need is not computed. Default: all.
     method: "auto", "exact", or a stepper like "gsl-rk8pd"; tolerance: relative error of times, a stepper's per step.
-    max_steps: of a stepper; a design that needs more has status failed. threads: 0 for all cores.
+    max_steps: of a stepper; a design that needs more has status failed. threads: 0 for all cores; one in a
+    forked process.
 
     Returns Outcomes, arrays in the shape all parameters broadcast to:
     {fields}
 
     Raises ValueError, naming the parameter, its value and what is allowed. Ctrl-C ends it."""
-    columns = _core.solve(parameters, friction, fields or [], method, tolerance, max_steps, threads)
-    parameters["friction"] = friction
-    return Outcomes({name: column[()] for name, column in columns.items()}, parameters)
+    columns = _core.solve(parameters, friction, _names(fields), method, tolerance, _whole("max_steps", max_steps, 1),
+                          _whole("threads", threads, 0, 4096))
+    given = {name: np.array(value) if isinstance(value, np.ndarray) else value for name, value in parameters.items()}
+    return Outcomes({name: column[()] for name, column in columns.items()}, given | {"friction": friction})
 
 
 def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10, max_steps=1_000_000, **parameters):
@@ -34,14 +40,33 @@ def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10,
     friction, method, tolerance, max_steps: as in solve.
 
     Returns a Motion. Raises ValueError, naming the parameter, its value and what is allowed."""
-    told = _core.trace(parameters, friction, interval, method, tolerance, max_steps)
+    told = _core.trace(parameters, friction, interval, method, tolerance, _whole("max_steps", max_steps, 1))
     return Motion(told, parameters | {"friction": friction})
+
+
+def _names(fields):
+    if fields is None:
+        return []
+    names = [fields] if isinstance(fields, str) else [str(name) for name in fields]
+    if not names:
+        raise ValueError("fields = [] names none; allowed: names of fields, or None for all")
+    return names
+
+
+def _whole(name, value, least, most=10**15):
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or value != int(value) or not least <= value <= most:
+        raise ValueError(f"{name} = {value!r} is out of range; allowed: a whole number from {least} to {most}")
+    return int(value)
 
 
 def _parameter_line(row):
     only = f"; {row['friction']} only" if row["friction"] and not row["meaning"].startswith(row["friction"]) else ""
-    return f"{row['name']}: {row['meaning']}{only}. {row['allowed'][0].upper() + row['allowed'][1:]}; default {row['default']:.6g}" + (
+    return f"{row['name']}: {row['meaning']}{only}. {row['allowed'][0].upper() + row['allowed'][1:]}; default {_default(row)}" + (
         "." if row["array"] else ", one for all designs.")
+
+
+def _default(row):
+    return "mu_static's" if np.isnan(row["default"]) else f"{row['default']:.6g}"
 
 
 def _field_line(row):
@@ -60,5 +85,6 @@ def _document(function):
     function.__signature__ = signature.replace(parameters=of_hoop + own)
 
 
+os.register_at_fork(after_in_child=_core.after_fork_in_child)
 _document(solve)
 _document(trace)

@@ -1,11 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sweeps of a spec, and the maps they write."""
+import json
 import os
+import re
 import tempfile
+import threading
+import warnings
+from collections.abc import Mapping
 
 import numpy as np
 
 from leapmap import _analysis, _core
+
+try:
+    from h5py._objects import phil as _hdf5  # HDF5 is one for the whole process: h5py's other threads wait
+except ImportError:
+    _hdf5 = threading.RLock()
 
 
 def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, threads=0, progress=None, **overrides):
@@ -13,35 +23,71 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
 
     spec: a TOML file's path, or a dictionary {section: {key: value}} where an array is an axis:
         leapmap.sweep({"design": {"slope": np.linspace(0.1, 0.8, 50), "mass_ratio": [1, 2, 3]}})
-    file: the map to write; default: the spec's output.file; without one, or in_memory=True, nothing is kept on disk.
+    file: the map to write; default: the spec's output.file. Without one, or with in_memory=True, the map is a temporary file, and
+        nothing is kept on disk.
     resume: go on with what a stopped sweep left, or take the map if it is whole. overwrite: replace an existing map.
-    threads: 0 for all cores. progress: called with (designs done, designs in all), from any thread, now and then.
+    threads: 0 for all cores; one in a forked process.
+    progress: called with (designs done, designs in all) now and then, from a thread of its own, and at the end. Whatever of it
+        touches h5py waits until the sweep is done, as h5py does in all other threads.
     overrides: keys of the spec, for example tolerance=1e-12.
 
     Raises ValueError for a spec that is not allowed, OSError for a file that cannot be written. Ctrl-C ends it, and MAP.part
     keeps what is done for resume."""
-    text, origin = (_toml(spec), "spec") if isinstance(spec, dict) else (os.fspath(spec), None)
-    changes = [f"{key}={_value(value)}" for key, value in overrides.items()]
+    text, origin = (_toml(spec), "<dict>") if isinstance(spec, Mapping) else (os.fspath(spec), None)
+    changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
     if in_memory and file is not None:
         raise ValueError(f"file = {file!r} has no use with in_memory=True; allowed: one of the two")
     target = None if in_memory else os.fspath(file) if file is not None else _core.spec_file(text, origin, changes) or None
-    options = (resume, overwrite, threads, progress)
+    if target is None and (resume or overwrite):
+        raise ValueError("resume and overwrite have no use in memory; allowed: with a file")
+    work = _Sweep(text, origin, changes, resume, overwrite, int(threads), progress)
     if target is not None:
-        return _swept(text, origin, changes, target, *options)
+        return work.into(target, kept=True)
     with tempfile.TemporaryDirectory(prefix="leapmap-") as folder:
-        return _swept(text, origin, changes, os.path.join(folder, "map.h5"), *options)
+        return work.into(os.path.join(folder, "map.h5"), kept=False)
 
 
-def _swept(text, origin, changes, target, resume, overwrite, threads, progress):
-    from h5py._objects import phil  # HDF5 is one for the whole process: h5py's other threads wait
+class _Sweep:
+    """One sweep, and the thread that tells its progress."""
 
-    try:
-        with phil:
-            _core.sweep(text, origin, changes, target, resume, overwrite, threads, progress)
-    except KeyboardInterrupt:
-        kept = f"; {target}.part keeps what is done; resume=True goes on" if os.path.exists(target + ".part") else ""
-        raise KeyboardInterrupt("stopped" + kept) from None
-    return load(target)
+    def __init__(self, text, origin, changes, resume, overwrite, threads, progress):
+        self.spec, self.options, self.progress = (text, origin, changes), (resume, overwrite, threads), progress
+        self.watch, self.finished, self.failure = _core.Watch(), threading.Event(), None
+
+    def into(self, target, kept):
+        teller = threading.Thread(target=self._tell, daemon=True)
+        if self.progress:
+            teller.start()
+        try:
+            with _hdf5:
+                durable = _core.sweep(*self.spec, target, *self.options, self.watch)
+        except KeyboardInterrupt:
+            part = kept and os.path.exists(target + ".part")
+            raise KeyboardInterrupt(f"stopped; {target}.part keeps what is done; resume=True goes on" if part else "stopped") from None
+        finally:
+            self.finished.set()
+            if self.progress:
+                teller.join()
+        if self.failure is not None:
+            raise self.failure
+        if kept and not durable:
+            warnings.warn(f"{target}: its folder could not be synced; a power cut may undo the map's taking its place", stacklevel=3)
+        return load(target)
+
+    def _tell(self):
+        told = None
+        try:
+            while True:
+                last = self.finished.wait(0.05)
+                now = (self.watch.done, self.watch.total)
+                if now != told and now[1] > 0:
+                    self.progress(*now)
+                    told = now
+                if last:
+                    return
+        except BaseException as error:  # raised where sweep was called
+            self.failure = error
+            self.watch.stop()
 
 
 def load(path):
@@ -49,7 +95,7 @@ def load(path):
     is none."""
     import xarray
 
-    reader = _analysis.module("read_map")
+    reader = _analysis.reader()
     try:
         m = reader.read_map(os.fspath(path))
     except reader.NotAMap as error:
@@ -62,30 +108,47 @@ def load(path):
     return xarray.Dataset(fields, axes, {key: value for key, value in m.attributes.items() if not key.startswith("_")})
 
 
-def _value(value):
-    """A value as TOML; an array is an axis."""
-    if isinstance(value, bool):
+def _text(text):
+    """A text as TOML, whose escapes are JSON's; a delete it wants escaped too."""
+    return json.dumps(os.fspath(text), ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _key(key):
+    return key if re.fullmatch("[A-Za-z0-9_-]+", str(key)) else _text(str(key))
+
+
+def _value(value, in_table=False):
+    """A value as TOML; an array is an axis, but for one inside an axis."""
+    if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (str, os.PathLike)):
-        text = os.fspath(value).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-        return f'"{text}"'
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {_value(item)}" for key, item in value.items()) + " }"
+        return _text(value)
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(key)} = {_value(item, True)}" for key, item in value.items()) + " }"
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (list, tuple)) and all(isinstance(item, str) for item in value):
-        return "[" + ", ".join(map(_value, value)) + "]"
-    if np.ndim(value) == 1:
-        return "{ values = [" + ", ".join(repr(float(number)) for number in value) + "] }"
-    if np.ndim(value) == 0:
-        return repr(float(value))
-    raise ValueError(f"{value!r} has {np.ndim(value)} dimensions; allowed: a number, a text, or one list of numbers for an axis")
+        return "[" + ", ".join(map(_text, value)) + "]"
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu" or array.ndim > 1:
+        raise ValueError(f"{value!r} is no value of a spec; allowed: a number, a text, or one list of numbers for an axis")
+    if array.ndim == 0:
+        return repr(float(array))
+    numbers = "[" + ", ".join(repr(float(number)) for number in array) + "]"
+    return numbers if in_table else f"{{ values = {numbers} }}"
+
+
+def _keyed(key, value):
+    try:
+        return _value(value)
+    except ValueError as error:
+        raise ValueError(f"{key} = {error}") from None
 
 
 def _toml(spec):
     lines = []
     for section, keys in spec.items():
-        if not isinstance(keys, dict):
+        if not isinstance(keys, Mapping):
             raise ValueError(f"{section} = {keys!r} is no section; allowed: {{section: {{key: value}}}}, as in a spec's TOML")
-        lines += [f"[{section}]", *(f"{key} = {_value(value)}" for key, value in keys.items())]
+        lines += [f"[{_key(section)}]", *(f"{_key(key)} = {_keyed(key, value)}" for key, value in keys.items())]
     return "\n".join(lines) + "\n"
