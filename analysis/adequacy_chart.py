@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the paper's model is enough: a map of hoops that never slip beside one of the same hoops with Coulomb friction.
 
@@ -86,7 +86,7 @@ def chart(rigid, slipping):
 
 
 def main():
-    p = style.parser(__doc__, "the map without slip, for example maps/adequacy_sticking.h5", "maps/adequacy")
+    p = style.parser(__doc__, "the map without slip, for example maps/adequacy_sticking.h5", "_adequacy")
     p.add_argument("coulomb", help="the map with Coulomb friction, for example maps/adequacy_coulomb.h5")
     arguments = p.parse_args()
     style.save(chart(read_map(arguments.source), read_map(arguments.coulomb)), arguments.output)

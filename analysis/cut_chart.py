@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws cuts through a map: quantities along one axis, a line for each of some values of a second, the others fixed.
 
@@ -96,7 +96,7 @@ def chart(m, along, by, wanted, at, fields):
 
 
 def main():
-    p = style.parser(__doc__, "a map, for example maps/slope_mass_ratio_offset.h5", "maps/cut")
+    p = style.parser(__doc__, "a map, for example maps/slope_mass_ratio_offset.h5", "_cut")
     p.add_argument("--along", metavar="AXIS", help="the axis drawn to the right (default: slope, or the map's first)")
     p.add_argument("--by", metavar="AXIS", help="the axis that lines are drawn for (default: mass_ratio, or the map's next)")
     p.add_argument("--values", metavar="V,V,...", help="of that axis, those nearest to these (default: eight, spread over it)")

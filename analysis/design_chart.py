@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws the design charts of a map: jump height, time and agility over two of its axes, a panel for each value of the others.
 
@@ -123,7 +123,7 @@ def chart(grid, name):
 
 
 def main():
-    p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "maps/design_chart")
+    p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "")
     planes.add_options(p)
     arguments = p.parse_args()
     m = read_map(arguments.source)

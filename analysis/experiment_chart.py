@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The paper's hoop with Coulomb friction over release angle and friction: where does it do what was measured?
 
@@ -50,7 +50,7 @@ def chart(m):
 
 
 def main():
-    p = style.parser(__doc__, "a map over release_angle and mu_static, for example maps/experiment.h5", "maps/experiment")
+    p = style.parser(__doc__, "a map over release_angle and mu_static, for example maps/experiment.h5", "")
     arguments = p.parse_args()
     style.save(chart(read_map(arguments.source)), arguments.output)
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws a list of designs: quantities over a parameter, a dot for each design, filled where the first lift-off is the jump and
 hollow where it is spurious. Designs that do not jump stand at the bottom, by the reason. Wants a map of a spec with design.points.
@@ -55,7 +55,7 @@ def chart(m, along, fields):
 
 
 def main():
-    p = style.parser(__doc__, "a map of a list of designs", "maps/list")
+    p = style.parser(__doc__, "a map of a list of designs", "_list")
     p.add_argument("-x", metavar="PARAMETER", help="what is drawn to the right; design: the number in the list (default: the first parameter that varies)")
     p.add_argument("--fields", default=",".join(FIELDS), help=f"what to draw, of {', '.join(looks.LOOKS)} (default: %(default)s)")
     arguments = p.parse_args()

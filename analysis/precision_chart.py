@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Speed against accuracy, from the table that leapmap precision writes: five charts.
 
@@ -150,7 +150,7 @@ def model_chart(t):
 
 
 def main():
-    p = style.parser(__doc__, "a table of leapmap precision, for example maps/precision.h5", "maps/precision")
+    p = style.parser(__doc__, "a table of leapmap precision, for example maps/precision.h5", "")
     arguments = p.parse_args()
     t = read_table(arguments.source, "leapmap precision")
     output = style.stem(arguments.output)

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """leapmap beside programs that are not ours, on the same designs in the same run: scipy's DOP853 with events, and
 Boost.odeint's dopri5 with dense output (analysis/boost_rival.cpp, compiled here).

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where methods fail, from the table that leapmap stability writes: a chart a case, and an overview.
 
@@ -167,7 +167,7 @@ def overview(t):
 
 
 def main():
-    p = style.parser(__doc__, "a table of leapmap stability, for example maps/stability.h5", "maps/stability")
+    p = style.parser(__doc__, "a table of leapmap stability, for example maps/stability.h5", "")
     arguments = p.parse_args()
     t = read_table(arguments.source, "leapmap stability")
     output = style.stem(arguments.output)

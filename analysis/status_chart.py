@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws how designs end over two axes of a map, a panel for each value of the others: whether the first lift-off is the jump or a
 spurious one, and why there is no jump elsewhere. A star at the paper's hoop. Needs status.
@@ -48,7 +48,7 @@ def chart(grid):
 
 
 def main():
-    p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "maps/status")
+    p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "_status")
     planes.add_options(p)
     arguments = p.parse_args()
     style.save(chart(planes.Planes(read_map(arguments.source), arguments.x, arguments.y, arguments.at)), arguments.output)

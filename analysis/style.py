@@ -22,11 +22,22 @@ plt.rcParams.update({
 })
 
 
-def parser(description, source, default_output, output="file name without ending; PNG, SVG and PDF are written (default: %(default)s)"):
-    """The command line every chart shares; output: what -o means."""
-    p = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+class _Parser(argparse.ArgumentParser):
+    suffix = None
+
+    def parse_args(self, *arguments, **more):
+        parsed = super().parse_args(*arguments, **more)
+        if parsed.output is None and self.suffix is not None:
+            parsed.output = os.path.splitext(parsed.source.removesuffix(".part"))[0] + self.suffix
+        return parsed
+
+
+def parser(description, source, suffix, output="file name without ending; PNG, SVG and PDF are written (default: FILE's name{})"):
+    """The command line every chart shares. suffix: what the default output adds to FILE's name, or None; output: what -o means."""
+    p = _Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.suffix = suffix
     p.add_argument("source", metavar="FILE", help=source)
-    p.add_argument("-o", "--output", default=default_output, help=output)
+    p.add_argument("-o", "--output", help=output.format(f" with {suffix}" if suffix else ""))
     return p
 
 

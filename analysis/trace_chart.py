@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Redraws the paper's Figs 4 to 6 from a trace: angle, spin, normal and friction force and height over time; and, where the hoop
 jumps, a second figure of its flight: how x, y and the angle change from the lift-off on.
@@ -140,7 +140,7 @@ def caption(trace, below=None):
 
 
 def main():
-    p = style.parser(__doc__, "a trace: leapmap hop --trace FILE", "maps/trace_chart")
+    p = style.parser(__doc__, "a trace: leapmap hop --trace FILE", "")
     p.add_argument("--paper", action="store_true", help="mark the paper's times and its height")
     arguments = p.parse_args()
     trace = read_trace(arguments.source)

@@ -20,6 +20,7 @@ std::vector<std::string_view> split(std::string_view line) {
     std::string_view cell = line.substr(start, comma == std::string_view::npos ? comma : comma - start);
     while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
     while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t')) cell.remove_suffix(1);
+    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
     cells.push_back(cell);
     if (comma == std::string_view::npos) return cells;
     start = comma + 1;
@@ -57,6 +58,7 @@ PointList read_points(const std::string& path, const std::string& origin) {
     if (text.ends_with('\r')) text.remove_suffix(1);
     if (text.find_first_not_of(" \t") == std::string_view::npos) continue;
     const std::string place = fmt::format("{}:{}", path, number);
+    if (columns.empty() && text.starts_with('#')) text.remove_prefix(1);  // numpy.savetxt's header
     const auto cells = split(text);
     if (columns.empty()) {
       for (const std::string_view name : cells) {

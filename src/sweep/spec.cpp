@@ -294,10 +294,17 @@ void read_points_of(Spec& spec) {
   spec.points =
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
   spec.list = read_points(spec.points, origin_of(spec));
-  for (const Axis& column : spec.list.columns)
-    if (const Option& option = *find_option("design", column.key); !has(spec.scene.friction, option.only_of))
+  for (const Axis& column : spec.list.columns) {
+    const Option& option = *find_option("design", column.key);
+    if (!has(spec.scene.friction, option.only_of))
       throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
                                    no_use(spec.scene), with_model(*option.only_of)));
+    if (const double given = value_of(option, spec.design);
+        !is_usual(given, value_of(option, Design{})) && !std::isnan(given))
+      throw InputError(
+          fmt::format("{}: {} = {} has no use beside the column of that name in {}; allowed: one of the two",
+                      origin_of(spec), column.key, given, spec.points));
+  }
 }
 
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {

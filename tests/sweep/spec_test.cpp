@@ -171,6 +171,28 @@ TEST(Spec, AListOfDesignsIsReadFromBesideTheSpec) {
   EXPECT_EQ(space.at(0).offset_ratio, 0.7);
 }
 
+TEST(Spec, AListIsReadAsSpreadsheetsAndNumpyWriteIt) {
+  const testing::TemporaryFolder folder;
+  folder.write("designs.csv", "# slope,\"mass_ratio\"\r\n\"20 deg\", 2\r\n0.2,\"3\"\r\n");
+  const Spec spec = read_spec(folder.write("spec.toml", "[design]\npoints = \"designs.csv\"\n"), {});
+  const DesignSpace space(spec);
+  EXPECT_EQ(space.at(0).slope, 20.0 * degree);
+  EXPECT_EQ(space.at(1).mass_ratio, 3.0);
+}
+
+TEST(Spec, AValueBesideAColumnOfItsNameIsRefused) {
+  const testing::TemporaryFolder folder;
+  folder.write("designs.csv", "slope\n0.1\n");
+  const std::string path = folder.write("spec.toml", "[design]\npoints = \"designs.csv\"\nslope = 0.3\n");
+  try {
+    read_spec(path, {});
+    FAIL() << "the column would win without a word";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("slope = 0.3 has no use beside the column"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Spec, DesignsAreNumberedWithTheLastAxisFastest) {
   const Spec spec = parse("[design]\nslope = { values = [0.1, 0.2] }\nmass_ratio = { values = [1, 2, 3] }\n");
   const DesignSpace space(spec);

@@ -80,10 +80,11 @@ class Outcomes:
 
 
 class Motion:
-    """One design's motion. SI units.
+    """One design's motion.
 
-    t, phi, spin, x, y, normal_force, friction, phase: arrays, a sample each interval, and at the jump's lift-off and landing.
-    phases: where each begins; candidates: every lift-off looked at. Both lists of dictionaries.
+    Arrays, a sample each interval, and at the jump's lift-off and landing: t [s], phi [rad], spin [rad/s], x and y [m],
+    normal_force and friction [weights], phase (1 rolling, 2 sliding, 3 flight).
+    phases: where each begins; candidates: every lift-off looked at, height and dip in hoop diameters. Both lists of dictionaries.
     outcome: as solve's, of one design."""
 
     def __init__(self, told, given):
