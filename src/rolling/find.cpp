@@ -36,10 +36,13 @@ void Classify<T>::run(Block<T>& block, Intervals& falls, DesignList& going_on) {
     const T &a = lanes.from, &b = lanes.to;
     const Roll<T> roll = block.template load_path<T>(lanes.index.data());
     const CurvedSample<T> at_a = lift(roll, a), at_b = lift(roll, b);
-    const auto is_up = [](const T& decided, const T& value) {
+    const auto is_up = [&](Side Interval<S>::*side, const T& value) {
+      const T decided = lanes_from<T>(
+          intervals, first, [&](const Interval<S>& interval) { return S(static_cast<int>(interval.*side)); });
       return (decided > T(0)) | ((decided == T(0)) & (value > T(0)));
     };
-    const MaskOf<T> up_a = is_up(lanes.from_side, at_a.value), up_b = is_up(lanes.to_side, at_b.value);
+    const MaskOf<T> up_a = is_up(&Interval<S>::from_side, at_a.value),
+                    up_b = is_up(&Interval<S>::to_side, at_b.value);
     const IntervalKind<T> kind = classify(at_a, at_b, up_a, up_b, lift_bounds(roll, lanes.turn), b - a);
     const unsigned fall = Lanes<T>::bits(kind.fall), unclear = Lanes<T>::bits(kind.unclear),
                    sinking = Lanes<T>::bits(up_a & !up_b);

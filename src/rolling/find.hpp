@@ -27,28 +27,31 @@ struct Classify {
   void run(Block<T>& block, Intervals& falls, DesignList& going_on);
 };
 
-/// The intervals in the lanes of a batch.
+/// The intervals in the lanes of a batch; lanes to spare repeat the first.
 template <class T>
 struct IntervalLanes {
   DesignLanes<T> index;
-  T from, to, turn, guess, from_side, to_side;
+  T from, to, turn;
 };
+
+/// A number of each interval in the lanes: number_of(interval).
+template <class T, class F>
+T lanes_from(const std::vector<Interval<ScalarOf<T>>>& intervals, std::size_t first, const F& number_of) {
+  LaneArray<T> lanes;
+  for (std::size_t i = 0; i < lanes.size(); ++i)
+    lanes[i] = number_of(intervals[first + i < intervals.size() ? first + i : first]);
+  return Lanes<T>::load(lanes.data());
+}
+
 template <class T>
 IntervalLanes<T> lanes_from(const std::vector<Interval<ScalarOf<T>>>& intervals, std::size_t first) {
-  IntervalLanes<T> lanes;
-  LaneArray<T> from, to, turn, guess, from_side, to_side;
-  for (std::size_t i = 0; i < lanes.index.size(); ++i) {
+  DesignLanes<T> index;
+  LaneArray<T> from, to, turn;
+  for (std::size_t i = 0; i < index.size(); ++i) {
     const auto& interval = intervals[first + i < intervals.size() ? first + i : first];
-    lanes.index[i] = interval.design, from[i] = interval.from, to[i] = interval.to, turn[i] = interval.turn;
-    guess[i] = interval.guess;
-    from_side[i] = ScalarOf<T>(static_cast<int>(interval.from_side));
-    to_side[i] = ScalarOf<T>(static_cast<int>(interval.to_side));
+    index[i] = interval.design, from[i] = interval.from, to[i] = interval.to, turn[i] = interval.turn;
   }
-  using Load = Lanes<T>;
-  lanes.from = Load::load(from.data()), lanes.to = Load::load(to.data());
-  lanes.turn = Load::load(turn.data()), lanes.guess = Load::load(guess.data());
-  lanes.from_side = Load::load(from_side.data()), lanes.to_side = Load::load(to_side.data());
-  return lanes;
+  return {index, Lanes<T>::load(from.data()), Lanes<T>::load(to.data()), Lanes<T>::load(turn.data())};
 }
 
 }  // namespace leapmap

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One design's search for lift-offs: which intervals of its revolutions to look at, in order of angle.
+/// One design's search for lift-offs: which intervals of its revolutions to look at, in order of angle. All
+/// of it is here to be inlined: a search takes some nanoseconds a step, as much as a call.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
+#include <numbers>
 
 #include "rolling/lift_off_scan.hpp"
 
@@ -58,5 +63,118 @@ struct IntervalSearch {
  private:
   void hand_on_signs(const NodeSigns& signs, std::size_t lane, int turns);
 };
+
+/// Of an interval halved k times, relative to the whole.
+template <class S>
+inline constexpr auto part_lengths = [] {
+  std::array<S, IntervalSearch<S>::most_halvings + 1> lengths{};
+  for (std::size_t k = 0; k < lengths.size(); ++k) lengths[k] = S(1) / S(std::uint64_t{1} << k);
+  return lengths;
+}();
+
+template <class S>
+void IntervalSearch<S>::begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past,
+                              bool on_node) {
+  release = from, end = to;
+  first_turn = turn_of_release;
+  node_past_release = past;
+  released_on_node = on_node;
+  turn = node = halvings = 0, part = 0;
+}
+
+template <class S>
+void IntervalSearch<S>::take(const ScanFlags& scanned, const NodeSigns& signs, std::size_t lane, int turns) {
+  flags = scanned;
+  hand_on_signs(signs, lane, turns);
+}
+
+/// At the release the hoop is on the plane, or it would not have set out; at a scan's first node G has the
+/// sign that the scan before found there. Where this scan's sign differs by rounding, the interval from there
+/// on is looked at.
+template <class S>
+void IntervalSearch<S>::hand_on_signs(const NodeSigns& signs, std::size_t lane, int turns) {
+  constexpr auto nodes = static_cast<std::size_t>(nodes_a_turn);
+  const auto scanned = static_cast<std::size_t>(turns) * nodes;  // of all turns, the last node not counted
+  const auto above_at = [&](std::size_t k) {
+    return k < scanned ? is_above(signs, k / nodes, k % nodes, lane)
+                       : is_above(signs, static_cast<std::size_t>(turns) - 1, nodes, lane);
+  };
+  const auto look_at = [&](std::size_t k, bool left) {
+    const auto put = [&](IntervalBits& bits, bool value) {
+      const std::uint64_t bit = std::uint64_t{1} << k % nodes;
+      bits[k / nodes] = value ? bits[k / nodes] | bit : bits[k / nodes] & ~bit;
+    };
+    put(flags.looks, true), put(flags.falls, false);
+    put(flags.above_left, left), put(flags.above_right, above_at(k + 1));
+  };
+  const bool first_above = last_above;
+  last_above = above_at(scanned);
+  const std::size_t k = node_past_release;
+  node_past_release = 0;
+  if (k == 0) {
+    if (first_above != above_at(0)) look_at(0, first_above);
+  } else if (!released_on_node) {
+    if (!above_at(k)) look_at(k - 1, above_at(k - 1));
+  } else if (k == scanned) {
+    last_above = true;
+  } else {
+    flags.looks[(k - 1) / nodes] &= ~(std::uint64_t{1} << (k - 1) % nodes);
+    if (!above_at(k)) look_at(k, true);
+  }
+}
+
+template <class S>
+bool IntervalSearch<S>::scan_on() {
+  if (!(end > S(2) * std::numbers::pi_v<S> * (first_turn + S(turns_a_scan)))) return false;
+  first_turn += S(turns_a_scan);
+  turn = 0;
+  return true;
+}
+
+template <class S>
+bool IntervalSearch<S>::next(std::uint32_t design, Interval<S>& interval) {
+  const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
+  while (turn < turns_a_scan) {
+    const auto t = static_cast<std::size_t>(turn);
+    if (flags.looks[t] == 0) {
+      ++turn;
+      continue;
+    }
+    node = std::countr_zero(flags.looks[t]);
+    const S revolution = first_turn + S(turn), place = revolution * S(nodes_a_turn) + S(node);
+    const S length = part_lengths<S>[static_cast<std::size_t>(halvings)], at = place + S(part) * length;
+    const S from = std::max(at * step, release), to = std::min((at + length) * step, end);
+    if (from < to) {
+      const auto flagged = [&](const IntervalBits& bits) -> bool { return bits[t] >> node & 1u; };
+      const S left_node = place * step, right_node = (place + S(1)) * step;
+      const auto side = [](bool is_above) { return is_above ? Side::above : Side::below; };
+      const bool falls = flagged(flags.falls) && from == left_node && to == right_node;
+      interval = {design, revolution, from, to, (from + to) * S(0.5), falls, Side::asked, Side::asked};
+      if (falls) return true;
+      if (from == release) {
+        interval.from_side = Side::above;
+      } else if (from == left_node) {
+        interval.from_side = side(flagged(flags.above_left) || flagged(flags.falls));
+      }
+      if (to == right_node) interval.to_side = side(flagged(flags.above_right));
+      return true;
+    }
+    if (from >= end) {
+      turn = turns_a_scan;
+    } else {
+      advance();
+    }
+  }
+  return false;
+}
+
+template <class S>
+void IntervalSearch<S>::advance() {
+  ++part;
+  while (halvings > 0 && part % 2 == 0) part /= 2, --halvings;
+  if (halvings > 0) return;
+  part = 0;
+  flags.looks[static_cast<std::size_t>(turn)] &= ~(std::uint64_t{1} << node);
+}
 
 }  // namespace leapmap

@@ -20,9 +20,10 @@ void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Sce
     const std::size_t count = std::min(Lanes<T>::count, falls.size() - first);
     const IntervalLanes<T> lanes = lanes_from<T>(falls, first);
     const T &a = lanes.from, &b = lanes.to;
+    const T guess = lanes_from<T>(falls, first, [](const Interval<S>& fall) { return fall.guess; });
     const Roll<T> roll = block.template load_path<T>(lanes.index.data());
     const MaskOf<T> all_lanes = a == a;
-    const T angle = polish_root([&](const T& x) { return lift(roll, x); }, a, b, lanes.guess, !all_lanes,
+    const T angle = polish_root([&](const T& x) { return lift(roll, x); }, a, b, guess, !all_lanes,
                                 T(2) * epsilon * larger(T(1), abs(b)), all_lanes);
     const Trig<T> phi = trig(angle);
     const T spin = sqrt(vis_viva(roll, angle, phi) / contact_inertia(roll.hoop, phi));

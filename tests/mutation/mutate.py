@@ -18,7 +18,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = ["src/" + name + ".cpp" for name in
-           ("rolling/clock", "rolling/exact", "rolling/find", "rolling/halved_time", "rolling/interval_search", "rolling/prepare", "rolling/rolling_time",
+           ("rolling/clock", "rolling/exact", "rolling/find", "rolling/halved_time", "rolling/prepare", "rolling/rolling_time",
             "rolling/take_off", "rolling/rolling_integration", "physics/three_coordinates", "coulomb/rolling_leg",
             "coulomb/sliding_leg", "coulomb/sliding_panel", "coulomb/coulomb", "coulomb/coulomb_integration")] + ["tests/mutation/judge.cpp"]
 LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
