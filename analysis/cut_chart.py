@@ -13,7 +13,6 @@ import style
 from read_map import NotAMap, read_map
 from style import plt
 
-FIELDS = ("jump_height", "jump_time", "agility")
 MOST_LINES = 8
 
 
@@ -60,7 +59,6 @@ def chart(m, along, by, wanted, at, fields):
     colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(picked)))
     course = looks.course(m)
     for axis, (field, values) in zip(axes[:, 0], drawn.items()):
-        look = looks.LOOKS[field]
         for colour, k in zip(colours, picked):
             y = line(values, k).astype(float)
             if course is not None:
@@ -78,7 +76,7 @@ def chart(m, along, by, wanted, at, fields):
                 here = np.isfinite(np.concatenate([[np.nan], part, [np.nan]]))
                 alone = here[1:-1] & ~here[:-2] & ~here[2:]  # a line through one design is none
                 axis.plot(places[alone], part[alone], ".", color=colour, markersize=3)
-        axis.set_ylabel("\n[".join(look.title.replace(": height over time from release to apex", "").split(" [")))
+        axis.set_ylabel(planes.field_label(field))
         axis.grid(alpha=0.25)
         if looks.is_log(x):
             style.log_scale(axis.xaxis)
@@ -101,12 +99,9 @@ def main():
     p.add_argument("--by", metavar="AXIS", help="the axis that lines are drawn for (default: mass_ratio, or the map's next)")
     p.add_argument("--values", metavar="V,V,...", help="of that axis, those nearest to these (default: eight, spread over it)")
     planes.add_at(p)
-    p.add_argument("--fields", default=",".join(FIELDS), help=f"what to draw, of {', '.join(looks.LOOKS)} (default: %(default)s)")
+    planes.add_fields(p)
     arguments = p.parse_args()
-    fields = arguments.fields.split(",")
-    unknown = [f for f in fields if f not in looks.LOOKS]
-    if unknown:
-        raise NotAMap(f"--fields {unknown[0]}: is unknown; allowed: {', '.join(looks.LOOKS)}")
+    fields = planes.fields_of(arguments)
     style.save(chart(read_map(arguments.source), arguments.along, arguments.by, arguments.values, arguments.at, fields), arguments.output)
 
 

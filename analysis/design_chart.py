@@ -19,8 +19,6 @@ import style
 from read_map import NotAMap, read_map
 from style import plt
 
-FIELDS = ("jump_height", "jump_time", "agility")
-
 
 def without_cliffs(plane, course):
     """The plane with gaps where the jump takes another course."""
@@ -127,7 +125,7 @@ def main():
     planes.add_options(p)
     arguments = p.parse_args()
     m = read_map(arguments.source)
-    drawn = [name for name in FIELDS if looks.quantity(m, name) is not None]
+    drawn = [name for name in planes.FIELDS if looks.quantity(m, name) is not None]
     if not drawn:
         raise NotAMap(f"{m.path}: has no jump_height or jump_time; a design chart wants one of them")
     grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)

@@ -11,7 +11,6 @@ import style
 from read_map import NotAMap, read_map
 from style import plt
 
-FIELDS = ("jump_height", "jump_time", "agility")
 
 
 def values_along(m, name):
@@ -42,7 +41,7 @@ def chart(m, along, fields):
         for code, there in reasons.items():
             axis.plot(x[there], np.full(there.sum(), 0.02), "x", markersize=4, color=looks.STATUSES[code][0],
                       transform=axis.get_xaxis_transform(), in_layout=False)
-        axis.set_ylabel("\n[".join(looks.LOOKS[field].title.replace(": height over time from release to apex", "").split(" [")))
+        axis.set_ylabel(planes.field_label(field))
         axis.grid(alpha=0.25)
     if along != "design" and looks.is_log(np.unique(x)):
         style.log_scale(axes[-1, 0].xaxis)
@@ -57,12 +56,9 @@ def chart(m, along, fields):
 def main():
     p = style.parser(__doc__, "a map of a list of designs", "_list")
     p.add_argument("-x", metavar="PARAMETER", help="what is drawn to the right; design: the number in the list (default: the first parameter that varies)")
-    p.add_argument("--fields", default=",".join(FIELDS), help=f"what to draw, of {', '.join(looks.LOOKS)} (default: %(default)s)")
+    planes.add_fields(p)
     arguments = p.parse_args()
-    fields = arguments.fields.split(",")
-    unknown = [f for f in fields if f not in looks.LOOKS]
-    if unknown:
-        raise NotAMap(f"--fields {unknown[0]}: is unknown; allowed: {', '.join(looks.LOOKS)}")
+    fields = planes.fields_of(arguments)
     style.save(chart(read_map(arguments.source), arguments.x, fields), arguments.output)
 
 

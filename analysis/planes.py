@@ -10,6 +10,7 @@ from read_map import NotAMap
 from style import plt
 
 MOST_PANELS = 12
+FIELDS = ("jump_height", "jump_time", "agility")  # drawn unless others are asked for
 
 
 def add_options(parser):
@@ -17,6 +18,25 @@ def add_options(parser):
     parser.add_argument("-x", metavar="AXIS", help="the axis drawn to the right (default: slope, or the map's first)")
     parser.add_argument("-y", metavar="AXIS", help="the axis drawn upwards (default: mass_ratio, or the map's next)")
     add_at(parser)
+
+
+def add_fields(parser):
+    """--fields, for charts of quantities over a line; fields_of reads it."""
+    parser.add_argument("--fields", default=",".join(FIELDS),
+                        help=f"what to draw, of {', '.join(looks.LOOKS)} (default: %(default)s)")
+
+
+def fields_of(arguments):
+    fields = arguments.fields.split(",")
+    unknown = [f for f in fields if f not in looks.LOOKS]
+    if unknown:
+        raise NotAMap(f"--fields {unknown[0]}: is unknown; allowed: {', '.join(looks.LOOKS)}")
+    return fields
+
+
+def field_label(field):
+    """A quantity and its unit in two short lines, for an axis upwards."""
+    return "\n[".join(looks.LOOKS[field].title.replace(": height over time from release to apex", "").split(" ["))
 
 
 def add_at(parser):

@@ -171,7 +171,7 @@ int run(const InfoArguments& arguments) {
                     arguments.path, part));
   const MapReader map(arguments.path, arguments.locking);
   if (arguments.only_spec) {
-    write_out(readable_text(spec_of(map, arguments.path)));
+    write_out(readable_text(parse_map_spec(map.attribute("spec"), arguments.path)));
     return 0;
   }
   if (arguments.failed) return list_failed(map, arguments);

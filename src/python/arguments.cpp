@@ -68,8 +68,9 @@ void Designs::take(const std::string& name, const py::handle& value) {
     }
   }
   const auto array = py::array::ensure(value);
-  const auto numbers = array && is_numbers(value, array) ? Numbers::ensure(array) : Numbers();
-  if (!array || !is_numbers(value, array) || !numbers) {
+  const auto numbers = array && is_numbers(value, array) ? Numbers::ensure(array)
+                                                         : py::reinterpret_steal<Numbers>(py::handle());
+  if (!numbers) {
     PyErr_Clear();
     throw InputError(fmt::format("{} = {} is no number and no array of numbers; allowed: {}", name,
                                  shown(value), allowed_values(parameter.range, parameter.unit)));

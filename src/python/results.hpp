@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Outcomes, motions and reports as dictionaries of numpy arrays.
+/// Outcomes and motions as dictionaries of numpy arrays.
 #pragma once
 
 #include <pybind11/numpy.h>

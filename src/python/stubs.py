@@ -3,7 +3,7 @@
 import sys
 
 import leapmap
-from leapmap import _core
+from leapmap import _core, _results
 
 NUMBERS = {"float64": "NDArray[np.float64]", "uint8": "NDArray[np.uint8]", "uint64": "NDArray[np.uint64]"}
 
@@ -15,8 +15,7 @@ def arguments(arrays):
 with open(sys.argv[1], "w", encoding="utf-8") as file:
     fields = "\n".join(f"    {row['name']}: {NUMBERS[row['type']]}" for row in _core.fields())
     statuses = "\n".join(f"    {status.name} = {status.value}" for status in leapmap.Status)
-    points = "\n".join(f"    {name}: NDArray[np.{'uint8' if name == 'phase' else 'float64'}]"
-                       for name in ("t", "phi", "spin", "x", "y", "normal_force", "friction", "phase"))
+    points = "\n".join(f"    {name}: NDArray[np.{'uint8' if name == 'phase' else 'float64'}]" for name in _results._POINTS)
     file.write(f'''# Written by src/python/stubs.py from leapmap's tables of parameters and fields.
 import os
 from enum import IntEnum
