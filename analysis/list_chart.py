@@ -11,6 +11,7 @@ import style
 from read_map import NotAMap, read_map
 from style import plt
 
+MOST_LABELS = 40  # more names would hide each other
 
 
 def values_along(m, name):
@@ -43,6 +44,12 @@ def chart(m, along, fields):
                       transform=axis.get_xaxis_transform(), in_layout=False)
         axis.set_ylabel(planes.field_label(field))
         axis.grid(alpha=0.25)
+        if m.labels is not None and len(x) <= MOST_LABELS and along != "design" and axis is axes[0, 0]:
+            for label, *place in zip(m.labels, x, values):
+                if np.isfinite(place[1]):
+                    axis.annotate(label, place, parse_math=False, xytext=(4, 4), textcoords="offset points", fontsize=7)
+    if m.labels is not None and len(x) <= MOST_LABELS and along == "design":
+        axes[-1, 0].set_xticks(x, m.labels, parse_math=False, rotation=35, ha="right")
     if along != "design" and looks.is_log(np.unique(x)):
         style.log_scale(axes[-1, 0].xaxis)
     axes[-1, 0].set_xlabel(label)

@@ -170,7 +170,7 @@ def _refuse_foreign_parts(file, file_size, texts):
                     groups.append((f"{path}{name}/", thing))
             elif not isinstance(thing, h5py.Dataset):
                 raise Refused(f"is refused: {place} is neither a dataset nor a group")
-            elif refusal := _refusal(thing, file_size, texts):
+            elif refusal := _refusal(thing, file_size, texts is True or place in texts):
                 raise Refused(f"is refused: {place} {refusal}")
             else:
                 claimed += _claimed(thing)
@@ -179,8 +179,9 @@ def _refuse_foreign_parts(file, file_size, texts):
 
 
 @contextlib.contextmanager
-def opened(path, filetype, texts=False):
-    """A file of that type as h5py has it, for reading; texts: it may hold datasets of texts. Raises Refused or OSError."""
+def opened(path, filetype, texts=()):
+    """A file of that type as h5py has it, for reading; texts: names of the datasets that may hold texts, or True for all. Raises
+    Refused or OSError."""
     with contextlib.ExitStack() as stack:
         # Not blocking: to open a pipe would wait for whoever writes to it.
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)

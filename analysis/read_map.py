@@ -41,6 +41,7 @@ class Map:
     dims: dict = field(default_factory=dict)  # name -> values, in the order of the fields' dimensions
     fields: Fields = None  # name -> array
     about: dict = field(default_factory=dict)  # name -> its attributes (units, long_name, ...)
+    labels: np.ndarray = None  # of a list that has them: the names of its designs
     tile: tuple = ()  # how many designs a chunk holds along each axis
 
     @property
@@ -89,7 +90,7 @@ class Map:
         return found
 
 
-def _read(path, filetype, most_designs=math.inf, texts=False):
+def _read(path, filetype, most_designs=math.inf, texts=()):
     try:
         with opened(path, filetype, texts) as file:
             return _read_open(path, file, most_designs)
@@ -176,7 +177,8 @@ def _check_scene(m):
 def read_map(path, most_designs=math.inf):
     """A map, as `leapmap sweep` writes it. Raises NotAMap with one clear line for anything else, and for a map of more than
     most_designs before it is read."""
-    m = _read(path, "leapmap map", most_designs)
+    m = _read(path, "leapmap map", most_designs, ("label",))
+    m.labels = m.fields.pop("label", None)
     _check_scene(m)
     for name, values in m.dims.items():
         _check_numbers(m, name, values, 1)
@@ -186,6 +188,8 @@ def read_map(path, most_designs=math.inf):
         _check_numbers(m, name, values, len(m.dims))
         if values.shape != tuple(len(v) for v in m.dims.values()):
             raise NotAMap(f"{m.path}: is damaged: {name} has the shape {values.shape}, which is not that of its axes")
+    if m.labels is not None and (m.labels.dtype.kind != "O" or m.labels.shape != (len(m.dims.get("design", ())),)):
+        raise NotAMap(f"{m.path}: is damaged: it has not a label for each design of a list")
     if not m.whole and not (isinstance(m.attributes["tiles_done"], np.integer) and len(m.tile) == len(m.dims)):
         raise NotAMap(f"{m.path}: is damaged: it does not say which of its tiles are done")
     return m

@@ -174,9 +174,7 @@ function hopPanel(map, solver) {
     const part = element("hop-part");
     if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight) part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
     history.replaceState(null, "", `#design=${index.join(",")}`);
-    const design = { ...map.fixed };
-    map.axes.forEach((axis, k) => { design[axis.name] = axis.values[index[k]]; });
-    begin(design, `One hoop: ${placeText(map, index)}`);
+    begin(designAt(map, index), `One hoop: ${placeText(map, index)}`);
   };
   const stopAt = (time) => { run(false); now.time = Math.min(Math.max(0, time), end()); draw(); };
   return { show, stopAt };

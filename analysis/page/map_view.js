@@ -1,7 +1,5 @@
 // The map as an image: cells, hatching, isolines, axes, and a cursor on the design pointed at.
 
-const EDGE = "#303030", MARK = "#d62728";
-
 /**
  * Draws into a canvas; `map` holds axes, fields with their values, codes. Calls onPoint(index) for the design pointed at,
  * onPick(index) for the one clicked; index: along each axis of the map.
@@ -22,19 +20,19 @@ function mapView(canvas, map, onPoint, onPick) {
 
   /** Everything but the cursor, at the screen's own resolution. */
   function paint() {
-    const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
-    if (!(box.width > 0)) return;
-    canvas.width = background.width = Math.round(box.width * ratio);
-    canvas.height = background.height = Math.round(box.height * ratio);
-    const context = background.getContext("2d"), font = 13 * ratio;
-    frame = { left: 4.6 * font, top: 0.8 * font, right: canvas.width - 7 * font, bottom: canvas.height - 3.4 * font, font, ratio };
+    const fresh = fitted(canvas, 7);
+    if (!fresh) return;
+    frame = fresh;
+    background.width = canvas.width;
+    background.height = canvas.height;
+    const context = background.getContext("2d");
     sx = axisScale(map.axes[view.x], frame.left, frame.right);
     sy = axisScale(map.axes[view.y], frame.bottom, frame.top);
     context.fillStyle = "#ffffff";
     context.fillRect(0, 0, canvas.width, canvas.height);
     paintCells(context);
     paintIsolines(context);
-    paintAxes(context);
+    paintAxes(context, frame, sx, sy, labelOf(map.axes[view.x]), labelOf(map.axes[view.y]));
     paintBar(context);
     paintPaper(context);
     paintCursor();
@@ -104,41 +102,6 @@ function mapView(canvas, map, onPoint, onPick) {
         context.stroke();
         if (label) { context.fillText(text, ...label); labels.push(label); }
       }
-  }
-
-  function paintAxes(context) {
-    const { left, top, right, bottom, font, ratio } = frame;
-    context.strokeStyle = context.fillStyle = EDGE;
-    context.lineWidth = ratio;
-    context.strokeRect(left, top, right - left, bottom - top);
-    context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;
-    context.textAlign = "center";
-    context.textBaseline = "top";
-    context.beginPath();
-    let last = -Infinity;
-    for (const tick of sx.ticks()) {
-      const p = sx.pixel(tick), text = short(tick, 12), width = context.measureText(text).width;
-      context.moveTo(p, bottom);
-      context.lineTo(p, bottom + 0.35 * font);
-      if (p - width / 2 > last) { context.fillText(text, p, bottom + 0.5 * font); last = p + width / 2 + 0.4 * font; }
-    }
-    context.textAlign = "right";
-    context.textBaseline = "middle";
-    for (const tick of sy.ticks()) {
-      const p = sy.pixel(tick);
-      context.moveTo(left, p);
-      context.lineTo(left - 0.35 * font, p);
-      context.fillText(short(tick, 12), left - 0.5 * font, p);
-    }
-    context.stroke();
-    context.textAlign = "center";
-    context.textBaseline = "alphabetic";
-    context.fillText(labelOf(map.axes[view.x]), (left + right) / 2, canvas.height - 0.6 * font);
-    context.save();
-    context.translate(1.1 * font, (top + bottom) / 2);
-    context.rotate(-Math.PI / 2);
-    context.fillText(labelOf(map.axes[view.y]), 0, 0);
-    context.restore();
   }
 
   /** The colour scale, with its isolines, and published jumpers beside agility. */
@@ -222,8 +185,6 @@ function mapView(canvas, map, onPoint, onPick) {
     cross(view.index, "#ffffff", 4);
     cross(view.index, "#000000", 1.6);
   }
-
-  const labelOf = (axis) => axis.label + (axis.unit === "°" ? " [degrees]" : axis.unit ? ` [${axis.unit}]` : "");
 
   function pointAt(event) {
     const box = canvas.getBoundingClientRect();

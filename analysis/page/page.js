@@ -41,7 +41,11 @@ function option(select, value, text) {
 }
 
 const withUnit = (text, unit) => (unit === "°" ? `${text}°` : unit ? `${text} ${unit}` : text);
-const placeText = (map, index) => map.axes.map((axis, k) => `${axis.symbol} ${withUnit(short(inShownUnit(axis, axis.values[index[k]])), axis.unit)}`).join(", ");
+/** A design's parameters that vary over the map: their rows, each with the value. */
+const parametersAt = (map, index) => (map.columns ? map.columns.filter((c) => c.name !== "design").map((c) => [c, c.values[index[0]]]) : map.axes.map((axis, k) => [axis, axis.values[index[k]]]));
+const designAt = (map, index) => ({ ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value])) });
+const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : "") +
+  parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1).map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");
 const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI : value);
 
 function start(map, solver) {
@@ -81,16 +85,19 @@ function start(map, solver) {
     dataset.index = index.join(",");
     dataset.value = number(shown);
   };
-  const view = mapView(canvas, map, told, chosen.show);
+  const view = (map.columns ? listView : mapView)(canvas, map, told, chosen.show);
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value if there are others.
+  const choices = map.columns ?? map.axes;  // of what may be drawn to the right
   const liked = (axis, k) => [axis.values.length > 1 ? 0 : 1, ["slope", "mass_ratio"].includes(axis.name) ? 0 : 1, axis.name === "slope" ? 0 : 1, k];
-  const order = map.axes.map(liked).sort((a, b) => a.reduce((sum, v, i) => sum || v - b[i], 0));
-  [view.view.x, view.view.y] = [order[0][3], order[1][3]];
+  const order = choices.map(liked).sort((a, b) => a.reduce((sum, v, i) => sum || v - b[i], 0));
+  view.view.x = order[0][3];
+  if (!map.columns) view.view.y = order[1][3];
 
-  const fieldSelect = element("field"), selects = { x: element("x-axis"), y: element("y-axis") };
+  const fieldSelect = element("field"), selects = map.columns ? { x: element("x-axis") } : { x: element("x-axis"), y: element("y-axis") };
+  element("y-axis").parentElement.hidden = Boolean(map.columns);
   map.fields.forEach((f, k) => option(fieldSelect, k, withUnit(f.label, f.unit ? `[${f.unit}]` : "")));
-  for (const select of Object.values(selects)) map.axes.forEach((a, k) => option(select, k, a.label));
+  for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
   fieldSelect.addEventListener("change", () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); told(view.view.index); });
   for (const [key, select] of Object.entries(selects))
     select.addEventListener("change", () => {
@@ -103,8 +110,8 @@ function start(map, solver) {
 
   /** A slider for every axis that is not on the screen. */
   function arrange() {
-    selects.x.value = view.view.x;
-    selects.y.value = view.view.y;
+    for (const [key, select] of Object.entries(selects)) select.value = view.view[key];
+    if (map.columns) return;
     element("sliders").replaceChildren(...map.axes.flatMap((axis, k) => {
       if (k === view.view.x || k === view.view.y) return [];
       const label = document.createElement("label"), slider = document.createElement("input"), value = document.createElement("output");
@@ -131,7 +138,7 @@ function start(map, solver) {
     };
     const items = [];
     const flags = map.codes.spurious_first_jump;
-    if (flags?.values.includes(1)) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+    if (flags?.values.includes(1) && !map.columns) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
     map.codes.status?.shown.forEach(({ colour, words }, k) => {
       if (map.codes.status.meanings[k] !== "jumped" && map.codes.status.values.includes(k)) items.push(entry(words, colour));
     });
@@ -142,13 +149,14 @@ function start(map, solver) {
       item.append(mark, ` ${words}`);
       return item;
     };
-    if (!map.slips) items.push(symbol("the paper's hoop", "★", "#d62728"));
+    if (flags?.values.includes(1) && map.columns) items.push(symbol("first lift-off is spurious", "○", "#1f4e79"));
+    if (!map.slips && !map.columns) items.push(symbol("the paper's hoop", "★", "#d62728"));
     items.push(symbol("pointed at", "⊕", "#000"), symbol("shown beside", "⊕", "#d62728"));
     element("legend").replaceChildren(...items);
   }
 
   // Begin where the paper's hoop is, if it is on the map, else in the middle.
-  map.axes.forEach((axis, k) => {
+  if (!map.columns) map.axes.forEach((axis, k) => {
     const wanted = map.paper[axis.name];
     if (wanted === undefined) return;
     const away = axis.values.map((v) => Math.abs(v - wanted));

@@ -85,7 +85,7 @@ std::string coordinate(const MapReader::Dimension& dimension, std::size_t positi
                                   : fmt::format("{:.6g}", dimension.values[position]);
 }
 
-std::string place(const MapReader& map, std::size_t design) {
+std::string place(const MapReader& map, const std::vector<std::string>& labels, std::size_t design) {
   std::vector<std::size_t> position;
   unravel(design, map.shape(), position);
   std::vector<std::string> coordinates;
@@ -94,6 +94,7 @@ std::string place(const MapReader& map, std::size_t design) {
     coordinates.push_back(
         fmt::format("{} {}", printable(dimension.name), coordinate(dimension, position[i])));
   }
+  if (design < labels.size()) coordinates.back() += fmt::format(" ({})", printable(labels[design]));
   return fmt::format("{}", fmt::join(coordinates, ", "));
 }
 
@@ -139,7 +140,7 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
                      if (values[i] != static_cast<double>(Status::failed) || ++failed > arguments.limit)
                        continue;
                      const std::size_t number = blocks.number(tile, i);
-                     say("{}  # design {}\n", hop_command(spec, space.at(number)), number);
+                     say("{}  # design {}\n", hop_command(spec, space.at(number)), told_design(spec, number));
                    }
                  });
   if (failed > arguments.limit)
@@ -219,6 +220,7 @@ int run(const InfoArguments& arguments) {
     std::ranges::copy(map.status_counts(), counted.counts.begin());
     print_counts(std::get<Code>(find_field("status")->source), counted, designs);
   }
+  const std::vector<std::string> labels = map.labels();
   for (const std::string& name : map.fields()) {
     const Field* field = find_field(name);
     const Summary summary = summarise(map, name);
@@ -231,8 +233,8 @@ int run(const InfoArguments& arguments) {
       say("  none\n");
     } else {
       const std::string unit = map.unit(name) == "1" ? "" : " " + printable(map.unit(name));
-      say("  least {:<12.8g}{} at {}\n", summary.least.value, unit, place(map, summary.least.design));
-      say("  most  {:<12.8g}{} at {}\n", summary.most.value, unit, place(map, summary.most.design));
+      say("  least {:<12.8g}{} at {}\n", summary.least.value, unit, place(map, labels, summary.least.design));
+      say("  most  {:<12.8g}{} at {}\n", summary.most.value, unit, place(map, labels, summary.most.design));
       if (summary.missing > 0) say("  none  in {} designs\n", summary.missing);
     }
   }

@@ -128,7 +128,7 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
         report.referee_undecided > 0 ? fmt::format("; {} it cannot decide", report.referee_undecided) : "");
   const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
-      tell(fmt::format("audit: {} on design {}; see it by: {}", what, *design,
+      tell(fmt::format("audit: {} on design {}; see it by: {}", what, told_design(spec, *design),
                        hop_command(spec, DesignSpace(spec).at(*design))));
   };
   const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);

@@ -27,4 +27,8 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
 Motion tell_by_integration(const Design& design, const Scene& scene, const IntegrationOptions& options,
                            double interval = 0.0);
 
+/// For studies, with two models: the energy integral and what else exact solves in closed form, and one
+/// coordinate and the slip, integrated. max_steps: a design that needs more is given up as failed.
+Solving solving(const Contestant& contestant, const Scene& scene, long max_steps);
+
 }  // namespace leapmap::coulomb

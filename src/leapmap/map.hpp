@@ -34,6 +34,8 @@ class Map {
   /// Every dataset along all dimensions: the fields and, of a list, its parameters.
   std::vector<std::string> fields() const;
   std::string unit(const std::string& field) const;
+  /// The names of a list's designs; empty: it has none.
+  std::vector<std::string> labels() const;
   /// A whole field in C order, the last axis fastest; codes as numbers, and a phase_sequence
   /// exactly up to 26 phases. Throws InputError if the map has no such field, IoError.
   std::vector<double> read(const std::string& field) const;

@@ -5,10 +5,12 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
 #include "leapmap/errors.hpp"
+#include "map/hdf5_trust.hpp"
 
 namespace leapmap::hdf5 {
 namespace {
@@ -109,6 +111,15 @@ bool holds_texts(hid_t dataset, const std::vector<std::string>& texts, const std
   return same;
 }
 
+/// Memory for the texts of others' files, which may all point at one that is as long as the file.
+struct TextMemory {
+  std::size_t most_bytes = 0;
+};
+void* allocate_text(std::size_t bytes, void* memory) noexcept {
+  return bytes <= static_cast<TextMemory*>(memory)->most_bytes ? std::malloc(bytes) : nullptr;
+}
+void free_text(void* text, void*) noexcept { std::free(text); }
+
 }  // namespace
 
 void fail(const std::string& what) {
@@ -180,6 +191,23 @@ bool holds(hid_t file, const std::string& name, const SeriesValues& values) {
   std::vector<std::byte> read(bytes);
   check(H5Dread(dataset, view.memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, read.data()), what);
   return bytes == 0 || std::memcmp(read.data(), view.values, bytes) == 0;
+}
+
+std::vector<std::string> read_texts(hid_t dataset, std::size_t most_bytes, const std::string& what) {
+  const Handle there(H5Dget_type(dataset), H5Tclose, what), type = text_type(),
+      space(H5Dget_space(dataset), H5Sclose, what), transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, what);
+  const std::vector<hsize_t> shape = shape_of(dataset);
+  if (H5Tis_variable_str(there) <= 0 || shape.size() != 1) throw IoError(what + ": it is no row of texts");
+  bytes_in_memory(dataset, what);
+  TextMemory memory{most_bytes + 1};  // with the zero at its end
+  check(H5Pset_vlen_mem_manager(transfer, allocate_text, &memory, free_text, &memory), what);
+  std::vector<char*> read(shape[0]);
+  const herr_t done = H5Dread(dataset, type, H5S_ALL, H5S_ALL, transfer, read.data());
+  std::vector<std::string> texts;
+  for (const char* text : read) texts.emplace_back(text ? text : "");
+  check(H5Dvlen_reclaim(type, space, transfer, read.data()), what);
+  check(done, what);
+  return texts;
 }
 
 void write_attribute(hid_t object, const std::string& name, std::string_view text) {

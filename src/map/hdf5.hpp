@@ -84,6 +84,8 @@ Handle write_series(hid_t file, const std::string& name, std::string_view unit, 
                     const SeriesValues& values, const Handle* scale);
 /// Whether a dataset holds these values, bit for bit. Throws IoError if it cannot be read.
 bool holds(hid_t file, const std::string& name, const SeriesValues& values);
+/// The texts of a one-dimensional dataset. Throws IoError, also for a text of more than most_bytes.
+std::vector<std::string> read_texts(hid_t dataset, std::size_t most_bytes, const std::string& what);
 
 /// Attributes: UTF-8 text of variable length, or numbers of the given file type. An older one of that name
 /// goes.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <hdf5_hl.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <numeric>
@@ -19,6 +20,7 @@ using hdf5::Handle;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t no_word = 0;
 constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
+constexpr const char* label_long_name = "name of the design, as its list has it";
 constexpr const char* design_long_name = "number of the design in its list, from 0";
 
 void describe(hid_t dataset, std::string_view unit, std::string_view long_name) {
@@ -130,6 +132,9 @@ std::size_t value_bytes(const MapLayout& layout, const Field& field) {
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
   std::uint64_t per_design = layout.axes.empty() ? 8 + 8 * layout.columns.size() : 0;
   for (const Field* field : layout.fields) per_design += value_bytes(layout, *field);
+  std::size_t label = 0;
+  for (const std::string& each : layout.labels) label = std::max(label, each.size());
+  per_design += label;
   return per_design * tiling.designs();
 }
 
@@ -137,6 +142,9 @@ void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling) {
   std::vector<Handle> scales = write_scales(file, layout, tiling.designs());
   for (const MapAxis& column : layout.columns)
     write_axis(file, column, &scales[0]).close("writing " + column.name);
+  if (!layout.labels.empty())
+    hdf5::write_series(file, label_name, "1", label_long_name, layout.labels, &scales[0])
+        .close("writing labels");
   for (const Field* field : layout.fields) {
     Handle dataset = create_field(file, *field, layout, tiling);
     attach(dataset, scales);
@@ -164,6 +172,8 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling) {
     std::vector<double> numbers(tiling.designs());
     std::iota(numbers.begin(), numbers.end(), 0.0);
     check_one("design", "1", design_long_name, numbers);
+    if (!layout.labels.empty() && !hdf5::holds(file, label_name, layout.labels))
+      throw BrokenFile("label is not what was written");
   }
   for (const Field* field : layout.fields)
     check_one(std::string(field->name), std::string(field->unit), std::string(field->long_name), {});

@@ -24,10 +24,14 @@ struct MapAxis {
 struct MapLayout {
   std::vector<MapAxis> axes;     ///< one dimension each; empty: a list, whose one dimension is `design`
   std::vector<MapAxis> columns;  ///< of a list: its parameters, along `design`
+  std::vector<std::string> labels;  ///< of a list: a name of each design; empty: none
   std::vector<const Field*> fields;
   bool single = false;  ///< quantities as f4, not f8
   int compression = 0;  ///< deflate's level, after a shuffle of bytes; 0: none
 };
+
+inline constexpr const char* label_name = "label";  ///< the dataset of labels
+inline constexpr std::size_t most_label_bytes = 200;
 
 /// Bytes of one value of a field as stored: 1, 4 or 8.
 std::size_t value_bytes(const MapLayout& layout, const Field& field);

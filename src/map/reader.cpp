@@ -9,6 +9,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_trust.hpp"
+#include "map/layout.hpp"
 #include "map/schema.hpp"
 #include "model/fields.hpp"
 
@@ -73,6 +74,8 @@ void MapReader::survey() {
     if (scale < 0) hdf5::fail(path_ + ": reading " + name);
     if (scale > 0) {
       dimensions_.push_back(read_dimension(dataset, name));
+    } else if (name == label_name) {
+      has_labels_ = true;
     } else {
       fields_.push_back(name);
     }
@@ -86,6 +89,8 @@ void MapReader::survey() {
   if (designs > 1e12) throw IoError(path_ + ": says that it holds more than 10^12 designs");
   std::vector<hsize_t> expected;
   for (const Dimension& dimension : dimensions_) expected.push_back(dimension.size);
+  if (has_labels_ && hdf5::shape_of(open(label_name)) != expected)
+    throw IoError(path_ + ": has not a label for each design");
   for (const std::string& name : fields_)
     if (hdf5::shape_of(open(name)) != expected)
       throw IoError(fmt::format("{}: {} does not lie along the map's dimensions", path_, name));
@@ -116,6 +121,11 @@ Tiling MapReader::blocks(const std::string& field) const {
 }
 
 std::string MapReader::unit(const std::string& field) const { return hdf5::read_text(open(field), "units"); }
+
+std::vector<std::string> MapReader::labels() const {
+  if (!has_labels_) return {};
+  return hdf5::read_texts(open(label_name), most_label_bytes, path_ + ": reading labels");
+}
 
 bool MapReader::is_whole() const { return !hdf5::has_attribute(file_, "tiles_done"); }
 

@@ -35,10 +35,13 @@ class MapReader {
   /// The blocks in which a field is stored: its chunks, or some of a size that memory bears.
   Tiling blocks(const std::string& field) const;
 
-  /// The datasets that lie along all dimensions, in file order: the fields and, in a list, its parameters.
+  /// The datasets that lie along all dimensions, in file order: the fields and, in a list, its parameters;
+  /// its labels are not among them.
   const std::vector<std::string>& fields() const { return fields_; }
   bool has(const std::string& field) const { return std::ranges::find(fields_, field) != fields_.end(); }
   std::string unit(const std::string& field) const;
+  /// The names of a list's designs; empty: it has none. Throws IoError.
+  std::vector<std::string> labels() const;
 
   /// False for what a sweep left that was stopped: designs not computed are holes.
   bool is_whole() const;
@@ -68,6 +71,7 @@ class MapReader {
   hid_t file_;
   std::vector<Dimension> dimensions_;
   std::vector<std::string> fields_;
+  bool has_labels_ = false;
 };
 
 }  // namespace leapmap

@@ -7,22 +7,23 @@
 #include "coulomb/model.hpp"
 #include "numerics/lanes.hpp"
 #include "rolling/model.hpp"
-#include "study/solving.hpp"
+#include "trajectory/contestant.hpp"
 
 namespace leapmap {
 namespace {
 
 // Made by the compiler: nothing of a set may run before it is chosen.
 constinit const std::array list{
-    Model{Friction::sticking, "sticking", "never slips (the paper's model)", rolling::exact,
+    Model{Friction::sticking, "sticking", "never slips (the paper's model)", false, rolling::exact,
           rolling::integration, rolling::refined, rolling::tell_exactly,
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
             return rolling::tell_by_integration(design, scene, options, interval);
-          }},
-    Model{Friction::coulomb, "coulomb", "slips, lands and hops on", coulomb::exact, coulomb::integration,
-          coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration}};
+          },
+          rolling::solving},
+    Model{Friction::coulomb, "coulomb", "slips, lands and hops on", true, coulomb::exact, coulomb::integration,
+          coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving}};
 
-constinit const Kernels of_this_set{list, solving_of, static_cast<int>(Lanes<Batch>::count)};
+constinit const Kernels of_this_set{list, static_cast<int>(Lanes<Batch>::count)};
 
 }  // namespace
 }  // namespace leapmap

@@ -7,13 +7,11 @@
 #include <span>
 
 #include "model/model.hpp"
-#include "study/contestant.hpp"
 
 namespace leapmap {
 
 struct Kernels {
   std::span<const Model> models;
-  Solving (*make_solving)(const Contestant&, const Scene&, long max_steps);
   int lanes;  ///< doubles that one instruction works on
 };
 

@@ -18,6 +18,7 @@ struct Model {
   Friction friction;
   std::string_view name;     ///< in specs: the value of scene.friction
   std::string_view meaning;  ///< in a few words
+  bool slips;                ///< goes through phases of contact, each with roundings of its own, and loses energy
   /// Without an integrator, to a relative tolerance of times.
   Solver (*exact)(const Scene&, double tolerance, const Wanted&);
   /// By integration in time.
@@ -27,6 +28,8 @@ struct Model {
   /// One design's motion, sampled every `interval` [s]; 0: not sampled.
   Motion (*tell_exactly)(const Design&, const Scene&, double tolerance, double interval);
   Motion (*tell_by_integration)(const Design&, const Scene&, const IntegrationOptions&, double interval);
+  /// By a method at a setting, for studies.
+  Solving (*solving)(const Contestant&, const Scene&, long max_steps);
 };
 
 /// Every model.

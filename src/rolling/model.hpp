@@ -26,4 +26,7 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
 Motion tell_by_integration(const Design& design, const Scene& scene, const IntegrationOptions& options,
                            double interval = 0.0, double graze_limit = 1e-6);
 
+/// For studies. max_steps: a design that needs more is given up as failed.
+Solving solving(const Contestant& contestant, const Scene& scene, long max_steps);
+
 }  // namespace leapmap::rolling

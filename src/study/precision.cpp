@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "model/model.hpp"
 #include "numerics/game_steppers.hpp"
 #include "numerics/gsl_integrator.hpp"
 #include "study/truth.hpp"
@@ -70,7 +71,7 @@ std::vector<Contestant> precision_contestants(bool quick, Friction friction) {
   for (const GslStepper& stepper : gsl_steppers()) add(stepper.name, false, tolerances, 0);
   for (const GslStepper& stepper : gsl_steppers())
     if (stepper.order > 0) add(stepper.name, true, steps, stepper.order);
-  if (friction == Friction::coulomb) return contestants;
+  if (model_of(friction).slips) return contestants;
   for (const GslStepper& stepper : game_steppers()) add(stepper.name, true, steps, stepper.order);
   for (const RollingModel model : {RollingModel::multipliers, RollingModel::multipliers_projected,
                                    RollingModel::centre_of_mass, RollingModel::centre_of_mass_projected})
@@ -89,7 +90,7 @@ std::vector<Design> random_designs(std::size_t count, std::uint64_t seed, Fricti
     design.slope = uniform(0.1, 0.8);
     design.mass_ratio = uniform(0.5, 10.0);
     design.offset_ratio = uniform(0.3, 1.0);
-    if (friction == Friction::sticking) continue;
+    if (!model_of(friction).slips) continue;
     design.mu_static = uniform(0.1, 1.0);
     design.mu_kinetic = design.mu_static * uniform(0.7, 1.0);
   }
@@ -100,7 +101,7 @@ Measurement measure(const Contestant& contestant, std::span<const Design> design
                     std::span<const Outcome> truth, double budget) {
   using Clock = std::chrono::steady_clock;
   constexpr int most_repeats = 20;
-  const Solving solving = make_solving(contestant, scene, max_steps);
+  const Solving solving = model_of(scene).solving(contestant, scene, max_steps);
   std::vector<Outcome> outcomes(designs.size());
   Measurement measurement;
   double least = std::numeric_limits<double>::infinity(), spent = 0.0;

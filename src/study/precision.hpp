@@ -10,7 +10,7 @@
 
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
-#include "study/contestant.hpp"
+#include "trajectory/contestant.hpp"
 
 namespace leapmap {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/model.hpp"
 #include "physics/rolling.hpp"
 #include "study/truth.hpp"
 
@@ -27,7 +28,7 @@ struct Expected {
 /// Moves every input by some ulps up and down and looks how far the answer moves. With friction a design goes
 /// through several phases, each with roundings of its own.
 Expected expected_of(const StabilitySubject& subject) {
-  const int ulps = subject.scene.friction == Friction::coulomb ? 100 : 4;
+  const int ulps = model_of(subject.scene).slips ? 100 : 4;
   Expected expected{truths_of({&subject.design, 1}, subject.scene)[0]};
   const Outcome right = refined_outcome(subject.design, subject.scene);
   for (double Design::*input : inputs_of(subject.scene.friction)) {
@@ -106,7 +107,7 @@ std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
     for (std::size_t i = 0; i < expected.size(); ++i) {
       if (stop_requested && stop_requested()) return rows;
       const StabilitySubject& subject = stability_case.subjects[i];
-      const Solving solving = make_solving(contestant, subject.scene, stability_case.max_steps);
+      const Solving solving = model_of(subject.scene).solving(contestant, subject.scene, stability_case.max_steps);
       Outcome outcome;
       const auto begin = Clock::now();
       solving.solve({&subject.design, 1}, {&outcome, 1});
@@ -117,7 +118,7 @@ std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
           {stability_case.name, stability_case.abscissa, contestant.method,
            contestant.fixed_step ? "step" : "tolerance", contestant.setting,
            stability_case.walks_settings ? contestant.setting : subject.x, error,
-           subject.scene.friction == Friction::sticking ? energy_drift(subject.design, outcome) : nan,
+           model_of(subject.scene).slips ? nan : energy_drift(subject.design, outcome),
            expected[i].condition, solving.evaluations ? static_cast<double>(solving.evaluations()) : nan,
            seconds, outcome.failure ? outcome.failure : "",
            finding_of(outcome, expected[i], error, asked_of(contestant)), expected[i].truth.witness});

@@ -14,7 +14,7 @@
 
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
-#include "study/contestant.hpp"
+#include "trajectory/contestant.hpp"
 #include "study/truth.hpp"
 
 namespace leapmap {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/model.hpp"
 #include "numerics/game_steppers.hpp"
 #include "numerics/gsl_integrator.hpp"
 #include "rolling/exact.hpp"
@@ -120,7 +121,7 @@ StabilityCase unreachable_tolerances(bool quick) {
 }  // namespace
 
 std::vector<Contestant> usual_contestants(Friction friction) {
-  const bool slips = friction == Friction::coulomb;
+  const bool slips = model_of(friction).slips;
   std::vector<Contestant> contestants{by_exact(usual_tolerance)};
   for (const GslStepper& stepper : gsl_steppers())
     contestants.push_back({std::string(stepper.name), false, usual_tolerance});

@@ -6,7 +6,7 @@
 
 #include "model/model.hpp"
 #include "model/parameters.hpp"
-#include "study/contestant.hpp"
+#include "trajectory/contestant.hpp"
 
 namespace leapmap {
 namespace {
@@ -18,8 +18,8 @@ constexpr double slack = 10.0;       // of the difference between the two integr
 class Integrations {
  public:
   explicit Integrations(const Scene& scene)
-      : fine_(make_solving({"gsl-rk8pd", false, finest}, scene, most_steps(scene))),
-        coarse_(make_solving({"gsl-rk8pd", false, coarser}, scene, most_steps(scene))),
+      : fine_(model_of(scene).solving({"gsl-rk8pd", false, finest}, scene, most_steps(scene))),
+        coarse_(model_of(scene).solving({"gsl-rk8pd", false, coarser}, scene, most_steps(scene))),
         inputs_(inputs_of(scene.friction)) {}
 
   Outcome fine(const Design& design) const { return solved(fine_, design); }
@@ -40,7 +40,7 @@ class Integrations {
  private:
   /// A long run takes a million; a slide near Painleve's edge would take any number.
   static long most_steps(const Scene& scene) {
-    return scene.friction == Friction::coulomb ? 100'000 : 1'000'000;
+    return model_of(scene).slips ? 100'000 : 1'000'000;
   }
   static Outcome solved(const Solving& solving, const Design& design) {
     Outcome outcome;

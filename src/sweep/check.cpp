@@ -105,7 +105,7 @@ void check_sample(Check& check) {
   look_at_samples();
   const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
-      check.find(fmt::format("design {}: {}; see it by: {}", *design, what,
+      check.find(fmt::format("design {}: {}; see it by: {}", told_design(check.spec, *design), what,
                              hop_command(check.spec, DesignSpace(check.spec).at(*design))));
   };
   tell(audited.first_mismatch,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "model/model.hpp"
+#include "support/printable.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap {
@@ -55,6 +56,11 @@ void DesignSpace::fill(const Tile& tile, std::span<Design> designs) const {
       if (!carries) break;
     }
   }
+}
+
+std::string told_design(const Spec& spec, std::size_t number) {
+  const bool named = spec.axes.empty() && number < spec.list.labels.size();
+  return named ? fmt::format("{} ({})", number, printable(spec.list.labels[number])) : fmt::format("{}", number);
 }
 
 std::string hop_command(const Spec& spec, const Design& design) {

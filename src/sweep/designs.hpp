@@ -33,6 +33,9 @@ class DesignSpace {
   std::vector<double Design::*> members_;  // of the axes, or of the list's columns
 };
 
+/// A design's number and, in a list that has labels, its name.
+std::string told_design(const Spec& spec, std::size_t number);
+
 /// The command line that solves this design alone, every digit of it.
 std::string hop_command(const Spec& spec, const Design& design);
 

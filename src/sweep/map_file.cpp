@@ -28,6 +28,7 @@ std::vector<Axis> Map::axes() const {
 
 std::vector<std::size_t> Map::shape() const { return reader_->shape(); }
 std::vector<std::string> Map::fields() const { return reader_->fields(); }
+std::vector<std::string> Map::labels() const { return reader_->labels(); }
 std::string Map::unit(const std::string& field) const { return reader_->unit(field); }
 
 std::vector<double> Map::read(const std::string& field) const {

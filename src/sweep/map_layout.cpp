@@ -28,6 +28,7 @@ MapLayout layout_of(const Spec& spec) {
   if (spec.axes.empty())
     for (const Option* parameter : design_parameters(spec))
       layout.columns.push_back(describe(*parameter, list_values(spec, *parameter)));
+  layout.labels = spec.list.labels;
   for (const Field& field : map_fields())
     if (stores(spec, field)) layout.fields.push_back(&field);
   layout.single = spec.output.precision == "f4";

@@ -48,7 +48,7 @@ std::string told(const std::vector<double>& numbers, const std::vector<std::stri
 Spec spec_of(const MapReader& map, const std::string& origin) {
   Spec spec = parse_map_spec(map.attribute("spec"), origin);
   if (!spec.axes.empty()) return spec;
-  spec.list = {spec.points, {}, map.shape()[0]};
+  spec.list = {spec.points, {}, map.labels(), map.shape()[0]};
   const Tile all{{0}, {spec.list.count}, spec.list.count};
   for (const Option* parameter : design_parameters()) {
     const std::string name(parameter->key);
@@ -88,7 +88,8 @@ std::optional<std::string> first_difference(const Spec& original_there, const Sp
     const auto at = std::ranges::mismatch(a, b);
     return fmt::format("value {} of {} is {} there and {} here", at.in1 - a.begin(), key, *at.in1, *at.in2);
   }
-  return {};
+  const bool same = there.list.labels == here.list.labels;
+  return same ? std::nullopt : std::optional<std::string>("the labels of its designs differ");
 }
 
 }  // namespace leapmap

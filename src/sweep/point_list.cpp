@@ -7,39 +7,55 @@
 #include <string_view>
 
 #include "leapmap/errors.hpp"
+#include "map/layout.hpp"
 #include "support/posix.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap {
 namespace {
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t start = 0;;) {
-    const std::size_t comma = line.find(',', start);
-    std::string_view cell = line.substr(start, comma == std::string_view::npos ? comma : comma - start);
-    while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
-    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t')) cell.remove_suffix(1);
-    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
-    cells.push_back(cell);
-    if (comma == std::string_view::npos) return cells;
-    start = comma + 1;
+/// The cells of a line, after RFC 4180: a quoted one may hold commas, and quotes written twice.
+std::vector<std::string> split(std::string_view line, const std::string& place) {
+  std::vector<std::string> cells;
+  const auto skip_blanks = [&] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
+  for (;;) {
+    std::string cell;
+    skip_blanks();
+    if (line.starts_with('"')) {
+      for (bool inside = true; inside;) {
+        line.remove_prefix(1);
+        const std::size_t quote = line.find('"');
+        if (quote == std::string_view::npos)
+          throw InputError(place + ": a quote without an end; allowed: cells that end on their line");
+        cell += line.substr(0, quote);
+        line.remove_prefix(quote + 1);
+        inside = line.starts_with('"');
+        if (inside) cell += '"';
+      }
+      skip_blanks();
+      if (!line.empty() && line.front() != ',')
+        throw InputError(place + ": text after a quoted cell; allowed: a comma, or the end of the line");
+    } else {
+      cell = line.substr(0, line.find(','));
+      cell.erase(cell.find_last_not_of(" \t") + 1);
+      line.remove_prefix(std::min(line.find(','), line.size()));
+    }
+    cells.push_back(std::move(cell));
+    if (line.empty()) return cells;
+    line.remove_prefix(1);
   }
 }
 
 /// The option a column of the header stands for.
-const Option* column_option(const std::string& place, std::string_view name,
-                            const std::vector<const Option*>& before) {
+const Option* column_option(const std::string& place, std::string_view name) {
   const auto parameters = design_parameters();
   const auto found = std::ranges::find(parameters, name, &Option::key);
   if (found == parameters.end()) {
     std::vector<std::string_view> keys;
     for (const Option* parameter : parameters) keys.push_back(parameter->key);
-    throw InputError(fmt::format("{}: column '{}' is not a parameter of a design; allowed: {}", place, name,
+    throw InputError(fmt::format("{}: column '{}' is not a parameter of a design; allowed: {}, {}", place, name, label_name,
                                  fmt::join(keys, ", ")));
   }
-  if (std::ranges::find(before, *found) != before.end())
-    throw InputError(fmt::format("{}: column '{}' is there twice; allowed: once", place, name));
   return *found;
 }
 
@@ -50,7 +66,7 @@ PointList read_points(const std::string& path, const std::string& origin) {
   PointList list;
   list.path = path;
   list.count = 0;
-  std::vector<const Option*> columns;
+  std::vector<const Option*> columns;  // null: the labels
   std::string line;
   for (long number = 1; file.next_line(line); ++number) {
     std::string_view text = line;
@@ -59,20 +75,30 @@ PointList read_points(const std::string& path, const std::string& origin) {
     if (text.find_first_not_of(" \t") == std::string_view::npos) continue;
     const std::string place = fmt::format("{}:{}", path, number);
     if (columns.empty() && text.starts_with('#')) text.remove_prefix(1);  // numpy.savetxt's header
-    const auto cells = split(text);
+    const auto cells = split(text, place);
     if (columns.empty()) {
-      for (const std::string_view name : cells) {
-        columns.push_back(column_option(place, name, columns));
-        list.columns.push_back({std::string(name), {}});
+      for (const std::string& name : cells) {
+        const bool twice = std::ranges::count(cells, name) > 1;
+        if (twice)
+          throw InputError(fmt::format("{}: column '{}' is there twice; allowed: once", place, name));
+        columns.push_back(name == label_name ? nullptr : column_option(place, name));
+        if (columns.back()) list.columns.push_back({name, {}});
       }
+      if (list.columns.empty())
+        throw InputError(place + ": no column is a parameter of a design; allowed: at least one");
       continue;
     }
     if (cells.size() != columns.size())
       throw InputError(fmt::format("{}: {} values; allowed: {}, one for each column of the header", place,
                                    cells.size(), columns.size()));
+    auto column = list.columns.begin();
     for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!columns[i]) {
+        list.labels.push_back(cells[i]);
+        continue;
+      }
       try {
-        list.columns[i].values.push_back(parse_number(*columns[i], cells[i]));
+        (column++)->values.push_back(parse_number(*columns[i], cells[i]));
       } catch (const InputError& error) {
         throw InputError(fmt::format("{}: column {} = {}", place, columns[i]->key, error.what()));
       }

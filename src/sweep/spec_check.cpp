@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "leapmap/errors.hpp"
+#include "map/layout.hpp"
 #include "model/model.hpp"
+#include "support/printable.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap {
@@ -53,6 +55,17 @@ void check_common(const Spec& spec) {
   check_design(common, spec.scene, origin_of(spec));
 }
 
+void check_labels(const Spec& spec) {
+  const std::vector<std::string>& labels = spec.list.labels;
+  if (!labels.empty() && labels.size() != spec.list.count)
+    refuse(spec, label_name, fmt::format("has {} texts", labels.size()),
+           fmt::format("one for each of the {} designs of the list", spec.list.count));
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (labels[i].size() > most_label_bytes || printable(labels[i]) != labels[i])
+      refuse(spec, label_name, fmt::format("of design {} is '{}'", i, printable(labels[i].substr(0, 40))),
+             fmt::format("at most {} bytes of printable UTF-8", most_label_bytes));
+}
+
 void check_count(const Spec& spec) {
   if (!spec.axes.empty() && (!spec.list.columns.empty() || !spec.points.empty()))
     refuse(spec, "points", "and an axis exclude each other", "one of them");
@@ -96,6 +109,7 @@ void check_spec(const Spec& spec) {
       if (column.values.size() != spec.list.count)
         refuse(spec, column.key, fmt::format("has {} values", column.values.size()),
                fmt::format("one for each of the {} designs of the list", spec.list.count));
+  check_labels(spec);
   check_common(spec);
 }
 

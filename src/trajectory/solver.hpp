@@ -33,4 +33,8 @@ struct Wanted {
 /// How an integration steps (integration_options.hpp).
 struct IntegrationOptions;
 
+/// What studies compare (contestant.hpp).
+struct Contestant;
+struct Solving;
+
 }  // namespace leapmap

@@ -24,6 +24,9 @@ constexpr std::array column_names{"t", "phi", "spin", "x", "y", "normal_force", 
 /// Likewise a lift-off.
 constexpr std::array lift_off_names{"time", "angle", "spin", "height", "apex_time", "flight_time", "dip"};
 
+/// The models' motions, in the order of Friction.
+constexpr std::array tells{rolling::tell_exactly, coulomb::tell_exactly};
+
 double& value_of(const Parameter& parameter, Design& design, Scene& scene) {
   const auto* of_design = std::get_if<double Design::*>(&parameter.member);
   return of_design ? design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
@@ -74,14 +77,14 @@ LEAPMAP_EXPORT const char* field_name(int i) {
 LEAPMAP_EXPORT double* parameter_values() { return page.parameters.data(); }
 
 /// Solves the design to a tolerance of times, and its motion every `interval` [s]; 0: as often as a picture
-/// needs, 400 to 4,000 times in all.
-LEAPMAP_EXPORT void solve(int with_friction, double tolerance, double interval) {
+/// needs, 400 to 4,000 times in all. friction: a Friction's number.
+LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
   Design design;
   Scene scene;
-  scene.friction = with_friction ? Friction::coulomb : Friction::sticking;
+  scene.friction = static_cast<Friction>(friction);
   const auto all = leapmap::parameters();
   for (std::size_t i = 0; i < all.size(); ++i) value_of(all[i], design, scene) = page.parameters[i];
-  const auto tell = with_friction ? coulomb::tell_exactly : rolling::tell_exactly;
+  const auto tell = tells.at(static_cast<std::size_t>(friction));
   const double second = time_unit(scene);
   if (!(interval > 0.0)) {
     const double end = tell(design, scene, tolerance, std::numeric_limits<double>::infinity()).end;

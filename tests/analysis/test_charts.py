@@ -269,6 +269,12 @@ def test_a_list_of_designs_is_drawn_a_dot_each_over_a_parameter_that_varies(tmp_
     svg = ElementTree.parse(tmp_path / "list.svg")
     dots = [use for use in svg.iter("{http://www.w3.org/2000/svg}use") if "#e08214" in use.get("style", "")]
     assert len(dots) == 3 * (jumps & spurious).sum() + 1, "three panels, and the legend's"
+    rows = (tmp_path / "designs.csv").read_text().splitlines()
+    (tmp_path / "designs.csv").write_text("label," + rows[0] + "\n" + "".join(f'"$hoop, {i}",{row}\n' for i, row in enumerate(rows[1:])))
+    named = sweep(tmp_path, '[design]\npoints = "designs.csv"\n', name="named.h5")
+    for along in ("design", "slope"):
+        done = draw("list_chart.py", named, "-x", along, "-o", tmp_path / "named")
+        assert done.returncode == 0 and "$hoop, 24" in texts(tmp_path / "named.svg"), (done.stderr, along)
     over_number = draw("list_chart.py", path, "-x", "design", "--fields", "jump_height", "-o", tmp_path / "number")
     assert over_number.returncode == 0 and "number in the list, from 0" in texts(tmp_path / "number.svg")
     wrong = draw("list_chart.py", path, "-x", "gravity", "-o", tmp_path / "wrong")

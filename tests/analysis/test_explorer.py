@@ -432,8 +432,8 @@ def test_a_broken_map_is_refused_with_one_line_that_names_it(script, kind, map_f
 
 def test_files_that_are_no_grids_are_refused_with_one_line_that_says_what_to_do(map_file, tmp_path):
     (tmp_path / "words.h5").write_text("words")
-    one_axis = sweep(tmp_path, "[design]\nslope = { values = [0.3, 0.4] }\n")
-    for path, word in ((tmp_path / "words.h5", "HDF5"), (tmp_path / "nowhere.h5", "does not exist"), (one_axis, "two axes")):
+    one_axis = sweep(tmp_path, "[design]\nslope = { from = 0.1, to = 0.2, count = 20001 }\n")
+    for path, word in ((tmp_path / "words.h5", "HDF5"), (tmp_path / "nowhere.h5", "does not exist"), (one_axis, "two axes or more")):
         done = explorer(path, "-o", tmp_path / "x.html")
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
     done = finished("/usr/bin/python3", TOP / "analysis/explorer", map_file, "-o", tmp_path / "x.html", "--module", tmp_path / "no.wasm")
@@ -446,6 +446,36 @@ def test_files_that_are_no_grids_are_refused_with_one_line_that_says_what_to_do(
     size = 0.9e-6 * made(map_file).stat().st_size
     fewer = explorer(map_file, "-o", tmp_path / "x.html", "--most", size)
     assert fewer.returncode == 0 and "left out" in fewer.stderr and (tmp_path / "x.html").stat().st_size < 1e6 * size
+
+
+def test_a_list_of_designs_is_a_dot_each_that_can_be_pointed_at_and_clicked(browser, tmp_path):
+    (tmp_path / "designs.csv").write_text('label,slope,mass_ratio\n"thick, <b>",0.4,3\nlight,23 deg,1\nflat,1 deg,0.1\n')
+    path = sweep(tmp_path, '[design]\npoints = "designs.csv"\n')
+    opened(browser, made(path))
+    with h5py.File(path) as m:
+        heights = m["jump_height"][()]
+    assert not browser.find_element("id", "y-axis").is_displayed()
+    assert [option.text for option in Select(browser.find_element("id", "x-axis")).options][:3] == [
+        "slope", "mass ratio mₚ/m", "number in the list, from 0"]
+    for number, place in ((0, "thick, <b>: slope 22.92°, mₚ/m 3"), (1, "light: slope 23°, mₚ/m 1")):
+        point(browser, [number], click=True)
+        assert browser.find_element("id", "place").text.startswith(place)
+        assert float(readout(browser)["value"]) == pytest.approx(heights[number], abs=1e-4)
+        agrees(numbers(browser), told_by_leapmap(browser))
+    assert np.isnan(heights[2])
+    point(browser, [2])
+    assert "no jump" in browser.find_element("id", "value").text
+    Select(browser.find_element("id", "x-axis")).select_by_visible_text("mass ratio mₚ/m")
+    point(browser, [0], click=True)
+    assert readout(browser)["index"] == "0"
+
+
+def test_a_grid_over_one_axis_is_dots_too(browser, tmp_path):
+    path = sweep(tmp_path, "[design]\nslope = { from = 0.2, to = 0.8, count = 25 }\n")
+    opened(browser, made(path))
+    point(browser, [12], click=True)
+    assert browser.find_element("id", "place").text == "slope 28.65°"
+    agrees(numbers(browser), told_by_leapmap(browser))
 
 
 def test_a_damaged_page_says_so(browser, map_file, tmp_path):

@@ -18,6 +18,9 @@ BAD = {
     "count 0": ('[design]\nslope = { from = 0.1, to = 0.2, count = 0 }', ["count"]),
     "log axis from 0": ('[design]\nmass_ratio = { from = 0, to = 1, count = 3, scale = "log" }', ["log"]),
     "unreadable CSV": ('[design]\npoints = "nowhere.csv"', ["nowhere.csv"]),
+    "a label without an end": ('[design]\npoints = "endless.csv"', ["endless.csv:2", "quote"]),
+    "a label too long": ('[design]\npoints = "long.csv"', ["label of design 0", "200 bytes"]),
+    "labels and nothing else": ('[design]\npoints = "labels.csv"', ["labels.csv:1", "parameter"]),
     "a column too many": ('[design]\npoints = "wide.csv"', ["wide.csv:2", "2 values"]),
 }
 
@@ -26,6 +29,9 @@ BAD = {
 def test_a_bad_spec_ends_with_status_2_one_line_and_no_file(kind, tmp_path):
     text, words = BAD[kind]
     (tmp_path / "wide.csv").write_text("slope\n0.1,0.2\n")
+    (tmp_path / "endless.csv").write_text('label,slope\n"one,0.2\n')
+    (tmp_path / "long.csv").write_text(f"label,slope\n{'x' * 201},0.2\n")
+    (tmp_path / "labels.csv").write_text("label\none\n")
     (tmp_path / "bad.toml").write_text(text + "\n")
     before = set(os.listdir(tmp_path))
     done = leapmap("sweep", tmp_path / "bad.toml", "-o", tmp_path / "map.h5")

@@ -28,7 +28,7 @@ def rows(title):
 @pytest.fixture(scope="module")
 def maps(tmp_path_factory):
     folder = tmp_path_factory.mktemp("maps")
-    (folder / "designs.csv").write_text("slope,mass_ratio\n0.4,2.44\n0.5,1\n")
+    (folder / "designs.csv").write_text("label,slope,mass_ratio\nsteep,0.4,2.44\nsteeper,0.5,1\n")
     axes = "".join(f"{k} = {{ values = [{v}] }}\n" for k, v in {
         "slope": "0.3, 0.4", "mass_ratio": "2, 3", "offset_ratio": "0.9, 1", "inertia_factor": "1", "release_angle": "3.1",
         "release_spin": "0, 0.1"}.items())

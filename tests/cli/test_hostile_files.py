@@ -407,6 +407,21 @@ def test_filters_twice_texts_without_end_and_holes_without_end_are_refused(origi
         assert done.returncode == 3, (change, done.stdout)
 
 
+def test_labels_of_others_are_escaped_and_none_is_longer_than_ours(tmp_path):
+    (tmp_path / "designs.csv").write_text("label,slope\none,0.4\ntwo,0.5\n")
+    path = sweep(tmp_path, '[design]\npoints = "designs.csv"\n')
+    for labels, told in ((["\x1b[2J", "two"], "\\x1b[2J"), (["x" * 10**6] * 2, "labels"), (["one"], "label"), ([1.0, 2.0], "no row of texts")):
+        with h5py.File(path, "r+") as m:
+            del m["label"]
+            kind = np.float64 if isinstance(labels[0], float) else h5py.string_dtype()
+            m.create_dataset("label", data=labels, dtype=kind).dims[0].attach_scale(m["design"])
+            m["label"].attrs.update(units="1", long_name="name of the design, as its list has it")
+        done = leapmap("info", path)
+        assert told in done.stdout + done.stderr and "\x1b" not in done.stdout, (labels, done.stdout, done.stderr)
+        assert done.returncode == (0 if "x1b" in told else 3)
+        assert leapmap("check", path).returncode == 1
+
+
 def test_counts_that_make_no_sense_are_damage(original, tmp_path):
     for name, value in (("status_counts", [2**62] * 7), ("status_counts", [-1] * 7), ("audit_first_mismatch", 2**61), ("audit_designs", -5)):
         path = tmp_path / "map.h5"

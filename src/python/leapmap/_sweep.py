@@ -104,6 +104,8 @@ def load(path):
     about = {name: {key: value for key, value in attributes.items() if key in plain} for name, attributes in m.about.items()}
     dims = tuple(m.dims)
     fields = {name: (dims, values, about[name]) for name, values in m.fields.items()}
+    if m.labels is not None:
+        fields = {"label": (dims, m.labels, about["label"])} | fields
     axes = {name: (name, values, about.get(name, {})) for name, values in m.dims.items()}
     return xarray.Dataset(fields, axes, {key: value for key, value in m.attributes.items() if not key.startswith("_")})
 

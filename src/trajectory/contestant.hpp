@@ -10,6 +10,7 @@
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
+#include "trajectory/integration_options.hpp"
 
 namespace leapmap {
 
@@ -52,9 +53,7 @@ struct Solving {
   std::function<double(const Design&)> drift;
 };
 
-/// max_steps: a design that needs more is given up as failed. With Coulomb friction there are two models
-/// only: the energy integral and what else exact solves in closed form, and one coordinate and the slip,
-/// integrated.
-Solving make_solving(const Contestant& contestant, const Scene& scene, long max_steps);
+/// How a contestant that integrates in time does so. max_steps: a design that needs more is given up as failed.
+IntegrationOptions options_of(const Contestant& contestant, long max_steps);
 
 }  // namespace leapmap

@@ -1,0 +1,50 @@
+// What the views of a map share: colours, a frame with ticks, and names with units.
+
+const EDGE = "#303030", MARK = "#d62728";
+
+/** The canvas at the screen's own resolution and the frame in it, or null while it is not shown. */
+function fitted(canvas, right) {
+  const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect(), font = 13 * ratio;
+  if (!(box.width > 0)) return null;
+  canvas.width = Math.round(box.width * ratio);
+  canvas.height = Math.round(box.height * ratio);
+  return { left: 4.6 * font, top: 0.8 * font, right: canvas.width - right * font, bottom: canvas.height - 3.4 * font, font, ratio };
+}
+
+const labelOf = (axis) => axis.label + (axis.unit === "°" ? " [degrees]" : axis.unit ? ` [${axis.unit}]` : "");
+
+/** A frame with ticks and names on a canvas; sx, sy: pixel(value), ticks(). */
+function paintAxes(context, frame, sx, sy, nameX, nameY) {
+  const { left, top, right, bottom, font, ratio } = frame;
+  context.strokeStyle = context.fillStyle = EDGE;
+  context.lineWidth = ratio;
+  context.strokeRect(left, top, right - left, bottom - top);
+  context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;
+  context.textAlign = "center";
+  context.textBaseline = "top";
+  context.beginPath();
+  let last = -Infinity;
+  for (const tick of sx.ticks()) {
+    const p = sx.pixel(tick), text = short(tick, 12), width = context.measureText(text).width;
+    context.moveTo(p, bottom);
+    context.lineTo(p, bottom + 0.35 * font);
+    if (p - width / 2 > last) { context.fillText(text, p, bottom + 0.5 * font); last = p + width / 2 + 0.4 * font; }
+  }
+  context.textAlign = "right";
+  context.textBaseline = "middle";
+  for (const tick of sy.ticks()) {
+    const p = sy.pixel(tick);
+    context.moveTo(left, p);
+    context.lineTo(left - 0.35 * font, p);
+    context.fillText(short(tick, 12), left - 0.5 * font, p);
+  }
+  context.stroke();
+  context.textAlign = "center";
+  context.textBaseline = "alphabetic";
+  context.fillText(nameX, (left + right) / 2, context.canvas.height - 0.6 * font);
+  context.save();
+  context.translate(1.1 * font, (top + bottom) / 2);
+  context.rotate(-Math.PI / 2);
+  context.fillText(nameY, 0, 0);
+  context.restore();
+}

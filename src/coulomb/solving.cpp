@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "coulomb/coulomb_integration.hpp"
+#include "coulomb/model.hpp"
+#include "trajectory/contestant.hpp"
+
+namespace leapmap {
+
+Solving coulomb::solving(const Contestant& contestant, const Scene& scene, long max_steps) {
+  if (contestant.model == RollingModel::energy_integral)
+    return {exact(scene, contestant.setting, {}), {}, {}};
+  const auto integration = std::make_shared<CoulombIntegration>(options_of(contestant, max_steps));
+  return {one_by_one(integration, scene), [integration] { return integration->evaluations(); }, {}};
+}
+
+}  // namespace leapmap
