@@ -6,7 +6,7 @@
 ///   ------------+-------------------------------------+----------------------------------------------
 ///   R rolling   | |F| - mu_s N rises through zero     | S, the way that F held back (v gets the sign
 ///     v = 0     |                                     |   of -F); F if n0 <= 0 there
-///               | the spin is not above zero          | stalled
+///               | it has turned round twice           | stalled: it repeats itself
 ///   S sliding   | n0 falls through zero               | F, lift-off
 ///     v > 0 or  | v comes back to zero                | R if |F| <= mu_s N, else S the other way
 ///     v < 0     | Ic + rho s q falls to zero          | indeterminate (Painleve)
@@ -14,13 +14,14 @@
 ///               | y comes back to zero                | landing, impulses at once; then F if it
 ///               |                                     |   rebounds or n0 <= 0, S if v is not zero,
 ///               |                                     |   else as where v comes back to zero
-///   R, S, F     | the centre has travelled the runway | no_jump
+///   R, S, F     | the centre has travelled the        | no_jump
+///               |   runway, either way                |
 ///   at release  |                                     | R if N > 0 and |F| <= mu_s N, else
 ///               |                                     |   airborne_at_release if n0 <= 0, else S;
-///               |                                     |   stalled if the spin is below zero
+///               |                                     |   stalled at rest where nothing pulls
 // clang-format on
 ///
-/// A hoop that slides may turn backwards for a while. At v = 0 the forces decide, never the sign of a rounded
+/// A hoop that rolls or slides may turn round. At v = 0 the forces decide, never the sign of a rounded
 /// v, and what friction holds but for rounding it holds. Painleve's region is where the rigid-body equations
 /// have no answer or two; a slide that runs into its edge is followed until doubles cannot tell the edge from
 /// where it is. A design that goes through more than most_phases phases is failed.

@@ -10,7 +10,10 @@ Outcome CoulombSolver<S>::solve(const Design& design, const Scene& scene, const 
   return go_through_phases<S>(
       design, scene, observer,
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway) {
-        return rolling_.run(hoop, contact.mu_static, at, runway);
+        typename RollingLeg<S>::Told turns;
+        if (observer.turn)
+          turns = [&](const ContactState<S>& state) { observer.turn(in_double(state)); };
+        return rolling_.run(hoop, contact.mu_static, at, runway, turns);
       },
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway,
           int direction) { return sliding_.run(hoop, contact.mu_kinetic, at, runway, direction); });

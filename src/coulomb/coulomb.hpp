@@ -22,6 +22,7 @@ struct CoulombObserver {
   std::function<void(Phase, const ContactState<double>&, int direction)>
       phase;  ///< direction of sliding: 1, -1; else 0
   std::function<void(const LiftOff<double>&, const Flight<double>&)> lift_off;
+  std::function<void(const ContactState<double>&)> turn;  ///< where it turns round, rolling
   std::function<void(const ContactState<double>&)> end;
 };
 

@@ -66,7 +66,6 @@ class PhaseMachine {
   Outcome run() {
     ContactPhase next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
     if (next == ContactPhase::leaves) return ended_as(Status::airborne_at_release);
-    if (at_.spin < S(0)) return ended_as(Status::stalled);
     while (sequence_.count() < most_phases) {
       const PhaseEnd end = next == ContactPhase::leaves ? PhaseEnd::lifts_off : stay_in_contact(next);
       switch (end) {
@@ -100,19 +99,14 @@ class PhaseMachine {
   }
 
  private:
-  ContactState<double> state() const {
-    return {static_cast<double>(at_.time), static_cast<double>(at_.travel), static_cast<double>(at_.angle),
-            static_cast<double>(at_.spin), static_cast<double>(at_.slip),   static_cast<double>(at_.normal)};
-  }
-
   void begin(Phase phase, int direction) {
     sequence_.append(phase);
-    if (observer_.phase) observer_.phase(phase, state(), direction);
+    if (observer_.phase) observer_.phase(phase, in_double(at_), direction);
   }
 
   /// What is not known of a design that has no answer is not told.
   Outcome ended_as(Status status, const char* reason = nullptr) {
-    if (observer_.end) observer_.end(state());
+    if (observer_.end) observer_.end(in_double(at_));
     if (status == Status::failed || status == Status::indeterminate) {
       outcome_ = {};
     } else {
@@ -128,14 +122,14 @@ class PhaseMachine {
   /// Rolls or slides to the phase's end.
   PhaseEnd stay_in_contact(ContactPhase phase) {
     using std::abs;
-    if (phase == ContactPhase::rolls) {
-      begin(Phase::rolling, 0);
-      return roll_(hoop_, contact_, at_, runway_);
-    }
-    const int direction = phase == ContactPhase::slides_forwards ? 1 : -1;
-    begin(Phase::sliding, direction);
     const ContactState<S> from = at_;
-    const PhaseEnd end = slide_(hoop_, contact_, at_, runway_, direction);
+    const bool rolls = phase == ContactPhase::rolls;
+    const int direction = rolls ? 0 : phase == ContactPhase::slides_forwards ? 1 : -1;
+    begin(rolls ? Phase::rolling : Phase::sliding, direction);
+    const PhaseEnd end = rolls ? roll_(hoop_, contact_, at_, runway_)
+                               : slide_(hoop_, contact_, at_, runway_, direction);
+    driven_ += hoop_.drive * (at_.angle - from.angle);
+    if (rolls) return end;
     slipped_ += abs((at_.travel - from.travel) - (at_.angle - from.angle));
     return end;
   }
@@ -159,7 +153,7 @@ class PhaseMachine {
       outcome_.landing_spin = static_cast<double>(landing.after.spin);
       return Status::jumped;
     }
-    if (!(at_.travel < runway_)) return Status::no_jump;
+    if (!(std::abs(at_.travel) < runway_)) return Status::no_jump;
     at_.spin = landing.after.spin, at_.slip = landing.after.slip;
     at_.normal = landing.after.normal;
     // A flight that rounding made of n0 = 0 takes no time; it is contact.
@@ -178,7 +172,7 @@ class PhaseMachine {
     if (observer_.lift_off) observer_.lift_off(told, flown);
     if (jumps) {
       outcome_.jump_distance = static_cast<double>(at_.travel);
-      outcome_.energy_lost = static_cast<double>(released_ - contact_energy(hoop_, at_));
+      outcome_.energy_lost = static_cast<double>(released_ + driven_ - contact_energy(hoop_, at_));
     }
     return jumps;
   }
@@ -191,6 +185,7 @@ class PhaseMachine {
   Hoop<S> hoop_;
   Contact<S> contact_;
   S runway_, released_{0}, slipped_{0};
+  S driven_{0};  // work of the motor
   ContactState<S> at_;
   PhaseSequence sequence_;
   Outcome outcome_;

@@ -63,7 +63,7 @@ Sample<double> hold(const Hoop<double>& hoop, double mu, double sign, const Y& y
   const double N = normal_force(hoop, phi, w, a), F = friction_force(hoop, phi, w, a);
   // raised by some roundings, as stick_guards are
   const double slack =
-      32.0 * std::numeric_limits<double>::epsilon() * (mu * std::abs(N) + std::abs(F) + hoop.sin_slope);
+      32.0 * std::numeric_limits<double>::epsilon() * (mu * std::abs(N) + std::abs(F) + std::abs(hoop.sin_slope));
   return {mu * N - sign * F + slack, mu * normal_force_rate(hoop, phi, w, a) - sign * F_rate};
 }
 
@@ -71,7 +71,7 @@ Sample<double> hold(const Hoop<double>& hoop, double mu, double sign, const Y& y
 Sample<double> lift(const CoulombIntegration::System& system, const Y& y, const Y& f) {
   const Trig<double> phi = trig(y[0]);
   return {free_normal_force(system.hoop, phi, y[1] * y[1]),
-          system.hoop.rho * y[1] * (2.0 * phi.cos * f[1] - phi.sin * y[1] * y[1])};
+          y[1] * free_normal_force_rate(system.hoop, phi, y[1] * y[1], f[1])};
 }
 
 /// Ic + rho s q and its rate.
@@ -86,7 +86,7 @@ Sample<double> pivot(const CoulombIntegration::System& system, const Y& y) {
 
 CoulombIntegration::Guard guard_of_runway(double runway) {
   return {[runway](const Y& y) {
-            return Sample<double>{runway - y[3], -(y[2] + y[1])};
+            return Sample<double>{runway - std::abs(y[3]), -std::copysign(y[2] + y[1], (y[2] + y[1]) * y[3])};
           },
           PhaseEnd::runway_ends};
 }
@@ -139,20 +139,25 @@ PhaseEnd CoulombIntegration::follow(Phase phase, int direction, ContactState<dou
 PhaseEnd CoulombIntegration::roll(const Hoop<double>& hoop, const Contact<double>& contact,
                                   ContactState<double>& at, double runway, const StepObserver& step_told) {
   system_.hoop = hoop, system_.friction = rolls;
-  if (at.spin < 0.0 || (at.spin == 0.0 && !(torque(hoop, trig(at.angle)) > 0.0))) return PhaseEnd::stalls;
+  const double sets_out = at.spin != 0.0 ? at.spin : torque(hoop, trig(at.angle));
+  if (sets_out == 0.0) return PhaseEnd::stalls;
+  double way = std::copysign(1.0, sets_out);
   const Guard downhill{[&](const Y&y) { return hold(hoop, contact.mu_static, 1.0, y); },
                        PhaseEnd::slips_backwards},
       uphill{[&](const Y&y) { return hold(hoop, contact.mu_static, -1.0, y); }, PhaseEnd::slips_forwards},
       spin{[&](const Y&y) {
-             return Sample<double>{y[1], angular_acceleration(hoop, trig(y[0]), y[1])};
+             return Sample<double>{way * y[1], way * angular_acceleration(hoop, trig(y[0]), y[1])};
            },
            PhaseEnd::stalls};
   for (const Guard& guard : {downhill, uphill})  // what has fallen at the start is no fall of a step
     if (has_fallen(guard.sample(Y{at.angle, at.spin, at.slip, at.travel}))) return guard.end;
-  const PhaseEnd end =
-      follow(Phase::rolling, 0, at, std::array{downhill, uphill, spin, guard_of_runway(runway)}, step_told);
-  if (end == PhaseEnd::stalls) at.spin = 0.0;
-  return end;
+  const std::array guards{downhill, uphill, spin, guard_of_runway(runway)};
+  for (int turned = 0;; way = -way) {
+    const PhaseEnd end = follow(Phase::rolling, 0, at, guards, step_told);
+    if (end != PhaseEnd::stalls) return end;
+    at.spin = 0.0;
+    if (++turned == 2) return end;
+  }
 }
 
 PhaseEnd CoulombIntegration::slide(const Hoop<double>& hoop, const Contact<double>& contact,

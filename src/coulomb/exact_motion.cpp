@@ -16,6 +16,7 @@ struct Begun {
   Phase phase;
   ContactState<double> state;
   int direction;
+  std::vector<ContactState<double>> turns{};  ///< of a rolling one
 };
 
 }  // namespace
@@ -27,13 +28,14 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
   ContactState<double> end;
   CoulombObserver observer;
   observer.phase = [&](Phase phase, const ContactState<double>& state, int direction) {
-    phases.push_back({phase, state, direction});
+    phases.push_back({phase, state, direction, {}});
     motion.phases.push_back(in_si(phase, state, direction, scene));
   };
   observer.lift_off = [&](const LiftOff<double>& lift_off, const Flight<double>& flight) {
     flights.push_back(flight);
     motion.candidates.push_back(in_si(lift_off, flight, scene));
   };
+  observer.turn = [&](const ContactState<double>& state) { phases.back().turns.push_back(state); };
   observer.end = [&](const ContactState<double>& state) { end = state; };
   motion.outcome = CoulombSolver<double>(tolerance).solve(design, scene, observer);
   if (!(interval > 0.0)) return motion;
@@ -44,12 +46,17 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
   RollingMotion sampled(hoop, interval / second, motion.points);
   auto flight = flights.begin();
   for (std::size_t i = 0; i < phases.size(); ++i) {
-    const auto& [phase, from, direction] = phases[i];
+    const auto& [phase, from, direction, turns] = phases[i];
     const bool is_last = i + 1 == phases.size();
     const ContactState<double>& to = is_last ? end : phases[i + 1].state;
     if (phase == Phase::rolling) {
       const bool stalls = is_last && motion.outcome.status == Status::stalled;
-      sampled.roll(from, stalls ? short_of_stall(from.angle, to.angle) : to.angle);
+      ContactState<double> begin = from;
+      for (const ContactState<double>& turn : turns) {
+        sampled.roll(begin, turn.angle, true);
+        begin = turn;
+      }
+      sampled.roll(begin, to.angle, stalls);
     } else if (phase == Phase::sliding) {
       ContactState<double> at = from;
       const double friction = direction * mu;

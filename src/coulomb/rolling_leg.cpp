@@ -28,11 +28,13 @@ struct Look {
   StickGuards<S> guards;
 };
 
-/// What a leg looks like at its angles.
+/// What a leg looks like at its angles. roll: of the phase's beginning, near which E is known best, as seen on
+/// the leg; begin: of the leg's.
 template <class S>
 class LegView {
  public:
-  LegView(const Roll<S>& roll, const S& mu_static) : roll_(roll), mu_static_(mu_static) {}
+  LegView(const Roll<S>& roll, const Roll<S>& begin, const S& mu_static)
+      : roll_(roll), begin_(begin), mu_static_(mu_static) {}
 
   Look<S> at(const S& angle) const {
     const Trig<S> phi = trig(angle);
@@ -40,10 +42,10 @@ class LegView {
     return {angle, {E, S(2) * torque(roll_.hoop, phi)}, stick_guards(roll_.hoop, phi, E, mu_static_)};
   }
 
-  /// From rest E's first zero is the release itself, known by its push.
-  Look<S> at_release() const {
-    Look<S> look = at(roll_.release);
-    look.vis_viva = {roll_.released, S(2) * roll_.push};
+  /// From rest E's first zero is the beginning itself, known by its push.
+  Look<S> at_begin() const {
+    Look<S> look = at(begin_.release);
+    look.vis_viva = {begin_.released, S(2) * begin_.push};
     return look;
   }
 
@@ -67,39 +69,71 @@ class LegView {
 
  private:
   const Roll<S>& roll_;
+  const Roll<S>& begin_;
   S mu_static_;
 };
+
+/// The leg's end as it is, when it was seen from the other side.
+PhaseEnd turned_over(PhaseEnd end) {
+  return end == PhaseEnd::slips_backwards  ? PhaseEnd::slips_forwards
+         : end == PhaseEnd::slips_forwards ? PhaseEnd::slips_backwards
+                                           : end;
+}
 
 }  // namespace
 
 template <class S>
-PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at,
-                            const S& runway) const {
-  const Roll<S> roll = begin_roll(hoop, at.angle, at.spin);
-  if (at.spin < S(0) || (at.spin == S(0) && !(roll.push > S(0)))) return PhaseEnd::stalls;
-  const auto [end, angle] = first_end(roll, mu_static, at.angle + (runway - at.travel));
-  const S x = angle - at.angle;
-  at.travel += x;
-  at.angle = angle;
-  at.spin = S(0);
-  if (end == PhaseEnd::stalls) return end;  // when nobody asks, and the integral is hard
-  const S taken = x > S(0) ? duration(roll, x) : S(0);
-  at.time += taken;
-  at.spin = std::sqrt(std::max(vis_viva_past_release(roll, x), S(0)) / contact_inertia(hoop, trig(angle)));
-  return taken >= S(0) ? end : PhaseEnd::failed;
+PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at, const S& runway,
+                            const Told& turns) const {
+  const ContactState<S> from = at;
+  const S sets_out = at.spin != S(0) ? at.spin : torque(hoop, trig(at.angle));
+  if (sets_out == S(0)) return PhaseEnd::stalls;
+  S way = sets_out < S(0) ? S(-1) : S(1);
+  for (int turned = 0;; way = -way) {
+    const Hoop<S> seen_hoop = seen(hoop, way);
+    const Roll<S> begin = begin_roll(seen_hoop, S(way * at.angle), std::abs(at.spin));
+    Roll<S> roll = begin_roll(seen_hoop, S(way * from.angle), std::abs(from.spin));
+    auto [end, angle] = first_end(roll, begin, mu_static, begin.release + (runway - way * at.travel));
+    // From rest the second turn is at the beginning.
+    const bool back = turned == 1 && from.spin == S(0) && angle >= roll.release;
+    if (back) end = PhaseEnd::stalls, angle = roll.release;
+    S x = angle - begin.release, taken(0);
+    if (end == PhaseEnd::stalls) {
+      for (int k = 0; k < 2; ++k) {  // near the beginning E is known better than the angle
+        const S push = torque(seen_hoop, trig(S(begin.release + x))), next = x - vis_viva_past_release(begin, x) / (S(2) * push);
+        if (push < S(0) && next >= S(0) && std::abs(next - x) < S(1e-12)) x = next;
+      }
+      if (turned == 0) taken = x > S(0) ? duration_to_rest(begin, x) : S(0);
+    } else if (x > S(0)) {
+      taken = duration(begin, x);
+    }
+    at.travel += way * x;
+    at.angle = way * angle;
+    at.time += taken;
+    if (end != PhaseEnd::stalls) {
+      at.spin = way * std::sqrt(std::max(vis_viva_past_release(roll, S(angle - roll.release)), S(0)) /
+                                contact_inertia(hoop, trig(angle)));
+      return !(taken >= S(0)) ? PhaseEnd::failed : way < S(0) ? turned_over(end) : end;
+    }
+    at.spin = S(0);
+    if (++turned == 2) return end;  // when nobody asks, and the integral may be hard
+    if (!(taken >= S(0))) return PhaseEnd::failed;
+    if (turns) turns(at);
+  }
 }
 
 /// Walks from node to node, so many at once as there are lanes; the end of the runway, `last`, comes as a
 /// node of its own.
 template <class S>
-LegEnd<S> RollingLeg<S>::first_end(const Roll<S>& roll, const S& mu_static, const S& last) const {
+LegEnd<S> RollingLeg<S>::first_end(const Roll<S>& roll, const Roll<S>& begin, const S& mu_static,
+                                   const S& last) const {
   using T = typename SpectralPanel<S, nodes>::T;
   constexpr long width = Lanes<T>::count, turn = nodes_a_turn;
   const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
-  const LegView<S> view(roll, mu_static);
+  const LegView<S> view(roll, begin, mu_static);
   const Roll<T> rolls = widened<T>(roll);
-  Look<S> left = view.at_release();
-  for (long node = static_cast<long>(std::floor(roll.release / step)) + 1;; node += width) {
+  Look<S> left = view.at_begin();
+  for (long node = static_cast<long>(std::floor(begin.release / step)) + 1;; node += width) {
     const auto first = static_cast<std::size_t>((node % turn + turn) % turn);
     const Trig<T> phi{Lanes<T>::load(grid_.sin.data() + first), Lanes<T>::load(grid_.cos.data() + first),
                       Lanes<T>::load(grid_.versine.data() + first)};
@@ -122,6 +156,13 @@ LegEnd<S> RollingLeg<S>::first_end(const Roll<S>& roll, const S& mu_static, cons
       left = right;
     }
   }
+}
+
+/// Both halves from the ends, as E vanishes at the far one too.
+template <class S>
+S RollingLeg<S>::duration_to_rest(const Roll<S>& roll, const S& length) const {
+  const Roll<S> back = begin_roll(seen(roll.hoop, S(-1)), S(-(roll.release + length)), S(0));
+  return duration(roll, S(length * S(0.5))) + duration(back, S(length * S(0.5)));
 }
 
 template <class S>
@@ -175,7 +216,7 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
   // Beside a stall E is a difference of near equals: what its roundings make of the time no panel resolves.
   const auto least = lanes_of(least_E);
   const S rounding = S(16) * std::numeric_limits<S>::epsilon() *
-                     (S(4) + roll.released + S(2) * to * to * roll.hoop.sin_slope) /
+                     (S(4) + roll.released + S(2) * to * to * std::abs(roll.hoop.thrust)) /
                      *std::min_element(least.begin(), least.end());
   if (tail <= std::max(std::max(tolerance_, std::min(rounding, S(1e-4))) * whole, enough)) return whole;
   if (halvings == most_halvings || ++panels > most_panels || !(whole > S(0)))

@@ -73,9 +73,12 @@ auto SlidingLeg<S>::first_event(const S& runway, int direction, const Panel& pan
   };
   const Guard guards[]{{PhaseEnd::lifts_off, S(0), S(1), panel.free_force},
                        {PhaseEnd::slip_ends, S(0), S(direction), panel.slip},
-                       {PhaseEnd::runway_ends, runway, S(-1), panel.travel}};
+                       {PhaseEnd::runway_ends, runway, S(-1), panel.travel},
+                       {PhaseEnd::runway_ends, runway, S(1), panel.travel}};
   Event event{S(2), PhaseEnd::failed, false};
   for (const Guard& guard : guards) {
+    const bool uphill = guard.end == PhaseEnd::runway_ends && guard.factor > S(0);
+    if (uphill && panel.travel.start.value > S(0) && panel.travel.end.value > S(0)) continue;
     Values values, rates;
     S largest(0);
     for (std::size_t i = 0; i < Panels::nodes; ++i) {

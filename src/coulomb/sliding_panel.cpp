@@ -68,14 +68,15 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     const SlidingCoefficients<T> at = coefficients[i / width] =
         slide.coefficients(hoops, at_node, T(way) * x);
     panel.indeterminate = panel.indeterminate || !all(at.pivot > T(S(0)));
+    const T idle = free_normal_force(hoops, at_node, T(S(0))), torque = hoops.drive / hoops.Ic;
     const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoops.rho * at_node.cos;
     if (by_force) {
       const T tangent = at_node.sin / at_node.cos;
       put(turned * (grows - tangent), a, i);
-      put(turned * tangent * hoops.cos_slope, b, i);
+      put(turned * (tangent * idle + T(S(3)) * hoops.rho * at_node.cos * torque), b, i);
     } else {
       put(turned * grows, a, i);
-      put(turned * T(S(2)) * at.turn * hoops.cos_slope, b, i);
+      put(turned * T(S(2)) * (at.turn * idle + torque), b, i);
     }
     put(w, weight, i);
     put(x, angle, i);
@@ -94,14 +95,14 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S start_y = by_force ? start_force : start_u;
   const S end_y = std::exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
   const auto spin_squared = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
-    return by_force ? (y - hoop_at.cos_slope) / (hoop_at.rho * at.cos) : y;
+    return by_force ? (y - free_normal_force(hoop_at, at, R(S(0)))) / (hoop_at.rho * at.cos) : y;
   };
   const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
     return by_force ? y : free_normal_force(hoop_at, at, y);
   };
   const auto force_rate = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& u, const R& n0,
                                        const R& turn) {
-    return hoop_at.rho * (R(S(2)) * at.cos * turn * n0 - at.sin * u);
+    return free_normal_force_rate(hoop_at, at, u, R(turn * n0 + hoop_at.drive / hoop_at.Ic));
   };
   const S end_u = spin_squared(hoop, end_phi, end_y);
   T least_u(std::min(start_u > S(0) ? start_u : end_u, end_u));
@@ -177,7 +178,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
     spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
   bool settled = false;
   const Hoop<T> hoops = widened<T>(hoop);
-  const T m(friction), length(duration), rho(hoop.rho);
+  const T m(friction), length(duration);
   for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
     S least_pivot(hoop.Ic + S(2));
     for (std::size_t i = 0; i < nodes; i += width) {
@@ -196,7 +197,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
       Lanes<T>::store(length * motion.angular, angular.data() + i);
       Lanes<T>::store(length * motion.slip, panel.slip.rate.data() + i);
       Lanes<T>::store(n0, panel.free_force.value.data() + i);
-      Lanes<T>::store(length * rho * w * (T(S(2)) * phi.cos * motion.angular - phi.sin * u),
+      Lanes<T>::store(length * w * free_normal_force_rate(hoops, phi, u, motion.angular),
                       panel.free_force.rate.data() + i);
     }
     const Values gained = grid_.integrals(angular);
@@ -222,7 +223,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   if (panel.indeterminate) return;
   const auto sample_force = [&](const Trig<S>& phi, const S& w, const SlidingMotion<S>& motion) {
     return Sample<S>{free_normal_force(hoop, phi, S(w * w)),
-                     duration * hoop.rho * w * (S(2) * phi.cos * motion.angular - phi.sin * w * w)};
+                     duration * w * free_normal_force_rate(hoop, phi, S(w * w), motion.angular)};
   };
   const auto motion_at = [&](const Trig<S>& phi, const S& w, const SlidingCoefficients<S>& at) {
     const S u = w * w;

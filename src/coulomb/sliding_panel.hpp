@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A stretch of one sliding phase, solved at the nodes of a panel.
 ///
-/// In the angle u = w^2 obeys du/dphi = a u + b with a = 2 rho c turn, b = 2 cos(theta) turn
-/// (physics/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the integral of a; time, slip and
-/// travel are integrals over u's root. Near Painleve's edge n0 takes the place of u: it obeys an equation of
-/// the same kind, with -tan(phi) + 2 rho c turn and tan(phi) cos(theta), and keeps its digits where it
-/// vanishes with the pivot. Where the spin goes through zero panels are in time: angle and spin at their
+/// In the angle u = w^2 obeys du/dphi = a u + b with a = 2 rho c turn, b = 2 n1 turn + 2 tau / Ic,
+/// n1 = cos(theta) + rho s tau / Ic (physics/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the
+/// integral of a; time, slip and travel are integrals over u's root. Near Painleve's edge n0 takes the place
+/// of u: it obeys an equation of the same kind, with -tan(phi) + 2 rho c turn and
+/// tan(phi) n1 + 3 rho c tau / Ic, and keeps its digits where it vanishes with the pivot. Where the spin goes through zero panels are in time: angle and spin at their
 /// nodes by Picard's iteration.
 #pragma once
 

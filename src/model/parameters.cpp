@@ -38,7 +38,8 @@ const std::array table{
               "a lift-off that flies this high is the jump; 0: the first one is", non_negative},
     Parameter{"radius", &Scene::radius, "m", "the hoop's radius R; scales times only", positive},
     Parameter{"gravity", &Scene::gravity, "m s-2", "g; scales times only", positive},
-    Parameter{"slope", &Design::slope, "rad", "slope of the plane", {0.0, right_angle, true, false}},
+    Parameter{"slope", &Design::slope, "rad", "slope of the plane; below zero: uphill",
+              {-right_angle, right_angle, false, false}},
     Parameter{"mass_ratio", &Design::mass_ratio, "1", "point mass over hoop mass, m_p / m", ratio},
     Parameter{"offset_ratio", &Design::offset_ratio, "1",
               "distance of the point mass from the centre over the radius, L / R", fraction},
@@ -53,7 +54,12 @@ const std::array table{
               &Design::release_spin,
               "sqrt(g/R)",
               "spin at release, positive downhill",
-              {-1e4, 1e4}}};
+              {-1e4, 1e4}},
+    Parameter{"drive_torque",
+              &Design::drive_torque,
+              "(m + m_p) g R",
+              "torque of a motor on the hoop while it touches the plane, positive downhill",
+              {-1e3, 1e3}}};
 
 }  // namespace
 

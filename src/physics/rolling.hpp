@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Rolling without slip: the paper's equations (10), (11) and (12), divided by (m + m_p) g R or (m + m_p) g.
+/// Rolling without slip: the paper's equations (10), (11) and (12), divided by (m + m_p) g R or (m + m_p) g,
+/// with a motor's torque tau beside sin(theta) in (10).
 ///
 /// Forces are in units of the weight, phi in rad, spin w = dphi/dt in sqrt(g/R), time in sqrt(R/g).
 #pragma once
@@ -55,7 +56,7 @@ T cos_from_vertical(const Hoop<T>& hoop, const Trig<T>& phi) {
 /// (10) solved for phi'' [g/R].
 template <class T>
 T angular_acceleration(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin) {
-  return (hoop.sin_slope - hoop.rho * (sin_from_vertical(hoop, phi) + phi.sin * spin * spin)) /
+  return (hoop.thrust - hoop.rho * (sin_from_vertical(hoop, phi) + phi.sin * spin * spin)) /
          contact_inertia(hoop, phi);
 }
 
@@ -100,10 +101,11 @@ T kinetic_energy(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin) {
   return T(0.5) * contact_inertia(hoop, phi) * spin * spin;
 }
 
-/// Potential energy over (m + m_p) g R, (4) under (1) and (2) but for a constant; phi is trig(angle).
+/// Potential energy over (m + m_p) g R, (4) under (1) and (2) but for a constant, less the work that the motor
+/// has done; phi is trig(angle).
 template <class T>
 T potential_energy(const Hoop<T>& hoop, const T& angle, const Trig<T>& phi) {
-  return -angle * hoop.sin_slope - hoop.rho * cos_from_vertical(hoop, phi);
+  return -angle * hoop.thrust - hoop.rho * cos_from_vertical(hoop, phi);
 }
 
 /// Their sum, constant while rolling.

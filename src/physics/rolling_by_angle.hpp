@@ -2,10 +2,11 @@
 /// Rolling without slip as functions of the angle alone: energy is conserved, so the spin is explicit.
 ///
 /// With the vis viva E(phi) = w^2 J(phi), twice the kinetic energy, the normal force (11) is
-///   N = (P J + rho K E) / J^2,   P = cos(theta) (Ic + q^2) + rho sin(theta) s q,   K = J_min c - rho v^2,
+///   N = (P J + rho K E) / J^2,   P = cos(theta) (Ic + q^2) + rho s (sin(theta) q + tau),
+///   K = J_min c - rho v^2,
 /// in s = sin phi, c = cos phi, v = 1 - c, q = 1 - rho c. The numerator G = P J + rho K E has the sign of N
 /// and no needle where J is small: a trigonometric polynomial of degree 3 plus phi times one of degree 2. It
-/// is linear in E, which gains 4 pi sin(theta) a revolution: G of all revolutions follows from one
+/// is linear in E, which gains 4 pi (sin(theta) + tau) a revolution: G of all revolutions follows from one
 /// evaluation.
 #pragma once
 
@@ -19,21 +20,22 @@
 
 namespace leapmap {
 
-/// A hoop on its way from one release.
+/// A hoop on its way from one release, or from where it turned round. The angle grows on the way: a hoop that
+/// rolls uphill is seen from behind the plane (parameters.hpp).
 template <class T>
 struct Roll {
   Hoop<T> hoop;
   T release;             ///< phi0 [rad]
   Trig<T> release_trig;  ///< of it
   T released;            ///< E at release, w0^2 J(phi0)
-  T level;               ///< E(phi) - 2 phi sin(theta) - 2 rho cos(theta + phi), the same at every angle
+  T level;               ///< E(phi) - 2 phi thrust - 2 rho cos(theta + phi), the same at every angle
   T push;                ///< dE/dphi / 2 at release
 };
 
-/// dE/dphi / 2, the torque about the contact: sin(theta) - rho sin(theta + phi).
+/// dE/dphi / 2, the torque about the contact: sin(theta) + tau - rho sin(theta + phi).
 template <class T>
 T torque(const Hoop<T>& hoop, const Trig<T>& phi) {
-  return hoop.sin_slope - hoop.rho * sin_from_vertical(hoop, phi);
+  return hoop.thrust - hoop.rho * sin_from_vertical(hoop, phi);
 }
 
 template <class T>
@@ -44,7 +46,7 @@ Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
           .release = release,
           .release_trig = phi,
           .released = released,
-          .level = released - T(2) * (release * hoop.sin_slope + hoop.rho * cos_from_vertical(hoop, phi)),
+          .level = released - T(2) * (release * hoop.thrust + hoop.rho * cos_from_vertical(hoop, phi)),
           .push = torque(hoop, phi)};
 }
 
@@ -63,7 +65,7 @@ Roll<T> widened(const Roll<ScalarOf<T>>& roll) {
 template <class T>
 T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {
   return roll.level +
-         T(2) * (angle * roll.hoop.sin_slope + roll.hoop.rho * cos_from_vertical(roll.hoop, phi));
+         T(2) * (angle * roll.hoop.thrust + roll.hoop.rho * cos_from_vertical(roll.hoop, phi));
 }
 
 /// E an angle x past the release, without cancellation however small x is and however near the release is to
@@ -81,36 +83,57 @@ T vis_viva_past_release(const Roll<T>& roll, const T& x) {
   return vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned.sin));
 }
 
-/// Where E is least for the first time after the release. E has minima only if rho > sin(theta), where theta
-/// + phi = pi - asin(sin(theta) / rho); they rise from one revolution to the next, so that the first one
-/// tells whether the hoop stalls. Otherwise E rises always, and least where theta + phi = pi / 2.
+/// Where E is least for the first time after the release, or, where E falls from turn to turn, least for the
+/// first time below zero. E has minima only if rho > |thrust|, where theta + phi = pi - asin(thrust / rho);
+/// from one revolution to the next they change by 4 pi thrust, so that this one tells whether the hoop turns
+/// round. Otherwise E rises or falls always: it rises least where theta + phi = pi / 2, and is below zero at
+/// the latest where `angle` says then.
 template <class T>
 struct FirstMinimum {
   T angle;
-  T crest;            ///< asin(sin(theta) / rho), or pi / 2
-  MaskOf<T> is_real;  ///< E has minima
+  T summit;           ///< E falls all the way from here to there; before the release: from that
+  MaskOf<T> is_real;  ///< E has minima, or falls
 };
 template <class T>
 FirstMinimum<T> first_minimum(const Roll<T>& roll) {
   using std::asin, std::floor;
   const T pi(std::numbers::pi_v<ScalarOf<T>>), two_pi = T(2) * pi;
-  const MaskOf<T> is_real = roll.hoop.rho > roll.hoop.sin_slope;
-  const T crest = asin(select(is_real, roll.hoop.sin_slope / roll.hoop.rho, T(1)));
-  const T phase = pi - crest - roll.hoop.slope;
-  return {phase + two_pi * (floor((roll.release - phase) / two_pi) + T(1)), crest, is_real};
+  const T &thrust = roll.hoop.thrust, &rho = roll.hoop.rho;
+  const MaskOf<T> waves = (rho > thrust) & (rho > -thrust), falls = thrust < T(0);
+  const T crest = asin(select(waves, thrust / rho, T(1)));
+  const T phase = pi - crest - slope_of(roll.hoop);
+  FirstMinimum<T> first{phase + two_pi * (floor((roll.release - phase) / two_pi) + T(1)), T(0), waves};
+  if (any(falls)) {
+    const T lost = T(-2) * two_pi * thrust, least = vis_viva_past_release(roll, first.angle - roll.release);
+    const T turns = select(falls & (least > T(0)), smaller(floor(least / lost) + T(1), T(1e9)), T(0));
+    first.angle = first.angle + two_pi * turns;
+    // E is at most released + 2 thrust x + 4 rho.
+    const T latest = roll.release - (roll.released + T(4) * rho) / (T(2) * thrust) * T(1.01);
+    first.angle = select(falls & !waves, latest, first.angle);
+    first.is_real = waves | falls;
+  }
+  first.summit = select(waves, first.angle - pi + T(2) * crest, T(-1e300));
+  return first;
 }
 
-/// Where a hoop stalls whose first minimum of E is real and below zero: between E's maximum, or the release
-/// if that is later, and there.
-template <class S>
-S stall_angle(const Roll<S>& roll, const S& minimum, const S& crest) {
-  const auto vis_viva_at = [&](const S& angle) {
-    return Sample<S>{vis_viva_past_release(roll, S(angle - roll.release)),
-                     S(2) * torque(roll.hoop, trig(angle))};
+/// How far from the release a hoop turns round, whose first minimum is real and E there not above zero:
+/// between E's summit, or the release if that is later, and there. Good to the last digits however small it
+/// is. Lanes outside `wanted` return anything.
+template <class T>
+T turning_distance(const Roll<T>& roll, const FirstMinimum<T>& first, const MaskOf<T>& wanted) {
+  using std::abs;
+  const auto vis_viva_at = [&](const T& x) {
+    return Sample<T>{vis_viva_past_release(roll, x), T(2) * torque(roll.hoop, trig(roll.release + x))};
   };
-  const S from = std::max(roll.release, minimum - std::numbers::pi_v<S> + S(2) * crest);
-  const S resolution = S(4) * std::numeric_limits<S>::epsilon() * std::max(S(1), std::abs(minimum));
-  return polish_root(vis_viva_at, from, minimum, S(0.5L) * (from + minimum), false, resolution);
+  const T from = larger(first.summit - roll.release, T(0)), to = first.angle - roll.release;
+  const T resolution = T(ScalarOf<T>(4) * std::numeric_limits<ScalarOf<T>>::epsilon()) * larger(T(1), to);
+  T x = polish_root(vis_viva_at, from, to, T(0.5) * (from + to), wanted & !wanted, resolution, wanted);
+  for (int k = 0; k < 2; ++k) {  // near the release E is known better than the angle
+    const Sample<T> E = vis_viva_at(x);
+    const T next = x - E.value / E.rate;
+    x = select((E.rate < T(0)) & (next >= from) & (next <= to) & (abs(next - x) <= resolution), next, x);
+  }
+  return x;
 }
 
 /// What G is made of, G = P J + rho K E, with rates by the angle.
@@ -128,8 +151,8 @@ LiftTerms<T> lift_terms(const Hoop<T>& h, const Trig<T>& phi) {
   return {.q = q,
           .J = J,
           .J1 = T(2) * h.rho * s,
-          .P = h.cos_slope * (h.Ic + q * q) + h.rho * h.sin_slope * s * q,
-          .P1 = h.rho * (T(2) * h.cos_slope * s * q + h.sin_slope * bend),
+          .P = h.cos_slope * (h.Ic + q * q) + h.rho * s * (h.sin_slope * q + h.drive),
+          .P1 = h.rho * (T(2) * h.cos_slope * s * q + h.sin_slope * bend + h.drive * c),
           .K = h.J_min * c - h.rho * phi.versine * phi.versine,
           .K1 = -s * J,
           .bend = bend};
@@ -150,12 +173,12 @@ CurvedSample<T> lift(const Roll<T>& roll, const T& angle) {
   const LiftTerms<T> t = lift_terms(h, phi);
   const T J2 = T(2) * h.rho * c;
   const T bend1 = s * (T(3) * h.rho * c - t.q);  // d(bend)/dphi
-  const T P2 = h.rho * (T(2) * h.cos_slope * t.bend + h.sin_slope * bend1);
+  const T P2 = h.rho * (T(2) * h.cos_slope * t.bend + h.sin_slope * bend1 - h.drive * s);
   const T bend2 = c * (T(3) * h.rho * c - t.q) - T(4) * h.rho * s * s;
-  const T P3 = h.rho * (T(2) * h.cos_slope * bend1 + h.sin_slope * bend2);
+  const T P3 = h.rho * (T(2) * h.cos_slope * bend1 + h.sin_slope * bend2 - h.drive * c);
   const T K2 = -c * t.J - s * t.J1, K3 = s * t.J - T(3) * c * t.J1;
   const T steep = T(2) * h.rho * sin_from_vertical(h, phi), high = T(2) * h.rho * cos_from_vertical(h, phi);
-  const T E = roll.level + T(2) * angle * h.sin_slope + high, E1 = T(2) * h.sin_slope - steep;
+  const T E = roll.level + T(2) * angle * h.thrust + high, E1 = T(2) * h.thrust - steep;
   const Sample<T> G = lift(h, t, E, E1);
   return {G.value, G.rate,
           P2 * t.J + T(2) * t.P1 * t.J1 + t.P * J2 + h.rho * (K2 * E + T(2) * t.K1 * E1 - t.K * high),
@@ -170,7 +193,7 @@ struct LiftBounds {
 };
 
 /// For revolution `turn`, [2 pi turn, 2 pi (turn + 1)]. G is expanded there as harmonics 1 to 3 with E's
-/// linear part held at its middle, and the rest, 2 rho sin(theta) (phi - middle) K, is bounded by itself;
+/// linear part held at its middle, and the rest, 2 rho thrust (phi - middle) K, is bounded by itself;
 /// each harmonic's amplitude is at most larger + (sqrt 2 - 1) smaller of its two coefficients.
 template <class T>
 LiftBounds<T> lift_bounds(const Roll<T>& roll, const T& turn) {
@@ -180,22 +203,22 @@ LiftBounds<T> lift_bounds(const Roll<T>& roll, const T& turn) {
   const T rho = h.rho, half(0.5);
   const T j0 = h.J_min + T(2) * rho, j1 = T(-2) * rho;
   const T p0 = h.Ic + T(1) + half * rho * rho, p1 = T(-2) * rho, p2 = half * rho * rho;
-  const T middle = roll.level + T(4) * pi * h.sin_slope * (turn + half);
+  const T middle = roll.level + T(4) * pi * h.thrust * (turn + half);
   const T k0 = T(-1.5) * rho, k1 = h.J_min + T(2) * rho, k2 = -half * rho;
   const T e = T(2) * rho * h.cos_slope, f = T(-2) * rho * h.sin_slope;  // of cos phi and sin phi in E
   const T cos1 =
       h.cos_slope * (p0 * j1 + p1 * j0 + half * p2 * j1) + rho * (e * (k0 + half * k2) + k1 * middle);
   const T cos2 = h.cos_slope * (half * p1 * j1 + p2 * j0) + rho * (half * e * k1 + k2 * middle);
   const T cos3 = half * (h.cos_slope * p2 * j1 + rho * e * k2);
-  const T pull = rho * h.sin_slope;
-  const T sin1 = pull * (j0 - T(0.25) * rho * j1) + rho * f * (k0 - half * k2);
-  const T sin2 = half * (pull * (j1 - rho * j0) + rho * f * k1);
+  const T pull = rho * h.sin_slope, drive = rho * h.drive;
+  const T sin1 = pull * (j0 - T(0.25) * rho * j1) + drive * j0 + rho * f * (k0 - half * k2);
+  const T sin2 = half * (pull * (j1 - rho * j0) + drive * j1 + rho * f * k1);
   const T sin3 = pull * T(-0.25) * rho * j1 + half * rho * f * k2;
   const auto amplitude = [](const T& a, const T& b) {
     return larger(abs(a), abs(b)) + T(0.4143) * smaller(abs(a), abs(b));
   };
   const T a1 = amplitude(cos1, sin1), a2 = amplitude(cos2, sin2), a3 = amplitude(cos3, sin3);
-  const T rest = T(2) * rho * h.sin_slope;
+  const T rest = T(2) * rho * abs(h.thrust);
   return {a1 + T(4) * a2 + T(9) * a3 + rest * (T(2) * (k1 + rho) + pi * (k1 + T(2) * rho)),
           a1 + T(8) * a2 + T(27) * a3 + rest * (T(3) * (k1 + T(2) * rho) + pi * (k1 + T(4) * rho))};
 }

@@ -2,9 +2,10 @@
 /// Sliding with Coulomb friction, beyond the paper: (7) to (9) with (2) kept and lambda_f = -mu sign(v)
 /// lambda_n.
 ///
-/// v = x' - w is the contact point's velocity. With n0 = cos(theta) + rho c w^2, which is minus the y'' of
-/// free flight, and q = rho s - m (1 - rho c), m = mu sign(v), the forces and accelerations are
-///   N = n0 Ic / (Ic + rho s q),   F = -m N,   phi'' = -n0 q / (Ic + rho s q).
+/// v = x' - w is the contact point's velocity. With n0 = cos(theta) + rho c w^2 + rho s tau / Ic, which is
+/// minus the y'' of a hoop that the plane lets go, and q = rho s - m (1 - rho c), m = mu sign(v), the forces
+/// and accelerations are
+///   N = n0 Ic / (Ic + rho s q),   F = -m N,   phi'' = tau / Ic - n0 q / (Ic + rho s q).
 /// Both are linear in w^2: as a function of the angle u = w^2 obeys du/dphi = 2 phi'', a linear equation of
 /// first order. Where Ic + rho s q <= 0 the rigid-body equations have no answer or two (Painleve).
 #pragma once
@@ -17,7 +18,7 @@ namespace leapmap {
 template <class T>
 struct SlidingCoefficients {
   T pivot;  ///< Ic + rho s q; not above zero: indeterminate
-  T turn;   ///< phi'' = turn n0
+  T turn;   ///< phi'' = turn n0 + tau / Ic
   T push;   ///< N = push n0
 };
 
@@ -42,7 +43,13 @@ SlidingCoefficients<T> sliding_coefficients(const Hoop<T>& hoop, const Trig<T>& 
 /// n0: the hoop leaves the plane where this falls through zero.
 template <class T>
 T free_normal_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared) {
-  return hoop.cos_slope + hoop.rho * phi.cos * spin_squared;
+  return hoop.cos_slope + hoop.rho * (phi.cos * spin_squared + phi.sin * (hoop.drive / hoop.Ic));
+}
+
+/// Its derivative by time over the spin; angular: phi''.
+template <class T>
+T free_normal_force_rate(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared, const T& angular) {
+  return hoop.rho * (phi.cos * (T(2) * angular + hoop.drive / hoop.Ic) - phi.sin * spin_squared);
 }
 
 /// Accelerations while sliding.
@@ -58,7 +65,7 @@ struct SlidingMotion {
 template <class T>
 SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared,
                                 const T& friction, const SlidingCoefficients<T>& at, const T& n0) {
-  const T N = at.push * n0, F = -friction * N, angular = at.turn * n0;
+  const T N = at.push * n0, F = -friction * N, angular = at.turn * n0 + hoop.drive / hoop.Ic;
   const T arm = hoop.clearance + hoop.rho * phi.versine;
   return {N, F, angular, F + hoop.sin_slope - arm * angular - hoop.rho * phi.sin * spin_squared};
 }

@@ -36,7 +36,7 @@ StickGuards<T> stick_guards(const Hoop<T>& h, const Trig<T>& phi, const T& E, co
   const T F = pull * t.J + h.rho * swing * E,
           F1 = pull1 * t.J + pull * t.J1 + h.rho * (swing1 * E + swing * E1);
   using std::abs;
-  const T terms = mu * (t.P * t.J + h.rho * abs(t.K) * E) + (abs(t.q * tau) + h.sin_slope * t.J) * t.J +
+  const T terms = mu * (t.P * t.J + h.rho * abs(t.K) * E) + (abs(t.q * tau) + abs(h.sin_slope) * t.J) * t.J +
                   h.rho * abs(swing) * E;
   const T slack = T(S(32) * std::numeric_limits<S>::epsilon()) * terms;
   return {{mu * N.value - F + slack, mu * N.rate - F1}, {mu * N.value + F + slack, mu * N.rate + F1}};

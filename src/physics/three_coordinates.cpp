@@ -36,7 +36,7 @@ Vector loads(const ThreeCoordinates& model, double s, double c, double w) {
   const auto [a, d] = lengths_of(model);
   const Hoop<double>& hoop = model.hoop;
   return {hoop.sin_slope - d * s * w * w, -hoop.cos_slope - d * c * w * w,
-          -d * (hoop.sin_slope * c + hoop.cos_slope * s), a * s * w * w, a * c * w * w};
+          hoop.drive - d * (hoop.sin_slope * c + hoop.cos_slope * s), a * s * w * w, a * c * w * w};
 }
 
 struct Residuals {

@@ -12,7 +12,7 @@ using Vector = Eigen::Matrix<double, 5, 1>;  // (x'', y'', phi'', lambda_f, lamb
 using Matrix = Eigen::Matrix<double, 5, 5>;
 
 Matrix equations(const Body& body, const Mode& mode, double phi) {
-  const auto& [m, m_p, R, L, I, g, slope] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor] = body;
   const double s = std::sin(phi), c = std::cos(phi);
   Matrix A;
   A << m + m_p, 0, -m_p * L * c, -1, 0,                  // (7)
@@ -41,15 +41,16 @@ Body body_of(const Design& design, const Scene& scene) {
   body.I = design.inertia_factor * body.m * body.R * body.R;
   body.g = scene.gravity;
   body.slope = design.slope;
+  body.motor = design.drive_torque * body.mass() * body.g * body.R;
   return body;
 }
 
 Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor] = body;
   const double s = std::sin(at.phi), c = std::cos(at.phi), w2 = at.spin * at.spin;
   const Vector loads{(m + m_p) * g * std::sin(slope) - m_p * w2 * L * s,
                      -(m + m_p) * g * std::cos(slope) - m_p * w2 * L * c,
-                     -m_p * g * L * std::sin(slope + at.phi), 0.0, 0.0};
+                     motor - m_p * g * L * std::sin(slope + at.phi), 0.0, 0.0};
   const Vector z = equations(body, mode, at.phi).partialPivLu().solve(loads);
   return {z[0], z[1], z[2], z[3], z[4]};
 }
@@ -60,7 +61,7 @@ double sliding_determinant(const Body& body, const Mode& mode, const Motion& at)
 }
 
 double energy(const Body& body, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor] = body;
   const double w = at.spin, speed2 = at.x_rate * at.x_rate + at.y_rate * at.y_rate;
   const double kinetic = 0.5 * m_p *
                              (speed2 + L * L * w * w +

@@ -19,6 +19,7 @@ struct Body {
   double I;             ///< of the bare hoop about its centre [kg m^2]
   double g;             ///< [m/s^2]
   double slope;         ///< [rad]
+  double motor;         ///< torque on the hoop [N m]
 
   double mass() const { return m + m_p; }
   /// From the hoop's centre to the centre of mass [m].
@@ -44,7 +45,7 @@ struct Forces {
   double x, y, phi;
   double friction, normal;
 };
-/// Solves (7) to (9) with the mode's two equations.
+/// Solves (7) to (9), the motor's torque in (9), with the mode's two equations.
 Forces forces_of(const Body& body, const Mode& mode, const Motion& at);
 /// Of those five equations, divided by what it is without friction: where it falls to zero, sliding has no
 /// answer.

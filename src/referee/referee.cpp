@@ -134,23 +134,31 @@ Outcome Referee::solve_sticking() {
     return outcome_;
   };
   if (released.normal <= 0.0) return ended(Status::airborne_at_release);
-  if (at_.spin < 0.0 || (at_.spin == 0.0 && released.phi <= 0.0)) return ended(Status::stalled);
+  const bool from_rest = at_.spin == 0.0;
+  if (from_rest && released.phi == 0.0) return ended(Status::stalled);
   const double runway = 2.0 * std::numbers::pi * scene_.runway * scene_.radius;
-  const std::vector<Guard> guards{[&](const Motion& at) { return forces_of(body, rolls, at).normal; },
-                                  [&](const Motion& at) { return at.spin; },
-                                  [&](const Motion& at) { return runway - at.x; }};
-  bool gave_up = false;
-  const auto happens = [&](std::size_t guard) {
-    if (guard > 0) {
-      outcome_.status = guard == 1 ? Status::stalled : Status::no_jump;
-      return true;
-    }
-    const Flown flown = fly(body, at_);
-    gave_up = flown.failed;
-    return gave_up || count_lift_off(flown);
-  };
-  if (!follow(rolls, guards, happens) || gave_up) return failed_outcome("the referee gave up");
-  return outcome_;
+  for (int turns = 0; turns < 3; ++turns) {
+    const double sets_out = at_.spin != 0.0 ? at_.spin : forces_of(body, rolls, at_).phi;
+    const double way = std::copysign(1.0, sets_out);
+    std::vector<Guard> guards{[&](const Motion& at) { return forces_of(body, rolls, at).normal; },
+                              [&](const Motion& at) { return way * at.spin; },
+                              [&](const Motion& at) { return runway - std::abs(at.x); }};
+    if (turns == 2) guards.push_back([&](const Motion& at) { return -way * at.x; });  // back at the release
+    bool gave_up = false, turned = false;
+    const auto happens = [&](std::size_t guard) {
+      turned = guard == 1;
+      if (guard > 1) outcome_.status = guard == 2 ? Status::no_jump : Status::stalled;
+      if (guard > 0) return true;
+      const Flown flown = fly(body, at_);
+      gave_up = flown.failed;
+      return gave_up || count_lift_off(flown);
+    };
+    if (!follow(rolls, guards, happens) || gave_up) return failed_outcome("the referee gave up");
+    if (!turned) return outcome_;
+    at_.spin = 0.0;
+    if (turns == 1 && from_rest) return ended(Status::stalled);  // it is back at the release
+  }
+  return failed_outcome("the referee gave up");
 }
 
 }  // namespace leapmap::referee

@@ -22,7 +22,7 @@ double free_rise(const Body& body, const Motion& at) { return forces_of(body, {M
 double hold(const Body& body, const Motion& at, double mu, double sign) {
   const Forces forces = forces_of(body, {Mode::rolls}, at);
   const double slack = rounding * (mu * std::abs(forces.normal) + std::abs(forces.friction) +
-                                   body.mass() * body.g * std::sin(body.slope));
+                                   body.mass() * body.g * std::abs(std::sin(body.slope)));
   return mu * forces.normal - sign * forces.friction + slack;
 }
 
@@ -51,7 +51,7 @@ Outcome Referee::solve_coulomb(const Design& design) {
   const double runway = 2.0 * std::numbers::pi * scene_.runway * R;
   const double rest_speed = scene_.rest_speed * std::sqrt(scene_.gravity * R);
   const double released = energy(body, at_);
-  double slipped = 0.0;
+  double slipped = 0.0, driven = 0.0;
   int phases = 0;
   const auto begin = [&](Phase phase) {
     if (phases < 32) outcome_.phase_sequence |= static_cast<std::uint64_t>(phase) << (2 * phases);
@@ -69,7 +69,7 @@ Outcome Referee::solve_coulomb(const Design& design) {
     outcome_.slip_distance = slipped / R;
     return outcome_;
   };
-  const Guard runway_left = [&](const Motion& at) { return runway - at.x; };
+  const Guard runway_left = [&](const Motion& at) { return runway - std::abs(at.x); };
   std::size_t happened = 0;
   const auto first_event = [&](std::size_t guard) {
     happened = guard;
@@ -78,16 +78,22 @@ Outcome Referee::solve_coulomb(const Design& design) {
 
   Next next = next_of(body, at_, mu_static, Leaving::unless_it_sticks);
   if (next == Next::flies) return ended(Status::airborne_at_release);
-  if (at_.spin < 0.0) return ended(Status::stalled);
   while (phases < most_phases) {
     if (next == Next::rolls) {
       begin(Phase::rolling);
-      if (at_.spin < 0.0 || (at_.spin == 0.0 && forces_of(body, {Mode::rolls}, at_).phi <= 0.0))
-        return ended(Status::stalled);
-      const std::vector<Guard> guards{[&](const Motion& at) { return hold(body, at, mu_static, 1.0); },
-                                      [&](const Motion& at) { return hold(body, at, mu_static, -1.0); },
-                                      [](const Motion& at) { return at.spin; }, runway_left};
-      if (!follow({Mode::rolls}, guards, first_event)) return ended(Status::failed);
+      const Motion from = at_;
+      for (int turns = 0; turns < 2; ++turns) {  // who has turned twice has seen every angle there is
+        const double sets_out = at_.spin != 0.0 ? at_.spin : forces_of(body, {Mode::rolls}, at_).phi;
+        if (sets_out == 0.0) return ended(Status::stalled);
+        const double way = std::copysign(1.0, sets_out);
+        const std::vector<Guard> guards{[&](const Motion& at) { return hold(body, at, mu_static, 1.0); },
+                                        [&](const Motion& at) { return hold(body, at, mu_static, -1.0); },
+                                        [&](const Motion& at) { return way * at.spin; }, runway_left};
+        if (!follow({Mode::rolls}, guards, first_event)) return ended(Status::failed);
+        if (happened != 2) break;
+        at_.spin = at_.x_rate = 0.0;
+      }
+      driven += body.motor * (at_.phi - from.phi);
       if (happened == 2) return ended(Status::stalled);
       if (happened == 3) return ended(Status::no_jump);
       next = free_rise(body, at_) >= 0.0 ? Next::flies
@@ -106,6 +112,7 @@ Outcome Referee::solve_coulomb(const Design& design) {
           [&](const Motion& at) { return sliding_determinant(body, slides, at); }};
       const Motion from = at_;
       const bool followed = follow(slides, guards, first_event);
+      driven += body.motor * (at_.phi - from.phi);
       slipped += std::abs((at_.x - from.x) - R * (at_.phi - from.phi));
       if (!followed) return ended(Status::failed);
       if (happened == 3) return ended(Status::indeterminate);
@@ -120,7 +127,7 @@ Outcome Referee::solve_coulomb(const Design& design) {
     const Flown flown = fly(body, at_);
     if (flown.failed) return ended(Status::failed);
     const bool jumps = count_lift_off(flown);
-    if (jumps) outcome_.energy_lost = (released - energy(body, at_)) / (body.mass() * body.g * R);
+    if (jumps) outcome_.energy_lost = (released + driven - energy(body, at_)) / (body.mass() * body.g * R);
     Motion landed = flying(body, at_, flown.landing_time);
     landed.y = R;
     time_ += flown.landing_time;
@@ -129,7 +136,7 @@ Outcome Referee::solve_coulomb(const Design& design) {
       outcome_.landing_spin = at_.spin * second_;
       return ended(Status::jumped);
     }
-    if (!(at_.x < runway)) return ended(Status::no_jump);
+    if (!(std::abs(at_.x) < runway)) return ended(Status::no_jump);
     next = at_.y_rate > 0.0
                ? Next::flies
                : next_of(body, at_, mu_static, flown.landing_time > 0.0 ? Leaving::always : Leaving::never);

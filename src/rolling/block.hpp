@@ -42,10 +42,20 @@ struct Block {
   using S = ScalarOf<T>;
   static constexpr std::size_t most_designs = 1024;
 
+  /// The way of a design so far. Its first leg ends where it turns round, its second where it does again, its
+  /// third where it set out: that is all there is to see. On each leg it is seen from the side where it rolls
+  /// downhill (physics/parameters.hpp), so that angles grow and the spin is above zero.
   struct Found {
     S turned_back;              ///< whole turns removed from the release angle; added back on output
-    bool stalls;                ///< at the end of the search, rather than the runway's
-    S first_angle, jump_angle;  ///< of the lift-offs so far: the first one, the last one
+    S release, released;        ///< angle, as seen on the first leg, and vis viva of the release
+    S way;                      ///< 1, or -1 where the leg is uphill
+    int leg;                    ///< 1 to 3
+    bool turns;                 ///< the leg ends in a turn, rather than at the runway's end
+    S turn;                     ///< the angle of the leg's end, if it turns
+    S reach;                    ///< from the release to where it turned first
+    S first_angle, jump_angle;  ///< of the lift-offs so far: the first one, and the last one on this leg or NaN
+    bool first_on_leg;          ///< the first one is on this leg, or there is none yet
+    S first_time;               ///< else its time
   };
 
   std::vector<IntervalSearch<S>> searches = std::vector<IntervalSearch<S>>(most_designs);
@@ -56,7 +66,7 @@ struct Block {
     const Hoop<T>& h = roll.hoop;
     const Trig<T>& phi = roll.release_trig;
     paths_.template store<T>(
-        {h.sin_slope, h.cos_slope, h.rho, h.clearance, h.Ic, h.J_min, roll.level, h.slope}, index, count);
+        {h.sin_slope, h.cos_slope, h.rho, h.clearance, h.Ic, h.J_min, roll.level, h.thrust}, index, count);
     releases_.template store<T>({roll.release, phi.sin, phi.cos, phi.versine, roll.released, roll.push,
                                  quiet.vis_viva, quiet.distance},
                                 index, count);
@@ -65,10 +75,10 @@ struct Block {
   /// Hoop and level only, which all that depends on the angle alone is made of. U is T, or S for one design.
   template <class U>
   Roll<U> load_path(const std::uint32_t* index) const {
-    const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, level, slope] =
+    const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, level, thrust] =
         paths_.template load<U>(index);
     Roll<U> roll;
-    roll.hoop = {slope, sin_slope, cos_slope, rho, clearance, Ic, J_min};
+    roll.hoop = {sin_slope, cos_slope, rho, clearance, Ic, J_min, thrust - sin_slope, thrust};
     roll.level = level;
     return roll;
   }

@@ -16,17 +16,69 @@ void Clock<T>::start(const Block<T>& block, const DesignList& designs) {
     const Quiet<T> quiet = block.load_quiet(index.data());
     MaskOf<T> hard = roll.push != roll.push;
     const NodesNeeded<T> needed = time_.needed(roll, quiet, hard);
-    const T panel = time_.first_panel(roll),
-            time = time_.stretch(roll, quiet, needed, panel * T(pi_of<S>), hard);
+    const T panel = time_.first_panel(roll), span = panel * T(pi_of<S>) - roll.release,
+            time = time_.stretch(roll, quiet, needed, span, hard);
     const unsigned by_halving = Lanes<T>::bits(hard);
+    LaneArray<T> before{};
+    start_after_turns(block, index, count, roll, quiet, needed, span, before);
     const auto panels = lanes_of(panel), times = lanes_of(time), panel_nodes = lanes_of(needed.panel),
                rest_nodes = lanes_of(needed.rest);
     for (std::size_t i = 0; i < count; ++i)
       dials_[index[i]] = {.panel = static_cast<long>(panels[i]),
                           .time = times[i],
+                          .before = before[i],
                           .panel_nodes = by_halving >> i & 1u ? 0 : static_cast<int>(panel_nodes[i]),
                           .rest_nodes = static_cast<int>(rest_nodes[i])};
   }
+}
+
+/// Fills in how long the legs before took, of those that have turned once, where that is not long.
+template <class T>
+void Clock<T>::start_after_turns(const Block<T>& block, const DesignLanes<T>& index, std::size_t count,
+                                 const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
+                                 const T& span, LaneArray<T>& before) {
+  LaneArray<T> reaches;
+  bool turned = false;
+  for (std::size_t i = 0; i < reaches.size(); ++i) {
+    const auto& found = block.found[index[i]];
+    reaches[i] = found.leg == 2 ? found.reach : S(1);
+    turned = turned || found.leg > 1;
+  }
+  if (!turned) return;
+  const T reach = Lanes<T>::load(reaches.data());
+  MaskOf<T> hard = !(reach <= span);
+  before = lanes_of(time_.stretch(roll, quiet, needed, smaller(reach, span), hard));
+  const unsigned by_halving = Lanes<T>::bits(hard);
+  for (std::size_t i = 0; i < count; ++i) {
+    const int leg = block.found[index[i]].leg;
+    if (leg == 1) before[i] = S(0);
+    if (leg == 3 || (leg == 2 && (by_halving >> i & 1u))) before[i] = before_leg(block, index[i]);
+  }
+}
+
+/// From the release to the beginning of the leg. Both halves of a leg that ends at rest are timed from its ends.
+template <class T>
+ScalarOf<T> Clock<T>::before_leg(const Block<T>& block, std::uint32_t design) const {
+  const auto& found = block.found[design];
+  if (found.leg == 1) return S(0);
+  const Roll<S> now = block.template load_roll<S>(&design);
+  // As seen on the second leg.
+  const Hoop<S> hoop = found.leg == 2 ? now.hoop : seen(now.hoop, S(-1));
+  const Roll<S> first_turn = begin_roll(hoop, -(found.release + found.reach), S(0));
+  Roll<S> release = begin_roll(seen(hoop, S(-1)), found.release, S(0));
+  release.released = found.released;
+  const S half = S(0.5) * found.reach;
+  S time = time_.halving_past(release, half) + time_.halving_past(first_turn, half);
+  if (found.leg == 3) {
+    const S half_way = S(0.5) * (-now.release - first_turn.release);
+    time += time_.halving_past(first_turn, half_way) + time_.halving_past(now, half_way);
+  }
+  return time;
+}
+
+template <class T>
+ScalarOf<T> Clock<T>::time(const Block<T>& block, std::uint32_t design, const S& angle) const {
+  return before_leg(block, design) + halve(block, design, angle);
 }
 
 template <class T>
@@ -35,7 +87,7 @@ void Clock<T>::read(const Block<T>& block, std::vector<Reading<S>>& readings) {
   for (Reading<S>& reading : readings) {
     const Dial& dial = dials_[reading.design];
     if (dial.panel_nodes == 0) {
-      reading.time = halve(time_, block, reading);
+      reading.time = dial.before + halve(block, reading.design, reading.angle);
       continue;
     }
     const long part = static_cast<long>(std::floor(reading.angle * (S(parts_a_panel) / pi_of<S>)));
@@ -99,13 +151,14 @@ void Clock<T>::read_early(const Block<T>& block) {
     MaskOf<T> hard = lanes.to != lanes.to;
     const NodesNeeded<T> needed = time_.needed(roll, quiet, hard);
     const bool with_rest = all(edge > roll.release + T(0.4));
-    T taken = time_.stretch(roll, quiet, needed, with_rest ? edge : lanes.to, hard);
+    T taken = time_.stretch(roll, quiet, needed, (with_rest ? edge : lanes.to) - roll.release, hard);
     if (with_rest) taken = taken + time_.rest(roll, lanes_of(edge)[0], lanes.to - edge, rest_nodes);
     const auto times = lanes_of(taken);
     const unsigned by_halving = Lanes<T>::bits(hard);
     for (std::size_t i = 0; i < count; ++i) {
       Reading<S>& reading = *early_[first + i].reading;
-      reading.time = by_halving >> i & 1u ? halve(time_, block, reading) : times[i];
+      reading.time = dials_[reading.design].before +
+                     (by_halving >> i & 1u ? halve(block, reading.design, reading.angle) : times[i]);
     }
   }
 }
@@ -140,7 +193,8 @@ void Clock<T>::read_due(const Block<T>& block) {
       taken = taken + time_.panel(roll, end, parts, panel_nodes);
     const S edge = S(part) * (pi_of<S> / S(parts_a_panel));
     times = lanes_of(taken + time_.rest(roll, edge, lanes.to - T(edge), rest_nodes));
-    for (std::size_t i = 0; i < count; ++i) due_[first + i].reading->time = times[i];
+    for (std::size_t i = 0; i < count; ++i)
+      due_[first + i].reading->time = dials_[lanes.designs[i]].before + times[i];
   }
 }
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Times from the release to angles, of all designs of a block in lanes.
+///
+/// A hoop that turned round rolls back from rest: the time up to the turn is what it takes from there back to
+/// the release.
 #pragma once
 
 #include <vector>
@@ -26,11 +29,14 @@ class Clock {
   /// Times will be good to the tolerance, relative, or to some roundings.
   explicit Clock(double tolerance) : time_(tolerance), dials_(Block<T>::most_designs) {}
 
-  /// At the release of each design.
+  /// Where the leg of each design begins.
   void start(const Block<T>& block, const DesignList& designs);
 
   /// Fills in the times. From one call to the next a design's angle must not fall.
   void read(const Block<T>& block, std::vector<Reading<S>>& readings);
+
+  /// The same for one design at an angle of its leg, without start.
+  S time(const Block<T>& block, std::uint32_t design, const S& angle) const;
 
  private:
   /// How far a design has been timed: to the angle `panel` pi. `panel_nodes`, `rest_nodes`: that its panels
@@ -38,6 +44,7 @@ class Clock {
   struct Dial {
     long panel;
     S time;
+    S before;  ///< from the release to the beginning of the leg
     int panel_nodes, rest_nodes;
   };
   struct Part {
@@ -51,9 +58,13 @@ class Clock {
     T to;
   };
 
-  static S halve(const RollingTime<T>& time, const Block<T>& block, const Reading<S>& reading) {
-    return time.halving(block.template load_roll<S>(&reading.design), reading.angle);
+  S halve(const Block<T>& block, std::uint32_t design, const S& angle) const {
+    return time_.halving(block.template load_roll<S>(&design), angle);
   }
+  void start_after_turns(const Block<T>& block, const DesignLanes<T>& index, std::size_t count,
+                         const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
+                         const T& span, LaneArray<T>& before);
+  S before_leg(const Block<T>& block, std::uint32_t design) const;
   static Together together(const std::vector<Part>& parts, std::size_t first);
   void sort(std::vector<Part>& parts);
   void read_early(const Block<T>& block);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "rolling/leg.hpp"
 #include "rolling/prepare.hpp"
 #include "trajectory/units.hpp"
 
@@ -12,9 +14,9 @@ namespace {
 
 /// A time that the quadrature could not tell makes the design failed: no field of it is to be believed.
 template <class S>
-void note_time(Outcome& outcome, double Outcome::*time, const Reading<S>& reading) {
-  if (std::isfinite(reading.time)) {
-    outcome.*time = static_cast<double>(reading.time);
+void note_time(Outcome& outcome, double Outcome::*time, const S& told) {
+  if (std::isfinite(told)) {
+    outcome.*time = static_cast<double>(told);
   } else {
     outcome = failed_outcome("a time could not be told: too near a stall");
   }
@@ -24,8 +26,8 @@ void note_time(Outcome& outcome, double Outcome::*time, const Reading<S>& readin
 
 template <class T>
 void ExactSolver<T>::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
-                           std::vector<LiftOff<double>>* lift_offs) {
-  take_off_.told = lift_offs;
+                           Told* told) {
+  take_off_.told = told;
   for (std::size_t first = 0; first < designs.size(); first += Block<T>::most_designs) {
     const std::size_t count = std::min(Block<T>::most_designs, designs.size() - first);
     solve_block(designs.subspan(first, count), scene, outcomes.subspan(first, count));
@@ -42,6 +44,7 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
     pick_intervals(outcomes);
     classify_.run(block_, take_off_.falls, going_on_);
     take_off_.run(block_, designs, scene, outcomes, going_on_);
+    turn_round(block_, turning_, scene);
     std::swap(block_.searching, going_on_);
   }
   lifted_.clear(), jumped_.clear();
@@ -59,7 +62,7 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
 /// over.
 template <class T>
 void ExactSolver<T>::pick_intervals(std::span<Outcome> outcomes) {
-  unscanned_.clear(), going_on_.clear(), classify_.intervals.clear(), take_off_.falls.clear();
+  unscanned_.clear(), going_on_.clear(), turning_.clear(), classify_.intervals.clear(), take_off_.falls.clear();
   for (const std::uint32_t design : block_.searching) {
     IntervalSearch<ScalarOf<T>>& search = block_.searches[design];
     Interval<ScalarOf<T>> interval;
@@ -69,38 +72,62 @@ void ExactSolver<T>::pick_intervals(std::span<Outcome> outcomes) {
       unscanned_.push_back(design);
       going_on_.push_back(design);
     } else {
-      outcomes[design].status = block_.found[design].stalls ? Status::stalled : Status::no_jump;
+      end_leg(design, outcomes[design]);
     }
   }
 }
 
-/// The times of first lift-offs and jumps. A jump that is the first lift-off is timed with those.
+/// At the end of a leg the design turns round, or its way is over.
+template <class T>
+void ExactSolver<T>::end_leg(std::uint32_t design, Outcome& outcome) {
+  auto& found = block_.found[design];
+  // From rest the second turn is at the release.
+  const bool over = found.leg == 3 || (found.leg == 2 && found.released == ScalarOf<T>(0));
+  if (over || !found.turns) {
+    outcome.status = over && (found.turns || found.leg == 3) ? Status::stalled : Status::no_jump;
+    return;
+  }
+  if (outcome.candidates > 0 && found.first_on_leg) {
+    if (wanted_.first_jump_time) found.first_time = clock_.time(block_, design, found.first_angle);
+    found.first_on_leg = false;
+  }
+  if (take_off_.told) take_off_.told->turns.push_back(static_cast<double>(found.way * found.turn + found.turned_back));
+  found.jump_angle = std::numeric_limits<ScalarOf<T>>::quiet_NaN();
+  turning_.push_back(design), unscanned_.push_back(design), going_on_.push_back(design);
+}
+
+/// The times of first lift-offs and jumps. A jump that is the first lift-off is timed with those; a first
+/// lift-off on a leg before the last was timed when the hoop turned round.
 template <class T>
 void ExactSolver<T>::take_times(std::span<Outcome> outcomes) {
   clock_.start(block_, lifted_);
   const auto& found = block_.found;
-  const auto is_first = [&](std::uint32_t design) {
-    return !(found[design].jump_angle > found[design].first_angle);
+  const auto jumps_first = [&](std::uint32_t design) {
+    return outcomes[design].status == Status::jumped && outcomes[design].candidates == 1;
   };
   readings_.clear();
-  for (const std::uint32_t design : lifted_)
-    if (wanted_.first_jump_time || (outcomes[design].status == Status::jumped && is_first(design)))
+  for (const std::uint32_t design : lifted_) {
+    if (!wanted_.first_jump_time && !jumps_first(design)) continue;
+    if (found[design].first_on_leg)
       readings_.push_back({design, found[design].first_angle, 0});
+    else
+      note_time(outcomes[design], &Outcome::first_jump_time, found[design].first_time);
+  }
   clock_.read(block_, readings_);
   for (const auto& reading : readings_)
-    note_time(outcomes[reading.design], &Outcome::first_jump_time, reading);
+    note_time(outcomes[reading.design], &Outcome::first_jump_time, reading.time);
 
   readings_.clear();
   for (const std::uint32_t design : jumped_) {
     if (outcomes[design].status == Status::failed) continue;
-    if (is_first(design)) {
+    if (jumps_first(design)) {
       outcomes[design].jump_time = outcomes[design].first_jump_time;
     } else if (wanted_.jump_time) {
       readings_.push_back({design, found[design].jump_angle, 0});
     }
   }
   clock_.read(block_, readings_);
-  for (const auto& reading : readings_) note_time(outcomes[reading.design], &Outcome::jump_time, reading);
+  for (const auto& reading : readings_) note_time(outcomes[reading.design], &Outcome::jump_time, reading.time);
 }
 
 #ifdef LEAPMAP_KERNELS

@@ -14,7 +14,7 @@ namespace leapmap {
 
 /// Solves designs a block at a time, in stages on full lanes: prepare all designs; scan them for intervals
 /// that may hold a lift-off; classify, take off from and fly the next one of each design still searching,
-/// until it jumps or its runway ends; land, and clock the times that are asked for.
+/// until it jumps, its runway ends, or it has turned round twice and repeats itself; land, and clock the times that are asked for.
 ///
 /// On any scalar: double; Batch, as many designs at once as the machine has lanes; long double, the tests'
 /// reference. A thread's own workspace. An outcome depends on the design and the scene; its times also,
@@ -25,14 +25,15 @@ class ExactSolver {
   /// tolerance: relative, of times; angles, spins and heights are good to rounding.
   explicit ExactSolver(double tolerance, const Wanted& wanted = {}) : wanted_(wanted), clock_(tolerance) {}
 
-  /// Solves designs[i] into outcomes[i]. lift_offs, if given, is told angle and spin of every candidate,
-  /// those of one design in order; their times are NaN.
+  /// Solves designs[i] into outcomes[i]. told, if given, is told the way of the last one: of one design at a
+  /// time.
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
-             std::vector<LiftOff<double>>* lift_offs = nullptr);
+             Told* told = nullptr);
 
  private:
   void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   void pick_intervals(std::span<Outcome> outcomes);
+  void end_leg(std::uint32_t design, Outcome& outcome);
   void take_times(std::span<Outcome> outcomes);
 
   Wanted wanted_;
@@ -41,7 +42,7 @@ class ExactSolver {
   Classify<T> classify_;
   TakeOff<T> take_off_;
   Clock<T> clock_;
-  DesignList unscanned_, going_on_, lifted_, jumped_;
+  DesignList unscanned_, going_on_, turning_, lifted_, jumped_;
   std::vector<Reading<ScalarOf<T>>> readings_;
 };
 

@@ -11,17 +11,44 @@
 namespace leapmap::rolling {
 namespace {
 
+/// From one end of a leg to the other, as seen on it (physics/parameters.hpp).
+struct Leg {
+  double way;
+  Roll<double> roll;
+  double begin;  ///< its time [sqrt(R/g)]
+};
+
+/// Both halves of a leg that ends at rest are timed from its ends.
+std::vector<Leg> legs_of(const Design& design, const Hoop<double>& hoop, const std::vector<double>& turns,
+                         const RollingTime<double>& time) {
+  double way = way_of(hoop, design.release_angle, design.release_spin);
+  std::vector<Leg> legs{
+      {way, begin_roll(seen(hoop, way), way * design.release_angle, way * design.release_spin), 0.0}};
+  for (const double turn : turns) {
+    const Leg last = legs.back();
+    way = -way;
+    const Roll<double> next = begin_roll(seen(hoop, way), way * turn, 0.0);
+    const double half = 0.5 * (-next.release - last.roll.release);
+    legs.push_back(
+        {way, next, last.begin + time.halving_past(last.roll, half) + time.halving_past(next, half)});
+  }
+  return legs;
+}
+
 /// Every lift-off, timed from one to the next. The jump and the first are the outcome's to the last digit.
-std::vector<Candidate> candidates_of(const Roll<double>& released, std::vector<LiftOff<double>> lift_offs,
-                                     const Outcome& outcome, const Scene& scene, double tolerance) {
+std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, Told told, const Outcome& outcome,
+                                     const Scene& scene, const RollingTime<double>& time) {
   std::vector<Candidate> candidates;
-  const RollingTime<double> time(tolerance);
-  Roll<double> roll = released;
+  std::size_t on = legs.size();
+  Roll<double> roll;
   double passed = 0.0;
-  for (LiftOff<double>& lift_off : lift_offs) {
-    lift_off.time = passed += time.halving(roll, lift_off.angle);
-    roll = begin_roll(released.hoop, lift_off.angle, lift_off.spin);
-    candidates.push_back(in_si(lift_off, fly(released.hoop, lift_off), scene));
+  for (std::size_t i = 0; i < told.lift_offs.size(); ++i) {
+    LiftOff<double>& lift_off = told.lift_offs[i];
+    const Leg& leg = legs[told.legs[i]];
+    if (on != told.legs[i]) roll = leg.roll, passed = leg.begin, on = told.legs[i];
+    lift_off.time = passed += time.halving(roll, leg.way * lift_off.angle);
+    roll = begin_roll(leg.roll.hoop, leg.way * lift_off.angle, leg.way * lift_off.spin);
+    candidates.push_back(in_si(lift_off, fly(leg.roll.hoop, lift_off), scene));
   }
   if (!candidates.empty()) {
     candidates.front().t = outcome.first_jump_time;
@@ -35,21 +62,30 @@ std::vector<Candidate> candidates_of(const Roll<double>& released, std::vector<L
   return candidates;
 }
 
+/// Where a way ends that has turned so often.
+double end_of(const Outcome& outcome, const Design& design, const Scene& scene, double way) {
+  if (outcome.status == Status::jumped) return outcome.jump_angle;
+  if (outcome.status == Status::stalled) return design.release_angle;
+  return design.release_angle + way * 2.0 * std::numbers::pi * scene.runway;
+}
+
 }  // namespace
 
 Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval) {
   Motion motion;
-  std::vector<LiftOff<double>> lift_offs;
-  ExactSolver<Batch>(tolerance).solve({&design, 1}, scene, {&motion.outcome, 1}, &lift_offs);
+  Told told;
+  ExactSolver<Batch>(tolerance).solve({&design, 1}, scene, {&motion.outcome, 1}, &told);
   const Outcome& outcome = motion.outcome;
   const Hoop<double> hoop = derive<double>(design);
-  const Roll<double> released = begin_roll(hoop, design.release_angle, design.release_spin);
-  motion.candidates = candidates_of(released, std::move(lift_offs), outcome, scene, tolerance);
+  if (way_of(hoop, design.release_angle, design.release_spin) == 0.0 ||
+      outcome.status == Status::airborne_at_release || outcome.status == Status::failed)
+    return motion;
+  const std::vector<double> turns = told.turns;
+  const RollingTime<double> time(tolerance);
+  const std::vector<Leg> legs = legs_of(design, hoop, turns, time);
+  motion.candidates = candidates_of(legs, std::move(told), outcome, scene, time);
 
   const ContactState<double> release{.angle = design.release_angle, .spin = design.release_spin};
-  if (!sets_out(hoop, design.release_angle, design.release_spin) ||
-      outcome.status == Status::airborne_at_release)
-    return motion;
   motion.phases.push_back(in_si(Phase::rolling, release, 0, scene));
   const double second = time_unit(scene);
   const bool jumps = outcome.status == Status::jumped;
@@ -63,13 +99,15 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
   }
   if (!(interval > 0.0)) return motion;
 
-  double end = jumps ? outcome.jump_angle : design.release_angle + 2.0 * std::numbers::pi * scene.runway;
-  if (outcome.status == Status::stalled) {
-    const FirstMinimum<double> least = first_minimum(released);
-    end = short_of_stall(design.release_angle, stall_angle(released, least.angle, least.crest));
-  }
   RollingMotion sampled(hoop, interval / second, motion.points);
-  sampled.roll(release, end);
+  ContactState<double> from = release;
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    sampled.roll(from, turns[k], true);
+    from = {.time = sampled.end(), .travel = turns[k] - design.release_angle, .angle = turns[k]};
+  }
+  // From rest the second turn is at the release.
+  const bool ends_at_rest = outcome.status == Status::stalled && design.release_spin == 0.0;
+  sampled.roll(from, end_of(outcome, design, scene, legs.back().way), ends_at_rest);
   if (jumps) {
     motion.points.push_back(rolling_point(hoop, lift_off));
     sampled.fly(lift_off, outcome.flight_time / second);

@@ -66,8 +66,9 @@ void HalvedTime<S>::halve(const F& f, const S& a, const S& b, const S& whole, in
 template <class S>
 S HalvedTime<S>::edge_after(const S& x, const S& end) const {
   const S eighth = std::numbers::pi_v<S> / S(4), turn = S(2) * std::numbers::pi_v<S>;
-  const S minimum = std::numbers::pi_v<S> - std::asin(std::min(S(1), roll_.hoop.sin_slope / roll_.hoop.rho)) -
-                    roll_.hoop.slope;
+  const S minimum = std::numbers::pi_v<S> -
+                    std::asin(std::clamp(roll_.hoop.thrust / roll_.hoop.rho, S(-1), S(1))) -
+                    slope_of(roll_.hoop);
   const auto next = [&](const S& first, const S& step) {
     const S after = first + step * (std::floor((release_ + x - first) / step) + S(1)) - release_;
     return after > x + S(1e-9L) ? after : after + step;
@@ -76,8 +77,8 @@ S HalvedTime<S>::edge_after(const S& x, const S& end) const {
 }
 
 template <class S>
-S HalvedTime<S>::until(const S& angle) {
-  const S end = angle - roll_.release, near(1);
+S HalvedTime<S>::until(const S& end) {
+  const S near(1);
   const auto stretched = [this](const S& past) { return stretched_slowness(past); };
   const auto plain = [this](const S& x) { return slowness_past(x); };
   const auto past = [&](const S& x) { return x > S(0) ? x / (q0_ + std::sqrt(q0_ * q0_ + x)) : S(0); };

@@ -45,9 +45,9 @@ class HalvedTime {
   /// The rule is applied to each half.
   HalvedTime(const Roll<S>& roll, const S& tolerance, const GaussRule<S>& rule);
 
-  /// From the release to an angle. NaN where it cannot be told: so near a stall that E is lost in its
+  /// From the release over an angle. NaN where it cannot be told: so near a stall that E is lost in its
   /// roundings. To be called once.
-  S until(const S& angle);
+  S until(const S& end);
 
  private:
   S slowness_past(const S& x);

@@ -44,7 +44,7 @@ Motion tell_by_integration(const Design& design, const Scene& scene, const Integ
   }
   motion.outcome = RollingIntegration(options).solve(design, scene, observer);
   if (motion.outcome.status == Status::airborne_at_release ||
-      !sets_out(hoop, design.release_angle, design.release_spin))
+      way_of(hoop, design.release_angle, design.release_spin) == 0.0)
     return motion;
   motion.phases.push_back(
       in_si(Phase::rolling, rolled(0.0, {design.release_angle, design.release_spin}), 0, scene));

@@ -36,14 +36,16 @@ struct IntervalSearch {
   S first_turn;                     ///< revolution that the scan began with
   std::uint32_t node_past_release;  ///< the first one of the first scan; 0 in later scans
   bool released_on_node;            ///< on that one, but for rounding
+  bool released_above;              ///< whether G > 0 at the release
   bool last_above;                  ///< whether G > 0 at the last node of the scan
   ScanFlags flags;
   int turn, node, halvings;
   std::uint64_t part;
 
-  /// Begins at the release, `from`, to end at `to`. past: the scan's first node past the release; on_node:
-  /// whether that is the same place.
-  void begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past, bool on_node);
+  /// Begins at the release, or where the hoop turned round, `from`, to end at `to`. past: the scan's first node
+  /// past the release; on_node: whether that is the same place; above: whether G > 0 there.
+  void begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past, bool on_node,
+             bool above);
 
   /// Takes over what a scan of `turns` revolutions found in a lane.
   void take(const ScanFlags& scanned, const NodeSigns& signs, std::size_t lane, int turns);
@@ -74,11 +76,12 @@ inline constexpr auto part_lengths = [] {
 
 template <class S>
 void IntervalSearch<S>::begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past,
-                              bool on_node) {
+                              bool on_node, bool above) {
   release = from, end = to;
   first_turn = turn_of_release;
   node_past_release = past;
   released_on_node = on_node;
+  released_above = above;
   turn = node = halvings = 0, part = 0;
 }
 
@@ -88,9 +91,9 @@ void IntervalSearch<S>::take(const ScanFlags& scanned, const NodeSigns& signs, s
   hand_on_signs(signs, lane, turns);
 }
 
-/// At the release the hoop is on the plane, or it would not have set out; at a scan's first node G has the
-/// sign that the scan before found there. Where this scan's sign differs by rounding, the interval from there
-/// on is looked at.
+/// At the release G has the sign that was told, and at a scan's first node the sign that the scan before found
+/// there. Where this scan's sign differs, by rounding or because G has a root before the release, the interval
+/// from there on is looked at.
 template <class S>
 void IntervalSearch<S>::hand_on_signs(const NodeSigns& signs, std::size_t lane, int turns) {
   constexpr auto nodes = static_cast<std::size_t>(nodes_a_turn);
@@ -114,12 +117,12 @@ void IntervalSearch<S>::hand_on_signs(const NodeSigns& signs, std::size_t lane, 
   if (k == 0) {
     if (first_above != above_at(0)) look_at(0, first_above);
   } else if (!released_on_node) {
-    if (!above_at(k)) look_at(k - 1, above_at(k - 1));
+    if (above_at(k) != released_above || above_at(k - 1) != released_above) look_at(k - 1, above_at(k - 1));
   } else if (k == scanned) {
-    last_above = true;
+    last_above = released_above;
   } else {
     flags.looks[(k - 1) / nodes] &= ~(std::uint64_t{1} << (k - 1) % nodes);
-    if (!above_at(k)) look_at(k, true);
+    if (above_at(k) != released_above) look_at(k, released_above);
   }
 }
 
@@ -152,7 +155,7 @@ bool IntervalSearch<S>::next(std::uint32_t design, Interval<S>& interval) {
       interval = {design, revolution, from, to, (from + to) * S(0.5), falls, Side::asked, Side::asked};
       if (falls) return true;
       if (from == release) {
-        interval.from_side = Side::above;
+        interval.from_side = side(released_above);
       } else if (from == left_node) {
         interval.from_side = side(flagged(flags.above_left) || flagged(flags.falls));
       }

@@ -61,18 +61,19 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
   using S = ScalarOf<T>;
   const Hoop<T>& h = roll.hoop;
   const S two_pi = S(2) * std::numbers::pi_v<S>, step = two_pi / S(nodes_a_turn);
-  const T gain = T(S(2) * two_pi) * h.sin_slope;  // of E, a revolution
+  const T gain = T(S(2) * two_pi) * h.thrust;  // of E, a revolution
 
   // G at the nodes of the first revolution, and what each further one adds.
   std::array<T, nodes_a_turn + 1> first, more;
   const T level = roll.level + gain * first_turn;
   const T pull = h.rho * h.sin_slope, rho2 = h.rho * h.rho, rho_J = h.rho * h.J_min;
-  const T swing = T(S(2)) * h.rho * h.cos_slope, sway = T(S(2)) * pull, climb = T(S(2) * step) * h.sin_slope;
+  const T swing = T(S(2)) * h.rho * h.cos_slope, sway = T(S(2)) * pull, climb = T(S(2) * step) * h.thrust,
+          drive = h.rho * h.drive;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const Trig<S>& phi = nodes[k];
     const std::size_t mirrored = nodes_a_turn - k;
     const T q = h.clearance + h.rho * T(phi.versine), J = h.J_min + T(S(2)) * h.rho * T(phi.versine);
-    const T even = h.cos_slope * (h.Ic + q * q) * J, odd = pull * q * J * T(phi.sin);
+    const T even = h.cos_slope * (h.Ic + q * q) * J, odd = (pull * q + drive) * J * T(phi.sin);
     const T rho_K = rho_J * T(phi.cos) - rho2 * T(phi.versine * phi.versine);
     const T E = level + swing * T(phi.cos), E_odd = sway * T(phi.sin);
     first[k] = even + odd + rho_K * (E - E_odd + climb * T(S(k)));

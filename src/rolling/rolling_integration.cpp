@@ -90,15 +90,17 @@ bool Integration<Model>::advance() {
   return true;
 }
 
-/// How long after the start of the step the hoop, rolling forwards, comes to an angle.
+/// How long after the start of the step the hoop, which does not turn round between two moments, comes to an
+/// angle.
 template <class Model>
-double Integration<Model>::time_at(double angle, double latest) {
+double Integration<Model>::time_at(double angle, double earliest, double latest) {
   const auto angle_at = [&](double tau) {
     State<D> y;
     return retake(tau, y) ? Sample<double>{system_.model.angle(y) - angle, system_.model.spin(y)}
                           : Sample<double>{NAN, 0.0};
   };
-  return polish_root(angle_at, 0.0, latest, 0.5 * latest, true, 1e-15 * latest);
+  const bool forwards = angle_at(latest).value > 0.0;
+  return polish_root(angle_at, earliest, latest, 0.5 * (earliest + latest), forwards, 1e-15 * latest);
 }
 
 template <class Model>
@@ -114,20 +116,20 @@ template <class Model>
 void Integration<Model>::tell_grazes(const Rolling& rolling, double end) {
   if (!rolling.observer.graze) return;
   for (const NearMiss& miss : lift_offs_.near_misses)
-    if (State<D> y; miss.tau <= end && retake(miss.tau, y) && system_.model.angle(y) <= rolling.runway_end)
+    if (State<D> y; miss.tau <= end && retake(miss.tau, y))
       rolling.observer.graze(
           {integrator_.step().t0 + miss.tau, system_.model.angle(y), miss.value, miss.minimum});
 }
 
-/// Takes the step's lift-offs up to a stall. True: the outcome is settled.
+/// Takes the step's lift-offs up to the end of the way. True: the outcome is settled.
 template <class Model>
-bool Integration<Model>::take_lift_offs(Rolling& rolling, double stall) {
+bool Integration<Model>::take_lift_offs(Rolling& rolling, double end) {
   const Model& model = system_.model;
   for (const Fall<D>& fall : lift_offs_.falls) {
     const LiftOff<double> lift_off{integrator_.step().t0 + fall.tau, model.angle(fall.state),
                                    model.spin(fall.state)};
-    if (fall.tau > stall || lift_off.angle > rolling.runway_end) break;
-    if (!is_believable(fall.state, rolling.energy) || lift_off.spin < 0.0) {
+    if (fall.tau > end) break;
+    if (!is_believable(fall.state, rolling.energy)) {
       rolling.outcome = failed_outcome(energy_lost);
       return true;
     }
@@ -145,41 +147,79 @@ bool Integration<Model>::take_lift_offs(Rolling& rolling, double stall) {
   return false;
 }
 
-/// Looks at the step just taken: a lift-off is where the normal force falls through zero, a stall where the
-/// spin does. True: the outcome is settled.
+/// When in the step the way ends: at the end of the runway, or where a hoop that has turned round twice comes
+/// to where it set out; infinity: later. Counts the turns until then.
+template <class Model>
+double Integration<Model>::end_of_way(Rolling& rolling) {
+  const Model& model = system_.model;
+  const Step<D>& step = integrator_.step();
+  const double release = rolling.design.release_angle;
+  double from = 0.0, travelled = model.angle(step.y0) - release;
+  const auto part = [&](double to, double turned_to) {
+    if (rolling.turns >= 2 && (travelled > 0.0) != (turned_to > 0.0)) {
+      rolling.outcome.status = Status::stalled;
+      return time_at(release, from, to);
+    }
+    if (std::abs(turned_to) >= rolling.runway) {
+      rolling.outcome.status = Status::no_jump;
+      return time_at(release + std::copysign(rolling.runway, turned_to), from, to);
+    }
+    from = to, travelled = turned_to;
+    return HUGE_VAL;
+  };
+  for (const Fall<D>& turn : turns_.falls) {
+    if (const double end = part(turn.tau, model.angle(turn.state) - release); end < HUGE_VAL) return end;
+    ++rolling.turns;
+    // From rest the second turn is at the release.
+    if (rolling.turns == 2 && rolling.design.release_spin == 0.0) {
+      rolling.outcome.status = Status::stalled;
+      return turn.tau;
+    }
+  }
+  return part(step.h, model.angle(step.y1) - release);
+}
+
+/// Looks at the step just taken: a lift-off is where the normal force falls through zero, a turn where the
+/// spin comes to zero. True: the outcome is settled.
 template <class Model>
 bool Integration<Model>::settle(Rolling& rolling) {
   const Model& model = system_.model;
   const Step<D>& step = integrator_.step();
-  const double turned_to = model.angle(step.y1);
   // A look every 22.5 degrees: the normal force swings once or twice a revolution.
-  const int looks =
-      1 + static_cast<int>(std::min(std::abs(turned_to - model.angle(step.y0)) * (16.0 / two_pi), 1000.0));
+  const double turned = std::abs(model.angle(step.y1) - model.angle(step.y0));
+  const int looks = 1 + static_cast<int>(std::min(turned * (16.0 / two_pi), 1000.0));
   const auto state_at = [&](double tau, State<D>& y) { return retake(tau, y); };
   rolling.force = find_falls(
       step, looks, rolling.force, [&](const State<D>& y) { return normal_force_at(y); }, state_at,
       lift_offs_);
-  rolling.spin = find_falls(
-      step, looks, rolling.spin, [&](const State<D>& y) { return spin_at(y); }, state_at, stalls_);
-  if (lift_offs_.failed || stalls_.failed) {
+  // The spin falls to zero on the way down, and rises to it on the way up. A step with both is too long.
+  const double way = rolling.spin.value > 0.0 || (rolling.spin.value == 0.0 && rolling.spin.rate > 0.0) ? 1.0 : -1.0;
+  const Sample<double> begin{way * rolling.spin.value, way * rolling.spin.rate};
+  const Sample<double> spin = find_falls(
+      step, looks, begin,
+      [&](const State<D>& y) {
+        const Sample<double> at = spin_at(y);
+        return Sample<double>{way * at.value, way * at.rate};
+      },
+      state_at, turns_);
+  rolling.spin = {way * spin.value, way * spin.rate};
+  const bool turned_twice = !turns_.falls.empty() && !has_fallen(spin);
+  if (lift_offs_.failed || turns_.failed || turned_twice || turns_.falls.size() > 1) {
     rolling.outcome = failed_outcome(no_event);
     return true;
   }
-  const bool stalls = !stalls_.falls.empty();
-  const double stall = stalls ? stalls_.falls.front().tau : step.h;
-  const double stall_angle = stalls ? model.angle(stalls_.falls.front().state) : turned_to;
-  if (take_lift_offs(rolling, stall)) return true;
+  const double end = end_of_way(rolling);
+  const Status ended_as = rolling.outcome.status;
+  rolling.outcome.status = Status::not_computed;
+  if (take_lift_offs(rolling, end)) return true;
   if (!is_believable(step.y1, rolling.energy)) {
     rolling.outcome = failed_outcome(energy_lost);
     return true;
   }
-  tell_grazes(rolling, stall);
-  const bool runs_out = stall_angle >= rolling.runway_end;
-  if (rolling.observer.step)
-    rolling.observer.step(integrator_,
-                          stall_angle > rolling.runway_end ? time_at(rolling.runway_end, stall) : stall);
-  if (runs_out || stalls) rolling.outcome.status = runs_out ? Status::no_jump : Status::stalled;
-  return runs_out || stalls;
+  tell_grazes(rolling, end);
+  if (rolling.observer.step) rolling.observer.step(integrator_, std::min(end, step.h));
+  rolling.outcome.status = ended_as;
+  return ended_as != Status::not_computed;
 }
 
 /// The outcome with its times in sqrt(R/g).
@@ -191,19 +231,18 @@ Outcome Integration<Model>::roll(const Design& design, const Scene& scene, const
                   scene,
                   observer,
                   rolling_energy(system_.model.hoop, design.release_angle, design.release_spin),
-                  design.release_angle + two_pi * scene.runway,
+                  two_pi * scene.runway,
                   normal_force_at(release),
-                  spin_at(release),
-                  {}};
+                  spin_at(release)};
   if (rolling.force.value <= 0.0) {
     rolling.outcome.status = Status::airborne_at_release;
     return rolling.outcome;
   }
-  if (rolling.spin.value < 0.0 || (rolling.spin.value == 0.0 && rolling.spin.rate <= 0.0)) {
+  if (rolling.spin.value == 0.0 && rolling.spin.rate == 0.0) {
     rolling.outcome.status = Status::stalled;
     return rolling.outcome;
   }
-  if (!integrator_.start(release, 0.01 / (1.0 + rolling.spin.value))) return failed_outcome(no_step);
+  if (!integrator_.start(release, 0.01 / (1.0 + std::abs(rolling.spin.value)))) return failed_outcome(no_step);
   for (long taken = 0; taken < options_.max_steps; ++taken) {
     if (!advance()) return failed_outcome(no_step);
     if (settle(rolling)) return rolling.outcome;

@@ -37,7 +37,8 @@ class Integration {
   Integration(const Integration&) = delete;
   Integration& operator=(const Integration&) = delete;
 
-  /// Rolls the design until its jump, its stall or the end of the runway. Never throws for a bad design: what
+  /// Rolls the design until its jump or the end of the runway, or until it has turned round twice and comes to
+  /// where it set out. Never throws for a bad design: what
   /// the method cannot do has status failed.
   Outcome solve(const Design& design, const Scene& scene, const Observer& observer = {});
 
@@ -56,17 +57,19 @@ class Integration {
     const Design& design;
     const Scene& scene;
     const Observer& observer;
-    double energy, runway_end;
+    double energy, runway;       ///< runway: how far from the release, either way
     Sample<double> force, spin;  ///< at the end of the step before
-    Outcome outcome;
+    int turns = 0;
+    Outcome outcome{};
   };
 
   Outcome roll(const Design& design, const Scene& scene, const Observer& observer);
   bool settle(Rolling& rolling);
-  bool take_lift_offs(Rolling& rolling, double stall);
+  bool take_lift_offs(Rolling& rolling, double end);
+  double end_of_way(Rolling& rolling);
   void tell_grazes(const Rolling& rolling, double end);
   bool is_believable(const State<D>& y, double energy) const;
-  double time_at(double angle, double latest);
+  double time_at(double angle, double earliest, double latest);
   bool advance();
   bool retake(double tau, State<D>& y);
   Sample<double> normal_force_at(const State<D>& y);
@@ -75,7 +78,7 @@ class Integration {
   IntegrationOptions options_;
   System system_;
   GslIntegrator<D> integrator_;
-  Falls<D> lift_offs_, stalls_;
+  Falls<D> lift_offs_, turns_;
 };
 
 /// The least model that rolls, and what looks on.

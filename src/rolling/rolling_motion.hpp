@@ -15,8 +15,8 @@ class RollingMotion {
   RollingMotion(const Hoop<double>& hoop, double interval, std::vector<MotionPoint>& points)
       : hoop_(hoop), sampler_{interval, points} {}
 
-  /// Rolls without slip from a state to an angle ahead.
-  void roll(const ContactState<double>& from, double end);
+  /// Rolls without slip from a state to an angle ahead, uphill or downhill. to_rest: it turns round there.
+  void roll(const ContactState<double>& from, double end, bool to_rest);
   void fly(const ContactState<double>& from, double flight_time);
   /// point_at(t): the motion up to a time, however it goes on.
   template <class PointAt>
@@ -31,24 +31,23 @@ class RollingMotion {
  private:
   ContactState<double> rolled(const Roll<double>& roll, const ContactState<double>& from, double x,
                               double time) const;
+  void roll_on(const ContactState<double>& from, double length);
+  MotionPoint shown(ContactState<double> at) const;
+  void roll_to_rest(const ContactState<double>& from, double length);
   double rolled_within(const Roll<double>& roll, double duration, double least, double step,
                        double most) const;
 
   Hoop<double> hoop_;
+  double way_ = 1.0;  // the state is seen from the side where it rolls downhill
   TraceSampler sampler_;
   double end_ = 0.0;
   RollingTime<double> time_{motion_tolerance};
 };
 
-/// Whether a release turns downhill, or is from rest and will.
-inline bool sets_out(const Hoop<double>& hoop, double angle, double spin) {
-  return spin > 0.0 || (spin == 0.0 && torque(hoop, trig(angle)) > 0.0);
-}
-
-/// The angle at which a motion towards a stall is left: a hair before it, as it is approached for ever so
-/// slowly while its energy is lost in roundings.
-inline double short_of_stall(double release, double stall) {
-  return release + (stall - release) * (1.0 - 1e-9);
+/// 1 for a release that sets out downhill, -1 for uphill; 0: at rest, and nothing pulls.
+inline double way_of(const Hoop<double>& hoop, double angle, double spin) {
+  const double sets_out = spin != 0.0 ? spin : torque(hoop, trig(angle));
+  return sets_out > 0.0 ? 1.0 : sets_out < 0.0 ? -1.0 : 0.0;
 }
 
 }  // namespace leapmap

@@ -84,14 +84,13 @@ NodesNeeded<T> RollingTime<T>::needed(const Roll<T>& roll, const Quiet<T>& quiet
 
 template <class T>
 T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
-                          const T& end, MaskOf<T>& hard) {
+                          const T& span, MaskOf<T>& hard) {
   using std::floor, std::sqrt;
   const Hoop<T>& hoop = roll.hoop;
   const T rho2 = T(2) * hoop.rho;
   const auto [bend, discriminant, root, real, x1] = parabola_at_release(roll);
   hard = hard | !(roll.push > T(0)) | !(real | (-discriminant > T(4) * bend * bend));
 
-  const T span = end - roll.release;
   const T q0 = sqrt(-x1), q1 = sqrt(span - x1);
   const T reach = span / (q0 + q1), half = T(0.5) * reach;  // q1 - q0, which would cancel for a fast release
   // The other zero, x2 < x1 where bend > 0: the ellipse through it has the sum of distances to the panel's
@@ -173,7 +172,7 @@ T RollingTime<T>::panel(const Roll<T>& roll, long panel, int parts, int nodes) {
     }
   }
   const Hoop<T>& hoop = roll.hoop;
-  const T gain = T(2) * hoop.sin_slope, rho2 = T(2) * hoop.rho;
+  const T gain = T(2) * hoop.thrust, rho2 = T(2) * hoop.rho;
   const T swing = rho2 * hoop.cos_slope, sway = rho2 * hoop.sin_slope;
   const T level = roll.level + gain * T(pi_of<S> * S(panel - odd));
   T total(0);
@@ -196,7 +195,7 @@ T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int
   const Hoop<T>& hoop = roll.hoop;
   const Trig<S> phi = trig(angle);
   const Trig<T> from{T(phi.sin), T(phi.cos), T(phi.versine)};
-  const T gain = T(2) * hoop.sin_slope, rho2 = T(2) * hoop.rho;
+  const T gain = T(2) * hoop.thrust, rho2 = T(2) * hoop.rho;
   const T level = roll.level + gain * T(angle);
   const T swing = rho2 * cos_from_vertical(hoop, from), sway = rho2 * sin_from_vertical(hoop, from);
   const T J_mean = hoop.J_min + rho2, J_cos = rho2 * from.cos, J_sin = rho2 * from.sin;
@@ -212,10 +211,10 @@ T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int
 }
 
 template <class T>
-ScalarOf<T> RollingTime<T>::halving(const Roll<S>& roll, const S& to) const {
+ScalarOf<T> RollingTime<T>::halving_past(const Roll<S>& roll, const S& past) const {
   // The last resort of hard designs, so that a loose tolerance saves no nodes here: too few would miss a
   // spike.
-  return HalvedTime<S>(roll, std::min(tolerance_, S(1e-8L)), rules_[sizeof(S) > 8 ? 30 : 20]).until(to);
+  return HalvedTime<S>(roll, std::min(tolerance_, S(1e-8L)), rules_[sizeof(S) > 8 ? 30 : 20]).until(past);
 }
 
 template class RollingTime<double>;

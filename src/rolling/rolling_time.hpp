@@ -56,8 +56,8 @@ class RollingTime {
   /// `hard`; their time, here and in stretch, means nothing.
   NodesNeeded<T> needed(const Roll<T>& roll, const Quiet<T>& quiet, MaskOf<T>& hard) const;
 
-  /// The time from release to `end`, which is at most first_panel's edge.
-  T stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& end,
+  /// The time from release over an angle `span`, at most to first_panel's edge.
+  T stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& span,
             MaskOf<T>& hard);
 
   /// The time that half-turn `panel` takes, from panel pi on, or its first `parts` parts; all of n nodes.
@@ -71,7 +71,9 @@ class RollingTime {
 
   /// The time from release to an angle by halving intervals until they agree (halved_time.hpp): for any
   /// design. NaN where it cannot be told: so near a stall that E is lost in its roundings.
-  S halving(const Roll<S>& roll, const S& to) const;
+  S halving(const Roll<S>& roll, const S& to) const { return halving_past(roll, to - roll.release); }
+  /// The same over an angle past the release.
+  S halving_past(const Roll<S>& roll, const S& past) const;
 
  private:
   static constexpr int most_nodes = sizeof(S) > 8 ? 96 : 56;

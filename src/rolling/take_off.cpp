@@ -42,14 +42,18 @@ void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Sce
       }
       // Between two falls so near each other the normal force rises by less than rounding: they are one.
       constexpr S one_fall = S(1e-6);
-      const bool again = outcome.candidates > 0 &&
+      const bool again = outcome.candidates > 0 && !std::isnan(found.jump_angle) &&
                          angles[i] - found.jump_angle < one_fall * std::max(S(1), std::abs(angles[i]));
       if (!again) {
         if (outcome.candidates == 0) found.first_angle = angles[i];
         found.jump_angle = angles[i];
-        const LiftOff<double> lift_off{Outcome::none, static_cast<double>(angles[i] + found.turned_back),
-                                       static_cast<double>(spins[i])};
-        if (told) told->push_back(lift_off);
+        const LiftOff<double> lift_off{Outcome::none,
+                                       static_cast<double>(found.way * angles[i] + found.turned_back),
+                                       static_cast<double>(found.way * spins[i])};
+        if (told) {
+          told->lift_offs.push_back(lift_off);
+          told->legs.push_back(static_cast<std::size_t>(found.leg - 1));
+        }
         const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]),
                                     Outcome::none, Outcome::none};
         if (consider(outcome, scene, designs[design], lift_off, flight)) continue;

@@ -12,10 +12,18 @@
 
 namespace leapmap {
 
+/// What is told of a design's way: angle and spin of every lift-off, and where it turned round, in order;
+/// without times.
+struct Told {
+  std::vector<LiftOff<double>> lift_offs;
+  std::vector<std::size_t> legs;  ///< of each lift-off, from 0
+  std::vector<double> turns;
+};
+
 template <class T>
 struct TakeOff {
   std::vector<Interval<ScalarOf<T>>> falls;      ///< with one lift-off each, at most one a design
-  std::vector<LiftOff<double>>* told = nullptr;  ///< told every lift-off, if there; without times
+  Told* told = nullptr;                      ///< told every lift-off, if there
 
   /// Adds designs whose search goes on, because that was not the jump, to `going_on`.
   void run(Block<T>& block, std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,

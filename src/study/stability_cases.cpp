@@ -43,7 +43,7 @@ StabilityCase release(bool quick) {
     StabilitySubject subject{std::pow(10.0, -decade), {}, {}};
     const Hoop<long double> hoop = derive<long double>(subject.design);
     const long double equilibrium =
-        std::numbers::pi_v<long double> - hoop.slope - std::asin(hoop.sin_slope / hoop.rho);
+        std::numbers::pi_v<long double> - slope_of(hoop) - std::asin(hoop.sin_slope / hoop.rho);
     subject.design.release_angle = static_cast<double>(equilibrium + subject.x);
     release.subjects.push_back(subject);
   }

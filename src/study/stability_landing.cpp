@@ -90,8 +90,8 @@ std::vector<StabilityRow> run_landing_case(const StabilityOptions& options) {
   for (Subject& subject : subjects) {
     const LiftOff<long double> lift_off{0.0L, subject.lift_off.angle, subject.lift_off.spin};
     const Hoop<double>& hoop = subject.hoop;
-    const Hoop<long double> widened{hoop.slope,     hoop.sin_slope, hoop.cos_slope, hoop.rho,
-                                    hoop.clearance, hoop.Ic,        hoop.J_min};
+    const Hoop<long double> widened{hoop.sin_slope, hoop.cos_slope, hoop.rho,   hoop.clearance,
+                                    hoop.Ic,        hoop.J_min,     hoop.drive, hoop.thrust};
     subject.truth = fly(widened, lift_off);
     subject.x = static_cast<double>(-subject.truth.dip);
   }

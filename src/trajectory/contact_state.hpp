@@ -13,4 +13,10 @@ struct ContactState {
   S normal = S(0);  ///< v_n with which a flight begins: of a rebound above zero
 };
 
+template <class S>
+ContactState<double> in_double(const ContactState<S>& at) {
+  return {static_cast<double>(at.time), static_cast<double>(at.travel), static_cast<double>(at.angle),
+          static_cast<double>(at.spin), static_cast<double>(at.slip),   static_cast<double>(at.normal)};
+}
+
 }  // namespace leapmap

@@ -114,13 +114,14 @@ TEST(Scan, LanesSeeWhatOneNumberSees) {
       return Lanes<Batch>::load(values.data());
     };
     batch.level = lanes([](const auto& r) { return r.level; });
-    batch.hoop = {lanes([](const auto& r) { return r.hoop.slope; }),
-                  lanes([](const auto& r) { return r.hoop.sin_slope; }),
+    batch.hoop = {lanes([](const auto& r) { return r.hoop.sin_slope; }),
                   lanes([](const auto& r) { return r.hoop.cos_slope; }),
                   lanes([](const auto& r) { return r.hoop.rho; }),
                   lanes([](const auto& r) { return r.hoop.clearance; }),
                   lanes([](const auto& r) { return r.hoop.Ic; }),
-                  lanes([](const auto& r) { return r.hoop.J_min; })};
+                  lanes([](const auto& r) { return r.hoop.J_min; }),
+                  lanes([](const auto& r) { return r.hoop.drive; }),
+                  lanes([](const auto& r) { return r.hoop.thrust; })};
     std::array<ScanFlags, 8> together;
     NodeSigns signs;
     scan_turns(scan_nodes<double>(), batch, Batch(1.0), turns_a_scan, together.data(), signs);

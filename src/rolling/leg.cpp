@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rolling/leg.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace leapmap {
+
+template <class T>
+void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, const LegStart<T>& leg) {
+  using S = ScalarOf<T>;
+  using std::abs, std::floor;
+  const T pi(pi_of<S>), two_pi = T(2) * pi;
+  const Roll<T>& roll = leg.roll;
+
+  // Energy that is used up ends a leg; it rises or falls from turn to turn, so that one minimum decides.
+  const FirstMinimum<T> ahead = first_minimum(leg.release);
+  const T least = vis_viva_past_release(leg.release, ahead.angle - leg.release.release);
+  const MaskOf<T> runs_down = ahead.is_real & !leg.last & ((least <= T(0)) | (roll.hoop.thrust < T(0)));
+  T reach(0), end = leg.end;
+  MaskOf<T> turns = !(end == end);
+  if (any(runs_down)) {
+    reach = turning_distance(leg.release, ahead, runs_down);
+    const T turn = leg.release.release + reach;
+    turns = runs_down & (turn < end);
+    end = select(turns, turn, end);
+  }
+  // How near E comes to zero on the way, for the clock.
+  T lowest = smaller(least, vis_viva_past_release(roll, RollingTime<T>::first_panel(roll) * pi - roll.release)),
+    minimum = ahead.angle;
+  if (any(roll.release < leg.release.release)) {
+    minimum = first_minimum(roll).angle;
+    lowest = smaller(lowest, vis_viva_past_release(roll, minimum - roll.release));
+  }
+  block.store(roll, Quiet<T>{select(runs_down | leg.last, T(-1), lowest), minimum - roll.release},
+              index.data(), count);
+
+  // The scan's first node past the start. One no farther than rounding is the same place, and has its sign.
+  const T first_turn = floor(roll.release / two_pi), step = two_pi / T(S(nodes_a_turn));
+  const auto angle_of_node = [&](const T& k) { return (first_turn * T(S(nodes_a_turn)) + k) * step; };
+  T past = floor((roll.release - two_pi * first_turn) / step) + T(1);
+  past = select((past > T(1)) & (angle_of_node(past - T(1)) > roll.release), past - T(1), past);
+  const T same_place = T(S(8) * std::numeric_limits<S>::epsilon()) * larger(T(1), abs(roll.release));
+
+  const unsigned on_node = Lanes<T>::bits(angle_of_node(past) - roll.release <= same_place),
+                 is_above = Lanes<T>::bits(leg.above), turning = Lanes<T>::bits(turns);
+  const auto starts = lanes_of(roll.release), ends = lanes_of(end), first_turns = lanes_of(first_turn),
+             past_start = lanes_of(past), reaches = lanes_of(reach);
+  for (std::size_t i = 0; i < count; ++i) {
+    auto& found = block.found[index[i]];
+    found.turns = turning >> i & 1u;
+    found.turn = ends[i];
+    if (found.leg == 1) found.reach = reaches[i];
+    block.searches[index[i]].begin(starts[i], ends[i], first_turns[i],
+                                   static_cast<std::uint32_t>(past_start[i]), on_node >> i & 1u,
+                                   is_above >> i & 1u);
+  }
+}
+
+template <class T>
+void turn_round(Block<T>& block, const DesignList& designs, const Scene& scene) {
+  using S = ScalarOf<T>;
+  for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
+    const std::size_t count = std::min(Lanes<T>::count, designs.size() - first);
+    const DesignLanes<T> index = lanes_from<T>(designs, first);
+    LaneArray<T> turns, releases, energies, reaches, legs;
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      const auto& found = block.found[index[i]];
+      turns[i] = found.turn, releases[i] = found.release, energies[i] = found.released;
+      reaches[i] = found.reach, legs[i] = S(found.leg + 1);
+    }
+    const MaskOf<T> third = Lanes<T>::load(legs.data()) > T(2);
+    const Roll<T> before = block.template load_path<T>(index.data());
+    const T release = Lanes<T>::load(releases.data());
+
+    // At rest where it turned, and at the same level, so that G has the same signs as before.
+    const Hoop<T> hoop = seen(before.hoop, T(-1));
+    LegStart<T> leg;
+    leg.roll = begin_roll(hoop, -Lanes<T>::load(turns.data()), T(0));
+    leg.roll.level = before.level;
+    leg.release = begin_roll(hoop, -release, T(0));
+    leg.release.released = Lanes<T>::load(energies.data());
+    leg.end = select(third, release, T(S(2) * pi_of<S>) * T(S(scene.runway)) - release);
+    leg.above = lift(leg.roll, leg.roll.release).value > T(0);
+    leg.last = third;
+    for (std::size_t i = 0; i < count; ++i) {
+      auto& found = block.found[index[i]];
+      ++found.leg, found.way = -found.way;
+    }
+    begin_leg(block, index, count, leg);
+  }
+}
+
+#define LEAPMAP_INSTANTIATE(T)                                                                        \
+  template void begin_leg<T>(Block<T>&, const DesignLanes<T>&, std::size_t, const LegStart<T>&); \
+  template void turn_round<T>(Block<T>&, const DesignList&, const Scene&);
+#ifdef LEAPMAP_KERNELS
+LEAPMAP_INSTANTIATE(Batch)
+#endif
+#ifdef LEAPMAP_SCALARS
+LEAPMAP_INSTANTIATE(double)
+LEAPMAP_INSTANTIATE(long double)
+#endif
+#undef LEAPMAP_INSTANTIATE
+
+}  // namespace leapmap
