@@ -21,13 +21,15 @@
 ///               |                                     |   stalled at rest where nothing pulls
 // clang-format on
 ///
-/// A hoop that rolls or slides may turn round. At v = 0 the forces decide, never the sign of a rounded
+/// A hoop that rolls or slides may turn round. One that rocks may slip a little less on every swing, for ever:
+/// it is stalled, too, when its phases come again and again with less spin each (Rocking). At v = 0 the forces decide, never the sign of a rounded
 /// v, and what friction holds but for rounding it holds. Painleve's region is where the rigid-body equations
 /// have no answer or two; a slide that runs into its edge is followed until doubles cannot tell the edge from
 /// where it is. A design that goes through more than most_phases phases is failed.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -91,6 +93,36 @@ class PhaseSequence {
  private:
   std::uint64_t code_ = 0;
   int count_ = 0;
+};
+
+/// Sees a hoop rock to rest. The plane is the same everywhere, so that at rest there is nothing but the angle
+/// to tell one swing from another: once every phase of a cycle comes again in its place with less spin, the
+/// next cycle is smaller again. Cycles of 2, 3, 4, 6 or 12 phases are seen, and only after those that
+/// phase_sequence holds.
+class Rocking {
+ public:
+  /// Looks at a phase as it begins; direction: of sliding. True: it rocks to rest.
+  bool settles(Phase phase, int direction, double angle, double spin) {
+    const Begun now{phase, direction, angle, spin};
+    Begun& before = cycle_[static_cast<std::size_t>(count_ % cycle)];
+    const bool again = count_ >= cycle && phase != Phase::flight && before.phase == phase &&
+                       before.direction == direction && before.spin * spin > 0.0 &&
+                       std::abs(spin) < std::abs(before.spin) && std::abs(angle - before.angle) < 1.0;
+    shrinking_ = again ? shrinking_ + 1 : 0;
+    before = now;
+    ++count_;
+    return count_ > 32 && shrinking_ >= cycle;
+  }
+
+ private:
+  static constexpr int cycle = 12;
+  struct Begun {
+    Phase phase{};
+    int direction = 0;
+    double angle = 0.0, spin = 0.0;
+  };
+  std::array<Begun, cycle> cycle_{};
+  int count_ = 0, shrinking_ = 0;
 };
 
 }  // namespace leapmap

@@ -101,6 +101,7 @@ class PhaseMachine {
  private:
   void begin(Phase phase, int direction) {
     sequence_.append(phase);
+    settles_ = rocking_.settles(phase, direction, static_cast<double>(at_.angle), static_cast<double>(at_.spin));
     if (observer_.phase) observer_.phase(phase, in_double(at_), direction);
   }
 
@@ -126,6 +127,7 @@ class PhaseMachine {
     const bool rolls = phase == ContactPhase::rolls;
     const int direction = rolls ? 0 : phase == ContactPhase::slides_forwards ? 1 : -1;
     begin(rolls ? Phase::rolling : Phase::sliding, direction);
+    if (settles_) return PhaseEnd::stalls;
     const PhaseEnd end = rolls ? roll_(hoop_, contact_, at_, runway_)
                                : slide_(hoop_, contact_, at_, runway_, direction);
     driven_ += hoop_.drive * (at_.angle - from.angle);
@@ -188,6 +190,8 @@ class PhaseMachine {
   S driven_{0};  // work of the motor
   ContactState<S> at_;
   PhaseSequence sequence_;
+  Rocking rocking_;
+  bool settles_ = false;
   Outcome outcome_;
 };
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include "rolling/lift_off_scan.hpp"
@@ -37,15 +39,17 @@ struct IntervalSearch {
   std::uint32_t node_past_release;  ///< the first one of the first scan; 0 in later scans
   bool released_on_node;            ///< on that one, but for rounding
   bool released_above;              ///< whether G > 0 at the release
+  bool ends_above;                  ///< G > 0 at the end, as was decided before: the hoop set out from there
   bool last_above;                  ///< whether G > 0 at the last node of the scan
   ScanFlags flags;
   int turn, node, halvings;
   std::uint64_t part;
 
   /// Begins at the release, or where the hoop turned round, `from`, to end at `to`. past: the scan's first node
-  /// past the release; on_node: whether that is the same place; above: whether G > 0 there.
+  /// past the release; on_node: whether that is the same place; above: whether G > 0 there; back: `to` is where
+  /// the design set out.
   void begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past, bool on_node,
-             bool above);
+             bool above, bool back);
 
   /// Takes over what a scan of `turns` revolutions found in a lane.
   void take(const ScanFlags& scanned, const NodeSigns& signs, std::size_t lane, int turns);
@@ -66,6 +70,12 @@ struct IntervalSearch {
   void hand_on_signs(const NodeSigns& signs, std::size_t lane, int turns);
 };
 
+/// Whether two angles are the same but for rounding.
+template <class S>
+bool is_same_place(const S& a, const S& b) {
+  return std::abs(a - b) <= S(8) * std::numeric_limits<S>::epsilon() * std::max(S(1), std::abs(a));
+}
+
 /// Of an interval halved k times, relative to the whole.
 template <class S>
 inline constexpr auto part_lengths = [] {
@@ -76,12 +86,13 @@ inline constexpr auto part_lengths = [] {
 
 template <class S>
 void IntervalSearch<S>::begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past,
-                              bool on_node, bool above) {
+                              bool on_node, bool above, bool back) {
   release = from, end = to;
   first_turn = turn_of_release;
   node_past_release = past;
   released_on_node = on_node;
   released_above = above;
+  ends_above = back;
   turn = node = halvings = 0, part = 0;
 }
 
@@ -151,7 +162,8 @@ bool IntervalSearch<S>::next(std::uint32_t design, Interval<S>& interval) {
       const auto flagged = [&](const IntervalBits& bits) -> bool { return bits[t] >> node & 1u; };
       const S left_node = place * step, right_node = (place + S(1)) * step;
       const auto side = [](bool is_above) { return is_above ? Side::above : Side::below; };
-      const bool falls = flagged(flags.falls) && from == left_node && to == right_node;
+      const bool at_the_end = ends_above && is_same_place(to, end);
+      const bool falls = flagged(flags.falls) && from == left_node && to == right_node && !at_the_end;
       interval = {design, revolution, from, to, (from + to) * S(0.5), falls, Side::asked, Side::asked};
       if (falls) return true;
       if (from == release) {
@@ -160,6 +172,7 @@ bool IntervalSearch<S>::next(std::uint32_t design, Interval<S>& interval) {
         interval.from_side = side(flagged(flags.above_left) || flagged(flags.falls));
       }
       if (to == right_node) interval.to_side = side(flagged(flags.above_right));
+      if (at_the_end) interval.to_side = Side::above;
       return true;
     }
     if (from >= end) {

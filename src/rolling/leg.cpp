@@ -6,6 +6,15 @@
 #include <limits>
 
 namespace leapmap {
+namespace {
+
+/// Whether the leg ends where the design set out: from rest it turns there a second time.
+template <class T>
+bool returns(const typename Block<T>::Found& found) {
+  return found.leg == 3 || (found.leg == 2 && found.turns && found.released == ScalarOf<T>(0));
+}
+
+}  // namespace
 
 template <class T>
 void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, const LegStart<T>& leg) {
@@ -54,7 +63,7 @@ void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, 
     if (found.leg == 1) found.reach = reaches[i];
     block.searches[index[i]].begin(starts[i], ends[i], first_turns[i],
                                    static_cast<std::uint32_t>(past_start[i]), on_node >> i & 1u,
-                                   is_above >> i & 1u);
+                                   is_above >> i & 1u, returns<T>(found));
   }
 }
 

@@ -21,7 +21,7 @@ int flight_rhs(double, const double y[], double f[], void* params) {
   Eigen::Matrix3d mass;
   mass << 1, 0, -hoop.rho * c, 0, 1, hoop.rho * s, -hoop.rho * c, hoop.rho * s, hoop.Ic + hoop.rho * hoop.rho;
   const Eigen::Vector3d force(-hoop.rho * w2 * s + hoop.sin_slope, -hoop.rho * w2 * c - hoop.cos_slope,
-                              -hoop.rho * std::sin(hoop.slope + y[2]));
+                              -hoop.rho * std::sin(slope_of(hoop) + y[2]));
   const Eigen::Vector3d acceleration = mass.inverse() * force;
   for (int i = 0; i < 3; ++i) f[i] = y[3 + i], f[3 + i] = acceleration[i];
   return GSL_SUCCESS;

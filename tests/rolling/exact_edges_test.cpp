@@ -68,9 +68,9 @@ TEST(ExactSolver, TwoFallsWithoutARiseBetweenThemAreOneLiftOff) {
                       .offset_ratio = 0.31454737851461906,
                       .release_angle = 3.5031155950809674,
                       .release_spin = 1.1867380068603381};
-  std::vector<LiftOff<double>> lift_offs;
+  Told told;
   Outcome outcome;
-  ExactSolver<double>(1e-12).solve({&design, 1}, {}, {&outcome, 1}, &lift_offs);
+  ExactSolver<double>(1e-12).solve({&design, 1}, {}, {&outcome, 1}, &told);
   EXPECT_EQ(outcome.status, Status::jumped);
   EXPECT_LE(outcome.candidates, 3) << "the graze counts once or not at all";
   EXPECT_GE(outcome.candidates, 2);
