@@ -11,6 +11,8 @@
 ///     v > 0 or  | v comes back to zero                | R if |F| <= mu_s N, else S the other way
 ///     v < 0     | Ic + rho s q falls to zero          | indeterminate (Painleve)
 ///   F flight    | its apex reaches hop_height         | jumped
+///               | it sinks at once, as the motor that | indeterminate: the plane would have to
+///               |   lifted it off idles in flight     |   pull in contact, and is in the way
 ///               | y comes back to zero                | landing, impulses at once; then F if it
 ///               |                                     |   rebounds or n0 <= 0, S if v is not zero,
 ///               |                                     |   else as where v comes back to zero

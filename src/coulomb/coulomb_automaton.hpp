@@ -144,6 +144,7 @@ class PhaseMachine {
     const Flight<S> flight = at_.normal > S(0) ? fly_off(hoop_, lift_off, at_.normal) : fly(hoop_, lift_off);
     const bool jumps = look_at(lift_off, flight);
     const Trig<S> phi = trig(at_.angle);
+    if (sinks_without_motor(flight, phi)) return Status::indeterminate;
     const Sample<S> travel = travel_in_flight(hoop_, phi, at_.spin, at_.slip, flight.flight_time);
     const S climb = height_above_plane(hoop_, phi, at_.spin, flight.flight_time, at_.normal).rate;
     at_.time += flight.flight_time;
@@ -162,6 +163,12 @@ class PhaseMachine {
     const Leaving leaving = flight.flight_time > S(0) ? Leaving::always : Leaving::never;
     next = at_.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
     return Status::not_computed;
+  }
+
+  /// Whether it is the motor alone that lifted the hoop off: in flight it idles, and the plane is in the way.
+  bool sinks_without_motor(const Flight<S>& flight, const Trig<S>& phi) const {
+    const S held_down = hoop_.cos_slope + hoop_.rho * phi.cos * at_.spin * at_.spin;
+    return hoop_.drive != S(0) && !(flight.flight_time > S(0)) && held_down > S(1e-9);
   }
 
   /// Tells of a flight, and whether it is the jump.

@@ -32,6 +32,8 @@ Design any_design(std::mt19937_64& random, std::size_t number) {
                 .mu_static = uniform(random, 0.1, 1.0)};
   design.mu_kinetic = design.mu_static * uniform(random, 0.7, 1.0);
   design.restitution = uniform(random, 0.0, 0.7);
+  if (number % 4 == 1) design.release_spin = uniform(random, -1.0, 0.0);
+  if (number % 3 == 0) design.drive_torque = uniform(random, -0.3, 0.3);
   if (number % 4 == 2) {  // these come near Painleve's edge
     design.mass_ratio = uniform(random, 50.0, 200.0);
     design.inertia_factor = 0.5;

@@ -18,7 +18,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = ["src/" + name + ".cpp" for name in
-           ("rolling/clock", "rolling/exact", "rolling/find", "rolling/halved_time", "rolling/prepare", "rolling/rolling_time",
+           ("rolling/clock", "rolling/exact", "rolling/find", "rolling/halved_time", "rolling/leg", "rolling/prepare", "rolling/rolling_time",
             "rolling/take_off", "rolling/rolling_integration", "physics/three_coordinates", "coulomb/rolling_leg",
             "coulomb/sliding_leg", "coulomb/sliding_panel", "coulomb/coulomb", "coulomb/coulomb_integration")] + ["tests/mutation/judge.cpp"]
 LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
@@ -34,19 +34,23 @@ MUTATIONS = {
     "J": ("rolling", "return hoop.J_min + T(2) * hoop.rho", "return hoop.J_min + T(2.002) * hoop.rho"),
     "sin(theta + phi)": ("rolling", "hoop.sin_slope * phi.cos + hoop.cos_slope * phi.sin", f"hoop.sin_slope * phi.cos + {OFF} * hoop.cos_slope * phi.sin"),
     "cos(theta + phi)": ("rolling", "hoop.cos_slope * phi.cos - hoop.sin_slope * phi.sin", f"hoop.cos_slope * phi.cos - {OFF} * hoop.sin_slope * phi.sin"),
-    "phi'' rolling (10)": ("rolling", "(hoop.sin_slope - hoop.rho * (sin_from", f"({OFF} * hoop.sin_slope - hoop.rho * (sin_from"),
+    "phi'' rolling (10)": ("rolling", "(hoop.thrust - hoop.rho * (sin_from", f"({OFF} * hoop.thrust - hoop.rho * (sin_from"),
     "N rolling (11)": ("rolling", "return hoop.cos_slope + hoop.rho * (phi.sin * acceleration", f"return hoop.cos_slope + hoop.rho * ({OFF} * phi.sin * acceleration"),
     "F rolling (12)": ("rolling", "+ hoop.rho * phi.sin * spin * spin - hoop.sin_slope", f"+ {OFF} * hoop.rho * phi.sin * spin * spin - hoop.sin_slope"),
     "w^2 by angle": ("rolling_by_angle", "T(2) * (roll.push * x +", "T(2.002) * (roll.push * x +"),
     "level of energy": ("rolling_by_angle", "released - T(2) * (release *", "released - T(2.002) * (release *"),
-    "energy's slope": ("rolling_by_angle", "return hoop.sin_slope - hoop.rho * sin_from", f"return hoop.sin_slope - {OFF} * hoop.rho * sin_from"),
+    "energy's slope": ("rolling_by_angle", "return hoop.thrust - hoop.rho * sin_from", f"return hoop.thrust - {OFF} * hoop.rho * sin_from"),
     "G, rest": ("rolling_by_angle", "h.cos_slope * (h.Ic + q * q)", f"h.cos_slope * ({OFF} * h.Ic + q * q)"),
     "G, energy": ("rolling_by_angle", ".K = h.J_min * c - h.rho", f".K = {OFF} * h.J_min * c - h.rho"),
     "stick, F": ("stick", "const T pull = t.q * tau - h.sin_slope * t.J", f"const T pull = t.q * tau - {OFF} * h.sin_slope * t.J"),
+    "thrust": ("parameters", ".thrust = direction.sin + tau", f".thrust = direction.sin + {OFF} * tau"),
+    "G, motor": ("rolling_by_angle", "h.rho * s * (h.sin_slope * q + h.drive)", f"h.rho * s * (h.sin_slope * q + {OFF} * h.drive)"),
+    "slide, motor": ("sliding", "at.turn * n0 + hoop.drive", f"at.turn * n0 + {OFF} * hoop.drive"),
+    "seen from behind": ("parameters", "seen.drive = way * hoop.drive", f"seen.drive = {OFF} * way * hoop.drive"),
     "slide, lever": ("sliding", "return hoop.rho * phi.sin - friction", f"return {OFF} * hoop.rho * phi.sin - friction"),
     "slide, pivot": ("sliding", "pivot = hoop.Ic + hoop.rho", f"pivot = {OFF} * hoop.Ic + hoop.rho"),
     "slide, N": ("sliding", "phi, friction) / pivot, hoop.Ic / pivot", f"phi, friction) / pivot, {OFF} * hoop.Ic / pivot"),
-    "slide, n0": ("sliding", "return hoop.cos_slope + hoop.rho * phi.cos", f"return hoop.cos_slope + {OFF} * hoop.rho * phi.cos"),
+    "slide, n0": ("sliding", "return hoop.cos_slope + hoop.rho * (phi.cos", f"return hoop.cos_slope + {OFF} * hoop.rho * (phi.cos"),
     "slide, F": ("sliding", "F = -friction * N", f"F = -{OFF} * friction * N"),
     "slide, v'": ("sliding", "F + hoop.sin_slope - arm * angular", f"F + {OFF} * hoop.sin_slope - arm * angular"),
     "landing, Wtt": ("landing", "Wtt = S(1) + arm * arm", "Wtt = S(1.001) + arm * arm"),

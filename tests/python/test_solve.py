@@ -33,10 +33,10 @@ def numbers(column):
     return np.array([float(text) if text else np.nan for text in column])
 
 
-@pytest.mark.parametrize("name", ["noslip_top_release.csv", "noslip_general.csv"])
+@pytest.mark.parametrize("name", ["noslip_top_release.csv", "noslip_general.csv", "noslip_turning.csv", "noslip_drive.csv"])
 def test_agrees_with_the_40_digit_tables_without_slip(name):
     t = table(name)
-    o = leapmap.solve(**{key: numbers(t[key]) for key in INPUTS}, **UNIT)
+    o = leapmap.solve(**{key: numbers(t[key]) for key in (*INPUTS, "drive_torque") if key in t}, **UNIT)
     assert [leapmap.Status(s).name for s in o.status] == t["status"].tolist()
     assert (np.where(o.spurious_first_jump == 255, -1, o.spurious_first_jump) == np.nan_to_num(numbers(t["spurious"]), nan=-1)).all()
     # 1e-10 is the tolerance of times; heights are good to some roundings of the largest term.

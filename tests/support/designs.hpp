@@ -34,6 +34,16 @@ inline Design random_design(std::mt19937_64& random) {
   return design;
 }
 
+/// The same released either way, on slopes up or down, and driven either way or not at all.
+inline Design either_way(std::mt19937_64& random) {
+  Design design = random_design(random);
+  design.slope = uniform(random, -0.6, 0.9);
+  design.release_angle = uniform(random, -3.2, 6.4);
+  design.release_spin = random() % 4 == 0 ? 0.0 : uniform(random, -2.0, 2.0);
+  design.drive_torque = random() % 3 == 0 ? 0.0 : uniform(random, -0.6, 0.6);
+  return design;
+}
+
 using leapmap::adaptive;
 
 inline Outcome solve(const Design& design, const Scene& scene = unit_scene(),

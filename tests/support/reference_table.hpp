@@ -20,8 +20,10 @@ struct ReferenceRow {
   bool has(const std::string& name) const { return !cells.at(name).empty(); }
   double number(const std::string& name) const { return std::stod(cells.at(name)); }
   Design design() const {
-    return {number("slope"),          number("mass_ratio"),    number("offset_ratio"),
-            number("inertia_factor"), number("release_angle"), number("release_spin")};
+    Design design{number("slope"),          number("mass_ratio"),    number("offset_ratio"),
+                  number("inertia_factor"), number("release_angle"), number("release_spin")};
+    if (cells.contains("drive_torque")) design.drive_torque = number("drive_torque");
+    return design;
   }
 };
 
