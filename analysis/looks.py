@@ -15,6 +15,7 @@ PARAMETERS = {
     "inertia_factor": ("inertia factor I/(m R²)", "I/(m R²)", ""),
     "release_angle": ("release angle", "release angle", "°"),
     "release_spin": ("release spin [√(g/R)]", "release spin", ""),
+    "drive_torque": ("drive torque τ [(m + mₚ) g R]", "τ", ""),
     "mu_static": ("static friction coefficient μ", "μ", ""),
     "mu_kinetic": ("kinetic friction coefficient", "μ kinetic", ""),
     "restitution": ("restitution", "restitution", ""),

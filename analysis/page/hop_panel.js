@@ -99,7 +99,7 @@ function hopPanel(map, solver) {
   /** The command line that tells the same hoop, in pieces. */
   function hopCommand() {
     const { design } = now, contact = ["mu_static", "mu_kinetic", "restitution"];
-    const flags = ["slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin", ...(map.slips ? contact : [])];
+    const flags = ["slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin", "drive_torque", ...(map.slips ? contact : [])];
     const words = ["leapmap hop", ...flags.filter((k) => Number.isFinite(design[k])).map((k) => `--${k.replaceAll("_", "-")} ${design[k]}`)];
     if (map.slips) words.push("--set friction=coulomb", `--set rest_speed=${design.rest_speed}`);
     for (const key of ["runway", "hop_height", "radius", "gravity"])

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/motor.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
 #include "leapmap/errors.hpp"
@@ -26,12 +28,14 @@ namespace {
 struct HopArguments {
   std::string spec, trace;
   double trace_interval = 1e-3;
+  double mass = 0.0;  // 0: not given
   std::vector<std::string> overrides, flags;  // KEY=VALUE; flags hold whatever their place on the line
   bool json = false;
   Locking locking = Locking::required;
 };
 
 constexpr double check_tolerance = 1e-12;  // of the method that checks
+constexpr double papers_mass = 0.0282;     // [kg]: a hoop of 8.2 g and a weight of 20 g
 
 constexpr double in_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
@@ -45,11 +49,12 @@ std::string verdict(const Motion& motion, const Scene& scene) {
     case Status::no_jump:
       return fmt::format("No jump within {} revolutions.", scene.runway);
     case Status::stalled:
-      return "It stalls: it rolls with its spin fallen to zero, or does not start downhill.";
+      return "It stalls: it rocks between two angles of rest for ever, or rests where nothing pulls.";
     case Status::airborne_at_release:
       return "The plane would have to pull at release: it is airborne from the start.";
     case Status::indeterminate:
-      return "Sliding comes to where the rigid-body equations have no answer or two (Painleve).";
+      return "It comes to where the rigid-body equations have no answer or two: sliding (Painleve), or where "
+             "the motor alone lifts off what it does not carry in flight.";
     default:
       return fmt::format(
           "The method gave up: {}. Try another tolerance, more max_steps, a shorter fixed_step or another "
@@ -130,7 +135,15 @@ void print_phases(const Motion& motion) {
   print_low_ones();
 }
 
-void print_table(const Spec& spec, const Motion& motion, const Outcome& checked) {
+void print_motor(const Motor& motor, bool is_example) {
+  say("The motor, for hoop and weight of {:g} kg{}: {:.4g} N m, at most {:.4g} W and {:.4g} rpm, {:.4g} J in "
+      "all{}.\n",
+      motor.mass, is_example ? " (another by --mass)" : "", motor.torque, motor.power, motor.spin, motor.work,
+      motor.power <= 0.0 ? "; it only brakes" : "");
+}
+
+void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
+                 const std::optional<Motor>& motor, bool is_example) {
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters(spec)) {
     const double value = value_of(*parameter, spec.design);
@@ -149,6 +162,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked)
   if (motion.outcome.phase_sequence != 0) say("\n{}", phase_letters(motion.outcome.phase_sequence));
   say("\n{}\n", verdict(motion, spec.scene));
   print_jump(spec, motion, checked);
+  if (motor) print_motor(*motor, is_example);
   for (const Graze& graze : motion.grazes)
     say("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n", graze.t,
         graze.minimum ? "minimum" : "maximum", graze.normal_force,
@@ -158,7 +172,8 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked)
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
 /// The outcome under the map's names and units, so that a script finds the same words in both.
-std::string json_text(const Spec& spec, const Motion& motion, const Outcome& checked) {
+std::string json_text(const Spec& spec, const Motion& motion, const Outcome& checked,
+                      const std::optional<Motor>& motor) {
   const double second = time_unit(spec.scene);
   std::vector<std::string> design, outcome, candidates, grazes, phases;
   for (const Option* parameter : design_parameters(spec))
@@ -195,15 +210,22 @@ std::string json_text(const Spec& spec, const Motion& motion, const Outcome& che
       R"({{"method": "{}", "tolerance": 1e-12, "status": "{}", "candidates": {}, "jump_height": {}, "jump_time": {}}})",
       audit_method(spec.numerics), name_of(checked.status), checked.candidates,
       json_number(checked.jump_height), json_number(checked.jump_time));
+  const std::string motor_told =
+      motor ? fmt::format(
+                  R"("motor": {{"mass": {}, "torque": {}, "power": {}, "rpm": {}, "work": {}}},)"
+                  "\n  ",
+                  json_number(motor->mass), json_number(motor->torque), json_number(motor->power),
+                  json_number(motor->spin), json_number(motor->work))
+            : "";
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
       "\"radius\": {}, "
-      "\"gravity\": {}, \"rest_speed\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  "
+      "\"gravity\": {}, \"rest_speed\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  {}"
       "\"lift_offs\": [{}],\n  "
       "\"grazes\": [{}],\n  \"check\": {},\n  \"phases\": [{}]\n}}\n",
       fmt::join(design, ", "), model_of(spec.scene).name, spec.scene.runway, spec.scene.hop_height,
       spec.scene.radius, spec.scene.gravity, spec.scene.rest_speed, resolved_method(spec.numerics),
-      spec.numerics.tolerance, fmt::join(outcome, ",\n  "), fmt::join(candidates, ", "),
+      spec.numerics.tolerance, fmt::join(outcome, ",\n  "), motor_told, fmt::join(candidates, ", "),
       fmt::join(grazes, ", "), check, fmt::join(phases, ", "));
 }
 
@@ -231,10 +253,16 @@ int run(const HopArguments& arguments) {
     if (!write_trace(behind_links(arguments.trace), motion, attributes, arguments.locking))
       tell_of_folder(arguments.trace);
   }
+  const bool driven = spec.design.drive_torque != 0.0, is_example = arguments.mass == 0.0;
+  if (!driven && !is_example) throw InputError("--mass: has no use without a motor; allowed: with --drive-torque");
+  const bool moves = !motion.phases.empty() && motion.outcome.status != Status::failed;
+  const std::optional<Motor> motor =
+      driven && moves ? std::optional(motor_of(spec, motion, is_example ? papers_mass : arguments.mass))
+                      : std::nullopt;
   if (arguments.json) {
-    say("{}", json_text(spec, motion, check.outcome));
+    say("{}", json_text(spec, motion, check.outcome, motor));
   } else {
-    print_table(spec, motion, check.outcome);
+    print_table(spec, motion, check.outcome, motor, is_example);
     if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
   }
   return motion.outcome.status == Status::failed ? 1 : 0;
@@ -255,6 +283,11 @@ void add_hop(CLI::App& app, int& status) {
   command
       ->add_option("--trace-interval", arguments->trace_interval,
                    "seconds between its samples; default 0.001")
+      ->check(CLI::Range(1e-9, 1e9));
+  command
+      ->add_option("--mass", arguments->mass,
+                   "kilograms of hoop and weight together, for what --drive-torque asks of a motor; default "
+                   "0.0282, the paper's hoop")
       ->check(CLI::Range(1e-9, 1e9));
   command->add_flag("--json", arguments->json, "print JSON, under the map's names and units");
   command->footer(options_help());

@@ -9,9 +9,11 @@
 namespace leapmap {
 namespace {
 
+/// Units that are products of the hoop's own are numbers to other programs, and told in words.
 MapAxis describe(const Option& option, std::vector<double> values) {
-  return {std::string(option.key), std::string(option.unit == "sqrt(g/R)" ? "1" : option.unit),
-          fmt::format("{}{}", option.meaning, option.unit == "sqrt(g/R)" ? ", in sqrt(g/R)" : ""),
+  const bool own = option.unit != "rad" && option.unit != "1";
+  return {std::string(option.key), std::string(own ? "1" : option.unit),
+          own ? fmt::format("{}, in {}", option.meaning, option.unit) : std::string(option.meaning),
           std::move(values)};
 }
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What a motor must have to be a design's drive torque, in SI units.
+#pragma once
+
+#include "leapmap/motion.hpp"
+#include "leapmap/spec.hpp"
+
+namespace leapmap::cli {
+
+/// Largest values while the hoop touches the plane, up to the jump's lift-off or the motion's end.
+struct Motor {
+  double mass;    ///< of hoop and weight together [kg]
+  double torque;  ///< [N m]
+  double power;   ///< of the torque on the hoop [W]; below zero: it only brakes
+  double spin;    ///< [rpm], of the hoop
+  double work;    ///< done in all [J]
+};
+
+/// motion: the design's, for how long it takes. It is solved once more, with samples.
+Motor motor_of(const Spec& spec, const Motion& motion, double mass);
+
+}  // namespace leapmap::cli
