@@ -80,12 +80,7 @@ def chart(m, along, by, wanted, at, fields):
         axis.grid(alpha=0.25)
         if looks.is_log(x):
             style.log_scale(axis.xaxis)
-    others = [looks.titled(n, m.dims[n][index[n]]) for n in names if n not in (along, by)]
-    numbers = m.numbers()
-    words = others + [looks.titled(k, numbers[k]) for k in ("inertia_factor", "release_angle", "release_spin") if k in numbers and k not in m.dims]
-    if m.slips:
-        words += [looks.titled(k, numbers[k]) for k in ("mu_static", "restitution") if k in numbers and k not in m.dims]
-    words.append(f"R = {1e3 * numbers['radius']:g} mm")
+    words = looks.words_of(m, looks.fixed_numbers(m) | {n: m.dims[n][index[n]] for n in names if n not in (along, by)})
     axes[-1, 0].set_xlabel(f"{planes.axis_label(along)}\n{style.wrapped(words, figure)}")
     handles = axes[0, 0].get_legend_handles_labels()[0]
     handles += [plt.Line2D([], [], color="#404040", linestyle=(0, (1, 1.2)), label="dotted: first lift-off is spurious")]

@@ -16,8 +16,8 @@ MOST_LABELS = 40  # more names would hide each other
 
 def values_along(m, name):
     """What the designs are drawn over, as shown, and its label: a parameter of the list, or their number in it."""
-    if name == "design":
-        return m.dims["design"], "number in the list, from 0"
+    if name in ("design", "label"):
+        return m.dims["design"], "designs of the list" if m.labels is not None else "number in the list, from 0"
     if name not in m.fields or name not in looks.PARAMETERS:
         listed = [n for n in m.fields if n in looks.PARAMETERS]
         raise NotAMap(f"{m.path}: -x {name}: is no parameter of this list; allowed: {', '.join(['design', *listed])}")
@@ -44,15 +44,17 @@ def chart(m, along, fields):
                       transform=axis.get_xaxis_transform(), in_layout=False)
         axis.set_ylabel(planes.field_label(field))
         axis.grid(alpha=0.25)
-        if m.labels is not None and len(x) <= MOST_LABELS and along != "design" and axis is axes[0, 0]:
-            for label, *place in zip(m.labels, x, values):
+        if m.labels is not None and len(x) <= MOST_LABELS and along not in ("design", "label") and axis is axes[0, 0]:
+            for named, *place in zip(m.labels, x, values):
                 if np.isfinite(place[1]):
-                    axis.annotate(label, place, parse_math=False, xytext=(4, 4), textcoords="offset points", fontsize=7)
-    if m.labels is not None and len(x) <= MOST_LABELS and along == "design":
+                    axis.annotate(named, place, parse_math=False, xytext=(4, 4), textcoords="offset points", fontsize=7,
+                                  annotation_clip=False)
+            axis.margins(x=0.12, y=0.12)
+    if m.labels is not None and len(x) <= MOST_LABELS and along in ("design", "label"):
         axes[-1, 0].set_xticks(x, m.labels, parse_math=False, rotation=35, ha="right")
-    if along != "design" and looks.is_log(np.unique(x)):
+    if along not in ("design", "label") and looks.is_log(np.unique(x)):
         style.log_scale(axes[-1, 0].xaxis)
-    axes[-1, 0].set_xlabel(label)
+    axes[-1, 0].set_xlabel(f"{label}\n{style.wrapped(looks.words_of(m, looks.fixed_numbers(m)), figure)}")
     marker = lambda sign, colour, words, fill="full": plt.Line2D([], [], linestyle="", marker=sign, color=colour, fillstyle=fill, label=words)
     handles = [marker("o", "#1b7837", "first lift-off is the jump"), marker("o", "#e08214", "first lift-off is spurious", "none")]
     handles += [marker("x", looks.STATUSES[code][0], f"{looks.STATUSES[code][1]}: {there.sum()}") for code, there in reasons.items() if there.any()]
@@ -62,7 +64,7 @@ def chart(m, along, fields):
 
 def main():
     p = style.parser(__doc__, "a map of a list of designs", "_list")
-    p.add_argument("-x", metavar="PARAMETER", help="what is drawn to the right; design: the number in the list (default: the first parameter that varies)")
+    p.add_argument("-x", metavar="PARAMETER", help="what is drawn to the right; design: the designs in their order, by name if they have names (default: the first parameter that varies)")
     planes.add_fields(p)
     arguments = p.parse_args()
     fields = planes.fields_of(arguments)

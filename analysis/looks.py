@@ -121,6 +121,21 @@ def titled(name, value):
     return f"{parameter(name)[1]} = {shown(name, value)}"
 
 
+def words_of(m, fixed):
+    """What a picture's axes do not tell: the parameters of `fixed`, {name: value}, the model and the scene."""
+    contact = ("mu_static", "mu_kinetic", "restitution")
+    told = [k for k in PARAMETERS if k in fixed and (k not in contact or m.slips) and (k != "drive_torque" or fixed[k] != 0)]
+    numbers = m.numbers()
+    return [*(titled(k, fixed[k]) for k in told), "slips by Coulomb's law" if m.slips else "never slips", f"runway {numbers['runway']:g} turns",
+            f"jump from {numbers['hop_height']:g} diameters", f"R = {1e3 * numbers['radius']:g} mm"]
+
+
+def fixed_numbers(m):
+    """{parameter: value} of those that neither an axis nor a column of the map varies."""
+    listed = {k: m.fields[k][0] for k in PARAMETERS if k in m.fields and len(set(m.fields[k].tolist())) == 1}
+    return {k: v for k, v in m.numbers().items() if k in PARAMETERS and k not in m.dims and k not in m.fields} | listed
+
+
 def is_log(values):
     """Whether an axis is drawn on a logarithmic scale: its values are spread like that."""
     if not (values[0] > 0 and values[-1] / values[0] > 10):

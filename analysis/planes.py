@@ -153,11 +153,7 @@ class Planes:
 
     def caption(self):
         """What the axes do not tell: the parameters and the scene all panels share."""
-        fixed = self.fixed()
-        contact = ("mu_static", "mu_kinetic", "restitution")
-        words = [looks.titled(k, fixed[k]) for k in looks.PARAMETERS if k in fixed and (k not in contact or self.map.slips)]
-        words += [f"runway {fixed['runway']:g} turns", f"jump from {fixed['hop_height']:g} diameters", f"R = {1e3 * fixed['radius']:g} mm"]
-        return words
+        return looks.words_of(self.map, self.fixed())
 
     def paper(self, panel):
         """Where the paper's hoop is in a panel, as drawn: (x, y), or None if it does not belong there."""

@@ -4,7 +4,7 @@
 #   install_packages.sh main    to build, to run and to draw
 #   install_packages.sh tests   for the tests and benchmarks as well
 set -eu
-packages="g++ cmake ninja-build git libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev libcli11-dev libxsimd-dev
+packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev libcli11-dev libxsimd-dev
   libdeflate-dev libeigen3-dev emscripten
   pybind11-dev python3-dev python3 python3-numpy python3-h5py python3-matplotlib python3-xarray"
 if [ "${1:-main}" = tests ]; then

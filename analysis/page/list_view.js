@@ -93,7 +93,7 @@ function listView(canvas, map, onPoint, onPick) {
   new ResizeObserver(() => paint()).observe(canvas);
 
   return {
-    view, paint, pick, point, offset: (index) => index[0],
+    view, paint, pick, point, showsPaper: () => false, offset: (index) => index[0],
     /** Where a design's dot is on the screen, for tests. */
     placeOf(index) {
       const box = canvas.getBoundingClientRect();

@@ -139,16 +139,23 @@ function mapView(canvas, map, onPoint, onPick) {
     for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${value}`, MARK);
   }
 
-  function paintPaper(context) {
-    if (map.slips) return;
+  /** Where the paper's hoop is on the screen, or null. */
+  function paperPlace() {
+    if (map.slips || !frame) return null;
     const near = (a, b) => Math.abs(a - b) <= 1e-6 * Math.max(1, Math.abs(b));
     const here = { ...map.fixed };
     map.axes.forEach((axis, k) => { if (k !== view.x && k !== view.y) here[axis.name] = axis.values[view.index[k]]; });
     const drawn = [map.axes[view.x].name, map.axes[view.y].name];
-    if (!drawn.every((name) => name in map.paper) || Object.entries(map.paper).some(([k, v]) => !drawn.includes(k) && !near(here[k], v))) return;
+    if (!drawn.every((name) => name in map.paper) || Object.entries(map.paper).some(([k, v]) => !drawn.includes(k) && !near(here[k], v))) return null;
     const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1);
     const x = sx.pixel(map.paper[drawn[0]] * unit(map.axes[view.x])), y = sy.pixel(map.paper[drawn[1]] * unit(map.axes[view.y]));
-    if (!(x > frame.left && x < frame.right && y > frame.top && y < frame.bottom)) return;
+    return x > frame.left && x < frame.right && y > frame.top && y < frame.bottom ? [x, y] : null;
+  }
+
+  function paintPaper(context) {
+    const place = paperPlace();
+    if (!place) return;
+    const [x, y] = place;
     context.beginPath();
     for (let k = 0; k < 10; ++k) {
       const r = (k % 2 === 0 ? 0.75 : 0.32) * frame.font, a = -Math.PI / 2 + k * Math.PI / 5;
@@ -222,7 +229,7 @@ function mapView(canvas, map, onPoint, onPick) {
   new ResizeObserver(() => paint()).observe(canvas);
 
   return {
-    view, paint, pick, point, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
+    view, paint, pick, point, showsPaper: () => paperPlace() !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
     /** Where a design's cell is on the screen, for tests. */
     placeOf(index) {
       const box = canvas.getBoundingClientRect();

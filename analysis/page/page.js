@@ -54,7 +54,7 @@ function start(map, solver) {
   element("title").textContent = map.title || map.name;
   element("subtitle").textContent = `${map.name}: ${map.designs.toLocaleString("en")} designs` +
     (map.computed < 1 ? `, INCOMPLETE: ${(100 * map.computed).toFixed(0)} % of them computed` : "") +
-    (map.slips ? "; slips by Coulomb's law" : "; never slips") + ` · runway ${short(map.fixed.runway)} turns · a jump is ${short(map.fixed.hop_height)} diameters or more · R = ${short(1000 * map.fixed.radius)} mm`;
+    `; ${map.about.join(", ")}`;
   element("footer").textContent = `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as shown` +
     (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop here by exact`) +
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
@@ -106,6 +106,7 @@ function start(map, solver) {
       view.view[key] = taken;
       arrange();
       view.paint();
+      legend();
     });
 
   /** A slider for every axis that is not on the screen. */
@@ -150,7 +151,7 @@ function start(map, solver) {
       return item;
     };
     if (flags?.values.includes(1) && map.columns) items.push(symbol("first lift-off is spurious", "○", "#1f4e79"));
-    if (!map.slips && !map.columns) items.push(symbol("the paper's hoop", "★", "#d62728"));
+    if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", "#d62728"));
     items.push(symbol("pointed at", "⊕", "#000"), symbol("shown beside", "⊕", "#d62728"));
     element("legend").replaceChildren(...items);
   }
@@ -166,8 +167,8 @@ function start(map, solver) {
   const asked = addressed(map);
   if (asked.index) view.view.index = asked.index;
   arrange();
-  legend();
   view.paint();
+  legend();
   told(view.view.index);
   view.pick();
   if (asked.paper) element("paper").click();

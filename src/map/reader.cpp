@@ -5,7 +5,7 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
-#include <new>
+#include <exception>
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_trust.hpp"
@@ -19,11 +19,18 @@ namespace {
 using hdf5::check;
 using hdf5::Handle;
 
-herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) noexcept {
+struct Names {
+  std::vector<std::string> all;
+  std::exception_ptr failure;  ///< what gathering them threw
+};
+
+herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* context) noexcept {
+  auto& names = *static_cast<Names*>(context);
   try {
-    static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+    names.all.emplace_back(name);
     return 0;
-  } catch (const std::bad_alloc&) {  // none may pass through C: HDF5 would stay locked
+  } catch (...) {  // none may pass through C: HDF5 would stay locked
+    names.failure = std::current_exception();
     return -1;
   }
 }
@@ -62,10 +69,11 @@ void MapReader::survey() {
     throw IoError(fmt::format("{}: has format version {}; this program reads up to {}: use a newer leapmap",
                               path_, major, format_major));
 
-  std::vector<std::string> names;
-  check(H5Literate(file_, H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect_name, &names),
-        path_ + ": listing datasets");
-  for (const std::string& name : names) {
+  Names names;
+  const herr_t listed = H5Literate(file_, H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect_name, &names);
+  if (names.failure) std::rethrow_exception(names.failure);
+  check(listed, path_ + ": listing datasets");
+  for (const std::string& name : names.all) {
     H5O_info_t info;
     check(H5Oget_info_by_name(file_, name.c_str(), &info, H5P_DEFAULT), path_ + ": listing datasets");
     if (info.type != H5O_TYPE_DATASET) continue;  // the group that tells viewers what to plot

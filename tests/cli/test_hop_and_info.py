@@ -24,7 +24,7 @@ def test_json_is_nothing_but_data_under_the_maps_names():
     assert hop["jump_time"] == pytest.approx(8.3639138031881432, abs=1e-11)
     assert hop["jump_height"] == pytest.approx(0.98280096607011718, abs=1e-11)
     assert len(hop["lift_offs"]) == 2
-    stalled = json.loads(leapmap("hop", "--json", "--release-spin", "-1").stdout)
+    stalled = json.loads(leapmap("hop", "--json", "--slope", "1deg", "--release-angle", "20deg").stdout)
     assert stalled["status"] == "stalled" and stalled["jump_height"] is None and stalled["spurious_first_jump"] is None
 
 
