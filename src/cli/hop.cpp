@@ -28,7 +28,7 @@ namespace {
 struct HopArguments {
   std::string spec, trace;
   double trace_interval = 1e-3;
-  double mass = 0.0;  // 0: not given
+  double mass = 0.0;                          // 0: not given
   std::vector<std::string> overrides, flags;  // KEY=VALUE; flags hold whatever their place on the line
   bool json = false;
   Locking locking = Locking::required;
@@ -211,11 +211,10 @@ std::string json_text(const Spec& spec, const Motion& motion, const Outcome& che
       audit_method(spec.numerics), name_of(checked.status), checked.candidates,
       json_number(checked.jump_height), json_number(checked.jump_time));
   const std::string motor_told =
-      motor ? fmt::format(
-                  R"("motor": {{"mass": {}, "torque": {}, "power": {}, "rpm": {}, "work": {}}},)"
-                  "\n  ",
-                  json_number(motor->mass), json_number(motor->torque), json_number(motor->power),
-                  json_number(motor->spin), json_number(motor->work))
+      motor ? fmt::format(R"("motor": {{"mass": {}, "torque": {}, "power": {}, "rpm": {}, "work": {}}},)"
+                          "\n  ",
+                          json_number(motor->mass), json_number(motor->torque), json_number(motor->power),
+                          json_number(motor->spin), json_number(motor->work))
             : "";
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
@@ -254,7 +253,8 @@ int run(const HopArguments& arguments) {
       tell_of_folder(arguments.trace);
   }
   const bool driven = spec.design.drive_torque != 0.0, is_example = arguments.mass == 0.0;
-  if (!driven && !is_example) throw InputError("--mass: has no use without a motor; allowed: with --drive-torque");
+  if (!driven && !is_example)
+    throw InputError("--mass: has no use without a motor; allowed: with --drive-torque");
   const bool moves = !motion.phases.empty() && motion.outcome.status != Status::failed;
   const std::optional<Motor> motor =
       driven && moves ? std::optional(motor_of(spec, motion, is_example ? papers_mass : arguments.mass))

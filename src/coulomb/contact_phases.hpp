@@ -23,11 +23,12 @@
 ///               |                                     |   stalled at rest where nothing pulls
 // clang-format on
 ///
-/// A hoop that rolls or slides may turn round. One that rocks may slip a little less on every swing, for ever:
-/// it is stalled, too, when its phases come again and again with less spin each (Rocking). At v = 0 the forces decide, never the sign of a rounded
-/// v, and what friction holds but for rounding it holds. Painleve's region is where the rigid-body equations
-/// have no answer or two; a slide that runs into its edge is followed until doubles cannot tell the edge from
-/// where it is. A design that goes through more than most_phases phases is failed.
+/// A hoop that rolls or slides may turn round. One that rocks may slip a little less on every swing, for
+/// ever: it is stalled, too, when its phases come again and again with less spin each (Rocking). At v = 0 the
+/// forces decide, never the sign of a rounded v, and what friction holds but for rounding it holds.
+/// Painleve's region is where the rigid-body equations have no answer or two; a slide that runs into its edge
+/// is followed until doubles cannot tell the edge from where it is. A design that goes through more than
+/// most_phases phases is failed.
 #pragma once
 
 #include <algorithm>

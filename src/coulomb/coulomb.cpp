@@ -11,8 +11,7 @@ Outcome CoulombSolver<S>::solve(const Design& design, const Scene& scene, const 
       design, scene, observer,
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway) {
         typename RollingLeg<S>::Told turns;
-        if (observer.turn)
-          turns = [&](const ContactState<S>& state) { observer.turn(in_double(state)); };
+        if (observer.turn) turns = [&](const ContactState<S>& state) { observer.turn(in_double(state)); };
         return rolling_.run(hoop, contact.mu_static, at, runway, turns);
       },
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway,

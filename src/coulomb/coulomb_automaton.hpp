@@ -101,7 +101,8 @@ class PhaseMachine {
  private:
   void begin(Phase phase, int direction) {
     sequence_.append(phase);
-    settles_ = rocking_.settles(phase, direction, static_cast<double>(at_.angle), static_cast<double>(at_.spin));
+    settles_ =
+        rocking_.settles(phase, direction, static_cast<double>(at_.angle), static_cast<double>(at_.spin));
     if (observer_.phase) observer_.phase(phase, in_double(at_), direction);
   }
 
@@ -128,8 +129,8 @@ class PhaseMachine {
     const int direction = rolls ? 0 : phase == ContactPhase::slides_forwards ? 1 : -1;
     begin(rolls ? Phase::rolling : Phase::sliding, direction);
     if (settles_) return PhaseEnd::stalls;
-    const PhaseEnd end = rolls ? roll_(hoop_, contact_, at_, runway_)
-                               : slide_(hoop_, contact_, at_, runway_, direction);
+    const PhaseEnd end =
+        rolls ? roll_(hoop_, contact_, at_, runway_) : slide_(hoop_, contact_, at_, runway_, direction);
     driven_ += hoop_.drive * (at_.angle - from.angle);
     if (rolls) return end;
     slipped_ += abs((at_.travel - from.travel) - (at_.angle - from.angle));

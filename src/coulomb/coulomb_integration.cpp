@@ -62,8 +62,8 @@ Sample<double> hold(const Hoop<double>& hoop, double mu, double sign, const Y& y
       (1.0 - hoop.rho * phi.cos) * jerk + hoop.rho * (3.0 * phi.sin * w * a + phi.cos * w * w * w);
   const double N = normal_force(hoop, phi, w, a), F = friction_force(hoop, phi, w, a);
   // raised by some roundings, as stick_guards are
-  const double slack =
-      32.0 * std::numeric_limits<double>::epsilon() * (mu * std::abs(N) + std::abs(F) + std::abs(hoop.sin_slope));
+  const double slack = 32.0 * std::numeric_limits<double>::epsilon() *
+                       (mu * std::abs(N) + std::abs(F) + std::abs(hoop.sin_slope));
   return {mu * N - sign * F + slack, mu * normal_force_rate(hoop, phi, w, a) - sign * F_rate};
 }
 

@@ -28,8 +28,8 @@ struct Look {
   StickGuards<S> guards;
 };
 
-/// What a leg looks like at its angles. roll: of the phase's beginning, near which E is known best, as seen on
-/// the leg; begin: of the leg's.
+/// What a leg looks like at its angles. roll: of the phase's beginning, near which E is known best, as seen
+/// on the leg; begin: of the leg's.
 template <class S>
 class LegView {
  public:
@@ -100,7 +100,8 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
     S x = angle - begin.release, taken(0);
     if (end == PhaseEnd::stalls) {
       for (int k = 0; k < 2; ++k) {  // near the beginning E is known better than the angle
-        const S push = torque(seen_hoop, trig(S(begin.release + x))), next = x - vis_viva_past_release(begin, x) / (S(2) * push);
+        const S push = torque(seen_hoop, trig(S(begin.release + x))),
+                next = x - vis_viva_past_release(begin, x) / (S(2) * push);
         if (push < S(0) && next >= S(0) && std::abs(next - x) < S(1e-12)) x = next;
       }
       if (turned == 0) taken = x > S(0) ? duration_to_rest(begin, x) : S(0);

@@ -27,8 +27,8 @@ class RollingLeg {
 
   using Told = std::function<void(const ContactState<S>&)>;
 
-  /// Rolls on from a state without slip to the phase's end. turns, if set, is told where it turns round. Forces
-  /// depend on the angle alone, so that a hoop that has turned twice has seen all there is to see.
+  /// Rolls on from a state without slip to the phase's end. turns, if set, is told where it turns round.
+  /// Forces depend on the angle alone, so that a hoop that has turned twice has seen all there is to see.
   PhaseEnd run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at, const S& runway,
                const Told& turns = {}) const;
 

@@ -5,8 +5,8 @@
 /// n1 = cos(theta) + rho s tau / Ic (physics/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the
 /// integral of a; time, slip and travel are integrals over u's root. Near Painleve's edge n0 takes the place
 /// of u: it obeys an equation of the same kind, with -tan(phi) + 2 rho c turn and
-/// tan(phi) n1 + 3 rho c tau / Ic, and keeps its digits where it vanishes with the pivot. Where the spin goes through zero panels are in time: angle and spin at their
-/// nodes by Picard's iteration.
+/// tan(phi) n1 + 3 rho c tau / Ic, and keeps its digits where it vanishes with the pivot. Where the spin goes
+/// through zero panels are in time: angle and spin at their nodes by Picard's iteration.
 #pragma once
 
 #include <optional>

@@ -38,8 +38,8 @@ struct Axis {
 
 /// Designs one by one: a column of values for each parameter named, all equally long.
 struct PointList {
-  std::string path{};           ///< the CSV file
-  std::vector<Axis> columns{};  ///< empty: the list is the one design of the spec itself
+  std::string path{};                 ///< the CSV file
+  std::vector<Axis> columns{};        ///< empty: the list is the one design of the spec itself
   std::vector<std::string> labels{};  ///< a name of each design, at most 200 bytes of UTF-8; empty: none
   std::size_t count = 1;
 };

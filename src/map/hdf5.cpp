@@ -194,8 +194,9 @@ bool holds(hid_t file, const std::string& name, const SeriesValues& values) {
 }
 
 std::vector<std::string> read_texts(hid_t dataset, std::size_t most_bytes, const std::string& what) {
-  const Handle there(H5Dget_type(dataset), H5Tclose, what), type = text_type(),
-      space(H5Dget_space(dataset), H5Sclose, what), transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, what);
+  const Handle there(H5Dget_type(dataset), H5Tclose, what),
+      type = text_type(), space(H5Dget_space(dataset), H5Sclose, what),
+      transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, what);
   const std::vector<hsize_t> shape = shape_of(dataset);
   if (H5Tis_variable_str(there) <= 0 || shape.size() != 1) throw IoError(what + ": it is no row of texts");
   bytes_in_memory(dataset, what);

@@ -22,8 +22,8 @@ struct MapAxis {
 };
 
 struct MapLayout {
-  std::vector<MapAxis> axes;     ///< one dimension each; empty: a list, whose one dimension is `design`
-  std::vector<MapAxis> columns;  ///< of a list: its parameters, along `design`
+  std::vector<MapAxis> axes;        ///< one dimension each; empty: a list, whose one dimension is `design`
+  std::vector<MapAxis> columns;     ///< of a list: its parameters, along `design`
   std::vector<std::string> labels;  ///< of a list: a name of each design; empty: none
   std::vector<const Field*> fields;
   bool single = false;  ///< quantities as f4, not f8

@@ -20,8 +20,9 @@ constinit const std::array list{
             return rolling::tell_by_integration(design, scene, options, interval);
           },
           rolling::solving},
-    Model{Friction::coulomb, "coulomb", "slips, lands and hops on", true, coulomb::exact, coulomb::integration,
-          coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving}};
+    Model{Friction::coulomb, "coulomb", "slips, lands and hops on", true, coulomb::exact,
+          coulomb::integration, coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration,
+          coulomb::solving}};
 
 constinit const Kernels of_this_set{list, static_cast<int>(Lanes<Batch>::count)};
 

@@ -18,7 +18,7 @@ struct Model {
   Friction friction;
   std::string_view name;     ///< in specs: the value of scene.friction
   std::string_view meaning;  ///< in a few words
-  bool slips;                ///< goes through phases of contact, each with roundings of its own, and loses energy
+  bool slips;  ///< goes through phases of contact, each with roundings of its own, and loses energy
   /// Without an integrator, to a relative tolerance of times.
   Solver (*exact)(const Scene&, double tolerance, const Wanted&);
   /// By integration in time.

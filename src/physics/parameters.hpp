@@ -21,10 +21,10 @@ struct Hoop {
   T thrust;     ///< sin theta + tau, with which slope and motor drive the hoop downhill
 };
 
-/// Derives the groups from slope, mass_ratio, offset_ratio, inertia_factor and drive_torque, with alpha = beta / (1 + beta)
-/// and J0 = kappa / (1 + beta) + alpha lambda^2. Clearance, Ic and J_min are written as sums of non-negative
-/// terms: the textbook forms 1 - rho, J0 - rho^2 and J0 + 1 - 2 rho lose every digit for a mass on the rim
-/// (lambda = 1) of a nearly massless hoop.
+/// Derives the groups from slope, mass_ratio, offset_ratio, inertia_factor and drive_torque, with alpha =
+/// beta / (1 + beta) and J0 = kappa / (1 + beta) + alpha lambda^2. Clearance, Ic and J_min are written as
+/// sums of non-negative terms: the textbook forms 1 - rho, J0 - rho^2 and J0 + 1 - 2 rho lose every digit for
+/// a mass on the rim (lambda = 1) of a nearly massless hoop.
 template <class T>
 Hoop<T> derive(const T& slope, const T& beta, const T& lambda, const T& kappa, const T& tau) {
   const T hub = T(1) / (T(1) + beta);  // m / (m + m_p)

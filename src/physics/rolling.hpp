@@ -101,8 +101,8 @@ T kinetic_energy(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin) {
   return T(0.5) * contact_inertia(hoop, phi) * spin * spin;
 }
 
-/// Potential energy over (m + m_p) g R, (4) under (1) and (2) but for a constant, less the work that the motor
-/// has done; phi is trig(angle).
+/// Potential energy over (m + m_p) g R, (4) under (1) and (2) but for a constant, less the work that the
+/// motor has done; phi is trig(angle).
 template <class T>
 T potential_energy(const Hoop<T>& hoop, const T& angle, const Trig<T>& phi) {
   return -angle * hoop.thrust - hoop.rho * cos_from_vertical(hoop, phi);

@@ -64,8 +64,7 @@ Roll<T> widened(const Roll<ScalarOf<T>>& roll) {
 /// E at an angle, accurate to a few roundings of its largest term.
 template <class T>
 T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {
-  return roll.level +
-         T(2) * (angle * roll.hoop.thrust + roll.hoop.rho * cos_from_vertical(roll.hoop, phi));
+  return roll.level + T(2) * (angle * roll.hoop.thrust + roll.hoop.rho * cos_from_vertical(roll.hoop, phi));
 }
 
 /// E an angle x past the release, without cancellation however small x is and however near the release is to

@@ -46,16 +46,17 @@ struct Block {
   /// third where it set out: that is all there is to see. On each leg it is seen from the side where it rolls
   /// downhill (physics/parameters.hpp), so that angles grow and the spin is above zero.
   struct Found {
-    S turned_back;              ///< whole turns removed from the release angle; added back on output
-    S release, released;        ///< angle, as seen on the first leg, and vis viva of the release
-    S way;                      ///< 1, or -1 where the leg is uphill
-    int leg;                    ///< 1 to 3
-    bool turns;                 ///< the leg ends in a turn, rather than at the runway's end
-    S turn;                     ///< the angle of the leg's end, if it turns
-    S reach;                    ///< from the release to where it turned first
-    S first_angle, jump_angle;  ///< of the lift-offs so far: the first one, and the last one on this leg or NaN
-    bool first_on_leg;          ///< the first one is on this leg, or there is none yet
-    S first_time;               ///< else its time
+    S turned_back;        ///< whole turns removed from the release angle; added back on output
+    S release, released;  ///< angle, as seen on the first leg, and vis viva of the release
+    S way;                ///< 1, or -1 where the leg is uphill
+    int leg;              ///< 1 to 3
+    bool turns;           ///< the leg ends in a turn, rather than at the runway's end
+    S turn;               ///< the angle of the leg's end, if it turns
+    S reach;              ///< from the release to where it turned first
+    S first_angle,
+        jump_angle;     ///< of the lift-offs so far: the first one, and the last one on this leg or NaN
+    bool first_on_leg;  ///< the first one is on this leg, or there is none yet
+    S first_time;       ///< else its time
   };
 
   std::vector<IntervalSearch<S>> searches = std::vector<IntervalSearch<S>>(most_designs);

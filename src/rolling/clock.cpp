@@ -56,7 +56,8 @@ void Clock<T>::start_after_turns(const Block<T>& block, const DesignLanes<T>& in
   }
 }
 
-/// From the release to the beginning of the leg. Both halves of a leg that ends at rest are timed from its ends.
+/// From the release to the beginning of the leg. Both halves of a leg that ends at rest are timed from its
+/// ends.
 template <class T>
 ScalarOf<T> Clock<T>::before_leg(const Block<T>& block, std::uint32_t design) const {
   const auto& found = block.found[design];

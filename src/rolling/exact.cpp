@@ -62,7 +62,8 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
 /// over.
 template <class T>
 void ExactSolver<T>::pick_intervals(std::span<Outcome> outcomes) {
-  unscanned_.clear(), going_on_.clear(), turning_.clear(), classify_.intervals.clear(), take_off_.falls.clear();
+  unscanned_.clear(), going_on_.clear(), turning_.clear(), classify_.intervals.clear(),
+      take_off_.falls.clear();
   for (const std::uint32_t design : block_.searching) {
     IntervalSearch<ScalarOf<T>>& search = block_.searches[design];
     Interval<ScalarOf<T>> interval;
@@ -91,7 +92,8 @@ void ExactSolver<T>::end_leg(std::uint32_t design, Outcome& outcome) {
     if (wanted_.first_jump_time) found.first_time = clock_.time(block_, design, found.first_angle);
     found.first_on_leg = false;
   }
-  if (take_off_.told) take_off_.told->turns.push_back(static_cast<double>(found.way * found.turn + found.turned_back));
+  if (take_off_.told)
+    take_off_.told->turns.push_back(static_cast<double>(found.way * found.turn + found.turned_back));
   found.jump_angle = std::numeric_limits<ScalarOf<T>>::quiet_NaN();
   turning_.push_back(design), unscanned_.push_back(design), going_on_.push_back(design);
 }
@@ -127,7 +129,8 @@ void ExactSolver<T>::take_times(std::span<Outcome> outcomes) {
     }
   }
   clock_.read(block_, readings_);
-  for (const auto& reading : readings_) note_time(outcomes[reading.design], &Outcome::jump_time, reading.time);
+  for (const auto& reading : readings_)
+    note_time(outcomes[reading.design], &Outcome::jump_time, reading.time);
 }
 
 #ifdef LEAPMAP_KERNELS

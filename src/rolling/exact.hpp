@@ -14,7 +14,8 @@ namespace leapmap {
 
 /// Solves designs a block at a time, in stages on full lanes: prepare all designs; scan them for intervals
 /// that may hold a lift-off; classify, take off from and fly the next one of each design still searching,
-/// until it jumps, its runway ends, or it has turned round twice and repeats itself; land, and clock the times that are asked for.
+/// until it jumps, its runway ends, or it has turned round twice and repeats itself; land, and clock the
+/// times that are asked for.
 ///
 /// On any scalar: double; Batch, as many designs at once as the machine has lanes; long double, the tests'
 /// reference. A thread's own workspace. An outcome depends on the design and the scene; its times also,

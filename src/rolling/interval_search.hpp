@@ -45,9 +45,9 @@ struct IntervalSearch {
   int turn, node, halvings;
   std::uint64_t part;
 
-  /// Begins at the release, or where the hoop turned round, `from`, to end at `to`. past: the scan's first node
-  /// past the release; on_node: whether that is the same place; above: whether G > 0 there; back: `to` is where
-  /// the design set out.
+  /// Begins at the release, or where the hoop turned round, `from`, to end at `to`. past: the scan's first
+  /// node past the release; on_node: whether that is the same place; above: whether G > 0 there; back: `to`
+  /// is where the design set out.
   void begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past, bool on_node,
              bool above, bool back);
 
@@ -102,9 +102,9 @@ void IntervalSearch<S>::take(const ScanFlags& scanned, const NodeSigns& signs, s
   hand_on_signs(signs, lane, turns);
 }
 
-/// At the release G has the sign that was told, and at a scan's first node the sign that the scan before found
-/// there. Where this scan's sign differs, by rounding or because G has a root before the release, the interval
-/// from there on is looked at.
+/// At the release G has the sign that was told, and at a scan's first node the sign that the scan before
+/// found there. Where this scan's sign differs, by rounding or because G has a root before the release, the
+/// interval from there on is looked at.
 template <class S>
 void IntervalSearch<S>::hand_on_signs(const NodeSigns& signs, std::size_t lane, int turns) {
   constexpr auto nodes = static_cast<std::size_t>(nodes_a_turn);

@@ -36,7 +36,8 @@ void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, 
     end = select(turns, turn, end);
   }
   // How near E comes to zero on the way, for the clock.
-  T lowest = smaller(least, vis_viva_past_release(roll, RollingTime<T>::first_panel(roll) * pi - roll.release)),
+  T lowest =
+        smaller(least, vis_viva_past_release(roll, RollingTime<T>::first_panel(roll) * pi - roll.release)),
     minimum = ahead.angle;
   if (any(roll.release < leg.release.release)) {
     minimum = first_minimum(roll).angle;
@@ -101,7 +102,7 @@ void turn_round(Block<T>& block, const DesignList& designs, const Scene& scene) 
   }
 }
 
-#define LEAPMAP_INSTANTIATE(T)                                                                        \
+#define LEAPMAP_INSTANTIATE(T)                                                                   \
   template void begin_leg<T>(Block<T>&, const DesignLanes<T>&, std::size_t, const LegStart<T>&); \
   template void turn_round<T>(Block<T>&, const DesignList&, const Scene&);
 #ifdef LEAPMAP_KERNELS

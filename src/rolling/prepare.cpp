@@ -25,9 +25,9 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<T>& bloc
       for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = S(designs[index[i]].*member);
       return Lanes<T>::load(lanes.data());
     };
-    const Hoop<T> hoop = derive(parameter(&Design::slope), parameter(&Design::mass_ratio),
-                                parameter(&Design::offset_ratio), parameter(&Design::inertia_factor),
-                                parameter(&Design::drive_torque));
+    const Hoop<T> hoop =
+        derive(parameter(&Design::slope), parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
+               parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
     const T spin = parameter(&Design::release_spin);
     // A release many turns from 0 is taken back to the first, so that angles have digits to spare.
     const T release_angle = parameter(&Design::release_angle);

@@ -193,7 +193,8 @@ bool Integration<Model>::settle(Rolling& rolling) {
       step, looks, rolling.force, [&](const State<D>& y) { return normal_force_at(y); }, state_at,
       lift_offs_);
   // The spin falls to zero on the way down, and rises to it on the way up. A step with both is too long.
-  const double way = rolling.spin.value > 0.0 || (rolling.spin.value == 0.0 && rolling.spin.rate > 0.0) ? 1.0 : -1.0;
+  const double way =
+      rolling.spin.value > 0.0 || (rolling.spin.value == 0.0 && rolling.spin.rate > 0.0) ? 1.0 : -1.0;
   const Sample<double> begin{way * rolling.spin.value, way * rolling.spin.rate};
   const Sample<double> spin = find_falls(
       step, looks, begin,
@@ -242,7 +243,8 @@ Outcome Integration<Model>::roll(const Design& design, const Scene& scene, const
     rolling.outcome.status = Status::stalled;
     return rolling.outcome;
   }
-  if (!integrator_.start(release, 0.01 / (1.0 + std::abs(rolling.spin.value)))) return failed_outcome(no_step);
+  if (!integrator_.start(release, 0.01 / (1.0 + std::abs(rolling.spin.value))))
+    return failed_outcome(no_step);
   for (long taken = 0; taken < options_.max_steps; ++taken) {
     if (!advance()) return failed_outcome(no_step);
     if (settle(rolling)) return rolling.outcome;

@@ -37,9 +37,8 @@ class Integration {
   Integration(const Integration&) = delete;
   Integration& operator=(const Integration&) = delete;
 
-  /// Rolls the design until its jump or the end of the runway, or until it has turned round twice and comes to
-  /// where it set out. Never throws for a bad design: what
-  /// the method cannot do has status failed.
+  /// Rolls the design until its jump or the end of the runway, or until it has turned round twice and comes
+  /// to where it set out. Never throws for a bad design: what the method cannot do has status failed.
   Outcome solve(const Design& design, const Scene& scene, const Observer& observer = {});
 
   /// How often the acceleration was asked for so far, by the stepper and by the search for events.

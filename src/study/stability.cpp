@@ -107,7 +107,8 @@ std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
     for (std::size_t i = 0; i < expected.size(); ++i) {
       if (stop_requested && stop_requested()) return rows;
       const StabilitySubject& subject = stability_case.subjects[i];
-      const Solving solving = model_of(subject.scene).solving(contestant, subject.scene, stability_case.max_steps);
+      const Solving solving =
+          model_of(subject.scene).solving(contestant, subject.scene, stability_case.max_steps);
       Outcome outcome;
       const auto begin = Clock::now();
       solving.solve({&subject.design, 1}, {&outcome, 1});
@@ -118,9 +119,9 @@ std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
           {stability_case.name, stability_case.abscissa, contestant.method,
            contestant.fixed_step ? "step" : "tolerance", contestant.setting,
            stability_case.walks_settings ? contestant.setting : subject.x, error,
-           model_of(subject.scene).slips ? nan : energy_drift(subject.design, outcome),
-           expected[i].condition, solving.evaluations ? static_cast<double>(solving.evaluations()) : nan,
-           seconds, outcome.failure ? outcome.failure : "",
+           model_of(subject.scene).slips ? nan : energy_drift(subject.design, outcome), expected[i].condition,
+           solving.evaluations ? static_cast<double>(solving.evaluations()) : nan, seconds,
+           outcome.failure ? outcome.failure : "",
            finding_of(outcome, expected[i], error, asked_of(contestant)), expected[i].truth.witness});
     }
   }

@@ -14,8 +14,8 @@
 
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
-#include "trajectory/contestant.hpp"
 #include "study/truth.hpp"
+#include "trajectory/contestant.hpp"
 
 namespace leapmap {
 

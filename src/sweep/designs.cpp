@@ -60,7 +60,8 @@ void DesignSpace::fill(const Tile& tile, std::span<Design> designs) const {
 
 std::string told_design(const Spec& spec, std::size_t number) {
   const bool named = spec.axes.empty() && number < spec.list.labels.size();
-  return named ? fmt::format("{} ({})", number, printable(spec.list.labels[number])) : fmt::format("{}", number);
+  return named ? fmt::format("{} ({})", number, printable(spec.list.labels[number]))
+               : fmt::format("{}", number);
 }
 
 std::string hop_command(const Spec& spec, const Design& design) {

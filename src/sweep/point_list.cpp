@@ -53,8 +53,8 @@ const Option* column_option(const std::string& place, std::string_view name) {
   if (found == parameters.end()) {
     std::vector<std::string_view> keys;
     for (const Option* parameter : parameters) keys.push_back(parameter->key);
-    throw InputError(fmt::format("{}: column '{}' is not a parameter of a design; allowed: {}, {}", place, name, label_name,
-                                 fmt::join(keys, ", ")));
+    throw InputError(fmt::format("{}: column '{}' is not a parameter of a design; allowed: {}, {}", place,
+                                 name, label_name, fmt::join(keys, ", ")));
   }
   return *found;
 }

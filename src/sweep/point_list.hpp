@@ -9,8 +9,9 @@
 namespace leapmap {
 
 /// Reads a list of designs. The header names parameters of a design; each line below holds one number for
-/// each (angles in rad, or written "23 deg"), and what stands in a column `label` names the design; origin, the spec's file, is for messages. Throws InputError naming line and column,
-/// IoError if the file cannot be read.
+/// each (angles in rad, or written "23 deg"), and what stands in a column `label` names the design; origin,
+/// the spec's file, is for messages. Throws InputError naming line and column, IoError if the file cannot be
+/// read.
 PointList read_points(const std::string& path, const std::string& origin);
 
 }  // namespace leapmap

@@ -53,7 +53,8 @@ struct Solving {
   std::function<double(const Design&)> drift;
 };
 
-/// How a contestant that integrates in time does so. max_steps: a design that needs more is given up as failed.
+/// How a contestant that integrates in time does so. max_steps: a design that needs more is given up as
+/// failed.
 IntegrationOptions options_of(const Contestant& contestant, long max_steps);
 
 }  // namespace leapmap

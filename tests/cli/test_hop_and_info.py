@@ -30,9 +30,26 @@ def test_json_is_nothing_but_data_under_the_maps_names():
 
 def test_every_parameter_has_a_flag_that_beats_the_spec():
     hop = json.loads(leapmap("hop", TOP / "sweeps/paper.toml", "--json", "--slope", "30deg", "--mass-ratio", "3", "--offset-ratio",
-                             "0.9", "--inertia-factor", "0.8", "--release-angle", "170 deg", "--release-spin", "0.1").stdout)
+                             "0.9", "--inertia-factor", "0.8", "--release-angle", "170 deg", "--release-spin", "0.1", "--drive-torque", "0.2").stdout)
     assert hop["design"] == pytest.approx({"slope": math.radians(30), "mass_ratio": 3, "offset_ratio": 0.9, "inertia_factor": 0.8,
-                                           "release_angle": math.radians(170), "release_spin": 0.1})
+                                           "release_angle": math.radians(170), "release_spin": 0.1, "drive_torque": 0.2})
+
+
+def test_a_driven_hoop_is_told_with_what_its_motor_must_have():
+    driven = ["hop", "--slope", "0", "--release-angle", "0", "--drive-torque", "0.6", "--mass-ratio", "3"]
+    hop = json.loads(leapmap(*driven, "--mass", "0.1", "--json").stdout)
+    motor, R, g = hop["motor"], 0.041, 9.81
+    assert hop["status"] == "jumped" and motor["torque"] == pytest.approx(0.6 * 0.1 * g * R)
+    # Rolling without slip it works all the way to the lift-off: torque times angle, but for the last of 4,000 samples.
+    assert motor["work"] == pytest.approx(motor["torque"] * hop["jump_angle"], rel=2e-3)
+    fastest = max(abs(f["spin"]) for f in hop["lift_offs"]) / math.sqrt(R / g)
+    assert motor["rpm"] >= 0.999 * fastest * 30 / math.pi and motor["power"] == pytest.approx(motor["torque"] * motor["rpm"] * math.pi / 30)
+    twice = json.loads(leapmap(*driven, "--mass", "0.2", "--json").stdout)["motor"]
+    assert twice["torque"] == pytest.approx(2 * motor["torque"]) and twice["rpm"] == motor["rpm"]
+    assert "The motor, for hoop and weight of 0.0282 kg (another by --mass)" in leapmap(*driven).stdout
+    idle = leapmap("hop", "--mass", "0.1")
+    assert idle.returncode == 2 and "--drive-torque" in idle.stderr and idle.stderr.count("\n") == 1
+    assert "motor" not in json.loads(leapmap("hop", "--json").stdout)
 
 
 def test_a_hop_is_what_the_map_says_of_the_same_design(tmp_path):

@@ -108,8 +108,7 @@ TEST(RollingIntegration, AHoopThatStartsUphillTurnsRound) {
   design.release_spin = -0.1;
   EXPECT_EQ(testing::solve(design).status, Status::jumped);
   design.release_spin = 0.0;
-  design.release_angle =
-      0.2;  // at rest between two angles of rest it rocks to and fro
+  design.release_angle = 0.2;  // at rest between two angles of rest it rocks to and fro
   design.slope = 0.01;
   EXPECT_EQ(testing::solve(design).status, Status::stalled);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Hoops that turn round, and hoops driven by a motor: method against method, limits, symmetries. The tables are
-/// in exact_test and reference_tables_test. LEAPMAP_RANDOM_DESIGNS: how many.
+/// Hoops that turn round, and hoops driven by a motor: method against method, limits, symmetries. The tables
+/// are in exact_test and reference_tables_test. LEAPMAP_RANDOM_DESIGNS: how many.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -32,7 +32,8 @@ double difference(const Outcome& a, const Outcome& b) {
   for (double Outcome::*field :
        {&Outcome::jump_height, &Outcome::jump_time, &Outcome::jump_angle, &Outcome::jump_spin,
         &Outcome::jump_distance, &Outcome::first_jump_time, &Outcome::flight_time})
-    if (!std::isnan(a.*field)) most = std::max(most, std::abs(a.*field - b.*field) / (1.0 + std::abs(a.*field)));
+    if (!std::isnan(a.*field))
+      most = std::max(most, std::abs(a.*field - b.*field) / (1.0 + std::abs(a.*field)));
   return most;
 }
 
@@ -158,8 +159,10 @@ TEST(Turning, SeenFromBehindEverythingIsTheSame) {
          {&Design::slope, &Design::release_angle, &Design::release_spin, &Design::drive_torque})
       behind.*member = -(design.*member);
     for (const bool friction : {false, true}) {
-      const Outcome a = friction ? coulomb.solve(design, slips) : testing::solve_all<Batch>({design}, {}, 1e-10)[0],
-                    b = friction ? coulomb.solve(behind, slips) : testing::solve_all<Batch>({behind}, {}, 1e-10)[0];
+      const Outcome a = friction ? coulomb.solve(design, slips)
+                                 : testing::solve_all<Batch>({design}, {}, 1e-10)[0],
+                    b = friction ? coulomb.solve(behind, slips)
+                                 : testing::solve_all<Batch>({behind}, {}, 1e-10)[0];
       ASSERT_TRUE(same_flags(a, b)) << testing::told(design);
       if (a.status != Status::jumped) continue;
       ++jumps;
@@ -173,9 +176,9 @@ TEST(Turning, SeenFromBehindEverythingIsTheSame) {
   EXPECT_GT(jumps, 200);
 }
 
-/// A motor of torque sin(theta) on level ground does to the energy what the slope does, over the same distance
-/// from a release turned by theta. The inertia about the contact is that of another angle, so that spins, times
-/// and forces are others.
+/// A motor of torque sin(theta) on level ground does to the energy what the slope does, over the same
+/// distance from a release turned by theta. The inertia about the contact is that of another angle, so that
+/// spins, times and forces are others.
 TEST(Drive, AMotorOnLevelGroundIsASlopeToTheEnergyAndToNothingElse) {
   Design slope;
   Design level = slope;
@@ -185,7 +188,8 @@ TEST(Drive, AMotorOnLevelGroundIsASlopeToTheEnergyAndToNothingElse) {
     return begin_roll(derive<double>(design), design.release_angle, design.release_spin);
   };
   for (const double x : {0.1, 1.0, 3.0, 10.0, 25.0})
-    EXPECT_NEAR(vis_viva_past_release(roll_of(slope), x), vis_viva_past_release(roll_of(level), x), 1e-13) << x;
+    EXPECT_NEAR(vis_viva_past_release(roll_of(slope), x), vis_viva_past_release(roll_of(level), x), 1e-13)
+        << x;
   const Outcome down = testing::solve_all<Batch>({slope}, unit_scene(), 1e-12)[0],
                 driven = testing::solve_all<Batch>({level}, unit_scene(), 1e-12)[0];
   ASSERT_EQ(down.status, Status::jumped);

@@ -28,7 +28,8 @@ inline std::vector<Outcome> reference(const std::vector<Design>& designs, const 
 
 inline std::string told(const Design& d) {
   return fmt::format(
-      "slope {} mass_ratio {} offset_ratio {} inertia_factor {} release_angle {} release_spin {} drive_torque "
+      "slope {} mass_ratio {} offset_ratio {} inertia_factor {} release_angle {} release_spin {} "
+      "drive_torque "
       "{}",
       d.slope, d.mass_ratio, d.offset_ratio, d.inertia_factor, d.release_angle, d.release_spin,
       d.drive_torque);
