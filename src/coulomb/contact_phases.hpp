@@ -98,19 +98,23 @@ class PhaseSequence {
   int count_ = 0;
 };
 
-/// Sees a hoop rock to rest. The plane is the same everywhere, so that at rest there is nothing but the angle
-/// to tell one swing from another: once every phase of a cycle comes again in its place with less spin, the
-/// next cycle is smaller again. Cycles of 2, 3, 4, 6 or 12 phases are seen, and only after those that
-/// phase_sequence holds.
+/// Sees a hoop rock to rest: every phase of a cycle comes again in its place with less spin, and what a cycle
+/// travels shrinks so fast that all that is left of it is next to nothing. The plane is the same everywhere,
+/// so that there is nothing but the angle to tell one swing from another. Cycles of 2, 3, 4, 6 or 12 phases
+/// are seen, and only after those that phase_sequence holds.
 class Rocking {
  public:
   /// Looks at a phase as it begins; direction: of sliding. True: it rocks to rest.
-  bool settles(Phase phase, int direction, double angle, double spin) {
-    const Begun now{phase, direction, angle, spin};
+  bool settles(Phase phase, int direction, double travel, double angle, double spin) {
+    Begun now{phase, direction, travel, angle, spin, HUGE_VAL};
     Begun& before = cycle_[static_cast<std::size_t>(count_ % cycle)];
-    const bool again = count_ >= cycle && phase != Phase::flight && before.phase == phase &&
+    if (count_ >= cycle) now.drift = std::abs(travel - before.travel);
+    const double share = now.drift / before.drift;  // of the drift of a cycle that the next one has
+    const bool again = count_ >= 2 * cycle && phase != Phase::flight && before.phase == phase &&
                        before.direction == direction && before.spin * spin > 0.0 &&
-                       std::abs(spin) < std::abs(before.spin) && std::abs(angle - before.angle) < 1.0;
+                       std::abs(spin) < std::abs(before.spin) && share < 1.0 &&
+                       now.drift * share / (1.0 - share) < nothing &&
+                       std::abs(angle - before.angle) < nothing;
     shrinking_ = again ? shrinking_ + 1 : 0;
     before = now;
     ++count_;
@@ -119,10 +123,11 @@ class Rocking {
 
  private:
   static constexpr int cycle = 12;
+  static constexpr double nothing = 0.1;  // [R, rad]
   struct Begun {
     Phase phase{};
     int direction = 0;
-    double angle = 0.0, spin = 0.0;
+    double travel = 0.0, angle = 0.0, spin = 0.0, drift = 0.0;
   };
   std::array<Begun, cycle> cycle_{};
   int count_ = 0, shrinking_ = 0;

@@ -101,8 +101,8 @@ class PhaseMachine {
  private:
   void begin(Phase phase, int direction) {
     sequence_.append(phase);
-    settles_ =
-        rocking_.settles(phase, direction, static_cast<double>(at_.angle), static_cast<double>(at_.spin));
+    settles_ = rocking_.settles(phase, direction, static_cast<double>(at_.travel),
+                                static_cast<double>(at_.angle), static_cast<double>(at_.spin));
     if (observer_.phase) observer_.phase(phase, in_double(at_), direction);
   }
 
@@ -140,12 +140,12 @@ class PhaseMachine {
   /// Flies, and lands unless that was it. Returns how the design ends, or not_computed if it goes on as
   /// `next`.
   Status fly_and_land(ContactPhase& next) {
-    begin(Phase::flight, 0);
     const LiftOff<S> lift_off{at_.time, at_.angle, at_.spin};
     const Flight<S> flight = at_.normal > S(0) ? fly_off(hoop_, lift_off, at_.normal) : fly(hoop_, lift_off);
-    const bool jumps = look_at(lift_off, flight);
     const Trig<S> phi = trig(at_.angle);
     if (sinks_without_motor(flight, phi)) return Status::indeterminate;
+    begin(Phase::flight, 0);
+    const bool jumps = look_at(lift_off, flight);
     const Sample<S> travel = travel_in_flight(hoop_, phi, at_.spin, at_.slip, flight.flight_time);
     const S climb = height_above_plane(hoop_, phi, at_.spin, flight.flight_time, at_.normal).rate;
     at_.time += flight.flight_time;

@@ -99,14 +99,16 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
     if (back) end = PhaseEnd::stalls, angle = roll.release;
     S x = angle - begin.release, taken(0);
     if (end == PhaseEnd::stalls) {
-      for (int k = 0; k < 2; ++k) {  // near the beginning E is known better than the angle
-        const S push = torque(seen_hoop, trig(S(begin.release + x))),
-                next = x - vis_viva_past_release(begin, x) / (S(2) * push);
-        if (push < S(0) && next >= S(0) && std::abs(next - x) < S(1e-12)) x = next;
+      for (int k = 0; k < 3 && !back; ++k) {  // near the beginning E is known better than the angle
+        const S push = torque(seen_hoop, trig(S(begin.release + x)));
+        const S next = std::max(S(0), x - vis_viva_past_release(begin, x) / (S(2) * push));
+        if (push < S(0) && std::abs(next - x) < S(1e-12)) x = next;
       }
-      if (turned == 0) taken = x > S(0) ? duration_to_rest(begin, x) : S(0);
+      angle = begin.release + x;
+      if (turned == 0 && x > S(0)) taken = duration_to_rest(begin, x);
     } else if (x > S(0)) {
       taken = duration(begin, x);
+      if (std::isnan(taken)) taken = duration_near_rest(begin, x);
     }
     at.travel += way * x;
     at.angle = way * angle;
@@ -164,6 +166,18 @@ template <class S>
 S RollingLeg<S>::duration_to_rest(const Roll<S>& roll, const S& length) const {
   const Roll<S> back = begin_roll(seen(roll.hoop, S(-1)), S(-(roll.release + length)), S(0));
   return duration(roll, S(length * S(0.5))) + duration(back, S(length * S(0.5)));
+}
+
+/// The same to an angle just before the hoop would turn round, where E nearly vanishes. NaN: it would not.
+template <class S>
+S RollingLeg<S>::duration_near_rest(const Roll<S>& roll, const S& length) const {
+  const FirstMinimum<S> ahead = first_minimum(roll);
+  const S least = vis_viva_past_release(roll, S(ahead.angle - roll.release));
+  if (!ahead.is_real || least > S(0)) return std::numeric_limits<S>::quiet_NaN();
+  const S whole = std::max(turning_distance(roll, ahead, true), length);
+  const Roll<S> back = begin_roll(seen(roll.hoop, S(-1)), S(-(roll.release + whole)), S(0));
+  const S rest = whole - length;
+  return duration_to_rest(roll, whole) - (rest > S(0) ? duration(back, rest) : S(0));
 }
 
 template <class S>

@@ -38,6 +38,7 @@ class RollingLeg {
 
   LegEnd<S> first_end(const Roll<S>& roll, const Roll<S>& begin, const S& mu_static, const S& last) const;
   S duration_to_rest(const Roll<S>& roll, const S& length) const;
+  S duration_near_rest(const Roll<S>& roll, const S& length) const;
   S duration(const Roll<S>& roll, const S& length) const;
   /// enough: an error that does not matter.
   S duration(const Roll<S>& roll, const S& shift, const S& from, const S& to, const S& enough, int halvings,

@@ -127,10 +127,10 @@ T turning_distance(const Roll<T>& roll, const FirstMinimum<T>& first, const Mask
   const T from = larger(first.summit - roll.release, T(0)), to = first.angle - roll.release;
   const T resolution = T(ScalarOf<T>(4) * std::numeric_limits<ScalarOf<T>>::epsilon()) * larger(T(1), to);
   T x = polish_root(vis_viva_at, from, to, T(0.5) * (from + to), wanted & !wanted, resolution, wanted);
-  for (int k = 0; k < 2; ++k) {  // near the release E is known better than the angle
+  for (int k = 0; k < 3; ++k) {  // near the release E is known better than the angle
     const Sample<T> E = vis_viva_at(x);
-    const T next = x - E.value / E.rate;
-    x = select((E.rate < T(0)) & (next >= from) & (next <= to) & (abs(next - x) <= resolution), next, x);
+    const T next = larger(from, smaller(x - E.value / E.rate, to));
+    x = select((E.rate < T(0)) & (abs(next - x) <= T(ScalarOf<T>(1e-12L)) * larger(T(1), to)), next, x);
   }
   return x;
 }

@@ -137,7 +137,8 @@ Outcome Referee::solve_sticking() {
   const bool from_rest = at_.spin == 0.0;
   if (from_rest && released.phi == 0.0) return ended(Status::stalled);
   const double runway = 2.0 * std::numbers::pi * scene_.runway * scene_.radius;
-  for (int turns = 0; turns < 3; ++turns) {
+  double side = 0.0;  // where it turned first
+  for (int turns = 0;; ++turns) {
     const double sets_out = at_.spin != 0.0 ? at_.spin : forces_of(body, rolls, at_).phi;
     const double way = std::copysign(1.0, sets_out);
     std::vector<Guard> guards{[&](const Motion& at) { return forces_of(body, rolls, at).normal; },
@@ -156,9 +157,11 @@ Outcome Referee::solve_sticking() {
     if (!follow(rolls, guards, happens) || gave_up) return failed_outcome("the referee gave up");
     if (!turned) return outcome_;
     at_.spin = 0.0;
-    if (turns == 1 && from_rest) return ended(Status::stalled);  // it is back at the release
+    // From rest, or nearly, the second or third turn is at the release, or short of it by the method's error.
+    if (turns == 0) side = at_.x;
+    if (turns == 2 || (turns == 1 && (from_rest || (at_.x > 0.0) == (side > 0.0))))
+      return ended(Status::stalled);
   }
-  return failed_outcome("the referee gave up");
 }
 
 }  // namespace leapmap::referee

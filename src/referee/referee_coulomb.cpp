@@ -123,13 +123,13 @@ Outcome Referee::solve_coulomb(const Design& design) {
         continue;
       }
     }
-    begin(Phase::flight);
     const Flown flown = fly(body, at_);
     if (flown.failed) return ended(Status::failed);
     const double held_down = body.mass() * body.g * std::cos(body.slope) +
                              body.m_p * body.L * std::cos(at_.phi) * at_.spin * at_.spin;
     if (body.motor != 0.0 && !(flown.landing_time > 0.0) && held_down > 1e-9 * body.mass() * body.g)
       return ended(Status::indeterminate);  // the motor alone lifted it off, and idles in flight
+    begin(Phase::flight);
     const bool jumps = count_lift_off(flown);
     if (jumps) outcome_.energy_lost = (released + driven - energy(body, at_)) / (body.mass() * body.g * R);
     Motion landed = flying(body, at_, flown.landing_time);

@@ -57,6 +57,9 @@ struct Block {
         jump_angle;     ///< of the lift-offs so far: the first one, and the last one on this leg or NaN
     bool first_on_leg;  ///< the first one is on this leg, or there is none yet
     S first_time;       ///< else its time
+
+    /// Whether the leg ends where the design set out: from rest it turns there a second time.
+    bool returns() const { return leg == 3 || (leg == 2 && turns && released == S(0)); }
   };
 
   std::vector<IntervalSearch<S>> searches = std::vector<IntervalSearch<S>>(most_designs);

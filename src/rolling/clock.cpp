@@ -19,8 +19,7 @@ void Clock<T>::start(const Block<T>& block, const DesignList& designs) {
     const T panel = time_.first_panel(roll), span = panel * T(pi_of<S>) - roll.release,
             time = time_.stretch(roll, quiet, needed, span, hard);
     const unsigned by_halving = Lanes<T>::bits(hard);
-    LaneArray<T> before{};
-    start_after_turns(block, index, count, roll, quiet, needed, span, before);
+    const LaneArray<T> before = before_legs(block, index, roll, quiet, needed, span, hard);
     const auto panels = lanes_of(panel), times = lanes_of(time), panel_nodes = lanes_of(needed.panel),
                rest_nodes = lanes_of(needed.rest);
     for (std::size_t i = 0; i < count; ++i)
@@ -32,28 +31,28 @@ void Clock<T>::start(const Block<T>& block, const DesignList& designs) {
   }
 }
 
-/// Fills in how long the legs before took, of those that have turned once, where that is not long.
+/// How long the legs before took. A short way back from the first turn is timed in lanes, unless it is hard.
 template <class T>
-void Clock<T>::start_after_turns(const Block<T>& block, const DesignLanes<T>& index, std::size_t count,
-                                 const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
-                                 const T& span, LaneArray<T>& before) {
-  LaneArray<T> reaches;
+LaneArray<T> Clock<T>::before_legs(const Block<T>& block, const DesignLanes<T>& index, const Roll<T>& roll,
+                                   const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& span,
+                                   MaskOf<T> hard) {
+  LaneArray<T> before{}, reaches;
   bool turned = false;
   for (std::size_t i = 0; i < reaches.size(); ++i) {
     const auto& found = block.found[index[i]];
-    reaches[i] = found.leg == 2 ? found.reach : S(1);
+    reaches[i] = found.leg == 2 ? found.reach : S(0.1L);
     turned = turned || found.leg > 1;
   }
-  if (!turned) return;
+  if (!turned) return before;
   const T reach = Lanes<T>::load(reaches.data());
-  MaskOf<T> hard = !(reach <= span);
-  before = lanes_of(time_.stretch(roll, quiet, needed, smaller(reach, span), hard));
+  hard = hard | !(reach <= span);
+  const auto back = lanes_of(time_.stretch(roll, quiet, needed, smaller(reach, span), hard));
   const unsigned by_halving = Lanes<T>::bits(hard);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < before.size(); ++i) {
     const int leg = block.found[index[i]].leg;
-    if (leg == 1) before[i] = S(0);
-    if (leg == 3 || (leg == 2 && (by_halving >> i & 1u))) before[i] = before_leg(block, index[i]);
+    if (leg > 1) before[i] = leg == 2 && !(by_halving >> i & 1u) ? back[i] : before_leg(block, index[i]);
   }
+  return before;
 }
 
 /// From the release to the beginning of the leg. Both halves of a leg that ends at rest are timed from its

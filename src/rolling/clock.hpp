@@ -61,9 +61,9 @@ class Clock {
   S halve(const Block<T>& block, std::uint32_t design, const S& angle) const {
     return time_.halving(block.template load_roll<S>(&design), angle);
   }
-  void start_after_turns(const Block<T>& block, const DesignLanes<T>& index, std::size_t count,
-                         const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
-                         const T& span, LaneArray<T>& before);
+  LaneArray<T> before_legs(const Block<T>& block, const DesignLanes<T>& index, const Roll<T>& roll,
+                           const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& span,
+                           MaskOf<T> hard);
   S before_leg(const Block<T>& block, std::uint32_t design) const;
   static Together together(const std::vector<Part>& parts, std::size_t first);
   void sort(std::vector<Part>& parts);

@@ -82,10 +82,8 @@ void ExactSolver<T>::pick_intervals(std::span<Outcome> outcomes) {
 template <class T>
 void ExactSolver<T>::end_leg(std::uint32_t design, Outcome& outcome) {
   auto& found = block_.found[design];
-  // From rest the second turn is at the release.
-  const bool over = found.leg == 3 || (found.leg == 2 && found.released == ScalarOf<T>(0));
-  if (over || !found.turns) {
-    outcome.status = over && (found.turns || found.leg == 3) ? Status::stalled : Status::no_jump;
+  if (found.returns() || !found.turns) {
+    outcome.status = found.returns() ? Status::stalled : Status::no_jump;
     return;
   }
   if (outcome.candidates > 0 && found.first_on_leg) {

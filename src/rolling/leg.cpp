@@ -6,16 +6,6 @@
 #include <limits>
 
 namespace leapmap {
-namespace {
-
-/// Whether the leg ends where the design set out: from rest it turns there a second time.
-template <class T>
-bool returns(const typename Block<T>::Found& found) {
-  return found.leg == 3 || (found.leg == 2 && found.turns && found.released == ScalarOf<T>(0));
-}
-
-}  // namespace
-
 template <class T>
 void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, const LegStart<T>& leg) {
   using S = ScalarOf<T>;
@@ -32,7 +22,8 @@ void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, 
   if (any(runs_down)) {
     reach = turning_distance(leg.release, ahead, runs_down);
     const T turn = leg.release.release + reach;
-    turns = runs_down & (turn < end);
+    // At the runway's end but for rounding it turns, too.
+    turns = runs_down & (turn - end <= T(S(8) * std::numeric_limits<S>::epsilon()) * larger(T(1), abs(end)));
     end = select(turns, turn, end);
   }
   // How near E comes to zero on the way, for the clock.
@@ -64,7 +55,7 @@ void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, 
     if (found.leg == 1) found.reach = reaches[i];
     block.searches[index[i]].begin(starts[i], ends[i], first_turns[i],
                                    static_cast<std::uint32_t>(past_start[i]), on_node >> i & 1u,
-                                   is_above >> i & 1u, returns<T>(found));
+                                   is_above >> i & 1u, found.returns());
   }
 }
 

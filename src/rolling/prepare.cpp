@@ -38,7 +38,7 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<T>& bloc
     }
     const Trig<T> phi = trig(nearest);
     const T force = normal_force(hoop, phi, spin, angular_acceleration(hoop, phi, spin)),
-            setting_out = select(spin == T(0), torque(hoop, phi), spin);
+            setting_out = select(spin * spin == T(0), torque(hoop, phi), spin);
     const T way = select(setting_out < T(0), T(-1), T(1));
     const Roll<T> roll = begin_roll(seen(hoop, way), way * nearest, way * spin);
 

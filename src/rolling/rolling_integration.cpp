@@ -170,8 +170,10 @@ double Integration<Model>::end_of_way(Rolling& rolling) {
   for (const Fall<D>& turn : turns_.falls) {
     if (const double end = part(turn.tau, model.angle(turn.state) - release); end < HUGE_VAL) return end;
     ++rolling.turns;
-    // From rest the second turn is at the release.
-    if (rolling.turns == 2 && rolling.design.release_spin == 0.0) {
+    if (rolling.turns == 1) rolling.side = travelled;
+    // From rest, or nearly, the second or third turn is at the release, or short of it by the method's error.
+    const bool same_side = (travelled > 0.0) == (rolling.side > 0.0);
+    if (rolling.turns == 3 || (rolling.turns == 2 && (same_side || rolling.design.release_spin == 0.0))) {
       rolling.outcome.status = Status::stalled;
       return turn.tau;
     }

@@ -59,6 +59,7 @@ class Integration {
     double energy, runway;       ///< runway: how far from the release, either way
     Sample<double> force, spin;  ///< at the end of the step before
     int turns = 0;
+    double side = 0.0;  ///< where it turned first, from the release
     Outcome outcome{};
   };
 

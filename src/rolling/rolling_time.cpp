@@ -70,7 +70,7 @@ NodesNeeded<T> RollingTime<T>::needed(const Roll<T>& roll, const Quiet<T>& quiet
   const T per_rho = T(1) / (T(2) * roll.hoop.rho);
   NodesNeeded<T> nodes;
   nodes.needle = sqrt(square_acosh(roll.hoop.J_min * per_rho));
-  nodes.strip = sqrt(square_acosh(quiet.vis_viva * per_rho));
+  nodes.strip = sqrt(square_acosh(larger(quiet.vis_viva, T(0)) * per_rho));
   const auto for_length = [&](const S& length) {
     const T per_half = T(S(2) / length);
     return nodes_for(smaller(square_growth_beside_end(nodes.needle * per_half),

@@ -25,7 +25,7 @@ namespace leapmap {
 inline constexpr int parts_a_panel = 16;  ///< a panel is a half-turn; the rest is shorter than a part
 
 /// E's first minimum after the release, or where it rises least if it has none; `vis_viva` is at most E there
-/// and from the first panel on.
+/// and from the first panel on. Not above zero: the way is to be timed by halving.
 template <class T>
 struct Quiet {
   T vis_viva;

@@ -26,7 +26,8 @@ void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Sce
     const T angle = polish_root([&](const T& x) { return lift(roll, x); }, a, b, guess, !all_lanes,
                                 T(2) * epsilon * larger(T(1), abs(b)), all_lanes);
     const Trig<T> phi = trig(angle);
-    const T spin = sqrt(vis_viva(roll, angle, phi) / contact_inertia(roll.hoop, phi));
+    // Beside a turn E may round to nothing.
+    const T spin = sqrt(larger(vis_viva(roll, angle, phi), T(1e-290)) / contact_inertia(roll.hoop, phi));
     const Ascent<T> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), all_lanes);
     const T height = T(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
     const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
