@@ -52,7 +52,7 @@ H5FD_t* open(const char* name, unsigned, hid_t access, haddr_t) {
     return nullptr;
   }
   auto* opened = new (std::nothrow) Driver;
-  if (opened) opened->file = *target->file;
+  opened ? void(opened->file = *target->file) : (*target->file)->note_failure("out of memory");
   return opened;
 }
 

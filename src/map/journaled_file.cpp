@@ -41,6 +41,11 @@ void JournaledFile::attempt(const F& f) const {
   }
 }
 
+void JournaledFile::note_failure(const char* what) const {
+  if (!failed_) failure_ = what;
+  failed_ = true;
+}
+
 void JournaledFile::rethrow_failure() const {
   if (failed_) throw IoError(failure_.empty() ? path_ + ": failed before" : failure_);
 }

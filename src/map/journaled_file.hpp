@@ -46,6 +46,8 @@ class JournaledFile {
   JournaledFile(const JournaledFile&) = delete;
   JournaledFile& operator=(const JournaledFile&) = delete;
 
+  /// Something beside its calls failed: nothing more is to be believed of it.
+  void note_failure(const char* what) const;
   /// Throws the first failure again, if there was one: for a reader that took it for the file's.
   void rethrow_failure() const;
   /// Bytes from offset on, as last written; beyond the end: 0. Throws IoError.
