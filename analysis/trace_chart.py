@@ -129,6 +129,8 @@ def caption(trace, below=None):
     shown = [f"slope {np.degrees(design['slope']):.4g}°", f"mₚ/m = {design['mass_ratio']:.4g}", f"L/R = {design['offset_ratio']:.4g}",
              f"released at {np.degrees(design['release_angle']):.4g}°", f"spin {design['release_spin']:.4g} √(g/R)",
              trace.attributes["status"].replace("_", " ")]
+    if design.get("drive_torque"):
+        shown.insert(-1, f"τ = {design['drive_torque']:.4g}")
     if trace.slips:
         kinetic = design.get("mu_kinetic", design["mu_static"])
         shown[-1:] = [f"μ = {design['mu_static']:.4g}" + (f" / {kinetic:.4g}" if kinetic != design["mu_static"] else ""),

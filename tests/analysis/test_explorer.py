@@ -470,6 +470,20 @@ def test_a_list_of_designs_is_a_dot_each_that_can_be_pointed_at_and_clicked(brow
     assert readout(browser)["index"] == "0"
 
 
+@pytest.mark.parametrize("friction", ["", '[scene]\nfriction = "coulomb"\nmu_static = 0.9\n'])
+def test_driven_hoops_and_those_that_turn_round_move_as_leapmap_tells(browser, tmp_path, friction):
+    path = sweep(tmp_path, friction + '[design]\nslope = { values = ["-10 deg", "15 deg"] }\ndrive_torque = { values = [0.0, 0.75] }\n'
+                                      'release_spin = { values = [-0.8, 0.0] }\nrelease_angle = "170 deg"\n')
+    opened(browser, made(path))
+    backwards = 0
+    for index in ([0, 0, 0], [0, 1, 1], [1, 0, 0], [1, 1, 0]):
+        browser.execute_script("window.explorer.view.view.index = arguments[0]; window.explorer.view.pick()", index)
+        agrees(numbers(browser), told_by_leapmap(browser))
+        backwards += told_by_leapmap(browser)["design"]["release_spin"] < 0
+        assert browser.find_element("id", "message").text == ""
+    assert backwards == 3
+
+
 def test_a_grid_over_one_axis_is_dots_too(browser, tmp_path):
     path = sweep(tmp_path, "[design]\nslope = { from = 0.2, to = 0.8, count = 25 }\n")
     opened(browser, made(path))
