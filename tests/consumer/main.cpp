@@ -103,7 +103,7 @@ void stops_for_good() {
 /// What a newcomer gets wrong is told, with what to do about it.
 void refuses() {
   const std::string no_angle = refusal([] { lm::solve({.slope = NAN}); });
-  expect(has(no_angle, "slope = nan") && has(no_angle, "[0, 90 deg)"), "NaN is no slope");
+  expect(has(no_angle, "slope = nan") && has(no_angle, "(-90 deg, 90 deg)"), "NaN is no slope");
   const std::string too_long = refusal([] { lm::solve({.offset_ratio = 2}); });
   expect(has(too_long, "offset_ratio = 2") && has(too_long, "[0, 1]"), "a mass outside the hoop");
   const std::string unused = refusal([] { lm::solve({.mu_static = 0.3}); });
