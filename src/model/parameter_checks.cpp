@@ -15,7 +15,8 @@ constexpr double right_angle = std::numbers::pi / 2.0;
 
 std::string shown(double value, std::string_view unit) {
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return unit == "rad" && value == right_angle ? "90 deg" : fmt::format("{}", value);
+  const bool upright = unit == "rad" && std::abs(value) == right_angle;
+  return upright ? (value > 0 ? "90 deg" : "-90 deg") : fmt::format("{}", value);
 }
 
 [[noreturn]] void refuse(std::string_view place, const Parameter& parameter, double value,
