@@ -16,7 +16,7 @@ MOST_LABELS = 40  # more names would hide each other
 
 def values_along(m, name):
     """What the designs are drawn over, as shown, and its label: a parameter of the list, or their number in it."""
-    if name in ("design", "label"):
+    if name == "design":
         return m.dims["design"], "designs of the list" if m.labels is not None else "number in the list, from 0"
     if name not in m.fields or name not in looks.PARAMETERS:
         listed = [n for n in m.fields if n in looks.PARAMETERS]
@@ -27,7 +27,7 @@ def values_along(m, name):
 def chart(m, along, fields):
     if "design" not in m.dims:
         raise NotAMap(f"{m.path}: is no list of designs but a grid; design_chart.py and cut_chart.py draw it")
-    along = along or next((n for n in looks.PARAMETERS if n in m.fields and len(np.unique(m.fields[n])) > 1), "design")
+    along = "design" if along == "label" else along or next((n for n in looks.PARAMETERS if n in m.fields and len(np.unique(m.fields[n])) > 1), "design")
     x, label = values_along(m, along)
     drawn = {f: values for f in fields if (values := looks.quantity(m, f)) is not None and np.isfinite(values).any()}
     if not drawn:
@@ -44,15 +44,15 @@ def chart(m, along, fields):
                       transform=axis.get_xaxis_transform(), in_layout=False)
         axis.set_ylabel(planes.field_label(field))
         axis.grid(alpha=0.25)
-        if m.labels is not None and len(x) <= MOST_LABELS and along not in ("design", "label") and axis is axes[0, 0]:
+        if m.labels is not None and len(x) <= MOST_LABELS and along != "design" and axis is axes[0, 0]:
             for named, *place in zip(m.labels, x, values):
                 if np.isfinite(place[1]):
                     axis.annotate(named, place, parse_math=False, xytext=(4, 4), textcoords="offset points", fontsize=7,
                                   annotation_clip=False)
             axis.margins(x=0.12, y=0.12)
-    if m.labels is not None and len(x) <= MOST_LABELS and along in ("design", "label"):
+    if m.labels is not None and len(x) <= MOST_LABELS and along == "design":
         axes[-1, 0].set_xticks(x, m.labels, parse_math=False, rotation=35, ha="right")
-    if along not in ("design", "label") and looks.is_log(np.unique(x)):
+    if along != "design" and looks.is_log(np.unique(x)):
         style.log_scale(axes[-1, 0].xaxis)
     axes[-1, 0].set_xlabel(f"{label}\n{style.wrapped(looks.words_of(m, looks.fixed_numbers(m)), figure)}")
     marker = lambda sign, colour, words, fill="full": plt.Line2D([], [], linestyle="", marker=sign, color=colour, fillstyle=fill, label=words)

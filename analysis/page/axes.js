@@ -1,4 +1,4 @@
-// What the views of a map share: colours, a frame with ticks, and names with units.
+// What the views of a map share: colours, a frame with ticks, names with units, and how designs are pointed at.
 
 const EDGE = "#303030", MARK = "#d62728";
 
@@ -10,6 +10,27 @@ function fitted(canvas, right) {
   canvas.height = Math.round(box.height * ratio);
   return { left: 4.6 * font, top: 0.8 * font, right: canvas.width - right * font, bottom: canvas.height - 3.4 * font, font, ratio };
 }
+
+/**
+ * Points at designs and picks them, by mouse, finger and keys; view holds index and picked. pointAt(event): points there, if there is a
+ * design; goBack(): to the one picked, if that is shown; step(key, by): moves on, if that is a key to move by. Returns {point, pick}.
+ */
+function pointing(canvas, view, { pointAt, goBack, step, paintCursor, onPoint, onPick }) {
+  const point = () => { paintCursor(); onPoint(view.index); };
+  const pick = (byHand = false) => { view.picked = [...view.index]; point(); onPick(view.index, byHand); };
+  canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch" && pointAt(event)) point(); });
+  canvas.addEventListener("click", (event) => { if (pointAt(event)) pick(true); });
+  canvas.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch" && view.picked && goBack()) point(); });
+  canvas.addEventListener("keydown", (event) => {
+    if (step(event.key, event.shiftKey ? 10 : 1)) point();
+    else if (event.key === "Enter" || event.key === " ") pick();
+    else return;
+    event.preventDefault();
+  });
+  return { point, pick };
+}
+
+const clamped = (value, most) => Math.min(most, Math.max(0, value));
 
 const labelOf = (axis) => axis.label + (axis.unit === "°" ? " [degrees]" : axis.unit ? ` [${axis.unit}]` : "");
 

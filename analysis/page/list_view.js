@@ -68,27 +68,18 @@ function listView(canvas, map, onPoint, onPick) {
     view.index = [away.indexOf(least)];
     return true;
   }
-  const point = () => { paintCursor(); onPoint(view.index); };
-  const pick = (byHand = false) => { view.picked = [...view.index]; paintCursor(); onPoint(view.index); onPick(view.index, byHand); };
-
-  canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch" && pointAt(event)) point(); });
-  canvas.addEventListener("click", (event) => { if (pointAt(event)) pick(true); });
-  canvas.addEventListener("pointerleave", (event) => {  // back to the design that is shown
-    if (event.pointerType === "touch" || !view.picked) return;
-    view.index = [...view.picked];
-    point();
-  });
-  canvas.addEventListener("keydown", (event) => {
-    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (step !== undefined) {
-      view.index = [Math.min(count - 1, Math.max(0, view.index[0] + step * (event.shiftKey ? 10 : 1)))];
-      point();
-    } else if (event.key === "Enter" || event.key === " ") {
-      pick();
-    } else {
-      return;
-    }
-    event.preventDefault();
+  const { point, pick } = pointing(canvas, view, {
+    pointAt, paintCursor, onPoint, onPick,
+    goBack() {
+      view.index = [...view.picked];
+      return true;
+    },
+    step(key, by) {
+      const move = { ArrowLeft: -by, ArrowRight: by }[key];
+      if (move === undefined) return false;
+      view.index = [clamped(view.index[0] + move, count - 1)];
+      return true;
+    },
   });
   new ResizeObserver(() => paint()).observe(canvas);
 

@@ -202,29 +202,20 @@ function mapView(canvas, map, onPoint, onPick) {
     view.index[view.y] = j;
     return true;
   }
-  const point = () => { paintCursor(); onPoint(view.index); };
-  const pick = (byHand = false) => { view.picked = [...view.index]; paintCursor(); onPoint(view.index); onPick(view.index, byHand); };
-
-  canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch" && pointAt(event)) point(); });
-  canvas.addEventListener("click", (event) => { if (pointAt(event)) pick(true); });
-  canvas.addEventListener("pointerleave", (event) => {  // back to the design that is shown
-    const aside = (i, k) => k !== view.x && k !== view.y && i !== view.index[k];
-    if (event.pointerType === "touch" || !view.picked || view.picked.some(aside)) return;
-    for (const k of [view.x, view.y]) view.index[k] = view.picked[k];
-    point();
-  });
-  canvas.addEventListener("keydown", (event) => {
-    const moves = { ArrowLeft: [view.x, -1], ArrowRight: [view.x, 1], ArrowDown: [view.y, -1], ArrowUp: [view.y, 1] };
-    if (event.key in moves) {
-      const [axis, step] = moves[event.key];
-      view.index[axis] = Math.min(shape[axis] - 1, Math.max(0, view.index[axis] + step * (event.shiftKey ? 10 : 1)));
-      point();
-    } else if (event.key === "Enter" || event.key === " ") {
-      pick();
-    } else {
-      return;
-    }
-    event.preventDefault();
+  const { point, pick } = pointing(canvas, view, {
+    pointAt, paintCursor, onPoint, onPick,
+    goBack() {
+      const aside = (i, k) => k !== view.x && k !== view.y && i !== view.index[k];
+      if (view.picked.some(aside)) return false;
+      for (const k of [view.x, view.y]) view.index[k] = view.picked[k];
+      return true;
+    },
+    step(key, by) {
+      const move = { ArrowLeft: [view.x, -by], ArrowRight: [view.x, by], ArrowDown: [view.y, -by], ArrowUp: [view.y, by] }[key];
+      if (!move) return false;
+      view.index[move[0]] = clamped(view.index[move[0]] + move[1], shape[move[0]] - 1);
+      return true;
+    },
   });
   new ResizeObserver(() => paint()).observe(canvas);
 

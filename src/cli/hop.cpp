@@ -240,6 +240,9 @@ int run(const HopArguments& arguments) {
     throw InputError(
         fmt::format("{}: design.points is a list; allowed: one design for a hop", origin_of(spec)));
 
+  const bool driven = spec.design.drive_torque != 0.0, is_example = arguments.mass == 0.0;
+  if (!driven && !is_example)
+    throw InputError("--mass: has no use without a motor; allowed: with --drive-torque");
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval;
   if (!arguments.trace.empty() && !(interval > 0.0))
     throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
@@ -252,9 +255,6 @@ int run(const HopArguments& arguments) {
     if (!write_trace(behind_links(arguments.trace), motion, attributes, arguments.locking))
       tell_of_folder(arguments.trace);
   }
-  const bool driven = spec.design.drive_torque != 0.0, is_example = arguments.mass == 0.0;
-  if (!driven && !is_example)
-    throw InputError("--mass: has no use without a motor; allowed: with --drive-torque");
   const bool moves = !motion.phases.empty() && motion.outcome.status != Status::failed;
   const std::optional<Motor> motor =
       driven && moves ? std::optional(motor_of(spec, motion, is_example ? papers_mass : arguments.mass))

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "cli/commands.hpp"
 #include "model/model.hpp"
 
 namespace leapmap::cli {

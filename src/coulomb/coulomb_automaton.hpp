@@ -99,11 +99,12 @@ class PhaseMachine {
   }
 
  private:
-  void begin(Phase phase, int direction) {
+  /// Returns whether the hoop rocks to rest: the phase is then its last.
+  bool begin(Phase phase, int direction) {
+    const ContactState<double> state = in_double(at_);
     sequence_.append(phase);
-    settles_ = rocking_.settles(phase, direction, static_cast<double>(at_.travel),
-                                static_cast<double>(at_.angle), static_cast<double>(at_.spin));
-    if (observer_.phase) observer_.phase(phase, in_double(at_), direction);
+    if (observer_.phase) observer_.phase(phase, state, direction);
+    return rocking_.settles(phase, direction, state.travel, state.angle, state.spin);
   }
 
   /// What is not known of a design that has no answer is not told.
@@ -127,8 +128,7 @@ class PhaseMachine {
     const ContactState<S> from = at_;
     const bool rolls = phase == ContactPhase::rolls;
     const int direction = rolls ? 0 : phase == ContactPhase::slides_forwards ? 1 : -1;
-    begin(rolls ? Phase::rolling : Phase::sliding, direction);
-    if (settles_) return PhaseEnd::stalls;
+    if (begin(rolls ? Phase::rolling : Phase::sliding, direction)) return PhaseEnd::stalls;
     const PhaseEnd end =
         rolls ? roll_(hoop_, contact_, at_, runway_) : slide_(hoop_, contact_, at_, runway_, direction);
     driven_ += hoop_.drive * (at_.angle - from.angle);
@@ -199,7 +199,6 @@ class PhaseMachine {
   ContactState<S> at_;
   PhaseSequence sequence_;
   Rocking rocking_;
-  bool settles_ = false;
   Outcome outcome_;
 };
 

@@ -139,7 +139,7 @@ PhaseEnd CoulombIntegration::follow(Phase phase, int direction, ContactState<dou
 PhaseEnd CoulombIntegration::roll(const Hoop<double>& hoop, const Contact<double>& contact,
                                   ContactState<double>& at, double runway, const StepObserver& step_told) {
   system_.hoop = hoop, system_.friction = rolls;
-  const double sets_out = at.spin != 0.0 ? at.spin : torque(hoop, trig(at.angle));
+  const double sets_out = setting_out(hoop, trig(at.angle), at.spin);
   if (sets_out == 0.0) return PhaseEnd::stalls;
   double way = std::copysign(1.0, sets_out);
   const Guard downhill{[&](const Y&y) { return hold(hoop, contact.mu_static, 1.0, y); },

@@ -86,24 +86,20 @@ template <class S>
 PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at, const S& runway,
                             const Told& turns) const {
   const ContactState<S> from = at;
-  const S sets_out = at.spin != S(0) ? at.spin : torque(hoop, trig(at.angle));
+  const S sets_out = setting_out(hoop, trig(at.angle), at.spin);
   if (sets_out == S(0)) return PhaseEnd::stalls;
   S way = sets_out < S(0) ? S(-1) : S(1);
   for (int turned = 0;; way = -way) {
     const Hoop<S> seen_hoop = seen(hoop, way);
     const Roll<S> begin = begin_roll(seen_hoop, S(way * at.angle), std::abs(at.spin));
-    Roll<S> roll = begin_roll(seen_hoop, S(way * from.angle), std::abs(from.spin));
+    const Roll<S> roll = begin_roll(seen_hoop, S(way * from.angle), std::abs(from.spin));
     auto [end, angle] = first_end(roll, begin, mu_static, begin.release + (runway - way * at.travel));
     // From rest the second turn is at the beginning.
     const bool back = turned == 1 && from.spin == S(0) && angle >= roll.release;
     if (back) end = PhaseEnd::stalls, angle = roll.release;
     S x = angle - begin.release, taken(0);
     if (end == PhaseEnd::stalls) {
-      for (int k = 0; k < 3 && !back; ++k) {  // near the beginning E is known better than the angle
-        const S push = torque(seen_hoop, trig(S(begin.release + x)));
-        const S next = std::max(S(0), x - vis_viva_past_release(begin, x) / (S(2) * push));
-        if (push < S(0) && std::abs(next - x) < S(1e-12)) x = next;
-      }
+      if (!back) x = refined_turn(begin, x, S(0), S(x + S(1)));
       angle = begin.release + x;
       if (turned == 0 && x > S(0)) taken = duration_to_rest(begin, x);
     } else if (x > S(0)) {

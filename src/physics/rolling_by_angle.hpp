@@ -38,6 +38,13 @@ T torque(const Hoop<T>& hoop, const Trig<T>& phi) {
   return hoop.thrust - hoop.rho * sin_from_vertical(hoop, phi);
 }
 
+/// Which way a hoop sets out: above zero downhill, below zero uphill, by its spin or, at rest, by its torque;
+/// zero: nothing moves it. A spin whose square is lost counts as none.
+template <class T>
+T setting_out(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin) {
+  return select(spin * spin == T(0), torque(hoop, phi), spin);
+}
+
 template <class T>
 Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
   const Trig<T> phi = trig(release);
@@ -115,24 +122,31 @@ FirstMinimum<T> first_minimum(const Roll<T>& roll) {
   return first;
 }
 
+/// The last digits of the angle past the release where E falls through zero, however small it is: near the
+/// release E is known better than the angle. x: it, to roundings of angles; it lies between from and to.
+template <class T>
+T refined_turn(const Roll<T>& roll, T x, const T& from, const T& to) {
+  using std::abs;
+  for (int k = 0; k < 3; ++k) {
+    const T E = vis_viva_past_release(roll, x), rate = T(2) * torque(roll.hoop, trig(roll.release + x));
+    const T next = larger(from, smaller(x - E / rate, to));
+    x = select((rate < T(0)) & (abs(next - x) <= T(ScalarOf<T>(1e-12L)) * larger(T(1), to)), next, x);
+  }
+  return x;
+}
+
 /// How far from the release a hoop turns round, whose first minimum is real and E there not above zero:
 /// between E's summit, or the release if that is later, and there. Good to the last digits however small it
 /// is. Lanes outside `wanted` return anything.
 template <class T>
 T turning_distance(const Roll<T>& roll, const FirstMinimum<T>& first, const MaskOf<T>& wanted) {
-  using std::abs;
   const auto vis_viva_at = [&](const T& x) {
     return Sample<T>{vis_viva_past_release(roll, x), T(2) * torque(roll.hoop, trig(roll.release + x))};
   };
   const T from = larger(first.summit - roll.release, T(0)), to = first.angle - roll.release;
   const T resolution = T(ScalarOf<T>(4) * std::numeric_limits<ScalarOf<T>>::epsilon()) * larger(T(1), to);
-  T x = polish_root(vis_viva_at, from, to, T(0.5) * (from + to), wanted & !wanted, resolution, wanted);
-  for (int k = 0; k < 3; ++k) {  // near the release E is known better than the angle
-    const Sample<T> E = vis_viva_at(x);
-    const T next = larger(from, smaller(x - E.value / E.rate, to));
-    x = select((E.rate < T(0)) & (abs(next - x) <= T(ScalarOf<T>(1e-12L)) * larger(T(1), to)), next, x);
-  }
-  return x;
+  const T x = polish_root(vis_viva_at, from, to, T(0.5) * (from + to), wanted & !wanted, resolution, wanted);
+  return refined_turn(roll, x, from, to);
 }
 
 /// What G is made of, G = P J + rho K E, with rates by the angle.

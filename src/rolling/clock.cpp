@@ -55,8 +55,7 @@ LaneArray<T> Clock<T>::before_legs(const Block<T>& block, const DesignLanes<T>& 
   return before;
 }
 
-/// From the release to the beginning of the leg. Both halves of a leg that ends at rest are timed from its
-/// ends.
+/// From the release to the beginning of the leg.
 template <class T>
 ScalarOf<T> Clock<T>::before_leg(const Block<T>& block, std::uint32_t design) const {
   const auto& found = block.found[design];
@@ -67,13 +66,9 @@ ScalarOf<T> Clock<T>::before_leg(const Block<T>& block, std::uint32_t design) co
   const Roll<S> first_turn = begin_roll(hoop, -(found.release + found.reach), S(0));
   Roll<S> release = begin_roll(seen(hoop, S(-1)), found.release, S(0));
   release.released = found.released;
-  const S half = S(0.5) * found.reach;
-  S time = time_.halving_past(release, half) + time_.halving_past(first_turn, half);
-  if (found.leg == 3) {
-    const S half_way = S(0.5) * (-now.release - first_turn.release);
-    time += time_.halving_past(first_turn, half_way) + time_.halving_past(now, half_way);
-  }
-  return time;
+  const S first = time_.halving_to_rest(release, found.reach);
+  return found.leg == 2 ? first
+                        : first + time_.halving_to_rest(first_turn, -now.release - first_turn.release);
 }
 
 template <class T>

@@ -18,7 +18,6 @@ struct Leg {
   double begin;  ///< its time [sqrt(R/g)]
 };
 
-/// Both halves of a leg that ends at rest are timed from its ends.
 std::vector<Leg> legs_of(const Design& design, const Hoop<double>& hoop, const std::vector<double>& turns,
                          const RollingTime<double>& time) {
   double way = way_of(hoop, design.release_angle, design.release_spin);
@@ -28,22 +27,21 @@ std::vector<Leg> legs_of(const Design& design, const Hoop<double>& hoop, const s
     const Leg last = legs.back();
     way = -way;
     const Roll<double> next = begin_roll(seen(hoop, way), way * turn, 0.0);
-    const double half = 0.5 * (-next.release - last.roll.release);
-    legs.push_back(
-        {way, next, last.begin + time.halving_past(last.roll, half) + time.halving_past(next, half)});
+    const double length = -next.release - last.roll.release;
+    legs.push_back({way, next, last.begin + time.halving_to_rest(last.roll, length)});
   }
   return legs;
 }
 
 /// Every lift-off, timed from one to the next. The jump and the first are the outcome's to the last digit.
-std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, Told told, const Outcome& outcome,
+std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, const Told& told, const Outcome& outcome,
                                      const Scene& scene, const RollingTime<double>& time) {
   std::vector<Candidate> candidates;
   std::size_t on = legs.size();
   Roll<double> roll;
   double passed = 0.0;
   for (std::size_t i = 0; i < told.lift_offs.size(); ++i) {
-    LiftOff<double>& lift_off = told.lift_offs[i];
+    LiftOff<double> lift_off = told.lift_offs[i];
     const Leg& leg = legs[told.legs[i]];
     if (on != told.legs[i]) roll = leg.roll, passed = leg.begin, on = told.legs[i];
     lift_off.time = passed += time.halving(roll, leg.way * lift_off.angle);
@@ -80,10 +78,10 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
   if (way_of(hoop, design.release_angle, design.release_spin) == 0.0 ||
       outcome.status == Status::airborne_at_release || outcome.status == Status::failed)
     return motion;
-  const std::vector<double> turns = told.turns;
+  const std::vector<double>& turns = told.turns;
   const RollingTime<double> time(tolerance);
   const std::vector<Leg> legs = legs_of(design, hoop, turns, time);
-  motion.candidates = candidates_of(legs, std::move(told), outcome, scene, time);
+  motion.candidates = candidates_of(legs, told, outcome, scene, time);
 
   const ContactState<double> release{.angle = design.release_angle, .spin = design.release_spin};
   motion.phases.push_back(in_si(Phase::rolling, release, 0, scene));

@@ -38,12 +38,11 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<T>& bloc
     }
     const Trig<T> phi = trig(nearest);
     const T force = normal_force(hoop, phi, spin, angular_acceleration(hoop, phi, spin)),
-            setting_out = select(spin * spin == T(0), torque(hoop, phi), spin);
-    const T way = select(setting_out < T(0), T(-1), T(1));
+            sets_out = setting_out(hoop, phi, spin);
+    const T way = select(sets_out < T(0), T(-1), T(1));
     const Roll<T> roll = begin_roll(seen(hoop, way), way * nearest, way * spin);
 
-    const unsigned in_the_air = Lanes<T>::bits(!(force > T(0))),
-                   at_rest = Lanes<T>::bits(setting_out == T(0));
+    const unsigned in_the_air = Lanes<T>::bits(!(force > T(0))), at_rest = Lanes<T>::bits(sets_out == T(0));
     const auto releases = lanes_of(roll.release), released = lanes_of(roll.released), ways = lanes_of(way),
                turns_back = lanes_of(release_angle - nearest);
     for (std::size_t i = 0; i < count; ++i) {

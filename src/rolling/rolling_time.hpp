@@ -74,6 +74,11 @@ class RollingTime {
   S halving(const Roll<S>& roll, const S& to) const { return halving_past(roll, to - roll.release); }
   /// The same over an angle past the release.
   S halving_past(const Roll<S>& roll, const S& past) const;
+  /// The same to where the hoop comes to rest, both halves from their ends.
+  S halving_to_rest(const Roll<S>& roll, const S& past) const {
+    const Roll<S> back = begin_roll(seen(roll.hoop, S(-1)), S(-(roll.release + past)), S(0));
+    return halving_past(roll, past * S(0.5)) + halving_past(back, past * S(0.5));
+  }
 
  private:
   static constexpr int most_nodes = sizeof(S) > 8 ? 96 : 56;
