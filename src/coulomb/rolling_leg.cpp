@@ -167,7 +167,7 @@ S RollingLeg<S>::duration_to_rest(const Roll<S>& roll, const S& length) const {
 /// The same to an angle just before the hoop would turn round, where E nearly vanishes. NaN: it would not.
 template <class S>
 S RollingLeg<S>::duration_near_rest(const Roll<S>& roll, const S& length) const {
-  const FirstMinimum<S> ahead = first_minimum(roll);
+  const FirstMinimum<S> ahead = first_minimum(roll, slope_of(roll.hoop));
   const S least = vis_viva_past_release(roll, S(ahead.angle - roll.release));
   if (!ahead.is_real || least > S(0)) return std::numeric_limits<S>::quiet_NaN();
   const S whole = std::max(turning_distance(roll, ahead, true), length);

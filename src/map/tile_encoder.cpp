@@ -4,6 +4,7 @@
 #include <libdeflate.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cstring>
@@ -29,6 +30,24 @@ void append_checksum(std::vector<std::byte>& bytes) {
   const std::uint32_t checksum = fletcher32(bytes);
   const auto* first = reinterpret_cast<const std::byte*>(&checksum);
   bytes.insert(bytes.end(), first, first + sizeof checksum);
+}
+
+/// Whether bytes look like noise, which deflate takes long to pass on as it is: samples of them hold more
+/// than 7 bits a byte, so that none is frequent, and do not repeat what is before them.
+bool is_noise(std::span<const std::byte> bytes) {
+  constexpr std::size_t samples = 32, each = 64, all = samples * each;
+  if (bytes.size() < 2 * all) return false;
+  std::array<unsigned, 256> met{};
+  unsigned repeated = 0;
+  for (std::size_t s = 0; s < samples; ++s) {
+    const auto some = bytes.subspan(s * (bytes.size() / samples), each + 1);
+    for (std::size_t i = 1; i <= each; ++i)
+      ++met[std::to_integer<std::size_t>(some[i])], repeated += some[i] == some[i - 1];
+  }
+  // Of n uniform bytes, pairs of equal ones are n (n - 1) / 512: with 7 bits a byte, twice as many.
+  std::size_t pairs = 0;
+  for (const std::size_t n : met) pairs += n * (n - 1) / 2;
+  return pairs < all * (all - 1) / 256 && repeated < all / 64;
 }
 
 }  // namespace
@@ -141,11 +160,41 @@ EncodedChunk TileEncoder::deflate(std::span<const std::byte> values, std::size_t
       for (std::size_t i = 0; i < count; ++i) shuffled_[rank * count + i] = values[i * size + rank];
     values = shuffled_;
   }
-  packed_.resize(values.size());
-  const std::size_t packed = libdeflate_zlib_compress(compressor_.get(), values.data(), values.size(),
-                                                      packed_.data(), packed_.size());
+  const std::size_t packed = pack(values, values.size() / size);
   if (packed == 0) return {{values.begin(), values.end()}, shuffles ? 2u : 1u};  // it would not get smaller
   return {{packed_.begin(), packed_.begin() + static_cast<std::ptrdiff_t>(packed)}};
+}
+
+/// Fills packed_ with zlib's format of the values, and returns its length, 0 if that is no shorter. Planes of
+/// noise at the beginning, as the last digits of numbers are, become stored blocks.
+std::size_t TileEncoder::pack(std::span<const std::byte> values, std::size_t plane) {
+  constexpr std::size_t most_stored = 65535, trailer = 4;
+  packed_.resize(values.size());
+  std::size_t noise = 0;
+  while (noise < values.size() && is_noise(values.subspan(noise, plane))) noise += plane;
+  if (noise == 0)
+    return libdeflate_zlib_compress(compressor_.get(), values.data(), values.size(), packed_.data(),
+                                    packed_.size());
+  const std::size_t blocks = (noise + most_stored - 1) / most_stored;
+  if (noise + 5 * blocks + 2 + trailer >= values.size()) return 0;
+  std::byte* to = packed_.data();
+  const auto put = [&](std::size_t byte) { *to++ = static_cast<std::byte>(byte & 255u); };
+  put(0x78), put(0x01);  // deflate, a window of 32 kB, and a check of these two
+  for (std::size_t at = 0; at < noise;) {
+    const std::size_t length = std::min(most_stored, noise - at);
+    put(0), put(length), put(length >> 8), put(~length), put(~length >> 8);  // stored, and not the last block
+    std::memcpy(to, values.data() + at, length);
+    to += length, at += length;
+  }
+  const auto written = static_cast<std::size_t>(to - packed_.data());
+  const std::size_t packed =
+      libdeflate_deflate_compress(compressor_.get(), values.data() + noise, values.size() - noise, to,
+                                  packed_.size() - written - trailer);
+  if (packed == 0) return 0;
+  to += packed;
+  const std::uint32_t sum = libdeflate_adler32(1, values.data(), values.size());
+  put(sum >> 24), put(sum >> 16), put(sum >> 8), put(sum);
+  return written + packed + trailer;
 }
 
 }  // namespace leapmap

@@ -54,6 +54,7 @@ class TileEncoder {
   void gather(std::span<const Outcome> outcomes);
   std::span<const std::byte> spread(const Tile& tile, std::size_t field);
   EncodedChunk deflate(std::span<const std::byte> values, std::size_t size);
+  std::size_t pack(std::span<const std::byte> values, std::size_t plane);
 
   const MapLayout* layout_;
   const Tiling* tiling_;

@@ -9,8 +9,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <xsimd/xsimd.hpp>
+
+#include "numerics/sincos.hpp"
 
 namespace leapmap {
 
@@ -26,6 +29,11 @@ struct Lanes {
   static void store(const T& value, T* to) { *to = value; }
   /// One bit a lane, lane 0 lowest.
   static unsigned bits(bool mask) { return mask; }
+  /// 64 bits a lane.
+  using Word = std::uint64_t;
+  /// Sets the marks in the lanes of the mask.
+  static Word marked(Word word, bool mask, std::uint64_t marks) { return word | (mask ? marks : 0); }
+  static void store(Word word, std::uint64_t* to) { *to = word; }
 };
 
 template <class S, class A>
@@ -35,10 +43,26 @@ struct Lanes<xsimd::batch<S, A>> {
   static constexpr std::size_t count = xsimd::batch<S, A>::size;
   static xsimd::batch<S, A> load(const S* from) { return xsimd::batch<S, A>::load_unaligned(from); }
   static void store(const xsimd::batch<S, A>& value, S* to) { value.store_unaligned(to); }
+  using Word = xsimd::batch<std::uint64_t, A>;
+  static Word marked(const Word& word, const Mask& mask, std::uint64_t marks) {
+#ifdef __AVX512F__
+    if constexpr (count == 8)
+      return Word(_mm512_mask_or_epi64(word.data, mask.data, word.data, Word(marks).data));
+#endif
+    using B = xsimd::batch<S, A>;
+    return word | xsimd::bitwise_cast<Word>(xsimd::select(mask, xsimd::bitwise_cast<B>(Word(marks)), B(0)));
+  }
+  static void store(const Word& word, std::uint64_t* to) { word.store_unaligned(to); }
   static unsigned bits(const Mask& mask) {
 #ifdef __AVX512F__
     if constexpr (std::is_same_v<A, xsimd::avx512f> || std::is_base_of_v<xsimd::avx512f, A>)
       return static_cast<unsigned>(mask.data);
+#endif
+#ifdef __AVX__
+    if constexpr (count == 4 && sizeof(S) == 8) return static_cast<unsigned>(_mm256_movemask_pd(mask.data));
+#endif
+#ifdef __SSE2__
+    if constexpr (count == 2 && sizeof(S) == 8) return static_cast<unsigned>(_mm_movemask_pd(mask.data));
 #endif
     std::array<bool, count> lanes;
     mask.store_unaligned(lanes.data());
@@ -91,21 +115,6 @@ xsimd::batch<S, A> larger(const xsimd::batch<S, A>& a, const xsimd::batch<S, A>&
 template <class S, class A>
 xsimd::batch<S, A> smaller(const xsimd::batch<S, A>& a, const xsimd::batch<S, A>& b) {
   return xsimd::min(a, b);
-}
-
-template <class T>
-struct SinCos {
-  T sin, cos;
-};
-template <class T>
-SinCos<T> sincos_of(const T& x) {
-  using std::cos, std::sin;
-  return {sin(x), cos(x)};
-}
-template <class S, class A>
-SinCos<xsimd::batch<S, A>> sincos_of(const xsimd::batch<S, A>& x) {
-  const auto [s, c] = xsimd::sincos(x);
-  return {s, c};
 }
 
 /// 1 / sqrt(x) for x > 0, to a few roundings.

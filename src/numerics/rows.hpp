@@ -3,12 +3,13 @@
 /// of a transposition.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "numerics/lanes.hpp"
+#include "numerics/wide.hpp"
 
 namespace leapmap {
 
@@ -47,6 +48,11 @@ std::array<T, 8> load_rows(const Row<ScalarOf<T>>* rows, const std::uint32_t* in
     transpose(columns);
     return columns;
   }
+  if constexpr (std::is_same_v<T, Wide<Batch>>) {
+    const auto low = load_rows<Batch, stride>(rows, index), high = load_rows<Batch, stride>(rows, index + 8);
+    for (std::size_t k = 0; k < 8; ++k) columns[k] = {low[k], high[k]};
+    return columns;
+  }
 #endif
   std::array<ScalarOf<T>, Lanes<T>::count> lanes;
   for (std::size_t k = 0; k < 8; ++k) {
@@ -64,6 +70,13 @@ void store_rows(std::array<T, 8> columns, Row<ScalarOf<T>>* rows, const std::uin
   if constexpr (std::is_same_v<T, Batch>) {
     transpose(columns);
     for (std::size_t i = 0; i < count; ++i) columns[i].store_unaligned(rows[stride * index[i]].data());
+    return;
+  }
+  if constexpr (std::is_same_v<T, Wide<Batch>>) {
+    std::array<Batch, 8> low, high;
+    for (std::size_t k = 0; k < 8; ++k) low[k] = columns[k].low, high[k] = columns[k].high;
+    store_rows<Batch, stride>(low, rows, index, std::min<std::size_t>(count, 8));
+    if (count > 8) store_rows<Batch, stride>(high, rows, index + 8, count - 8);
     return;
   }
 #endif

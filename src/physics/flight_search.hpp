@@ -115,15 +115,38 @@ T bottom(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
 }
 
 /// The zero of y' after its maximum at top, where y has a maximum: likewise, eta the turn past phi + psi = 2
-/// pi.
+/// pi. resolution: relative.
 template <class T>
-T crown(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
-  const T epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
+T crown(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted, ScalarOf<T> resolution) {
   const T middle = top + toss.opening, slack = T(1) + toss.gravity;
   const T eta = (toss.phi.sin - toss.gravity * middle) / slack;
   return polish_root([&](const T& psi) { return toss_climb(toss, psi); }, top, middle + toss.opening,
                      middle + eta + eta * eta * eta / (T(6) * slack), wanted & !wanted,
-                     T(2) * epsilon * middle, wanted);
+                     T(resolution) * middle, wanted);
+}
+
+/// The same, and y there, for one evaluation less: from within 1e-6 of the root, and with y'' well below
+/// zero, Halley's step takes it to its last digits, and Taylor's series y along with it.
+template <class T>
+struct Crown {
+  T at, height;
+};
+template <class T>
+Crown<T> crown_and_height(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
+  using S = ScalarOf<T>;
+  using std::abs;
+  constexpr S near = S(1e-6L), flat = S(0.03L);
+  const T x = crown(toss, top, wanted, sizeof(S) > 8 ? S(1e-8L) : near);
+  const CurvedSample<T> y = toss_height(toss, x);
+  const T step = T(-2) * y.rate * y.curvature / (T(2) * y.curvature * y.curvature - y.rate * y.jerk);
+  Crown<T> crest{x + step, y.value + step * (y.rate + step * (T(0.5) * y.curvature + step * y.jerk / T(6)))};
+  const MaskOf<T> unsure = wanted & !((abs(step) <= T(2 * near) * x) & (y.curvature < T(-flat)));
+  if (any(unsure)) {
+    const T at = crown(toss, top, unsure, S(2) * std::numeric_limits<S>::epsilon());
+    crest.at = select(unsure, at, crest.at);
+    crest.height = select(unsure, toss_height(toss, at).value, crest.height);
+  }
+  return crest;
 }
 
 /// walk_toss lane by lane, for those in `wanted`.
@@ -172,7 +195,7 @@ Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
     }
     const MaskOf<T> cresting = climbing & (fastest < drop);
     if (any(cresting)) {
-      const T at = toss_detail::crown(toss, top, cresting), y = toss_height(toss, at).value;
+      const auto [at, y] = toss_detail::crown_and_height(toss, top, cresting);
       const MaskOf<T> clear = cresting & (y > T(0)), higher = clear & (y > ascent.height);
       above = above | clear;
       ascent.height = select(higher, y, ascent.height);

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numbers>
 
@@ -100,14 +101,15 @@ struct FirstMinimum {
   T summit;           ///< E falls all the way from here to there; before the release: from that
   MaskOf<T> is_real;  ///< E has minima, or falls
 };
+/// slope: theta.
 template <class T>
-FirstMinimum<T> first_minimum(const Roll<T>& roll) {
+FirstMinimum<T> first_minimum(const Roll<T>& roll, const T& slope) {
   using std::asin, std::floor;
   const T pi(std::numbers::pi_v<ScalarOf<T>>), two_pi = T(2) * pi;
   const T &thrust = roll.hoop.thrust, &rho = roll.hoop.rho;
   const MaskOf<T> waves = (rho > thrust) & (rho > -thrust), falls = thrust < T(0);
   const T crest = asin(select(waves, thrust / rho, T(1)));
-  const T phase = pi - crest - slope_of(roll.hoop);
+  const T phase = pi - crest - slope;
   FirstMinimum<T> first{phase + two_pi * (floor((roll.release - phase) / two_pi) + T(1)), T(0), waves};
   if (any(falls)) {
     const T lost = T(-2) * two_pi * thrust, least = vis_viva_past_release(roll, first.angle - roll.release);
@@ -199,41 +201,60 @@ CurvedSample<T> lift(const Roll<T>& roll, const T& angle) {
               h.rho * (K3 * E + T(3) * (K2 * E1 - t.K1 * high) + t.K * steep)};
 }
 
-/// Bounds of |G''| and |G'''| over all angles of one revolution.
+/// G as harmonics 0 to 3, and rho K likewise, whose share of E grows with the angle:
+///   G = sum of cosine[m] cos(m phi) + sine[m] sin(m phi) + rho K (level + 2 phi thrust).
+/// Near phi = 0 of a nearly massless hoop with the mass on its rim the terms cancel to their roundings; G of
+/// lift() does not.
 template <class T>
-struct LiftBounds {
-  T second, third;
+struct LiftHarmonics {
+  std::array<T, 4> cosine, sine;  ///< sine[0] is zero
+  std::array<T, 3> swing;         ///< of rho K, in cosines
 };
 
-/// For revolution `turn`, [2 pi turn, 2 pi (turn + 1)]. G is expanded there as harmonics 1 to 3 with E's
-/// linear part held at its middle, and the rest, 2 rho thrust (phi - middle) K, is bounded by itself;
-/// each harmonic's amplitude is at most larger + (sqrt 2 - 1) smaller of its two coefficients.
 template <class T>
-LiftBounds<T> lift_bounds(const Roll<T>& roll, const T& turn) {
-  using std::abs;
-  const Hoop<T>& h = roll.hoop;
-  const T pi(std::numbers::pi_v<ScalarOf<T>>);
+LiftHarmonics<T> lift_harmonics(const Hoop<T>& h) {
   const T rho = h.rho, half(0.5);
   const T j0 = h.J_min + T(2) * rho, j1 = T(-2) * rho;
   const T p0 = h.Ic + T(1) + half * rho * rho, p1 = T(-2) * rho, p2 = half * rho * rho;
-  const T middle = roll.level + T(4) * pi * h.thrust * (turn + half);
   const T k0 = T(-1.5) * rho, k1 = h.J_min + T(2) * rho, k2 = -half * rho;
   const T e = T(2) * rho * h.cos_slope, f = T(-2) * rho * h.sin_slope;  // of cos phi and sin phi in E
-  const T cos1 =
-      h.cos_slope * (p0 * j1 + p1 * j0 + half * p2 * j1) + rho * (e * (k0 + half * k2) + k1 * middle);
-  const T cos2 = h.cos_slope * (half * p1 * j1 + p2 * j0) + rho * (half * e * k1 + k2 * middle);
-  const T cos3 = half * (h.cos_slope * p2 * j1 + rho * e * k2);
   const T pull = rho * h.sin_slope, drive = rho * h.drive;
-  const T sin1 = pull * (j0 - T(0.25) * rho * j1) + drive * j0 + rho * f * (k0 - half * k2);
-  const T sin2 = half * (pull * (j1 - rho * j0) + drive * j1 + rho * f * k1);
-  const T sin3 = pull * T(-0.25) * rho * j1 + half * rho * f * k2;
-  const auto amplitude = [](const T& a, const T& b) {
-    return larger(abs(a), abs(b)) + T(0.4143) * smaller(abs(a), abs(b));
+  return {.cosine = {h.cos_slope * (p0 * j0 + half * p1 * j1) + half * rho * e * k1,
+                     h.cos_slope * (p0 * j1 + p1 * j0 + half * p2 * j1) + rho * e * (k0 + half * k2),
+                     h.cos_slope * (half * p1 * j1 + p2 * j0) + half * rho * e * k1,
+                     half * (h.cos_slope * p2 * j1 + rho * e * k2)},
+          .sine = {T(0), pull * (j0 - T(0.25) * rho * j1) + drive * j0 + rho * f * (k0 - half * k2),
+                   half * (pull * (j1 - rho * j0) + drive * j1 + rho * f * k1),
+                   pull * T(-0.25) * rho * j1 + half * rho * f * k2},
+          .swing = {rho * k0, rho * k1, rho * k2}};
+}
+
+/// Bounds of |G''|, |G'''| and |G''''| over all angles of one revolution; the last also for a twelfth of a
+/// revolution before and after it.
+template <class T>
+struct LiftBounds {
+  T second, third, fourth;
+};
+
+/// For revolution `turn`, [2 pi turn, 2 pi (turn + 1)]. G's harmonics are taken there with E's linear part
+/// held at its middle, and the rest, 2 rho thrust (phi - middle) K, is bounded by itself; each harmonic's
+/// amplitude is at most larger + (sqrt 2 - 1) smaller of its two coefficients.
+template <class T>
+LiftBounds<T> lift_bounds(const Roll<T>& roll, const LiftHarmonics<T>& harmonics, const T& turn) {
+  using std::abs;
+  const Hoop<T>& h = roll.hoop;
+  const T pi(std::numbers::pi_v<ScalarOf<T>>), rho = h.rho, k1 = h.J_min + T(2) * rho;
+  const T middle = roll.level + T(4) * pi * h.thrust * (turn + T(0.5));
+  const auto amplitude = [&](std::size_t m) {
+    const T a = abs(m < 3 ? harmonics.cosine[m] + harmonics.swing[m] * middle : harmonics.cosine[m]),
+            b = abs(harmonics.sine[m]);
+    return larger(a, b) + T(0.4143) * smaller(a, b);
   };
-  const T a1 = amplitude(cos1, sin1), a2 = amplitude(cos2, sin2), a3 = amplitude(cos3, sin3);
-  const T rest = T(2) * rho * abs(h.thrust);
+  const T a1 = amplitude(1), a2 = amplitude(2), a3 = amplitude(3);
+  const T rest = T(2) * rho * abs(h.thrust), farthest = pi * T(ScalarOf<T>(7) / ScalarOf<T>(6));
   return {a1 + T(4) * a2 + T(9) * a3 + rest * (T(2) * (k1 + rho) + pi * (k1 + T(2) * rho)),
-          a1 + T(8) * a2 + T(27) * a3 + rest * (T(3) * (k1 + T(2) * rho) + pi * (k1 + T(4) * rho))};
+          a1 + T(8) * a2 + T(27) * a3 + rest * (T(3) * (k1 + T(2) * rho) + pi * (k1 + T(4) * rho)),
+          a1 + T(16) * a2 + T(81) * a3 + rest * (T(4) * (k1 + T(4) * rho) + farthest * (k1 + T(8) * rho))};
 }
 
 }  // namespace leapmap

@@ -66,17 +66,19 @@ struct Block {
   std::vector<Found> found = std::vector<Found>(most_designs);
   DesignList searching;  ///< designs whose search is not over
 
-  void store(const Roll<T>& roll, const Quiet<T>& quiet, const std::uint32_t* index, std::size_t count) {
-    const Hoop<T>& h = roll.hoop;
-    const Trig<T>& phi = roll.release_trig;
-    paths_.template store<T>(
+  /// The lanes of U, T or WideOf<T>, here and below.
+  template <class U>
+  void store(const Roll<U>& roll, const Quiet<U>& quiet, const std::uint32_t* index, std::size_t count) {
+    const Hoop<U>& h = roll.hoop;
+    const Trig<U>& phi = roll.release_trig;
+    paths_.template store<U>(
         {h.sin_slope, h.cos_slope, h.rho, h.clearance, h.Ic, h.J_min, roll.level, h.thrust}, index, count);
-    releases_.template store<T>({roll.release, phi.sin, phi.cos, phi.versine, roll.released, roll.push,
+    releases_.template store<U>({roll.release, phi.sin, phi.cos, phi.versine, roll.released, roll.push,
                                  quiet.vis_viva, quiet.distance},
                                 index, count);
   }
 
-  /// Hoop and level only, which all that depends on the angle alone is made of. U is T, or S for one design.
+  /// Hoop and level only, which all that depends on the angle alone is made of. U may also be S: one design.
   template <class U>
   Roll<U> load_path(const std::uint32_t* index) const {
     const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, level, thrust] =
@@ -93,19 +95,22 @@ struct Block {
     roll.release = r[0], roll.release_trig = {r[1], r[2], r[3]}, roll.released = r[4], roll.push = r[5];
     return roll;
   }
-  Quiet<T> load_quiet(const std::uint32_t* index) const {
-    const std::array<T, 8> r = releases_.template load<T>(index);
+  template <class U>
+  Quiet<U> load_quiet(const std::uint32_t* index) const {
+    const std::array<U, 8> r = releases_.template load<U>(index);
     return {r[6], r[7]};
   }
 
-  void store(const TakenOff<T>& off, const std::uint32_t* index, std::size_t count) {
-    const Ascent<T>& ascent = off.ascent;
-    lift_offs_.template store<T>(
+  template <class U>
+  void store(const TakenOff<U>& off, const std::uint32_t* index, std::size_t count) {
+    const Ascent<U>& ascent = off.ascent;
+    lift_offs_.template store<U>(
         {off.angle, off.spin, ascent.apex, ascent.last_apex, ascent.sunk, ascent.dip}, index, count);
   }
-  TakenOff<T> load_lift_off(const std::uint32_t* index) const {
-    const auto [angle, spin, apex, last_apex, sunk, dip] = lift_offs_.template load<T>(index);
-    return {angle, spin, {T(0), apex, last_apex, sunk, dip}};
+  template <class U>
+  TakenOff<U> load_lift_off(const std::uint32_t* index) const {
+    const auto [angle, spin, apex, last_apex, sunk, dip] = lift_offs_.template load<U>(index);
+    return {angle, spin, {U(0), apex, last_apex, sunk, dip}};
   }
 
  private:

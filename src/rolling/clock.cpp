@@ -10,25 +10,50 @@ namespace leapmap {
 template <class T>
 void Clock<T>::start(const Block<T>& block, const DesignList& designs) {
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
-    const std::size_t count = std::min(Lanes<T>::count, designs.size() - first);
     const DesignLanes<T> index = lanes_from<T>(designs, first);
+    MaskOf<T> hard(false);
+    const NodesNeeded<T> needed = time_.needed(block.template load_path<T>(index.data()),
+                                               block.template load_quiet<T>(index.data()), hard);
+    const unsigned by_halving = Lanes<T>::bits(hard);
+    const auto nodes = lanes_of(needed.panel), needles = lanes_of(needed.needle),
+               strips = lanes_of(needed.strip);
+    for (std::size_t i = 0; i < index.size(); ++i)
+      dials_[index[i]] = {.panel = 0,
+                          .time = S(0),
+                          .before = S(0),
+                          .needle = needles[i],
+                          .strip = strips[i],
+                          .nodes = by_halving >> i & 1u ? 0 : static_cast<int>(nodes[i])};
+  }
+  designs_ = designs;
+  sort(designs_, sorted_designs_, [&](std::uint32_t design) { return dials_[design].nodes; });
+  for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
+    const DesignLanes<T> index = lanes_from<T>(designs_, first);
     const Roll<T> roll = block.template load_roll<T>(index.data());
-    const Quiet<T> quiet = block.load_quiet(index.data());
+    const Quiet<T> quiet = block.template load_quiet<T>(index.data());
     MaskOf<T> hard = roll.push != roll.push;
-    const NodesNeeded<T> needed = time_.needed(roll, quiet, hard);
+    const NodesNeeded<T> needed = needed_by(index);
     const T panel = time_.first_panel(roll), span = panel * T(pi_of<S>) - roll.release,
             time = time_.stretch(roll, quiet, needed, span, hard);
     const unsigned by_halving = Lanes<T>::bits(hard);
     const LaneArray<T> before = before_legs(block, index, roll, quiet, needed, span, hard);
-    const auto panels = lanes_of(panel), times = lanes_of(time), panel_nodes = lanes_of(needed.panel),
-               rest_nodes = lanes_of(needed.rest);
-    for (std::size_t i = 0; i < count; ++i)
-      dials_[index[i]] = {.panel = static_cast<long>(panels[i]),
-                          .time = times[i],
-                          .before = before[i],
-                          .panel_nodes = by_halving >> i & 1u ? 0 : static_cast<int>(panel_nodes[i]),
-                          .rest_nodes = static_cast<int>(rest_nodes[i])};
+    const auto panels = lanes_of(panel), times = lanes_of(time);
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      Dial& dial = dials_[index[i]];
+      dial.panel = static_cast<long>(panels[i]), dial.time = times[i], dial.before = before[i];
+      if (by_halving >> i & 1u) dial.nodes = 0;
+    }
   }
+}
+
+template <class T>
+NodesNeeded<T> Clock<T>::needed_by(const DesignLanes<T>& designs) const {
+  LaneArray<T> nodes, needles, strips;
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    const Dial& dial = dials_[designs[i]];
+    nodes[i] = S(dial.nodes), needles[i] = dial.needle, strips[i] = dial.strip;
+  }
+  return {Lanes<T>::load(nodes.data()), Lanes<T>::load(needles.data()), Lanes<T>::load(strips.data())};
 }
 
 /// How long the legs before took. A short way back from the first turn is timed in lanes, unless it is hard.
@@ -81,74 +106,72 @@ void Clock<T>::read(const Block<T>& block, std::vector<Reading<S>>& readings) {
   early_.clear(), due_.clear();
   for (Reading<S>& reading : readings) {
     const Dial& dial = dials_[reading.design];
-    if (dial.panel_nodes == 0) {
+    if (dial.nodes == 0) {
       reading.time = dial.before + halve(block, reading.design, reading.angle);
       continue;
     }
-    const long part = static_cast<long>(std::floor(reading.angle * (S(parts_a_panel) / pi_of<S>)));
-    (part < dial.panel * parts_a_panel ? early_ : due_).push_back({part, &reading});
+    const long panel = static_cast<long>(std::floor(reading.angle * (S(1) / pi_of<S>)));
+    if (panel < dial.panel)
+      early_.push_back({0, dial.nodes, &reading});
+    else
+      due_.push_back({panel, dial.nodes, &reading});
   }
-  sort(early_);
-  sort(due_);
+  const auto key_of = [](const Due& due) { return 64 * due.panel + due.nodes; };
+  static_assert(RollingTime<T>::most_nodes < 128);  // more than 64: sorted a little less well
+  sort(early_, sorted_, key_of);
+  sort(due_, sorted_, key_of);
   read_early(block);
   read_due(block);
 }
 
-/// Sorts parts by part, by counting where they are few.
+/// Sorts by whole numbers, by counting where their range is small.
 template <class T>
-void Clock<T>::sort(std::vector<Part>& parts) {
-  if (parts.empty()) return;
+template <class Item, class Key>
+void Clock<T>::sort(std::vector<Item>& items, std::vector<Item>& sorted, const Key& key_of) {
+  if (items.empty()) return;
   // Not by std::ranges: the page's compiler has no such algorithms yet.
-  const auto before = [](const Part& a, const Part& b) { return a.number < b.number; };
-  const auto [least, most] = std::minmax_element(parts.begin(), parts.end(), before);
-  const auto range = static_cast<std::size_t>(most->number - least->number) + 1;
+  const auto before = [&](const Item& a, const Item& b) { return key_of(a) < key_of(b); };
+  const auto [least, most] = std::minmax_element(items.begin(), items.end(), before);
+  const long base = key_of(*least);
+  const auto range = static_cast<std::size_t>(key_of(*most) - base) + 1;
   if (range > Block<T>::most_designs) {
-    std::sort(parts.begin(), parts.end(), before);
+    std::stable_sort(items.begin(), items.end(), before);
     return;
   }
   places_.assign(range + 1, 0);
-  const long base = least->number;
-  for (const Part& part : parts) ++places_[static_cast<std::size_t>(part.number - base) + 1];
+  for (const Item& item : items) ++places_[static_cast<std::size_t>(key_of(item) - base) + 1];
   for (std::size_t i = 1; i < range; ++i) places_[i] += places_[i - 1];
-  sorted_.resize(parts.size());
-  for (const Part& part : parts) sorted_[places_[static_cast<std::size_t>(part.number - base)]++] = part;
-  std::swap(parts, sorted_);
+  sorted.resize(items.size());
+  for (const Item& item : items) sorted[places_[static_cast<std::size_t>(key_of(item) - base)]++] = item;
+  std::swap(items, sorted);
 }
 
 template <class T>
-typename Clock<T>::Together Clock<T>::together(const std::vector<Part>& parts, std::size_t first) {
-  const Reading<S>& leader = *parts[first].reading;
-  Together found{.count = 1, .designs = {}, .to = T(leader.angle)};
-  found.designs.fill(leader.design);
+typename Clock<T>::Together Clock<T>::together(const std::vector<Due>& due, std::size_t first) const {
+  Together found;
+  found.nodes = 0;
   LaneArray<T> to;
-  to.fill(leader.angle);
-  for (; found.count < to.size() && first + found.count < parts.size(); ++found.count) {
-    const Part& part = parts[first + found.count];
-    if (part.number != parts[first].number) break;
-    found.designs[found.count] = part.reading->design, to[found.count] = part.reading->angle;
+  for (found.count = 0; found.count < to.size() && first + found.count < due.size(); ++found.count) {
+    const Due& next = due[first + found.count];
+    if (next.panel != due[first].panel) break;
+    found.designs[found.count] = next.reading->design, to[found.count] = next.reading->angle;
+    found.nodes = std::max(found.nodes, next.nodes);
   }
+  for (std::size_t i = found.count; i < to.size(); ++i) found.designs[i] = found.designs[0], to[i] = to[0];
   found.to = Lanes<T>::load(to.data());
+  found.needed = needed_by(found.designs);
   return found;
 }
 
 template <class T>
 void Clock<T>::read_early(const Block<T>& block) {
-  const int nodes_near_release = time_.rest_nodes_near_release();
   for (std::size_t first = 0, count = 0; first < early_.size(); first += count) {
     const Together lanes = together(early_, first);
     count = lanes.count;
-    int rest_nodes = nodes_near_release;
-    for (const std::uint32_t design : lanes.designs)
-      rest_nodes = std::max(rest_nodes, dials_[design].rest_nodes);
     const Roll<T> roll = block.template load_roll<T>(lanes.designs.data());
-    const Quiet<T> quiet = block.load_quiet(lanes.designs.data());
-    const T edge(S(early_[first].number) * (pi_of<S> / S(parts_a_panel)));
-    MaskOf<T> hard = lanes.to != lanes.to;
-    const NodesNeeded<T> needed = time_.needed(roll, quiet, hard);
-    const bool with_rest = all(edge > roll.release + T(0.4));
-    T taken = time_.stretch(roll, quiet, needed, (with_rest ? edge : lanes.to) - roll.release, hard);
-    if (with_rest) taken = taken + time_.rest(roll, lanes_of(edge)[0], lanes.to - edge, rest_nodes);
-    const auto times = lanes_of(taken);
+    MaskOf<T> hard(false);
+    const auto times = lanes_of(time_.stretch(roll, block.template load_quiet<T>(lanes.designs.data()),
+                                              lanes.needed, lanes.to - roll.release, hard));
     const unsigned by_halving = Lanes<T>::bits(hard);
     for (std::size_t i = 0; i < count; ++i) {
       Reading<S>& reading = *early_[first + i].reading;
@@ -163,33 +186,26 @@ void Clock<T>::read_due(const Block<T>& block) {
   for (std::size_t first = 0, count = 0; first < due_.size(); first += count) {
     const Together lanes = together(due_, first);
     count = lanes.count;
-    int panel_nodes = 0, rest_nodes = 0;
-    long begin = std::numeric_limits<long>::max();
+    const long end = due_[first].panel;
+    long begin = end;
     LaneArray<T> panels, so_far;
     for (std::size_t i = 0; i < panels.size(); ++i) {
       const Dial& dial = dials_[lanes.designs[i]];
       panels[i] = S(dial.panel), so_far[i] = dial.time;
       begin = std::min(begin, dial.panel);
-      panel_nodes = std::max(panel_nodes, dial.panel_nodes);
-      rest_nodes = std::max(rest_nodes, dial.rest_nodes);
     }
     const Roll<T> roll = block.template load_path<T>(lanes.designs.data());
     const T first_panel = Lanes<T>::load(panels.data());
     T taken = Lanes<T>::load(so_far.data());
-    const long part = due_[first].number;
-    const long end = (part - (part % parts_a_panel + parts_a_panel) % parts_a_panel) / parts_a_panel;
     for (long panel = begin; panel < end; ++panel)
-      taken = taken +
-              select(T(S(panel)) >= first_panel, time_.panel(roll, panel, parts_a_panel, panel_nodes), T(0));
-    auto times = lanes_of(taken);
-    for (std::size_t i = 0; i < count; ++i)
-      dials_[lanes.designs[i]].panel = end, dials_[lanes.designs[i]].time = times[i];
-    if (const int parts = static_cast<int>(part - end * parts_a_panel); parts > 0)
-      taken = taken + time_.panel(roll, end, parts, panel_nodes);
-    const S edge = S(part) * (pi_of<S> / S(parts_a_panel));
-    times = lanes_of(taken + time_.rest(roll, edge, lanes.to - T(edge), rest_nodes));
-    for (std::size_t i = 0; i < count; ++i)
-      due_[first + i].reading->time = dials_[lanes.designs[i]].before + times[i];
+      taken = taken + select(T(S(panel)) >= first_panel, time_.panel(roll, panel, lanes.nodes), T(0));
+    const auto at_edge = lanes_of(taken);
+    const auto times = lanes_of(taken + time_.rest(roll, lanes.needed, end, lanes.to - T(S(end) * pi_of<S>)));
+    for (std::size_t i = 0; i < count; ++i) {
+      Dial& dial = dials_[lanes.designs[i]];
+      dial.panel = end, dial.time = at_edge[i];
+      due_[first + i].reading->time = dial.before + times[i];
+    }
   }
 }
 

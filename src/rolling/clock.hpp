@@ -19,8 +19,9 @@ struct Reading {
   S time;  ///< NaN where it cannot be told: too near a stall
 };
 
-/// Designs whose angles lie in the same part of a half-turn are timed together: they have the panels of
-/// RollingTime in common. Those that would need too many nodes are timed one at a time.
+/// Designs whose angles lie in the same half-turn are timed together, for they have the panels of RollingTime
+/// in common, those that need about as many nodes side by side. Those that would need too many nodes are
+/// timed one at a time.
 template <class T>
 class Clock {
  public:
@@ -39,23 +40,26 @@ class Clock {
   S time(const Block<T>& block, std::uint32_t design, const S& angle) const;
 
  private:
-  /// How far a design has been timed: to the angle `panel` pi. `panel_nodes`, `rest_nodes`: that its panels
-  /// and rests need; no panel_nodes: it is timed by halving.
+  /// How far a design has been timed: to the angle `panel` pi.
   struct Dial {
     long panel;
     S time;
-    S before;  ///< from the release to the beginning of the leg
-    int panel_nodes, rest_nodes;
+    S before;         ///< from the release to the beginning of the leg
+    S needle, strip;  ///< of NodesNeeded
+    int nodes;        ///< that its panels need; 0: it is timed by halving
   };
-  struct Part {
-    long number;  ///< of the part of a panel in which the angle lies, from angle 0 on
+  struct Due {
+    long panel;  ///< the half-turn in which the angle lies, from angle 0 on
+    int nodes;
     Reading<S>* reading;
   };
-  /// As many readings of one part as there are lanes; lanes to spare repeat the first.
+  /// As many readings in one half-turn as there are lanes; lanes to spare repeat the first.
   struct Together {
     std::size_t count;
     DesignLanes<T> designs;
     T to;
+    NodesNeeded<T> needed;
+    int nodes;
   };
 
   S halve(const Block<T>& block, std::uint32_t design, const S& angle) const {
@@ -65,14 +69,17 @@ class Clock {
                            const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& span,
                            MaskOf<T> hard);
   S before_leg(const Block<T>& block, std::uint32_t design) const;
-  static Together together(const std::vector<Part>& parts, std::size_t first);
-  void sort(std::vector<Part>& parts);
+  NodesNeeded<T> needed_by(const DesignLanes<T>& designs) const;
+  Together together(const std::vector<Due>& due, std::size_t first) const;
+  template <class Item, class Key>
+  void sort(std::vector<Item>& items, std::vector<Item>& sorted, const Key& key_of);
   void read_early(const Block<T>& block);
   void read_due(const Block<T>& block);
 
   RollingTime<T> time_;
   std::vector<Dial> dials_;
-  std::vector<Part> early_, due_, sorted_;  // early: before the first panel's edge
+  DesignList designs_, sorted_designs_;
+  std::vector<Due> early_, due_, sorted_;  // early: before the first panel's edge
   std::vector<std::uint32_t> places_;
 };
 

@@ -66,9 +66,13 @@ void ExactSolver<T>::pick_intervals(std::span<Outcome> outcomes) {
       take_off_.falls.clear();
   for (const std::uint32_t design : block_.searching) {
     IntervalSearch<ScalarOf<T>>& search = block_.searches[design];
-    Interval<ScalarOf<T>> interval;
-    if (search.next(design, interval)) {
-      (interval.falls ? take_off_.falls : classify_.intervals).push_back(interval);
+    Interval<ScalarOf<T>> look;
+    SureFall<ScalarOf<T>> fall;
+    const Next next = search.next(design, look, fall);
+    if (next == Next::fall) {
+      take_off_.falls.push_back(fall);
+    } else if (next == Next::look) {
+      classify_.intervals.push_back(look);
     } else if (search.scan_on()) {
       unscanned_.push_back(design);
       going_on_.push_back(design);

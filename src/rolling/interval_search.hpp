@@ -19,14 +19,24 @@ namespace leapmap {
 /// asked.
 enum class Side : std::int8_t { below = -1, asked = 0, above = 1 };
 
+/// An interval that may hold a fall of G.
 template <class S>
 struct Interval {
   std::uint32_t design;  ///< of the block
   S turn;                ///< the revolution it lies in
-  S from, to, guess;     ///< guess: of the lift-off in it
-  bool falls;            ///< it surely holds one fall of G, and nothing else
+  S from, to;
   Side from_side, to_side;
 };
+
+/// An interval that surely holds one fall of G, and nothing else.
+template <class S>
+struct SureFall {
+  std::uint32_t design;  ///< of the block
+  S from, to, guess;     ///< guess: of the lift-off in it
+};
+
+/// What the next interval is.
+enum class Next { none, look, fall };
 
 /// Each interval between two nodes that the scan flagged is looked at as a whole, then, where that is
 /// unclear, in 2^halvings equal parts, now part `part`.
@@ -51,14 +61,17 @@ struct IntervalSearch {
   void begin(const S& from, const S& to, const S& turn_of_release, std::uint32_t past, bool on_node,
              bool above, bool back);
 
-  /// Takes over what a scan of `turns` revolutions found in a lane.
-  void take(const ScanFlags& scanned, const NodeSigns& signs, std::size_t lane, int turns);
+  /// The first node whose interval the next scan must tell of.
+  std::size_t scan_from() const { return node_past_release == 0 ? 0 : node_past_release - 1; }
+
+  /// Takes over what a scan of `turns` revolutions found.
+  void take(const ScanFlags& scanned, int turns);
 
   /// On to the revolutions after the scan; false if the search ends before them.
   bool scan_on();
 
-  /// The next interval to look at, of `design`; false if none of the scan is left.
-  bool next(std::uint32_t design, Interval<S>& interval);
+  /// The next interval of `design`: a look, a fall, or none of the scan is left.
+  Next next(std::uint32_t design, Interval<S>& look, SureFall<S>& fall);
 
   /// On to the interval after this one.
   void advance();
@@ -67,7 +80,9 @@ struct IntervalSearch {
   void halve() { ++halvings, part *= 2; }
 
  private:
-  void hand_on_signs(const NodeSigns& signs, std::size_t lane, int turns);
+  void hand_on_signs(int turns);
+  void distrust_falls_at_end();
+  void look_at(std::size_t k);
 };
 
 /// Whether two angles are the same but for rounding.
@@ -97,43 +112,62 @@ void IntervalSearch<S>::begin(const S& from, const S& to, const S& turn_of_relea
 }
 
 template <class S>
-void IntervalSearch<S>::take(const ScanFlags& scanned, const NodeSigns& signs, std::size_t lane, int turns) {
+void IntervalSearch<S>::take(const ScanFlags& scanned, int turns) {
   flags = scanned;
-  hand_on_signs(signs, lane, turns);
+  hand_on_signs(turns);
+  distrust_falls_at_end();
+}
+
+/// The interval from node k on is to be looked at, whatever the scan told.
+template <class S>
+void IntervalSearch<S>::look_at(std::size_t k) {
+  const std::uint64_t bit = std::uint64_t{1} << k % nodes_a_turn;
+  flags.looks[k / nodes_a_turn] |= bit, flags.falls[k / nodes_a_turn] &= ~bit;
 }
 
 /// At the release G has the sign that was told, and at a scan's first node the sign that the scan before
 /// found there. Where this scan's sign differs, by rounding or because G has a root before the release, the
 /// interval from there on is looked at.
 template <class S>
-void IntervalSearch<S>::hand_on_signs(const NodeSigns& signs, std::size_t lane, int turns) {
-  constexpr auto nodes = static_cast<std::size_t>(nodes_a_turn);
+void IntervalSearch<S>::hand_on_signs(int turns) {
+  constexpr std::size_t nodes = nodes_a_turn;
   const auto scanned = static_cast<std::size_t>(turns) * nodes;  // of all turns, the last node not counted
-  const auto above_at = [&](std::size_t k) {
-    return k < scanned ? is_above(signs, k / nodes, k % nodes, lane)
-                       : is_above(signs, static_cast<std::size_t>(turns) - 1, nodes, lane);
+  const auto above_at = [&](std::size_t k) -> bool {
+    return k < scanned ? flags.above[k / nodes] >> k % nodes & 1u : flags.above[k / nodes - 1] >> nodes & 1u;
   };
-  const auto look_at = [&](std::size_t k, bool left) {
-    const auto put = [&](IntervalBits& bits, bool value) {
-      const std::uint64_t bit = std::uint64_t{1} << k % nodes;
-      bits[k / nodes] = value ? bits[k / nodes] | bit : bits[k / nodes] & ~bit;
-    };
-    put(flags.looks, true), put(flags.falls, false);
-    put(flags.above_left, left), put(flags.above_right, above_at(k + 1));
+  const auto begins_at = [&](std::size_t k, bool above) {
+    if (above_at(k) == above) return;
+    flags.above[k / nodes] ^= std::uint64_t{1} << k % nodes;
+    look_at(k);
   };
   const bool first_above = last_above;
   last_above = above_at(scanned);
   const std::size_t k = node_past_release;
   node_past_release = 0;
   if (k == 0) {
-    if (first_above != above_at(0)) look_at(0, first_above);
-  } else if (!released_on_node) {
-    if (above_at(k) != released_above || above_at(k - 1) != released_above) look_at(k - 1, above_at(k - 1));
+    begins_at(0, first_above);
+    return;
+  }
+  const std::size_t begin = released_on_node ? k : k - 1;
+  flags.looks[0] &= ~std::uint64_t{0} << begin, flags.falls[0] &= ~std::uint64_t{0} << begin;
+  if (!released_on_node) {
+    if (above_at(k) != released_above || above_at(k - 1) != released_above) look_at(k - 1);
   } else if (k == scanned) {
     last_above = released_above;
   } else {
-    flags.looks[(k - 1) / nodes] &= ~(std::uint64_t{1} << (k - 1) % nodes);
-    if (above_at(k) != released_above) look_at(k, released_above);
+    begins_at(k, released_above);
+  }
+}
+
+/// An interval that the end cuts short, or may for rounding, holds what is to be seen.
+template <class S>
+void IntervalSearch<S>::distrust_falls_at_end() {
+  const S ends = end * (S(nodes_a_turn / 2) / std::numbers::pi_v<S>)-first_turn * S(nodes_a_turn);
+  if (ends > S(turns_a_scan * nodes_a_turn + 2)) return;
+  auto whole = static_cast<int>(ends) - 1;  // intervals that surely are
+  for (std::uint64_t& falls : flags.falls) {
+    if (whole < nodes_a_turn) falls &= (std::uint64_t{1} << std::max(whole, 0)) - 1;
+    whole -= nodes_a_turn;
   }
 }
 
@@ -146,8 +180,8 @@ bool IntervalSearch<S>::scan_on() {
 }
 
 template <class S>
-bool IntervalSearch<S>::next(std::uint32_t design, Interval<S>& interval) {
-  const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
+Next IntervalSearch<S>::next(std::uint32_t design, Interval<S>& look, SureFall<S>& fall) {
+  constexpr S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
   while (turn < turns_a_scan) {
     const auto t = static_cast<std::size_t>(turn);
     if (flags.looks[t] == 0) {
@@ -156,24 +190,24 @@ bool IntervalSearch<S>::next(std::uint32_t design, Interval<S>& interval) {
     }
     node = std::countr_zero(flags.looks[t]);
     const S revolution = first_turn + S(turn), place = revolution * S(nodes_a_turn) + S(node);
+    const S left_node = place * step, right_node = (place + S(1)) * step;
+    if (flags.falls[t] >> node & 1u) {
+      fall = {design, left_node, right_node, (left_node + right_node) * S(0.5)};
+      return Next::fall;
+    }
     const S length = part_lengths<S>[static_cast<std::size_t>(halvings)], at = place + S(part) * length;
     const S from = std::max(at * step, release), to = std::min((at + length) * step, end);
     if (from < to) {
-      const auto flagged = [&](const IntervalBits& bits) -> bool { return bits[t] >> node & 1u; };
-      const S left_node = place * step, right_node = (place + S(1)) * step;
-      const auto side = [](bool is_above) { return is_above ? Side::above : Side::below; };
-      const bool at_the_end = ends_above && is_same_place(to, end);
-      const bool falls = flagged(flags.falls) && from == left_node && to == right_node && !at_the_end;
-      interval = {design, revolution, from, to, (from + to) * S(0.5), falls, Side::asked, Side::asked};
-      if (falls) return true;
+      const auto side = [&](bool is_above) { return is_above ? Side::above : Side::below; };
+      look = {design, revolution, from, to, Side::asked, Side::asked};
       if (from == release) {
-        interval.from_side = side(released_above);
+        look.from_side = side(released_above);
       } else if (from == left_node) {
-        interval.from_side = side(flagged(flags.above_left) || flagged(flags.falls));
+        look.from_side = side(flags.above[t] >> node & 1u);
       }
-      if (to == right_node) interval.to_side = side(flagged(flags.above_right));
-      if (at_the_end) interval.to_side = Side::above;
-      return true;
+      if (to == right_node) look.to_side = side(flags.above[t] >> (node + 1) & 1u);
+      if (ends_above && is_same_place(to, end)) look.to_side = Side::above;
+      return Next::look;
     }
     if (from >= end) {
       turn = turns_a_scan;
@@ -181,7 +215,7 @@ bool IntervalSearch<S>::next(std::uint32_t design, Interval<S>& interval) {
       advance();
     }
   }
-  return false;
+  return Next::none;
 }
 
 template <class S>

@@ -6,16 +6,41 @@
 #include <limits>
 
 namespace leapmap {
+namespace {
+
+/// E at the first minimum: from the level, which costs little; where that cancels, from the release.
 template <class T>
-void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, const LegStart<T>& leg) {
+T least_vis_viva(const Roll<T>& roll, const FirstMinimum<T>& first) {
+  using std::abs, std::sqrt;
+  const Hoop<T>& h = roll.hoop;
+  const T depth = h.rho * h.rho - h.thrust * h.thrust;
+  const T least = roll.level + T(2) * (h.thrust * first.angle - sqrt(larger(depth, T(0))));
+  const MaskOf<T> near_zero = !(abs(least) > T(1e-9) * (abs(roll.level) + T(1)));
+  if (!any(near_zero | (h.thrust < T(0)))) return least;
+  return vis_viva_past_release(roll, first.angle - roll.release);
+}
+
+/// The same at a multiple of pi, where that multiple's parity is all the trigonometry.
+template <class T>
+T vis_viva_at_panel(const Roll<T>& roll, const T& panel) {
+  using std::floor;
+  const Hoop<T>& h = roll.hoop;
+  const T odd = panel - T(2) * floor(panel * T(0.5));
+  return roll.level + T(2) * (h.thrust * (panel * T(pi_of<T>)) + h.rho * h.cos_slope * (T(1) - T(2) * odd));
+}
+
+}  // namespace
+
+template <class B, class T>
+void begin_leg(Block<B>& block, const DesignLanes<T>& index, std::size_t count, const LegStart<T>& leg) {
   using S = ScalarOf<T>;
   using std::abs, std::floor;
-  const T pi(pi_of<S>), two_pi = T(2) * pi;
+  const T two_pi(S(2) * pi_of<S>);
   const Roll<T>& roll = leg.roll;
 
   // Energy that is used up ends a leg; it rises or falls from turn to turn, so that one minimum decides.
-  const FirstMinimum<T> ahead = first_minimum(leg.release);
-  const T least = vis_viva_past_release(leg.release, ahead.angle - leg.release.release);
+  const FirstMinimum<T> ahead = first_minimum(leg.release, leg.slope);
+  const T least = least_vis_viva(leg.release, ahead);
   const MaskOf<T> runs_down = ahead.is_real & !leg.last & ((least <= T(0)) | (roll.hoop.thrust < T(0)));
   T reach(0), end = leg.end;
   MaskOf<T> turns = !(end == end);
@@ -27,11 +52,10 @@ void begin_leg(Block<T>& block, const DesignLanes<T>& index, std::size_t count, 
     end = select(turns, turn, end);
   }
   // How near E comes to zero on the way, for the clock.
-  T lowest =
-        smaller(least, vis_viva_past_release(roll, RollingTime<T>::first_panel(roll) * pi - roll.release)),
+  T lowest = smaller(least, vis_viva_at_panel(roll, RollingTime<T>::first_panel(roll))),
     minimum = ahead.angle;
   if (any(roll.release < leg.release.release)) {
-    minimum = first_minimum(roll).angle;
+    minimum = first_minimum(roll, leg.slope).angle;
     lowest = smaller(lowest, vis_viva_past_release(roll, minimum - roll.release));
   }
   block.store(roll, Quiet<T>{select(runs_down | leg.last, T(-1), lowest), minimum - roll.release},
@@ -78,10 +102,12 @@ void turn_round(Block<T>& block, const DesignList& designs, const Scene& scene) 
     // At rest where it turned, and at the same level, so that G has the same signs as before.
     const Hoop<T> hoop = seen(before.hoop, T(-1));
     LegStart<T> leg;
+    leg.slope = slope_of(hoop);
     leg.roll = begin_roll(hoop, -Lanes<T>::load(turns.data()), T(0));
     leg.roll.level = before.level;
     leg.release = begin_roll(hoop, -release, T(0));
     leg.release.released = Lanes<T>::load(energies.data());
+    leg.release.level = before.level;
     leg.end = select(third, release, T(S(2) * pi_of<S>) * T(S(scene.runway)) - release);
     leg.above = lift(leg.roll, leg.roll.release).value > T(0);
     leg.last = third;
@@ -93,8 +119,9 @@ void turn_round(Block<T>& block, const DesignList& designs, const Scene& scene) 
   }
 }
 
-#define LEAPMAP_INSTANTIATE(T)                                                                   \
-  template void begin_leg<T>(Block<T>&, const DesignLanes<T>&, std::size_t, const LegStart<T>&); \
+#define LEAPMAP_INSTANTIATE(T)                                                      \
+  template void begin_leg<T>(Block<T>&, const DesignLanes<WideOf<T>>&, std::size_t, \
+                             const LegStart<WideOf<T>>&);                           \
   template void turn_round<T>(Block<T>&, const DesignList&, const Scene&);
 #ifdef LEAPMAP_KERNELS
 LEAPMAP_INSTANTIATE(Batch)

@@ -9,10 +9,11 @@
 
 namespace leapmap {
 
-template <class T>
-void prepare(std::span<const Design> designs, const Scene& scene, Block<T>& block,
+template <class B>
+void prepare(std::span<const Design> designs, const Scene& scene, Block<B>& block,
              std::span<Outcome> outcomes) {
-  using S = ScalarOf<T>;
+  using S = ScalarOf<B>;
+  using T = WideOf<B>;
   using std::abs, std::atan2;
   block.searching.clear();
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
@@ -25,9 +26,9 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<T>& bloc
       for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = S(designs[index[i]].*member);
       return Lanes<T>::load(lanes.data());
     };
-    const Hoop<T> hoop =
-        derive(parameter(&Design::slope), parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
-               parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
+    const T slope = parameter(&Design::slope);
+    const Hoop<T> hoop = derive(slope, parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
+                                parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
     const T spin = parameter(&Design::release_spin);
     // A release many turns from 0 is taken back to the first, so that angles have digits to spare.
     const T release_angle = parameter(&Design::release_angle);
@@ -69,7 +70,7 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<T>& bloc
       }
     }
     const T end = roll.release + T(S(2) * pi_of<S>) * T(S(scene.runway));
-    begin_leg(block, index, count, {roll, roll, end, end == end, !(end == end)});
+    begin_leg(block, index, count, LegStart<T>{roll, roll, way * slope, end, end == end, !(end == end)});
   }
 }
 

@@ -52,7 +52,7 @@ RollingTime<T>::RollingTime(double tolerance) : rules_(rules_up_to<S>(most_nodes
   tolerance_ = std::max(S(tolerance) * S(0.01L), S(450) * std::numeric_limits<S>::epsilon());
   digits_ = -log(tolerance_);
   starts_.resize(rules_.size());
-  panels_.resize(rules_.size() * 2 * (parts_a_panel + 1));
+  panels_.resize(rules_.size() * 2);
 }
 
 /// The number of nodes for a panel whose r has this square of its logarithm.
@@ -71,15 +71,17 @@ NodesNeeded<T> RollingTime<T>::needed(const Roll<T>& roll, const Quiet<T>& quiet
   NodesNeeded<T> nodes;
   nodes.needle = sqrt(square_acosh(roll.hoop.J_min * per_rho));
   nodes.strip = sqrt(square_acosh(larger(quiet.vis_viva, T(0)) * per_rho));
-  const auto for_length = [&](const S& length) {
-    const T per_half = T(S(2) / length);
-    return nodes_for(smaller(square_growth_beside_end(nodes.needle * per_half),
-                             square_growth_beside(nodes.strip * per_half)),
-                     hard);
-  };
-  nodes.panel = for_length(pi_of<S>);
-  nodes.rest = for_length(pi_of<S> / S(parts_a_panel));
+  nodes.panel = nodes_for_length(nodes, T(pi_of<S>), hard);
   return nodes;
+}
+
+/// For a stretch of angle whose ends are as near to needles as can be.
+template <class T>
+T RollingTime<T>::nodes_for_length(const NodesNeeded<T>& needed, const T& length, MaskOf<T>& hard) const {
+  const T per_half = T(2) / length;
+  return nodes_for(smaller(square_growth_beside_end(needed.needle * per_half),
+                           square_growth_beside(needed.strip * per_half)),
+                   hard);
 }
 
 template <class T>
@@ -159,16 +161,14 @@ const std::vector<typename RollingTime<T>::SharedNode>& RollingTime<T>::start_fr
 }
 
 template <class T>
-T RollingTime<T>::panel(const Roll<T>& roll, long panel, int parts, int nodes) {
+T RollingTime<T>::panel(const Roll<T>& roll, long panel, int nodes) {
   const long odd = panel & 1;
-  std::vector<SharedNode>& shared =
-      panels_[static_cast<std::size_t>((2 * nodes + odd) * (parts_a_panel + 1) + parts)];
+  std::vector<SharedNode>& shared = panels_[static_cast<std::size_t>(2 * nodes + odd)];
   if (shared.empty()) {
     const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
-    const S length = pi_of<S> * S(parts) / S(parts_a_panel);
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const S x = pi_of<S> * S(odd) + length * rule.node[i];
-      shared.push_back({length * rule.weight[i], x, S(0), trig(x)});
+      const S x = pi_of<S> * (S(odd) + rule.node[i]);
+      shared.push_back({pi_of<S> * rule.weight[i], x, S(0), trig(x)});
     }
   }
   const Hoop<T>& hoop = roll.hoop;
@@ -183,29 +183,29 @@ T RollingTime<T>::panel(const Roll<T>& roll, long panel, int parts, int nodes) {
   return total;
 }
 
+/// By a rule of an even number of nodes: those at +x and -x from the middle share their sine and cosine.
 template <class T>
-int RollingTime<T>::rest_nodes_near_release() const {
-  using std::acosh;
-  const S farther = S(1) + S(0.4L) * S(2 * parts_a_panel) / pi_of<S>;  // 1 + 0.4 / half the length of a part
-  return static_cast<int>(S(0.5L) * digits_ / acosh(farther)) + 2;
-}
+T RollingTime<T>::rest(const Roll<T>& roll, const NodesNeeded<T>& needed, long panel, const T& length) const {
+  MaskOf<T> hard = length != length;
+  const auto need = lanes_of(nodes_for_length(needed, larger(length, T(1e-3)), hard));
+  const auto half_of_nodes = (static_cast<std::size_t>(*std::max_element(need.begin(), need.end())) + 1) / 2;
+  const GaussRule<S>& rule = rules_[2 * half_of_nodes];
 
-template <class T>
-T RollingTime<T>::rest(const Roll<T>& roll, const S& angle, const T& length, int nodes) const {
   const Hoop<T>& hoop = roll.hoop;
-  const Trig<S> phi = trig(angle);
-  const Trig<T> from{T(phi.sin), T(phi.cos), T(phi.versine)};
+  const T half = T(0.5) * length, from_edge = T(S(panel & 1) * pi_of<S>) + half;
+  const Trig<T> phi = trig(from_edge);
   const T gain = T(2) * hoop.thrust, rho2 = T(2) * hoop.rho;
-  const T level = roll.level + gain * T(angle);
-  const T swing = rho2 * cos_from_vertical(hoop, from), sway = rho2 * sin_from_vertical(hoop, from);
-  const T J_mean = hoop.J_min + rho2, J_cos = rho2 * from.cos, J_sin = rho2 * from.sin;
-  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+  const T level = roll.level + gain * (T(pi_of<S> * S(panel & ~1L)) + from_edge);
+  const T swing = rho2 * cos_from_vertical(hoop, phi), sway = rho2 * sin_from_vertical(hoop, phi);
+  const T J_mean = hoop.J_min + rho2, J_cos = rho2 * phi.cos, J_sin = rho2 * phi.sin;
   T total(0);
-  for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const T x = length * T(rule.node[i]);
-    const SinCos<T> turned = sincos_of(x);
-    const T E = level + gain * x + swing * turned.cos - sway * turned.sin;
-    total = total + T(rule.weight[i]) * slowness(J_mean - J_cos * turned.cos + J_sin * turned.sin, E);
+  for (std::size_t i = half_of_nodes; i < rule.node.size(); ++i) {
+    const T x = half * T(S(2) * rule.node[i] - S(1));  // up to pi / 2
+    const SinCos<T> part = sincos_of_small(x * T(0.5));
+    const T sine = T(2) * part.sin * part.cos, versine = T(2) * part.sin * part.sin, cosine = T(1) - versine;
+    const T E = level + swing * cosine, E_odd = gain * x - sway * sine;
+    const T J = J_mean - J_cos * cosine, J_odd = J_sin * sine;
+    total = total + T(rule.weight[i]) * (slowness(J + J_odd, E + E_odd) + slowness(J - J_odd, E - E_odd));
   }
   return length * total;
 }

@@ -2,8 +2,8 @@
 /// The time that rolling takes, t = integral of sqrt(J / E) dphi, by Gauss-Legendre quadrature.
 ///
 /// From the release to the first multiple of pi is a stretch in q, phi = phi0 + x1 + q^2, which takes out the
-/// nearer zero x1 of E = released + 2 push x + bend x^2 + ... From there half-turns, and parts of a
-/// half-turn, are panels whose nodes all designs share; what is left is the rest, short and a design's own.
+/// nearer zero x1 of E = released + 2 push x + bend x^2 + ... From there half-turns are panels whose nodes
+/// all designs share; what is left is the rest, a design's own.
 ///
 /// A rule of n nodes converges like r^(-2 n), r the sum of the half-axes of the largest ellipse about its
 /// panel in which the integrand is smooth. So n is chosen from where sqrt(J / E) is not:
@@ -22,8 +22,6 @@
 
 namespace leapmap {
 
-inline constexpr int parts_a_panel = 16;  ///< a panel is a half-turn; the rest is shorter than a part
-
 /// E's first minimum after the release, or where it rises least if it has none; `vis_viva` is at most E there
 /// and from the first panel on. Not above zero: the way is to be timed by halving.
 template <class T>
@@ -32,16 +30,17 @@ struct Quiet {
   T distance;  ///< from the release [rad]
 };
 
-/// How many nodes a design's panels and rests need, and the distances d and y that tell.
+/// How many nodes a design's panels need, and the distances d and y that tell. A rest needs no more.
 template <class T>
 struct NodesNeeded {
-  T panel, rest, needle, strip;
+  T panel, needle, strip;
 };
 
 template <class T>
 class RollingTime {
  public:
   using S = ScalarOf<T>;
+  static constexpr int most_nodes = sizeof(S) > 8 ? 96 : 56;
 
   /// Times will be good to the tolerance, relative, or to some roundings.
   explicit RollingTime(double tolerance);
@@ -60,14 +59,11 @@ class RollingTime {
   T stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& span,
             MaskOf<T>& hard);
 
-  /// The time that half-turn `panel` takes, from panel pi on, or its first `parts` parts; all of n nodes.
-  T panel(const Roll<T>& roll, long panel, int parts, int nodes);
+  /// The time that half-turn `panel` takes, from panel pi on, by so many nodes.
+  T panel(const Roll<T>& roll, long panel, int nodes);
 
-  /// Nodes for a rest that begins as near as 0.4 rad behind the release: E's zero there is behind it.
-  int rest_nodes_near_release() const;
-
-  /// The time from `angle` for less than a part.
-  T rest(const Roll<T>& roll, const S& angle, const T& length, int nodes) const;
+  /// The time from `panel` pi for less than a half-turn.
+  T rest(const Roll<T>& roll, const NodesNeeded<T>& needed, long panel, const T& length) const;
 
   /// The time from release to an angle by halving intervals until they agree (halved_time.hpp): for any
   /// design. NaN where it cannot be told: so near a stall that E is lost in its roundings.
@@ -81,8 +77,6 @@ class RollingTime {
   }
 
  private:
-  static constexpr int most_nodes = sizeof(S) > 8 ? 96 : 56;
-
   /// Nodes that designs share.
   struct SharedNode {
     S weight, x, x_less_sin;
@@ -93,14 +87,14 @@ class RollingTime {
     std::vector<SharedNode> nodes;
   };
 
+  T nodes_for_length(const NodesNeeded<T>& needed, const T& length, MaskOf<T>& hard) const;
   T nodes_for(const T& square_growth, MaskOf<T>& hard) const;
   const std::vector<SharedNode>& start_from_rest(const S& span, int nodes);
 
-  S tolerance_, digits_;                    // digits: log(1 / tolerance)
-  const std::vector<GaussRule<S>>& rules_;  // by number of nodes, the same for all
-  std::vector<std::vector<Start>> starts_;  // by number of nodes, the spans met so far
-  std::vector<std::vector<SharedNode>>
-      panels_;  // by number of nodes, evenness and parts; filled when first used
+  S tolerance_, digits_;                         // digits: log(1 / tolerance)
+  const std::vector<GaussRule<S>>& rules_;       // by number of nodes, the same for all
+  std::vector<std::vector<Start>> starts_;       // by number of nodes, the spans met so far
+  std::vector<std::vector<SharedNode>> panels_;  // by number of nodes and evenness; filled when first used
 };
 
 }  // namespace leapmap

@@ -15,24 +15,25 @@ void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Sce
                      std::span<Outcome> outcomes, DesignList& going_on) {
   using std::abs, std::sqrt;
   using S = ScalarOf<T>;
-  const T epsilon(std::numeric_limits<S>::epsilon());
-  for (std::size_t first = 0; first < falls.size(); first += Lanes<T>::count) {
-    const std::size_t count = std::min(Lanes<T>::count, falls.size() - first);
-    const IntervalLanes<T> lanes = lanes_from<T>(falls, first);
-    const T &a = lanes.from, &b = lanes.to;
-    const T guess = lanes_from<T>(falls, first, [](const Interval<S>& fall) { return fall.guess; });
-    const Roll<T> roll = block.template load_path<T>(lanes.index.data());
-    const MaskOf<T> all_lanes = a == a;
-    const T angle = polish_root([&](const T& x) { return lift(roll, x); }, a, b, guess, !all_lanes,
-                                T(2) * epsilon * larger(T(1), abs(b)), all_lanes);
-    const Trig<T> phi = trig(angle);
+  using W = WideOf<T>;
+  const W epsilon(std::numeric_limits<S>::epsilon());
+  for (std::size_t first = 0; first < falls.size(); first += Lanes<W>::count) {
+    const std::size_t count = std::min(Lanes<W>::count, falls.size() - first);
+    const IntervalLanes<W> lanes = lanes_from<W>(falls, first);
+    const W &a = lanes.from, &b = lanes.to;
+    const W guess = lanes_from<W>(falls, first, [](const SureFall<S>& fall) { return fall.guess; });
+    const Roll<W> roll = block.template load_path<W>(lanes.index.data());
+    const MaskOf<W> all_lanes = a == a;
+    const W angle = polish_root([&](const W& x) { return lift(roll, x); }, a, b, guess, !all_lanes,
+                                W(2) * epsilon * larger(W(1), abs(b)), all_lanes);
+    const Trig<W> phi = trig(angle);
     // Beside a turn E may round to nothing.
-    const T spin = sqrt(larger(vis_viva(roll, angle, phi), T(1e-290)) / contact_inertia(roll.hoop, phi));
-    const Ascent<T> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), all_lanes);
-    const T height = T(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
+    const W spin = sqrt(larger(vis_viva(roll, angle, phi), W(1e-290)) / contact_inertia(roll.hoop, phi));
+    const Ascent<W> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), all_lanes);
+    const W height = W(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
     const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
                apexes = lanes_of(apex_time);
-    block.store(TakenOff<T>{angle, spin, ascent}, lanes.index.data(), count);
+    block.store(TakenOff<W>{angle, spin, ascent}, lanes.index.data(), count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t design = lanes.index[i];
       auto& found = block.found[design];
@@ -67,13 +68,14 @@ void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Sce
 
 template <class T>
 void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes) {
-  for (std::size_t first = 0; first < jumped.size(); first += Lanes<T>::count) {
-    const std::size_t count = std::min(Lanes<T>::count, jumped.size() - first);
-    const DesignLanes<T> index = lanes_from<T>(jumped, first);
-    const Roll<T> roll = block.template load_path<T>(index.data());
-    const TakenOff<T> off = block.load_lift_off(index.data());
-    const Toss<T> toss = toss_of(roll.hoop, off.angle, trig(off.angle), off.spin);
-    const Flight<T> flight = scaled(descend(toss, off.ascent, off.spin == off.spin), roll.hoop, off.spin);
+  using W = WideOf<T>;
+  for (std::size_t first = 0; first < jumped.size(); first += Lanes<W>::count) {
+    const std::size_t count = std::min(Lanes<W>::count, jumped.size() - first);
+    const DesignLanes<W> index = lanes_from<W>(jumped, first);
+    const Roll<W> roll = block.template load_path<W>(index.data());
+    const TakenOff<W> off = block.template load_lift_off<W>(index.data());
+    const Toss<W> toss = toss_of(roll.hoop, off.angle, trig(off.angle), off.spin);
+    const Flight<W> flight = scaled(descend(toss, off.ascent, off.spin == off.spin), roll.hoop, off.spin);
     const auto landings = lanes_of(flight.flight_time), dips = lanes_of(flight.dip);
     for (std::size_t i = 0; i < count; ++i) {
       outcomes[index[i]].flight_time = static_cast<double>(landings[i]);

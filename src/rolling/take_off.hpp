@@ -22,7 +22,7 @@ struct Told {
 
 template <class T>
 struct TakeOff {
-  std::vector<Interval<ScalarOf<T>>> falls;  ///< with one lift-off each, at most one a design
+  std::vector<SureFall<ScalarOf<T>>> falls;  ///< with one lift-off each, at most one a design
   Told* told = nullptr;                      ///< told every lift-off, if there
 
   /// Adds designs whose search goes on, because that was not the jump, to `going_on`.

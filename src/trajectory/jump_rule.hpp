@@ -11,7 +11,26 @@ namespace leapmap {
 
 /// Counts a lift-off and its flight, in order of time. True if it is the jump, which ends the search: the
 /// jump is the first lift-off that reaches scene.hop_height.
-bool consider(Outcome& outcome, const Scene& scene, const Design& design, const LiftOff<double>& lift_off,
-              const Flight<double>& flight);
+inline bool consider(Outcome& outcome, const Scene& scene, const Design& design,
+                     const LiftOff<double>& lift_off, const Flight<double>& flight) {
+  const bool is_jump = flight.height >= scene.hop_height;
+  if (outcome.candidates < Outcome::most_candidates) ++outcome.candidates;
+  if (outcome.spurious_first_jump == Outcome::no_lift_off) {
+    outcome.spurious_first_jump = is_jump ? 0 : 1;
+    outcome.first_jump_height = flight.height;
+    outcome.first_jump_time = lift_off.time;
+  }
+  if (!is_jump) return false;
+  outcome.status = Status::jumped;
+  outcome.jump_height = flight.height;
+  outcome.jump_time = lift_off.time;
+  outcome.jump_angle = lift_off.angle;
+  outcome.jump_spin = lift_off.spin;
+  outcome.jump_distance = lift_off.angle - design.release_angle;
+  outcome.apex_time = flight.apex_time;
+  outcome.flight_time = flight.flight_time;
+  outcome.dip = flight.dip;
+  return true;
+}
 
 }  // namespace leapmap

@@ -45,6 +45,29 @@ void Exact(benchmark::State& state) {
   tell_errors(state, outcomes, reference());
 }
 
+/// As a grid has them, the last parameter fastest: neighbours resemble each other.
+std::vector<Design> grid() {
+  constexpr int side = 32;
+  std::vector<Design> designs;
+  const auto value = [](double from, double to, int i) { return from + (to - from) * i / (side - 1); };
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      for (int k = 0; k < side; ++k)
+        designs.push_back({.slope = value(0.1, 0.8, i),
+                           .mass_ratio = value(0.5, 10.0, j),
+                           .offset_ratio = value(0.3, 1.0, k)});
+  return designs;
+}
+
+/// jump_height, jump_time and spurious_first_jump, or all fields; random designs, or a grid.
+void ExactFields(benchmark::State& state, bool of_grid, const Wanted& wanted) {
+  const std::vector<Design> solved = of_grid ? grid() : designs();
+  ExactSolver<Batch> solver(tolerance(state), wanted);
+  std::vector<Outcome> outcomes(solved.size());
+  for (auto _ : state) solver.solve(solved, scene(), outcomes);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(solved.size()));
+}
+
 void ExactHeightsAndFlagsOnly(benchmark::State& state) {
   ExactSolver<Batch> solver(tolerance(state),
                             {.first_jump_time = false, .jump_time = false, .descent = false});
@@ -80,6 +103,11 @@ void Engine(benchmark::State& state) {
 }
 
 BENCHMARK(Exact<Batch>)->Arg(12)->Arg(10)->Arg(6)->Unit(benchmark::kMillisecond);
+constexpr Wanted three_fields{.first_jump_time = false, .jump_time = true, .descent = false};
+BENCHMARK_CAPTURE(ExactFields, grid_three, true, three_fields)->Arg(12)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ExactFields, grid_all, true, Wanted{})->Arg(12)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ExactFields, random_three, false, three_fields)->Arg(12)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ExactFields, random_all, false, Wanted{})->Arg(12)->Unit(benchmark::kMillisecond);
 BENCHMARK(ExactHeightsAndFlagsOnly)->Arg(12)->Unit(benchmark::kMillisecond);
 BENCHMARK(Exact<double>)->Arg(12)->Arg(6)->Unit(benchmark::kMillisecond);
 BENCHMARK(Exact<long double>)->Arg(18)->Unit(benchmark::kMillisecond);

@@ -104,5 +104,36 @@ TEST(TileEncoder, StoresWhatDoesNotGetSmallerAsItIs) {
   EXPECT_EQ(encoded.chunks[0].bytes.size(), 15u * 8u + 4u) << "and a checksum";
 }
 
+TEST(TileEncoder, PassesNoiseOnAsStoredBlocksOfTheSameStream) {
+  MapLayout layout = testing::small_layout();
+  layout.fields = {find_field("jump_height"), find_field("status")};
+  layout.axes = {{"slope", "rad", "", std::vector<double>(300)},
+                 {"mass_ratio", "1", "", std::vector<double>(300)}};
+  layout.compression = 1;
+  const testing::TemporaryFolder folder;
+  const std::vector<std::size_t> shape{300, 300};  // planes of 90,000 bytes: more than one stored block
+  const Tiling tiling(shape, shape);
+  std::mt19937_64 random(6);
+  std::vector<Outcome> outcomes(tiling.designs());
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    outcomes[i].status = Status::jumped;
+    outcomes[i].jump_height =
+        0.5 + 1e-7 * static_cast<double>(i) + std::ldexp(static_cast<double>(random() >> 11), -80);
+  }
+  const EncodedTile encoded = TileEncoder(layout, tiling).encode(0, outcomes);
+  const std::vector<std::byte>& bytes = encoded.chunks[0].bytes;
+  EXPECT_EQ(encoded.chunks[0].skipped_filters, 0u);
+  EXPECT_EQ(std::to_integer<int>(bytes[2]), 0) << "a stored block, and not the last";
+  EXPECT_GT(bytes.size(), 3 * outcomes.size()) << "the last three bytes of every number are noise";
+  EXPECT_LT(bytes.size(), 6 * outcomes.size()) << "the first ones are not";
+
+  MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, testing::small_attributes, false);
+  writer.write(encoded);
+  EXPECT_TRUE(writer.finish({}));
+  const std::vector<double> stored =
+      MapReader(folder / "map.h5").read("jump_height", Tile{{0, 0}, shape, tiling.designs()});
+  for (std::size_t i = 0; i < outcomes.size(); ++i) ASSERT_EQ(stored[i], outcomes[i].jump_height);
+}
+
 }  // namespace
 }  // namespace leapmap
