@@ -61,8 +61,8 @@ struct Wide {
   friend Wide atan2(const Wide& y, const Wide& x) { return {atan2(y.low, x.low), atan2(y.high, x.high)}; }
   friend Wide reciprocal_sqrt(const Wide& a) { return {reciprocal_sqrt(a.low), reciprocal_sqrt(a.high)}; }
   friend SinCos<Wide> sincos_of(const Wide& a) {
-    const SinCos<B> low = sincos_of(a.low), high = sincos_of(a.high);
-    return {{low.sin, high.sin}, {low.cos, high.cos}};
+    const SinCos<B> first = sincos_of(a.low), second = sincos_of(a.high);
+    return {{first.sin, second.sin}, {first.cos, second.cos}};
   }
 };
 

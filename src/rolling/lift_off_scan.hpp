@@ -109,8 +109,9 @@ MaskOf<T> is_plain_by_cubic(const T& before, const T& b0, const T& b3, const T& 
   const T b2 = b3 - (before - T(6) * b0 + T(3) * b3 + T(2) * after) * T(S(1) / S(18));
   const T d0 = b1 - b0, d1 = b2 - b1, d2 = b3 - b2;
   const T off = fine * T(S(3) / S(128)), steep = fine * T(S(1) / S(9));
-  return (smaller(smaller(b0, b1), smaller(b2, b3)) > off) | (larger(larger(b0, b1), larger(b2, b3)) < -off) |
-         (larger(larger(d0, d1), d2) < -steep) | (smaller(smaller(d0, d1), d2) > steep);
+  const T least = smaller(smaller(b0, b1), smaller(b2, b3)), most = larger(larger(b0, b1), larger(b2, b3));
+  const T least_rise = smaller(smaller(d0, d1), d2), most_rise = larger(larger(d0, d1), d2);
+  return (least > off) | (most < -off) | (most_rise < -steep) | (least_rise > steep);
 }
 
 /// Flags the intervals of `turns` <= turns_a_scan revolutions that may hold a fall of G, one ScanFlags a
