@@ -116,8 +116,7 @@ void Clock<T>::read(const Block<T>& block, std::vector<Reading<S>>& readings) {
     else
       due_.push_back({panel, dial.nodes, &reading});
   }
-  const auto key_of = [](const Due& due) { return 64 * due.panel + due.nodes; };
-  static_assert(RollingTime<T>::most_nodes < 128);  // more than 64: sorted a little less well
+  const auto key_of = [](const Due& due) { return (RollingTime<T>::most_nodes + 1) * due.panel + due.nodes; };
   sort(early_, sorted_, key_of);
   sort(due_, sorted_, key_of);
   read_early(block);

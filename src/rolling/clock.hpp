@@ -49,7 +49,7 @@ class Clock {
     int nodes;        ///< that its panels need; 0: it is timed by halving
   };
   struct Due {
-    long panel;  ///< the half-turn in which the angle lies, from angle 0 on
+    long panel;  ///< the half-turn in which the angle lies, from angle 0 on; 0 for all early ones
     int nodes;
     Reading<S>* reading;
   };

@@ -162,7 +162,8 @@ void IntervalSearch<S>::hand_on_signs(int turns) {
 /// An interval that the end cuts short, or may for rounding, holds what is to be seen.
 template <class S>
 void IntervalSearch<S>::distrust_falls_at_end() {
-  const S ends = end * (S(nodes_a_turn / 2) / std::numbers::pi_v<S>)-first_turn * S(nodes_a_turn);
+  const S nodes_a_radian = S(nodes_a_turn / 2) / std::numbers::pi_v<S>;
+  const S ends = end * nodes_a_radian - first_turn * S(nodes_a_turn);
   if (ends > S(turns_a_scan * nodes_a_turn + 2)) return;
   auto whole = static_cast<int>(ends) - 1;  // intervals that surely are
   for (std::uint64_t& falls : flags.falls) {

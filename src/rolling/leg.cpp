@@ -24,9 +24,8 @@ T least_vis_viva(const Roll<T>& roll, const FirstMinimum<T>& first) {
 template <class T>
 T vis_viva_at_panel(const Roll<T>& roll, const T& panel) {
   using std::floor;
-  const Hoop<T>& h = roll.hoop;
   const T odd = panel - T(2) * floor(panel * T(0.5));
-  return roll.level + T(2) * (h.thrust * (panel * T(pi_of<T>)) + h.rho * h.cos_slope * (T(1) - T(2) * odd));
+  return vis_viva(roll, panel * T(pi_of<T>), Trig<T>{T(0), T(1) - T(2) * odd, T(2) * odd});
 }
 
 }  // namespace
