@@ -2,7 +2,10 @@
 #include "rolling/rolling_time.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <memory>
 
 #include "rolling/halved_time.hpp"
 
@@ -31,28 +34,27 @@ T square_growth_beside(const T& height) {
   return T(3) * square / (T(3) + square);  // of asinh(height)
 }
 
-/// Rules of 0 to `most` nodes, worked out once.
+/// The rule of n nodes, at most RollingTime's most, worked out when a thread first asks for it and then kept.
 template <class S>
-const std::vector<GaussRule<S>>& rules_up_to(std::size_t most) {
-  static const std::vector<GaussRule<S>> rules = [&] {
-    std::vector<GaussRule<S>> found;
-    for (std::size_t n = 0; n <= most; ++n) found.push_back(gauss_rule<S>(n));
-    return found;
-  }();
-  return rules;
+const GaussRule<S>& rule_of(std::size_t n) {
+  static std::array<std::atomic<const GaussRule<S>*>, RollingTime<S>::most_nodes + 1> kept{};
+  const GaussRule<S>* rule = kept[n].load(std::memory_order_acquire);
+  if (rule) return *rule;
+  auto made = std::make_unique<const GaussRule<S>>(gauss_rule<S>(n));
+  // Another thread may have been first: then `rule` becomes its.
+  if (kept[n].compare_exchange_strong(rule, made.get(), std::memory_order_acq_rel)) rule = made.release();
+  return *rule;
 }
 
 }  // namespace
 
 template <class T>
-RollingTime<T>::RollingTime(double tolerance) : rules_(rules_up_to<S>(most_nodes)) {
+RollingTime<T>::RollingTime(double tolerance) : starts_(most_nodes + 1), panels_(2 * (most_nodes + 1)) {
   using std::log;
   // A hundred times finer than asked for costs a few nodes, and the bounds on r are not strict in every
   // corner.
   tolerance_ = std::max(S(tolerance) * S(0.01L), S(450) * std::numeric_limits<S>::epsilon());
   digits_ = -log(tolerance_);
-  starts_.resize(rules_.size());
-  panels_.resize(rules_.size() * 2);
 }
 
 /// The number of nodes for a panel whose r has this square of its logarithm.
@@ -131,7 +133,7 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
       total = total + T(node.weight) * slowness_at(node.x, node.trig, node.x_less_sin);
     return total;
   }
-  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(n)];
+  const GaussRule<S>& rule = rule_of<S>(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const T past = reach * T(rule.node[i]), x = past * (T(2) * q0 + past);
     const Trig<T> turned = trig(x);
@@ -150,7 +152,7 @@ const std::vector<typename RollingTime<T>::SharedNode>& RollingTime<T>::start_fr
   if (met != starts.end()) return met->nodes;
   if (starts.size() >= most_starts) starts.clear();
   Start& start = starts.emplace_back(Start{span, {}});
-  const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+  const GaussRule<S>& rule = rule_of<S>(static_cast<std::size_t>(nodes));
   const S q1 = sqrt(span);
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const S q = q1 * rule.node[i], x = q * q;
@@ -165,7 +167,7 @@ T RollingTime<T>::panel(const Roll<T>& roll, long panel, int nodes) {
   const long odd = panel & 1;
   std::vector<SharedNode>& shared = panels_[static_cast<std::size_t>(2 * nodes + odd)];
   if (shared.empty()) {
-    const GaussRule<S>& rule = rules_[static_cast<std::size_t>(nodes)];
+    const GaussRule<S>& rule = rule_of<S>(static_cast<std::size_t>(nodes));
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
       const S x = pi_of<S> * (S(odd) + rule.node[i]);
       shared.push_back({pi_of<S> * rule.weight[i], x, S(0), trig(x)});
@@ -189,7 +191,7 @@ T RollingTime<T>::rest(const Roll<T>& roll, const NodesNeeded<T>& needed, long p
   MaskOf<T> hard = length != length;
   const auto need = lanes_of(nodes_for_length(needed, larger(length, T(1e-3)), hard));
   const auto half_of_nodes = (static_cast<std::size_t>(*std::max_element(need.begin(), need.end())) + 1) / 2;
-  const GaussRule<S>& rule = rules_[2 * half_of_nodes];
+  const GaussRule<S>& rule = rule_of<S>(2 * half_of_nodes);
 
   const Hoop<T>& hoop = roll.hoop;
   const T half = T(0.5) * length, from_edge = T(S(panel & 1) * pi_of<S>) + half;
@@ -214,7 +216,7 @@ template <class T>
 ScalarOf<T> RollingTime<T>::halving_past(const Roll<S>& roll, const S& past) const {
   // The last resort of hard designs, so that a loose tolerance saves no nodes here: too few would miss a
   // spike.
-  return HalvedTime<S>(roll, std::min(tolerance_, S(1e-8L)), rules_[sizeof(S) > 8 ? 30 : 20]).until(past);
+  return HalvedTime<S>(roll, std::min(tolerance_, S(1e-8L)), rule_of<S>(sizeof(S) > 8 ? 30 : 20)).until(past);
 }
 
 template class RollingTime<double>;

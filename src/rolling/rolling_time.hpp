@@ -92,7 +92,6 @@ class RollingTime {
   const std::vector<SharedNode>& start_from_rest(const S& span, int nodes);
 
   S tolerance_, digits_;                         // digits: log(1 / tolerance)
-  const std::vector<GaussRule<S>>& rules_;       // by number of nodes, the same for all
   std::vector<std::vector<Start>> starts_;       // by number of nodes, the spans met so far
   std::vector<std::vector<SharedNode>> panels_;  // by number of nodes and evenness; filled when first used
 };
