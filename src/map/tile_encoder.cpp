@@ -11,6 +11,7 @@
 #include <functional>
 #include <new>
 #include <numeric>
+#include <utility>
 
 namespace leapmap {
 namespace {
@@ -82,36 +83,23 @@ void TileEncoder::Free::operator()(libdeflate_compressor* compressor) const {
   libdeflate_free_compressor(compressor);
 }
 
-TileEncoder::TileEncoder(const MapLayout& layout, const Tiling& tiling)
-    : layout_(&layout), tiling_(&tiling), columns_(layout.fields.size()) {
+TileEncoder::TileEncoder(const MapLayout& layout, const Tiling& tiling) : layout_(&layout), tiling_(&tiling) {
+  const std::vector<std::size_t>& shape = tiling.tile_shape();
+  const std::size_t most = std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+  for (const Field* field : layout.fields) columns_.emplace_back(most * value_bytes(layout, *field));
   if (layout.compression == 0) return;
   compressor_.reset(libdeflate_alloc_compressor(layout.compression));
   if (!compressor_) throw std::bad_alloc();
 }
 
-EncodedTile TileEncoder::encode(std::size_t number, std::span<const Outcome> outcomes) {
-  const Tile tile = tiling_->tile(number);
-  assert(outcomes.size() == tile.count);
-  EncodedTile encoded;
-  encoded.number = number;
-  for (const Outcome& outcome : outcomes) ++encoded.statuses[static_cast<std::size_t>(outcome.status)];
-  gather(outcomes);
-  for (std::size_t f = 0; f < columns_.size(); ++f) {
-    encoded.chunks.push_back(deflate(spread(tile, f), value_bytes(*layout_, *layout_->fields[f])));
-    append_checksum(encoded.chunks.back().bytes);
-  }
-  return encoded;
-}
-
-void TileEncoder::gather(std::span<const Outcome> outcomes) {
-  for (std::size_t f = 0; f < columns_.size(); ++f)
-    columns_[f].resize(outcomes.size() * value_bytes(*layout_, *layout_->fields[f]));
+void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes) {
+  for (const Outcome& outcome : outcomes) ++statuses_[static_cast<std::size_t>(outcome.status)];
   constexpr std::size_t block = 128;  // outcomes that stay in the first cache for all fields
-  for (std::size_t first = 0; first < outcomes.size(); first += block) {
-    const auto some = outcomes.subspan(first, std::min(block, outcomes.size() - first));
+  for (std::size_t from = 0; from < outcomes.size(); from += block) {
+    const auto some = outcomes.subspan(from, std::min(block, outcomes.size() - from));
     for (std::size_t f = 0; f < columns_.size(); ++f) {
       const Field& field = *layout_->fields[f];
-      std::byte* to = columns_[f].data() + first * value_bytes(*layout_, field);
+      std::byte* to = columns_[f].data() + (first + from) * value_bytes(*layout_, field);
       if (const auto* code = std::get_if<Code>(&field.source)) {
         gather_as<std::uint8_t>(some, to, code->value);
         continue;
@@ -127,6 +115,19 @@ void TileEncoder::gather(std::span<const Outcome> outcomes) {
           : gather_as<double>(some, to, value);
     }
   }
+}
+
+EncodedTile TileEncoder::encode(std::size_t number) {
+  const Tile tile = tiling_->tile(number);
+  EncodedTile encoded;
+  encoded.number = number;
+  encoded.statuses = std::exchange(statuses_, {});
+  assert(designs_in(encoded.statuses) == tile.count);
+  for (std::size_t f = 0; f < columns_.size(); ++f) {
+    encoded.chunks.push_back(deflate(spread(tile, f), value_bytes(*layout_, *layout_->fields[f])));
+    append_checksum(encoded.chunks.back().bytes);
+  }
+  return encoded;
 }
 
 /// A field's values where they belong in the chunk, which is larger than a tile cut short by the map's edge.

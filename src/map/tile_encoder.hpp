@@ -44,14 +44,15 @@ class TileEncoder {
  public:
   /// Keeps references to both.
   TileEncoder(const MapLayout& layout, const Tiling& tiling);
-  /// Outcomes in the tile's order. What reaches over the map's edge holds fill values.
-  EncodedTile encode(std::size_t number, std::span<const Outcome> outcomes);
+  /// Takes a piece of a tile: its outcomes `first`, first + 1, ...
+  void take(std::size_t first, std::span<const Outcome> outcomes);
+  /// Encodes the tile whose outcomes were taken. What reaches over the map's edge holds fill values.
+  EncodedTile encode(std::size_t number);
 
  private:
   struct Free {
     void operator()(libdeflate_compressor* compressor) const;
   };
-  void gather(std::span<const Outcome> outcomes);
   std::span<const std::byte> spread(const Tile& tile, std::size_t field);
   EncodedChunk deflate(std::span<const std::byte> values, std::size_t size);
   std::size_t pack(std::span<const std::byte> values, std::size_t plane);
@@ -60,6 +61,7 @@ class TileEncoder {
   const Tiling* tiling_;
   std::unique_ptr<libdeflate_compressor, Free> compressor_;
   std::vector<std::vector<std::byte>> columns_;  ///< a field's values each, in the tile's order
+  StatusCounts statuses_{};                      ///< of what was taken
   std::vector<std::byte> chunk_, shuffled_, packed_;
 };
 

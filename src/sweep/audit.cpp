@@ -96,10 +96,11 @@ std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Ti
 }
 
 std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
-                                       std::span<const Outcome> outcomes) {
+                                       std::size_t first, std::span<const Outcome> outcomes) {
   std::vector<AuditSample> samples;
   for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile)) {
-    samples.push_back({tiling.number(tile, drawn), outcomes[drawn]});
+    if (drawn < first || drawn >= first + outcomes.size()) continue;
+    samples.push_back({tiling.number(tile, drawn), outcomes[drawn - first]});
     for (const Field& field : map_fields()) {
       const auto* quantity = std::get_if<Quantity>(&field.source);
       if (!quantity) continue;

@@ -30,9 +30,10 @@ struct AuditSample {
 /// alone. Over all tiles, ceil(share * designs).
 std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile);
 
-/// The samples drawn from a tile's outcomes, rounded as the map rounds them.
+/// The samples drawn from a piece of a tile, its outcomes `first`, first + 1, ..., rounded as the map rounds
+/// them.
 std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
-                                       std::span<const Outcome> outcomes);
+                                       std::size_t first, std::span<const Outcome> outcomes);
 
 /// The samples of a tile of a finished map: the outcomes are the solver's, but all that the map stores is the
 /// map's.

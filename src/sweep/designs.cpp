@@ -39,9 +39,11 @@ Design DesignSpace::at(std::size_t index) const {
   return at_position(position);
 }
 
-void DesignSpace::fill(const Tile& tile, std::span<Design> designs) const {
-  assert(designs.size() == tile.count);
-  std::vector<std::size_t> position = tile.start;
+void DesignSpace::fill(const Tile& tile, std::size_t first, std::span<Design> designs) const {
+  assert(first + designs.size() <= tile.count);
+  std::vector<std::size_t> position;
+  unravel(first, tile.extent, position);
+  for (std::size_t k = 0; k < position.size(); ++k) position[k] += tile.start[k];
   if (spec_.axes.empty()) {
     for (Design& design : designs) design = at_position(position), ++position[0];
     return;

@@ -23,8 +23,8 @@ class DesignSpace {
 
   /// Design `index` in C order over the whole map.
   Design at(std::size_t index) const;
-  /// Fills designs (tile.count of them).
-  void fill(const Tile& tile, std::span<Design> designs) const;
+  /// Fills in a tile's designs `first`, first + 1, ...
+  void fill(const Tile& tile, std::size_t first, std::span<Design> designs) const;
 
  private:
   Design at_position(const std::vector<std::size_t>& position) const;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "sweep/designs.hpp"
@@ -15,6 +17,9 @@ namespace leapmap {
 
 namespace {
 
+/// Designs solved at once: what the solvers take as one block, and no more than stays in the second cache.
+constexpr std::size_t piece = 1024;
+
 struct Item {
   Prepared prepared;
   std::size_t designs;
@@ -22,18 +27,22 @@ struct Item {
 
 }  // namespace
 
-std::function<Prepare()> in_order(TileSink sink) {
+std::function<TileWork()> in_order(TileSink sink) {
   return [sink = std::move(sink)] {
-    return [sink](std::size_t, const Tile& tile, std::span<const Outcome> outcomes) {
-      return Prepared{
-          [sink, tile, kept = std::vector(outcomes.begin(), outcomes.end())] { sink(tile, kept); },
-          outcomes.size_bytes()};
-    };
+    const auto kept = std::make_shared<std::vector<Outcome>>();
+    return TileWork{
+        [kept](const Tile&, std::size_t, std::span<const Outcome> outcomes) {
+          kept->insert(kept->end(), outcomes.begin(), outcomes.end());
+        },
+        [sink, kept](std::size_t, const Tile& tile) {
+          const std::size_t bytes = kept->size() * sizeof(Outcome);
+          return Prepared{[sink, tile, outcomes = std::exchange(*kept, {})] { sink(tile, outcomes); }, bytes};
+        }};
   };
 }
 
 std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options,
-                      const std::function<Prepare()>& make_prepare) {
+                      const std::function<TileWork()>& make_work) {
   const DesignSpace space(spec);
   std::size_t delivered = 0;
   OrderedDelivery<Item> delivery(
@@ -44,19 +53,23 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
       },
       most_waiting_bytes);
 
-  const std::size_t count = tiling.size() - std::min(options.first_tile, tiling.size());
-  parallel_for_each(count, thread_count(options.threads), [&] {
-    // A thread's own: the method's workspace, the encoder's, and the tile in hand.
-    return [&, solve = make_solver(spec), prepare = make_prepare(), designs = std::vector<Design>(),
-            outcomes = std::vector<Outcome>()](std::size_t i) mutable {
+  const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
+  parallel_for_each(tiles, thread_count(options.threads), [&] {
+    // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
+    return [&, solve = make_solver(spec), work = make_work(), designs = std::vector<Design>(piece),
+            outcomes = std::vector<Outcome>(piece)](std::size_t i) mutable {
       try {
         const std::size_t number = options.first_tile + i;
         const Tile tile = tiling.tile(number);
-        designs.resize(tile.count);
-        outcomes.assign(tile.count, Outcome{});
-        space.fill(tile, designs);
-        solve(designs, outcomes);
-        Prepared prepared = prepare(number, tile, outcomes);
+        for (std::size_t first = 0; first < tile.count; first += piece) {
+          const std::size_t count = std::min(piece, tile.count - first);
+          const std::span some(designs.data(), count);
+          const std::span solved(outcomes.data(), count);
+          space.fill(tile, first, some);
+          solve(some, solved);
+          work.take(tile, first, solved);
+        }
+        Prepared prepared = work.prepare(number, tile);
         if (!prepared.take) {
           delivery.close(number);
           return false;

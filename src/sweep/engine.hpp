@@ -29,21 +29,26 @@ struct Prepared {
   std::size_t bytes = 0;
 };
 
-/// Prepares a tile, on the thread that solved it: encodes, compresses. Outcomes come in the tile's order.
-using Prepare = std::function<Prepared(std::size_t number, const Tile&, std::span<const Outcome>)>;
+/// What a thread does with the tiles it solves, one after the other. A tile's outcomes come a piece at a
+/// time, in its order and while they are still in the cache.
+struct TileWork {
+  std::function<void(const Tile&, std::size_t first, std::span<const Outcome>)> take;
+  /// The whole tile was taken: encodes it, compresses it.
+  std::function<Prepared(std::size_t number, const Tile&)> prepare;
+};
 
-/// Takes a tile's outcomes as they are.
+/// Is handed a tile's outcomes as they are.
 using TileSink = std::function<void(const Tile&, std::span<const Outcome>)>;
 
 /// Prepares nothing: hands a copy of each tile's outcomes to the sink, in order.
-std::function<Prepare()> in_order(TileSink sink);
+std::function<TileWork()> in_order(TileSink sink);
 
 /// Solves every tile from first_tile on; returns the number of designs handed on, all of them unless a stop
-/// was requested. make_prepare is called once on each thread. What Prepare or `take` throws ends the sweep
-/// and is thrown on. Outcomes depend on the spec alone, not on threads or timing; memory does not grow with
-/// the number of designs, nor when whoever takes them is slow.
+/// was requested. make_work is called once on each thread. What the work or `take` throws ends the sweep and
+/// is thrown on. Outcomes depend on the spec alone, not on threads or timing; memory does not grow with the
+/// number of designs, nor when whoever takes them is slow.
 std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options,
-                      const std::function<Prepare()>& make_prepare);
+                      const std::function<TileWork()>& make_work);
 
 /// Seconds per design on one thread, from a seeded sample solved for about the given time.
 double seconds_per_design(const Spec& spec, double seconds);

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <utility>
 
 #include "map/schema.hpp"
 #include "map/writer.hpp"
@@ -51,7 +53,7 @@ class Sweeping {
   void run() {
     tell_progress();
     EngineOptions engine{options_.threads, writer_.progress().tiles, options_.stop_requested};
-    run_sweep(spec_, tiling_, engine, [&] { return prepare(); });
+    run_sweep(spec_, tiling_, engine, [&] { return work(); });
     commit();
   }
 
@@ -69,24 +71,32 @@ class Sweeping {
   }
 
   /// A thread's way of finishing tiles.
-  Prepare prepare() {
+  TileWork work() {
     const auto encoder = std::make_shared<TileEncoder>(layout_, tiling_);
     const auto auditor = audit_ ? std::make_shared<Auditor>(spec_) : nullptr;
-    return [this, encoder, auditor](std::size_t number, const Tile& tile,
-                                    std::span<const Outcome> outcomes) -> Prepared {
-      const auto finished = std::make_shared<FinishedTile>();
-      finished->encoded = encoder->encode(number, outcomes);
-      if (auditor && !look_at(*auditor, tile, outcomes, *finished)) return {};
-      return {[this, finished] { store(*finished); }, finished->encoded.bytes() + sizeof(FinishedTile)};
-    };
+    const auto drawn = std::make_shared<std::vector<AuditSample>>();  // of the tile in hand
+    return {
+        [this, encoder, drawn](const Tile& tile, std::size_t first, std::span<const Outcome> outcomes) {
+          encoder->take(first, outcomes);
+          if (audit_)
+            std::ranges::copy(audit_samples(spec_, tiling_, tile, first, outcomes),
+                              std::back_inserter(*drawn));
+        },
+        [this, encoder, drawn, auditor](std::size_t number, const Tile&) -> Prepared {
+          const auto finished = std::make_shared<FinishedTile>();
+          finished->encoded = encoder->encode(number);
+          const std::vector<AuditSample> samples = std::exchange(*drawn, {});
+          if (auditor && !look_at(*auditor, samples, *finished)) return {};
+          return {[this, finished] { store(*finished); }, finished->encoded.bytes() + sizeof(FinishedTile)};
+        }};
   }
 
   /// A tile's share of the audit. False: a stop was requested meanwhile.
-  bool look_at(const Auditor& auditor, const Tile& tile, std::span<const Outcome> outcomes,
+  bool look_at(const Auditor& auditor, const std::vector<AuditSample>& samples,
                FinishedTile& finished) const {
     const auto begin = Clock::now();
     finished.audit = begin_audit(spec_);
-    for (const AuditSample& sample : audit_samples(spec_, tiling_, tile, outcomes)) {
+    for (const AuditSample& sample : samples) {
       if (stop_requested()) return false;
       auditor.look_at(sample, finished.audit);
     }

@@ -34,12 +34,20 @@ inline Outcome numbered(std::size_t number) {
   return outcome;
 }
 
+/// A tile whose outcomes are these.
+inline EncodedTile encoded(const MapLayout& layout, const Tiling& tiling, std::size_t number,
+                           const std::vector<Outcome>& outcomes) {
+  TileEncoder encoder(layout, tiling);
+  encoder.take(0, outcomes);
+  return encoder.encode(number);
+}
+
 /// A tile of any map whose outcomes carry their numbers, as the layout stores it.
 inline EncodedTile numbered_tile(const MapLayout& layout, const Tiling& tiling, std::size_t number) {
   const Tile tile = tiling.tile(number);
   std::vector<Outcome> outcomes;
   for (std::size_t i = 0; i < tile.count; ++i) outcomes.push_back(numbered(tiling.number(tile, i)));
-  return TileEncoder(layout, tiling).encode(number, outcomes);
+  return encoded(layout, tiling, number, outcomes);
 }
 
 /// Writes what is missing; calls after_each after each tile.

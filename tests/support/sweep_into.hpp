@@ -12,11 +12,14 @@ namespace leapmap::testing {
 inline void sweep_into(MapWriter& writer, const Spec& spec, const MapLayout& layout, const Tiling& tiling,
                        const EngineOptions& options = {}) {
   run_sweep(spec, tiling, options, [&] {
-    return [&, encoder = std::make_shared<TileEncoder>(layout, tiling)](std::size_t number, const Tile&,
-                                                                        std::span<const Outcome> outcomes) {
-      const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number, outcomes));
-      return Prepared{[&writer, encoded] { writer.write(*encoded); }, encoded->bytes()};
-    };
+    const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
+    return TileWork{[encoder](const Tile&, std::size_t first, std::span<const Outcome> outcomes) {
+                      encoder->take(first, outcomes);
+                    },
+                    [&writer, encoder](std::size_t number, const Tile&) {
+                      const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number));
+                      return Prepared{[&writer, encoded] { writer.write(*encoded); }, encoded->bytes()};
+                    }};
   });
 }
 

@@ -26,7 +26,7 @@ std::vector<AuditSample> drawn_from(const Spec& spec, int threads = 0) {
   EngineOptions options;
   options.threads = threads;
   run_sweep(spec, tiling, options, in_order([&](const Tile& tile, std::span<const Outcome> outcomes) {
-              std::ranges::copy(audit_samples(spec, tiling, tile, outcomes), std::back_inserter(samples));
+              std::ranges::copy(audit_samples(spec, tiling, tile, 0, outcomes), std::back_inserter(samples));
             }));
   return samples;
 }

@@ -95,10 +95,11 @@ TEST(Engine, AStopKeepsWhatWasDoneInOrder) {
   options.threads = 2;
   options.stop_requested = [&] { return solved > 200; };
   const std::size_t done = run_sweep(spec, tiling, options, [&] {
-    return [&](std::size_t, const Tile& tile, std::span<const Outcome>) {
-      solved += tile.count;
-      return Prepared{[&taken, count = tile.count] { taken += count; }};
-    };
+    return TileWork{
+        [&](const Tile&, std::size_t, std::span<const Outcome> outcomes) { solved += outcomes.size(); },
+        [&](std::size_t, const Tile& tile) {
+          return Prepared{[&taken, count = tile.count] { taken += count; }};
+        }};
   });
   EXPECT_EQ(done, taken);
   EXPECT_EQ(done, solved) << "what was begun is brought to its end";

@@ -201,7 +201,7 @@ TEST(Spec, DesignsAreNumberedWithTheLastAxisFastest) {
   EXPECT_EQ(space.at(2).slope, 0.1);
   EXPECT_EQ(space.at(3).slope, 0.2);
   std::vector<Design> designs(2);
-  space.fill(Tile{{1, 1}, {1, 2}, 2}, designs);
+  space.fill(Tile{{1, 1}, {1, 2}, 2}, 0, designs);
   EXPECT_EQ(designs[0].slope, 0.2);
   EXPECT_EQ(designs[0].mass_ratio, 2.0);
   EXPECT_EQ(designs[1].mass_ratio, 3.0);
