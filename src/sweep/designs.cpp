@@ -48,15 +48,15 @@ void DesignSpace::fill(const Tile& tile, std::size_t first, std::span<Design> de
     for (Design& design : designs) design = at_position(position), ++position[0];
     return;
   }
-  Design current = at_position(position);
-  for (Design& design : designs) {
-    design = current;
-    for (std::size_t k = position.size(); k-- > 0;) {  // on to the next, the last axis fastest
-      const bool carries = ++position[k] == tile.start[k] + tile.extent[k];
-      if (carries) position[k] = tile.start[k];
-      current.*members_[k] = spec_.axes[k].values[position[k]];
-      if (!carries) break;
+  const std::size_t last = members_.size() - 1, row = tile.start[last] + tile.extent[last];
+  for (std::size_t i = 0; i < designs.size();) {  // row after row along the last axis
+    const Design current = at_position(position);
+    for (; i < designs.size() && position[last] < row; ++i, ++position[last]) {
+      designs[i] = current;
+      designs[i].*members_[last] = spec_.axes[last].values[position[last]];
     }
+    for (std::size_t k = last; k > 0 && position[k] == tile.start[k] + tile.extent[k]; --k)
+      position[k] = tile.start[k], ++position[k - 1];
   }
 }
 
