@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t width = Lanes<Batch>::count;
 
-TEST(SinCos, OfABatchAreGoodToTheLastPlaceOrNearZeroToRoundingsOfTheAngle) {
+TEST(SinCos, OfABatchAndOfANumberAreGoodToTheLastPlaceOrNearZeroToRoundingsOfTheAngle) {
   std::mt19937_64 random(21);
   for (int i = 0; i < 100'000; ++i) {
     LaneArray<Batch> angles;
@@ -33,19 +33,23 @@ TEST(SinCos, OfABatchAreGoodToTheLastPlaceOrNearZeroToRoundingsOfTheAngle) {
       };
       EXPECT_LE(std::abs(sines[k] - std::sin(x)), slack(std::sin(x))) << angles[k];
       EXPECT_LE(std::abs(cosines[k] - std::cos(x)), slack(std::cos(x))) << angles[k];
+      const SinCos<double> alone = sincos_of(angles[k]);
+      EXPECT_LE(std::abs(alone.sin - std::sin(x)), slack(std::sin(x))) << angles[k];
+      EXPECT_LE(std::abs(alone.cos - std::cos(x)), slack(std::cos(x))) << angles[k];
     }
   }
 }
 
-TEST(SinCos, OfABatchKnowHugeAnglesAndWhatIsNoNumber) {
+TEST(SinCos, OfABatchAndOfANumberKnowHugeAnglesAndWhatIsNoNumber) {
   for (const double angle : {1e7, -3e15, 1e300}) {
     const SinCos<Batch> found = sincos_of(Batch(angle));
     EXPECT_NEAR(lanes_of(found.sin)[0], std::sin(angle), 1e-15);  // a few roundings
     EXPECT_NEAR(lanes_of(found.cos)[width - 1], std::cos(angle), 1e-15);
+    EXPECT_EQ(sincos_of(angle).sin, std::sin(angle));
   }
   for (const double angle :
        {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_TRUE(std::isnan(lanes_of(sincos_of(Batch(angle)).sin)[0]));
+    EXPECT_TRUE(std::isnan(lanes_of(sincos_of(Batch(angle)).sin)[0]) && std::isnan(sincos_of(angle).sin));
 }
 
 TEST(Wide, DoesWhatItsHalvesDo) {
