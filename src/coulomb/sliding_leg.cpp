@@ -70,15 +70,22 @@ auto SlidingLeg<S>::first_event(const S& runway, int direction, const Panel& pan
     PhaseEnd end;
     S offset, factor;  // of the values that it falls with
     const typename Panels::Course& course;
+    const PanelExtent<S>& extent;
   };
-  const Guard guards[]{{PhaseEnd::lifts_off, S(0), S(1), panel.free_force},
-                       {PhaseEnd::slip_ends, S(0), S(direction), panel.slip},
-                       {PhaseEnd::runway_ends, runway, S(-1), panel.travel},
-                       {PhaseEnd::runway_ends, runway, S(1), panel.travel}};
+  const auto extent = [](const typename Panels::Course& course) {
+    return extent_of<S, Panels::nodes>(course.value, course.rate, course.start, course.end);
+  };
+  const PanelExtent<S> force = extent(panel.free_force), slip = extent(panel.slip),
+                       travel = extent(panel.travel);
+  const Guard guards[]{{PhaseEnd::lifts_off, S(0), S(1), panel.free_force, force},
+                       {PhaseEnd::slip_ends, S(0), S(direction), panel.slip, slip},
+                       {PhaseEnd::runway_ends, runway, S(-1), panel.travel, travel},
+                       {PhaseEnd::runway_ends, runway, S(1), panel.travel, travel}};
   Event event{S(2), PhaseEnd::failed, false};
   for (const Guard& guard : guards) {
     const bool uphill = guard.end == PhaseEnd::runway_ends && guard.factor > S(0);
     if (uphill && panel.travel.start.value > S(0) && panel.travel.end.value > S(0)) continue;
+    if (is_clear_of_zero(panels_.grid(), guard.extent.of(guard.offset, guard.factor))) continue;
     Values values, rates;
     S largest(0);
     for (std::size_t i = 0; i < Panels::nodes; ++i) {

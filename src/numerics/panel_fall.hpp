@@ -18,6 +18,43 @@
 
 namespace leapmap {
 
+/// The least and the most of a function's values at a panel's nodes and ends, and the largest of its rates.
+template <class S>
+struct PanelExtent {
+  S least, most, steepest;
+
+  /// Of offset + factor times the function, factor 1 or -1.
+  PanelExtent of(const S& offset, const S& factor) const {
+    return factor > S(0) ? PanelExtent{offset + least, offset + most, steepest}
+                         : PanelExtent{offset - most, offset - least, steepest};
+  }
+};
+
+template <class S, std::size_t n>
+PanelExtent<S> extent_of(const typename SpectralPanel<S, n>::Values& values,
+                         const typename SpectralPanel<S, n>::Values& rates, const Sample<S>& first,
+                         const Sample<S>& last) {
+  using T = typename SpectralPanel<S, n>::T;
+  using std::abs, std::max, std::min;
+  T least(min(first.value, last.value)), most(max(first.value, last.value)),
+      steepest(max(abs(first.rate), abs(last.rate)));
+  for (std::size_t i = 0; i < n; i += Lanes<T>::count) {
+    const T value = Lanes<T>::load(values.data() + i), rate = Lanes<T>::load(rates.data() + i);
+    least = smaller(least, value), most = larger(most, value), steepest = larger(steepest, T(abs(rate)));
+  }
+  const auto least_of = lanes_of(least), most_of = lanes_of(most), steepest_of = lanes_of(steepest);
+  return {*std::min_element(least_of.begin(), least_of.end()),
+          *std::max_element(most_of.begin(), most_of.end()),
+          *std::max_element(steepest_of.begin(), steepest_of.end())};
+}
+
+/// Well above zero everywhere: a third of a spacing on, the tangent of no node comes down to a thousandth,
+/// which is more than the cubics are off by where the nodes resolve the function.
+template <class S, std::size_t n>
+bool is_clear_of_zero(const SpectralPanel<S, n>& panel, const PanelExtent<S>& extent) {
+  return extent.least - extent.steepest * panel.longest_spacing() / S(3) > S(1e-3) * extent.most;
+}
+
 template <class S>
 struct PanelFall {
   S place;      ///< in (0, 1]; 2: it does not fall
@@ -32,15 +69,6 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
                         const Sample<S>& last, const S& slack) {
   using std::abs, std::max, std::min;
   constexpr S none(2), shortest(1e-9);
-  // Well above zero everywhere: a third of a spacing on, the tangent of no node comes down to a thousandth,
-  // which is more than the cubics are off by where the nodes resolve the function.
-  S least = min(first.value, last.value), most = max(first.value, last.value), steepest(0);
-  for (std::size_t i = 0; i < n; ++i) {
-    least = min(least, values[i]), most = max(most, values[i]), steepest = max(steepest, abs(rates[i]));
-  }
-  steepest = max({steepest, abs(first.rate), abs(last.rate)});
-  if (least - steepest * panel.longest_spacing() / S(3) > S(1e-3) * most) return {none, false};
-
   const auto at = [&](const S& x) { return Sample<S>{panel.value(values, x), panel.value(rates, x)}; };
   const auto polish = [&](const S& a, const S& b, const S& guess) {
     return polish_root(at, a, b, guess, false, S(4) * std::numeric_limits<S>::epsilon());
