@@ -191,9 +191,9 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& length) const {
   S sum(0), from = begin;
   const S end = std::sqrt(length - shift);
   int panels = 0;
-  // Panels of some two thirds of a radian.
+  // Panels of up to 1.4 radians.
   while (from < end) {
-    S to = std::sqrt(from * from + S(0.7));
+    S to = std::sqrt(from * from + S(1.4));
     if (to > end || S(1.15) * to > end) to = end;
     sum += duration(roll, shift, from, to, S(0), 0, panels);
     from = to;

@@ -33,11 +33,13 @@ S power_at_edge(const Hoop<S>& hoop, const Trig<S>& phi, const S& friction) {
          pivot_by_angle(hoop, phi, friction).rate;
 }
 
-/// Whether the pivot is above zero at every angle, as a bound tells at once: |s| (1 - rho c) is at most
-/// 1 + rho / 2.
+/// Whether the pivot Ic + rho^2 s^2 - m rho s (1 - rho c) is above zero at every angle, as one of two bounds
+/// tells at once: |s| (1 - rho c) is at most 1 + rho / 2, and x^2 - m x (1 - rho c) at least
+/// -(m (1 + rho) / 2)^2.
 template <class S>
 bool keeps_off_painleve(const Hoop<S>& hoop, const S& friction) {
-  return hoop.Ic > hoop.rho * std::abs(friction) * (S(1) + hoop.rho * S(0.5));
+  const S m = std::abs(friction), half = m * (S(1) + hoop.rho) * S(0.5);
+  return hoop.Ic > hoop.rho * m * (S(1) + hoop.rho * S(0.5)) || hoop.Ic > half * half;
 }
 
 /// The nearest edge ahead of a sliding hoop.
