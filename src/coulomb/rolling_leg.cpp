@@ -28,6 +28,50 @@ struct Look {
   StickGuards<S> guards;
 };
 
+/// Looks at neighbouring angles, one after the other: the last one of the lanes before, then one a lane.
+template <class S, std::size_t width>
+struct Looks {
+  using Numbers = std::array<S, width + 1>;
+  using T = typename SpectralPanel<S, width>::T;
+  struct Samples {
+    Numbers value, rate;
+
+    void put_lanes(const Sample<T>& lanes) {
+      Lanes<T>::store(lanes.value, value.data() + 1), Lanes<T>::store(lanes.rate, rate.data() + 1);
+    }
+    void put(std::size_t k, const Sample<S>& sample) { value[k] = sample.value, rate[k] = sample.rate; }
+    Sample<S> at(std::size_t k) const { return {value[k], rate[k]}; }
+
+    /// Between which of the neighbours, `apart` from each other, it surely does not fall to zero: it is above
+    /// at both, and the tangents there do not meet below.
+    MaskOf<T> stays_above(const T& apart) const {
+      const T a = Lanes<T>::load(value.data()), b = Lanes<T>::load(value.data() + 1),
+              a_rate = Lanes<T>::load(rate.data()), b_rate = Lanes<T>::load(rate.data() + 1);
+      const T turns = b_rate - a_rate;  // above zero where there is a minimum
+      return (smaller(a, b) > T(S(0))) & (((a_rate >= T(S(0))) | (b_rate <= T(S(0)))) |
+                                          (a * turns + a_rate * (b_rate * apart - (b - a)) > T(S(0))));
+    }
+  };
+  Numbers angle;
+  Samples vis_viva, downhill, uphill;
+
+  void put(std::size_t k, const Look<S>& look) {
+    angle[k] = look.angle, vis_viva.put(k, look.vis_viva);
+    downhill.put(k, look.guards.downhill), uphill.put(k, look.guards.uphill);
+  }
+  void put_lanes(const Sample<T>& E, const StickGuards<T>& guards) {
+    vis_viva.put_lanes(E), downhill.put_lanes(guards.downhill), uphill.put_lanes(guards.uphill);
+  }
+  Look<S> at(std::size_t k) const { return {angle[k], vis_viva.at(k), {downhill.at(k), uphill.at(k)}}; }
+
+  /// Between which neighbours neither spin nor friction is used up, a bit for each two.
+  unsigned clear_of_ends() const {
+    const T apart = Lanes<T>::load(angle.data() + 1) - Lanes<T>::load(angle.data());
+    return Lanes<T>::bits(vis_viva.stays_above(apart) & downhill.stays_above(apart) &
+                          uphill.stays_above(apart));
+  }
+};
+
 /// What a leg looks like at its angles. roll: of the phase's beginning, near which E is known best, as seen
 /// on the leg; begin: of the leg's.
 template <class S>
@@ -127,33 +171,33 @@ template <class S>
 LegEnd<S> RollingLeg<S>::first_end(const Roll<S>& roll, const Roll<S>& begin, const S& mu_static,
                                    const S& last) const {
   using T = typename SpectralPanel<S, nodes>::T;
-  constexpr long width = Lanes<T>::count, turn = nodes_a_turn;
+  constexpr std::size_t width = Lanes<T>::count;
+  constexpr long turn = nodes_a_turn;
   const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
   const LegView<S> view(roll, begin, mu_static);
   const Roll<T> rolls = widened<T>(roll);
-  Look<S> left = view.at_begin();
+  Looks<S, width> looks;
+  looks.put(0, view.at_begin());
   for (long node = static_cast<long>(std::floor(begin.release / step)) + 1;; node += width) {
     const auto first = static_cast<std::size_t>((node % turn + turn) % turn);
     const Trig<T> phi{Lanes<T>::load(grid_.sin.data() + first), Lanes<T>::load(grid_.cos.data() + first),
                       Lanes<T>::load(grid_.versine.data() + first)};
-    LaneArray<T> angles;
-    for (std::size_t k = 0; k < angles.size(); ++k) angles[k] = S(node + static_cast<long>(k)) * step;
-    const T E = vis_viva(rolls, Lanes<T>::load(angles.data()), phi);
-    const StickGuards<T> guards = stick_guards(rolls.hoop, phi, E, T(mu_static));
-    const auto Es = lanes_of(E), pushes = lanes_of(torque(rolls.hoop, phi)),
-               back = lanes_of(guards.downhill.value), back_rate = lanes_of(guards.downhill.rate),
-               forth = lanes_of(guards.uphill.value), forth_rate = lanes_of(guards.uphill.rate);
-    for (std::size_t k = 0; k < angles.size(); ++k) {
-      const bool ends = !(angles[k] < last);
-      if (!ends && angles[k] <= left.angle) continue;
-      const Look<S> right = ends ? view.at(last)
-                                 : Look<S>{angles[k],
-                                           {Es[k], S(2) * pushes[k]},
-                                           {{back[k], back_rate[k]}, {forth[k], forth_rate[k]}}};
-      if (const LegEnd<S> found = view.first_end(left, right); !std::isnan(found.angle)) return found;
-      if (ends) return {PhaseEnd::runway_ends, last};
-      left = right;
+    for (std::size_t k = 0; k < width; ++k) looks.angle[k + 1] = S(node + static_cast<long>(k)) * step;
+    const T E = vis_viva(rolls, Lanes<T>::load(looks.angle.data() + 1), phi);
+    looks.put_lanes({E, T(S(2)) * torque(rolls.hoop, phi)}, stick_guards(rolls.hoop, phi, E, T(mu_static)));
+    const unsigned clear = looks.clear_of_ends();
+    std::size_t left = 0;
+    for (std::size_t k = 1; k <= width; ++k) {
+      const bool ends = !(looks.angle[k] < last);
+      if (!ends && looks.angle[k] <= looks.angle[left]) continue;
+      if (ends || left != k - 1 || !(clear >> left & 1u)) {
+        const LegEnd<S> found = view.first_end(looks.at(left), ends ? view.at(last) : looks.at(k));
+        if (!std::isnan(found.angle)) return found;
+        if (ends) return {PhaseEnd::runway_ends, last};
+      }
+      left = k;
     }
+    looks.put(0, looks.at(left));
   }
 }
 
