@@ -55,6 +55,36 @@ bool is_clear_of_zero(const SpectralPanel<S, n>& panel, const PanelExtent<S>& ex
   return extent.least - extent.steepest * panel.longest_spacing() / S(3) > S(1e-3) * extent.most;
 }
 
+/// A function at a panel's start, nodes and end, knot after knot.
+template <class S, std::size_t n>
+struct PanelKnots {
+  using Panel = SpectralPanel<S, n>;
+  using T = typename Panel::T;
+  static constexpr std::size_t width = Lanes<T>::count, padded = n + 2 + width;
+  std::array<S, padded> place, value, rate;
+
+  PanelKnots(const Panel& panel, const typename Panel::Values& values, const typename Panel::Values& rates,
+             const Sample<S>& first, const Sample<S>& last) {
+    place.fill(S(1)), value.fill(last.value), rate.fill(last.rate);
+    place[0] = S(0), value[0] = first.value, rate[0] = first.rate;
+    std::copy(panel.node.begin(), panel.node.end(), place.begin() + 1);
+    std::copy(values.begin(), values.end(), value.begin() + 1);
+    std::copy(rates.begin(), rates.end(), rate.begin() + 1);
+  }
+  Sample<S> at(std::size_t knot) const { return {value[knot], rate[knot]}; }
+
+  /// Of as many intervals as there are lanes, from knot `first` on: in which of them the cubic stays above
+  /// the slack and what it may be off by, a bit for each. bend: of the fourth derivative.
+  unsigned clear_from(std::size_t first, const S& bend, const S& slack) const {
+    const auto load = [&](const auto& numbers, std::size_t i) { return Lanes<T>::load(numbers.data() + i); };
+    const T h = load(place, first + 1) - load(place, first), third = h * T(S(1) / S(3));
+    const T a = load(value, first), b = load(value, first + 1);
+    const T inner_a = a + third * load(rate, first), inner_b = b - third * load(rate, first + 1);
+    const T square = h * h, least = T(bend / S(288)) * square * square + T(slack);
+    return Lanes<T>::bits((b > T(S(0))) & (smaller(inner_a, inner_b) > least));
+  }
+};
+
 template <class S>
 struct PanelFall {
   S place;      ///< in (0, 1]; 2: it does not fall
@@ -120,13 +150,14 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
     if (const S left = self(self, a, at_a, middle, at_middle); left < none) return left;
     return self(self, middle, at_middle, b, at_b);
   };
-  S a = starts_at_zero ? panel.node[0] : S(0);
-  Sample<S> at_a = starts_at_zero ? Sample<S>{values[0], rates[0]} : first;
+  unsigned clear = 0;
+  const PanelKnots<S, n> knots(panel, values, rates, first, last);
   for (std::size_t i = starts_at_zero ? 1 : 0; i <= n; ++i) {
-    const S b = i < n ? panel.node[i] : S(1);
-    const Sample<S> at_b = i < n ? Sample<S>{values[i], rates[i]} : last;
-    if (const S place = search(search, a, at_a, b, at_b); place < none) return {place, unsure};
-    a = b, at_a = at_b;
+    if (i % knots.width == 0 || (starts_at_zero && i == 1))
+      clear = knots.clear_from(i / knots.width * knots.width, bend, slack);
+    if (clear >> i % knots.width & 1u) continue;
+    const S place = search(search, knots.place[i], knots.at(i), knots.place[i + 1], knots.at(i + 1));
+    if (place < none) return {place, unsure};
   }
   return {none, unsure};
 }

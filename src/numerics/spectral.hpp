@@ -25,8 +25,10 @@ struct SpectralPanel {
   std::array<Values, n>
       running;  ///< integral of the j-th cardinal polynomial from 0 to node i is running[j][i]
   Values barycentric;
-  std::array<Values, n> coefficient;  ///< rows that give the Legendre coefficients
-  Values fourth;                      ///< fourth derivatives of Legendre's polynomials at 1
+  std::array<Values, n>
+      expansion;              ///< Legendre coefficient k of the j-th cardinal polynomial is expansion[j][k]
+  Values last, last_but_one;  ///< the last two, by j
+  Values fourth;              ///< fourth derivatives of Legendre's polynomials at 1
 
   SpectralPanel() {
     const GaussRule<long double> rule = gauss_rule<long double>(n);
@@ -56,23 +58,15 @@ struct SpectralPanel {
         running[j][i] = S(rule.weight[j] * sum);
       }
       for (std::size_t k = 0; k < n; ++k)
-        coefficient[k][j] = S(rule.weight[j] * at_j[k] * static_cast<long double>(2 * k + 1));
+        expansion[j][k] = S(rule.weight[j] * at_j[k] * static_cast<long double>(2 * k + 1));
+      last[j] = expansion[j][n - 1], last_but_one[j] = expansion[j][n - 2];
       const long double x = rule.node[j];
       barycentric[j] = S((j % 2 == 0 ? 1 : -1) * std::sqrt(x * (1 - x) * rule.weight[j]));
     }
   }
 
   /// Integrals of f from 0 to each node.
-  Values integrals(const Values& f) const {
-    std::array<T, n / width> sums;
-    sums.fill(T(S(0)));
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = 0; i < n / width; ++i)
-        sums[i] += Lanes<T>::load(running[j].data() + i * width) * T(f[j]);
-    Values values;
-    for (std::size_t i = 0; i < n / width; ++i) Lanes<T>::store(sums[i], values.data() + i * width);
-    return values;
-  }
+  Values integrals(const Values& f) const { return product(running, f); }
   /// Integral of f over the panel.
   S integral(const Values& f) const { return dot(weight, f); }
   /// f at x in [0, 1], by the barycentric formula.
@@ -94,18 +88,31 @@ struct SpectralPanel {
   /// A bound of f's fourth derivative: that of a Legendre polynomial is largest at the panel's ends.
   S fourth_derivative_bound(const Values& f) const {
     using std::abs;
-    S bound(0);
-    for (std::size_t k = 4; k < n; ++k) bound += abs(dot(coefficient[k], f)) * fourth[k];
-    return bound;
+    const Values coefficients = product(expansion, f);
+    T bound(S(0));
+    for (std::size_t k = 0; k < n; k += width)
+      bound += T(abs(Lanes<T>::load(coefficients.data() + k))) * Lanes<T>::load(fourth.data() + k);
+    return sum(bound);
   }
   /// The larger of f's last two Legendre coefficients: about the error of values between the nodes, and the
   /// square root of that of the integral, both where f is of size 1.
   S tail(const Values& f) const {
     using std::abs, std::max;
-    return max(abs(dot(coefficient[n - 2], f)), abs(dot(coefficient[n - 1], f)));
+    return max(abs(dot(last_but_one, f)), abs(dot(last, f)));
   }
 
  private:
+  /// The sum of the matrix's columns, column j times f[j].
+  static Values product(const std::array<Values, n>& columns, const Values& f) {
+    std::array<T, n / width> sums;
+    sums.fill(T(S(0)));
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = 0; i < n / width; ++i)
+        sums[i] += Lanes<T>::load(columns[j].data() + i * width) * T(f[j]);
+    Values values;
+    for (std::size_t i = 0; i < n / width; ++i) Lanes<T>::store(sums[i], values.data() + i * width);
+    return values;
+  }
   static S sum(const T& value) {
     if constexpr (width > 1) {
       return hadd(value);
