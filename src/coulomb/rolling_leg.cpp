@@ -251,7 +251,6 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
   constexpr int most_halvings = 50, most_panels = 10'000;
   // The nodes in lanes.
   using T = typename SpectralPanel<S, nodes>::T;
-  using std::sin, std::sqrt;
   const Roll<T> rolls = widened<T>(roll);
   typename SpectralPanel<S, nodes>::Values f;
   T least_E(std::numeric_limits<S>::max());
@@ -259,10 +258,8 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
     const T q = T(from) + T(to - from) * Lanes<T>::load(panel_.node.data() + i), x = T(shift) + q * q;
     const Trig<T> turned = trig(x);
     const T E = vis_viva_past_release(rolls, x, turned, x_minus_sin(x, turned.sin));
-    // 1 - cos(release + x) by the half angle, accurate near multiples of 2 pi
-    const T half = sin((rolls.release + x) * T(0.5)),
-            J = rolls.hoop.J_min + T(4) * rolls.hoop.rho * half * half;
-    Lanes<T>::store(T(2) * q * sqrt(J / E), f.data() + i);
+    const T J = contact_inertia(rolls.hoop, trig(T(rolls.release + x)));
+    Lanes<T>::store(T(2) * q * slowness(J, E), f.data() + i);
     least_E = smaller(least_E, E);
   }
   const S whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);

@@ -75,6 +75,12 @@ T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {
   return roll.level + T(2) * (angle * roll.hoop.thrust + roll.hoop.rho * cos_from_vertical(roll.hoop, phi));
 }
 
+/// sqrt(J / E) = dt / dphi.
+template <class T>
+T slowness(const T& inertia, const T& vis_viva) {
+  return inertia * reciprocal_sqrt(inertia * vis_viva);
+}
+
 /// E an angle x past the release, without cancellation however small x is and however near the release is to
 /// an equilibrium: E0 + 2 push x + 2 rho sin(theta + phi0) (x - sin x) - 2 rho cos(theta + phi0) (1 - cos x).
 template <class T>

@@ -33,12 +33,6 @@ ReleaseParabola<T> parabola_at_release(const Roll<T>& roll) {
   return p;
 }
 
-/// sqrt(J / E) = dt / dphi.
-template <class T>
-T slowness(const T& inertia, const T& vis_viva) {
-  return inertia * reciprocal_sqrt(inertia * vis_viva);
-}
-
 template <class S>
 class HalvedTime {
  public:
