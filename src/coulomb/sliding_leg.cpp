@@ -206,15 +206,14 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       length = std::min(length, S(longest_angle)), duration = std::min(duration, S(longest_time));
       continue;
     }
-    // The panel once more, ending there: its end is better than a value between nodes.
     if (by_angle) {
-      stretch.span *= event.place;
-      panels_.solve_by_angle(slide, at, stretch, panel);
-    } else {
+      at = panels_.state_at(slide, at, stretch, panel, event.place);
+    } else {  // the panel once more, ending there: its end is better than a value between nodes
       panels_.solve_by_time(slide, at, S(duration * event.place), panel);
+      if (!std::isfinite(panel.excess)) return PhaseEnd::failed;
+      at = panel.end;
     }
-    if (!std::isfinite(panel.excess)) return PhaseEnd::failed;
-    at = panel.end;
+    if (!std::isfinite(at.spin) || !std::isfinite(at.time)) return PhaseEnd::failed;
     if (event.end == PhaseEnd::slip_ends) at.slip = S(0);
     return event.end;
   }

@@ -19,6 +19,12 @@ S largest(std::initializer_list<S> values) {
   return most;
 }
 
+/// w^2 where n0 is known.
+template <class T>
+T spin_squared_by_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& n0) {
+  return (n0 - free_normal_force(hoop, phi, T(ScalarOf<T>(0)))) / (hoop.rho * phi.cos);
+}
+
 }  // namespace
 
 template <class S>
@@ -55,8 +61,8 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.indeterminate = !(end.pivot > S(0));
   // With n0 in place of u, where it is the one that vanishes, and the cosine stays away from zero.
   const S farthest = S(-0.2);
-  const bool by_force = slide.edge && slide.free_force < S(0.5) * hoop.cos_slope &&
-                        start_phi.cos < farthest && end_phi.cos < farthest;
+  const bool by_force = panel.by_force = slide.edge && slide.free_force < S(0.5) * hoop.cos_slope &&
+                                         start_phi.cos < farthest && end_phi.cos < farthest;
 
   Values a, b, weight, angle;
   std::array<Trig<T>, nodes / width> phi;
@@ -83,19 +89,19 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   }
   if (panel.indeterminate) return;
 
-  const Values A = grid_.integrals(a);
-  Values growth, driven;
+  panel.growth = grid_.integrals(a);
+  Values grown_by, driven;
   for (std::size_t i = 0; i < nodes; i += width) {
-    const T grown = exp(get(A, i));
-    put(grown, growth, i);
+    const T grown = exp(get(panel.growth, i));
+    put(grown, grown_by, i);
     put(get(b, i) / grown, driven, i);
   }
-  const Values B = grid_.integrals(driven);
+  panel.driven = grid_.integrals(driven);
   const S start_u = from.spin * from.spin, start_force = slide.free_force;
-  const S start_y = by_force ? start_force : start_u;
+  const S start_y = panel.start_y = by_force ? start_force : start_u;
   const S end_y = std::exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
   const auto spin_squared = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
-    return by_force ? (y - free_normal_force(hoop_at, at, R(S(0)))) / (hoop_at.rho * at.cos) : y;
+    return by_force ? spin_squared_by_force(hoop_at, at, y) : y;
   };
   const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
     return by_force ? y : free_normal_force(hoop_at, at, y);
@@ -106,11 +112,11 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   };
   const S end_u = spin_squared(hoop, end_phi, end_y);
   T least_u(std::min(start_u > S(0) ? start_u : end_u, end_u));
-  Values time_rate;
+  Values& time_rate = panel.time_rate;
   for (std::size_t i = 0; i < nodes; i += width) {
     const Trig<T>& at = phi[i / width];
     const SlidingCoefficients<T>& there = coefficients[i / width];
-    const T y = get(growth, i) * (T(start_y) + get(B, i));
+    const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
     const T u = spin_squared(hoops, at, y), n0 = force(hoops, at, y);
     least_u = smaller(least_u, u);
     const T w = get(weight, i), rate = w / sqrt(u);
@@ -162,6 +168,21 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
                              S(0.1) * grid_.tail(time_rate) / duration,
                              grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
                  (tolerance_ + noise);
+}
+
+template <class S>
+ContactState<S> SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
+                                           const Stretch& stretch, const Panel& panel, const S& place) const {
+  const S way = panel.turned < S(0) ? S(-1) : S(1);
+  ContactState<S> at = from;
+  at.angle += way * stretch.angle(place);
+  const S y = std::exp(grid_.value(panel.growth, place)) * (panel.start_y + grid_.value(panel.driven, place));
+  const S u = panel.by_force ? spin_squared_by_force(slide.hoop, trig(at.angle), y) : y;
+  at.spin = way * std::sqrt(u);
+  at.time += grid_.value(grid_.integrals(panel.time_rate), place);
+  at.slip = grid_.value(panel.slip.value, place);
+  at.travel = grid_.value(panel.travel.value, place);
+  return at;
 }
 
 template <class S>

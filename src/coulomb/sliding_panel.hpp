@@ -33,6 +33,10 @@ class SlidingPanels {
   /// What the nodes of a panel hold, in order of time, and its end.
   struct Panel {
     Course slip, travel, free_force;
+    // Of a panel by angle: y = e^growth (start_y + driven) is w^2 or, where it says so, n0.
+    Values growth, driven, time_rate;
+    S start_y;
+    bool by_force;
     ContactState<S> end;
     S turned;  ///< from start to end
     S excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
@@ -41,7 +45,8 @@ class SlidingPanels {
   /// A panel by angle: |phi - from| = shift + q^2, q from begin to begin + span.
   struct Stretch {
     S shift, begin, span;
-    S length() const { return shift + (begin + span) * (begin + span); }
+    S angle(const S& place) const { return shift + (begin + span * place) * (begin + span * place); }
+    S length() const { return angle(S(1)); }
   };
   /// What a slide is about.
   struct Slide {
@@ -74,6 +79,9 @@ class SlidingPanels {
   static Stretch stretch_of(const S& spin, const S& rise, const S& length);
   void solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                       Panel& panel) const;
+  /// The state at a place in (0, 1] of a panel by angle that is solved.
+  ContactState<S> state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                           const Panel& panel, const S& place) const;
   void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
 
   const Grid& grid() const { return grid_; }

@@ -2,7 +2,6 @@
 /// Sine and cosine together, of a number or of a batch of numbers.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <xsimd/xsimd.hpp>
@@ -76,9 +75,9 @@ SinCos<xsimd::batch<double, A>> sincos_of_small(const xsimd::batch<double, A>& x
 inline SinCos<double> sincos_of(double x) {
   using namespace sincos_detail;
   if (!(std::abs(x) < largest)) return {std::sin(x), std::cos(x)};
-  const double rounded = multiply_add(x, quarters_a_radian, rounder);
-  const auto quadrant = std::bit_cast<std::uint64_t>(rounded);
-  const auto [s, c] = of_small(less_quarters(x, rounded - rounder));
+  const double quarters = multiply_add(x, quarters_a_radian, rounder) - rounder;
+  const auto quadrant = static_cast<std::int64_t>(quarters);
+  const auto [s, c] = of_small(less_quarters(x, quarters));
   // An odd quarter swaps sine and cosine; the quarters' second bit turns the sine's sign, that of the next
   // quarter the cosine's.
   const double sine = quadrant & 1 ? c : s, cosine = quadrant & 1 ? s : c;
