@@ -206,14 +206,17 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       length = std::min(length, S(longest_angle)), duration = std::min(duration, S(longest_time));
       continue;
     }
-    if (by_angle) {
-      at = panels_.state_at(slide, at, stretch, panel, event.place);
-    } else {  // the panel once more, ending there: its end is better than a value between nodes
-      panels_.solve_by_time(slide, at, S(duration * event.place), panel);
+    const auto inside = by_angle ? panels_.state_at(slide, at, stretch, panel, event.place)
+                                 : std::optional<ContactState<S>>{};
+    if (inside) {
+      at = *inside;
+    } else {  // the panel once more, ending there
+      stretch.span *= event.place;
+      by_angle ? panels_.solve_by_angle(slide, at, stretch, panel)
+               : panels_.solve_by_time(slide, at, S(duration * event.place), panel);
       if (!std::isfinite(panel.excess)) return PhaseEnd::failed;
       at = panel.end;
     }
-    if (!std::isfinite(at.spin) || !std::isfinite(at.time)) return PhaseEnd::failed;
     if (event.end == PhaseEnd::slip_ends) at.slip = S(0);
     return event.end;
   }

@@ -171,13 +171,16 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
 }
 
 template <class S>
-ContactState<S> SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
-                                           const Stretch& stretch, const Panel& panel, const S& place) const {
+auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                                const Panel& panel, const S& place) const -> std::optional<ContactState<S>> {
+  constexpr S beside(0.1), small(0.01);
+  if (!(place > beside)) return {};
   const S way = panel.turned < S(0) ? S(-1) : S(1);
   ContactState<S> at = from;
   at.angle += way * stretch.angle(place);
   const S y = std::exp(grid_.value(panel.growth, place)) * (panel.start_y + grid_.value(panel.driven, place));
   const S u = panel.by_force ? spin_squared_by_force(slide.hoop, trig(at.angle), y) : y;
+  if (!(u > small * std::max(from.spin * from.spin, panel.end.spin * panel.end.spin))) return {};
   at.spin = way * std::sqrt(u);
   at.time += grid_.value(grid_.integrals(panel.time_rate), place);
   at.slip = grid_.value(panel.slip.value, place);

@@ -79,9 +79,10 @@ class SlidingPanels {
   static Stretch stretch_of(const S& spin, const S& rise, const S& length);
   void solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                       Panel& panel) const;
-  /// The state at a place in (0, 1] of a panel by angle that is solved.
-  ContactState<S> state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
-                           const Panel& panel, const S& place) const;
+  /// The state at a place in (0, 1] of a panel by angle that is solved, or nothing where that has lost
+  /// digits: beside the panel's start, or where the spin is small against those at its ends.
+  std::optional<ContactState<S>> state_at(const Slide& slide, const ContactState<S>& from,
+                                          const Stretch& stretch, const Panel& panel, const S& place) const;
   void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
 
   const Grid& grid() const { return grid_; }
