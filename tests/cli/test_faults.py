@@ -59,7 +59,7 @@ def test_a_part_that_was_taken_away_is_not_renamed(tmp_path):
     process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--threads", "2"], stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
     part = tmp_path / "map.h5.part"
-    while not part.exists():
+    while not (part.exists() and part.stat().st_size > 0):  # by then it is locked
         assert process.poll() is None
     part.unlink()
     part.write_text("somebody else's")
