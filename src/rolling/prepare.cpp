@@ -9,6 +9,19 @@
 
 namespace leapmap {
 
+namespace {
+
+/// Makes all of them new: by copies of what is done, each twice as long as the one before, as a copy of one
+/// is too short to be quick.
+void clear(std::span<Outcome> outcomes) {
+  if (outcomes.empty()) return;
+  outcomes.front() = Outcome{};
+  for (std::size_t done = 1; done < outcomes.size(); done *= 2)
+    std::copy_n(outcomes.begin(), std::min(done, outcomes.size() - done), outcomes.subspan(done).begin());
+}
+
+}  // namespace
+
 template <class B>
 void prepare(std::span<const Design> designs, const Scene& scene, Block<B>& block,
              std::span<Outcome> outcomes) {
@@ -16,6 +29,7 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<B>& bloc
   using T = WideOf<B>;
   using std::abs, std::atan2;
   block.searching.clear();
+  clear(outcomes);
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
     const std::size_t count = std::min(Lanes<T>::count, designs.size() - first);
     DesignLanes<T> index;
@@ -48,7 +62,6 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<B>& bloc
                turns_back = lanes_of(release_angle - nearest);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t design = index[i];
-      outcomes[design] = Outcome{};
       block.found[design] = {.turned_back = turns_back[i],
                              .release = releases[i],
                              .released = released[i],

@@ -33,7 +33,7 @@ void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Sce
     const W height = W(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
     const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
                apexes = lanes_of(apex_time);
-    block.store(TakenOff<W>{angle, spin, ascent}, lanes.index.data(), count);
+    if (keeps_flights) block.store(TakenOff<W>{angle, spin, ascent}, lanes.index.data(), count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t design = lanes.index[i];
       auto& found = block.found[design];

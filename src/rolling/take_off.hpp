@@ -24,6 +24,7 @@ template <class T>
 struct TakeOff {
   std::vector<SureFall<ScalarOf<T>>> falls;  ///< with one lift-off each, at most one a design
   Told* told = nullptr;                      ///< told every lift-off, if there
+  bool keeps_flights = true;                 ///< for land to go on with
 
   /// Adds designs whose search goes on, because that was not the jump, to `going_on`.
   void run(Block<T>& block, std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
