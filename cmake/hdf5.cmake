@@ -20,7 +20,7 @@ if(LEAPMAP_STATIC_HDF5 AND NOT HDF5_LINKS_STATICALLY)
   message(FATAL_ERROR "LEAPMAP_STATIC_HDF5 is ON, but libhdf5.a and libhdf5_hl.a do not link with sz and z alone; allowed: OFF")
 endif()
 if(NOT LEAPMAP_STATIC_HDF5)
-  message(STATUS "The program links the shared HDF5: it starts more slowly")
+  message(STATUS "libhdf5.a is not there, or LEAPMAP_STATIC_HDF5 is OFF: the program links the shared HDF5 and starts more slowly")
 endif()
 
 add_library(leapmap-hdf5 INTERFACE)

@@ -29,10 +29,10 @@ struct Look {
 };
 
 /// Looks at neighbouring angles, one after the other: the last one of the lanes before, then one a lane.
-template <class S, std::size_t width>
+template <class T>
 struct Looks {
-  using Numbers = std::array<S, width + 1>;
-  using T = typename SpectralPanel<S, width>::T;
+  using S = ScalarOf<T>;
+  using Numbers = std::array<S, Lanes<T>::count + 1>;
   struct Samples {
     Numbers value, rate;
 
@@ -176,7 +176,7 @@ LegEnd<S> RollingLeg<S>::first_end(const Roll<S>& roll, const Roll<S>& begin, co
   const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
   const LegView<S> view(roll, begin, mu_static);
   const Roll<T> rolls = widened<T>(roll);
-  Looks<S, width> looks;
+  Looks<T> looks;
   looks.put(0, view.at_begin());
   for (long node = static_cast<long>(std::floor(begin.release / step)) + 1;; node += width) {
     const auto first = static_cast<std::size_t>((node % turn + turn) % turn);
@@ -235,10 +235,10 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& length) const {
   S sum(0), from = begin;
   const S end = std::sqrt(length - shift);
   int panels = 0;
-  // Panels of up to 1.4 radians.
+  // Panels of 1.4 radians, the last of up to 1.8.
   while (from < end) {
     S to = std::sqrt(from * from + S(1.4));
-    if (to > end || S(1.15) * to > end) to = end;
+    if (to * to + S(0.4) > end * end) to = end;
     sum += duration(roll, shift, from, to, S(0), 0, panels);
     from = to;
   }

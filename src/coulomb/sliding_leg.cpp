@@ -191,7 +191,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
     if (lasts && event.place < S(least_place) && ++shortened < most_shortened) {
       const S to = std::max(S(2) * event.place, S(0.5 * least_place));
       if (by_angle)
-        length = stretch.shift + (stretch.begin + stretch.span * to) * (stretch.begin + stretch.span * to);
+        length = stretch.angle(to);
       else
         duration *= to;
       continue;
@@ -206,14 +206,17 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       length = std::min(length, S(longest_angle)), duration = std::min(duration, S(longest_time));
       continue;
     }
-    const auto inside = by_angle ? panels_.state_at(slide, at, stretch, panel, event.place)
-                                 : std::optional<ContactState<S>>{};
+    std::optional<ContactState<S>> inside;
+    if (by_angle) inside = panels_.state_at(slide, at, stretch, panel, event.place);
     if (inside) {
       at = *inside;
     } else {  // the panel once more, ending there
-      stretch.span *= event.place;
-      by_angle ? panels_.solve_by_angle(slide, at, stretch, panel)
-               : panels_.solve_by_time(slide, at, S(duration * event.place), panel);
+      if (by_angle) {
+        stretch.span *= event.place;
+        panels_.solve_by_angle(slide, at, stretch, panel);
+      } else {
+        panels_.solve_by_time(slide, at, S(duration * event.place), panel);
+      }
       if (!std::isfinite(panel.excess)) return PhaseEnd::failed;
       at = panel.end;
     }

@@ -93,6 +93,7 @@ TileEncoder::TileEncoder(const MapLayout& layout, const Tiling& tiling) : layout
 }
 
 void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes) {
+  assert(first + outcomes.size() <= Tiling(tiling_->tile_shape(), tiling_->tile_shape()).designs());
   for (const Outcome& outcome : outcomes) ++statuses_[static_cast<std::size_t>(outcome.status)];
   constexpr std::size_t block = 128;  // outcomes that stay in the first cache for all fields
   for (std::size_t from = 0; from < outcomes.size(); from += block) {

@@ -97,7 +97,7 @@ template <class S, std::size_t n>
 PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename SpectralPanel<S, n>::Values& values,
                         const typename SpectralPanel<S, n>::Values& rates, Sample<S> first,
                         const Sample<S>& last, const S& slack) {
-  using std::abs, std::max, std::min;
+  using std::min;
   constexpr S none(2), shortest(1e-9);
   const auto at = [&](const S& x) { return Sample<S>{panel.value(values, x), panel.value(rates, x)}; };
   const auto polish = [&](const S& a, const S& b, const S& guess) {

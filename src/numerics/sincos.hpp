@@ -27,7 +27,7 @@ SinCos<T> sincos_of_small(const T& x) {
 
 namespace sincos_detail {
 
-// a b + c, in one instruction where the machine has it.
+// a b + c, in one instruction where this is compiled for a machine that has it.
 inline double multiply_add(double a, double b, double c) { return a * b + c; }
 template <class A>
 xsimd::batch<double, A> multiply_add(const xsimd::batch<double, A>& a, const xsimd::batch<double, A>& b,
@@ -65,7 +65,7 @@ constexpr double rounder = 6755399441055744.0;  // 1.5 * 2^52
 }  // namespace sincos_detail
 
 /// Of doubles, alone or in a batch, to 1.6 units in the last place, or 1e-26 |x|: a third of the time that
-/// the library takes, to which angles beyond a million are left. The same bits on every machine with FMA.
+/// the library takes, to which angles beyond a million are left.
 inline SinCos<double> sincos_of_small(double x) { return sincos_detail::of_small(x); }
 template <class A>
 SinCos<xsimd::batch<double, A>> sincos_of_small(const xsimd::batch<double, A>& x) {

@@ -83,14 +83,22 @@ std::vector<Design> beside(const Design& design, const Spec& spec, double distan
 }  // namespace
 
 std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile) {
-  const auto due = [&](std::size_t designs) {
-    return static_cast<std::size_t>(std::ceil(share * static_cast<double>(designs)));
+  return audit_draw(share, tiling, tile, 0, tile.count);
+}
+
+std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile, std::size_t first,
+                                    std::size_t designs) {
+  const auto due = [&](std::size_t so_many) {
+    return static_cast<std::size_t>(std::ceil(share * static_cast<double>(so_many)));
   };
   const std::size_t before = tiling.designs_before(tile), count = due(before + tile.count) - due(before);
   std::vector<std::size_t> drawn;
-  for (std::size_t i = 0; i < count; ++i) {  // one at random from each of `count` equal shares of the tile
+  for (std::size_t i = first * count / tile.count; i < count; ++i) {
+    // One at random from each of `count` equal shares of the tile.
     const std::size_t begin = i * tile.count / count, end = std::max(begin + 1, (i + 1) * tile.count / count);
-    drawn.push_back(begin + mix(before + i) % (end - begin));
+    if (begin >= first + designs) break;
+    const std::size_t one = begin + mix(before + i) % (end - begin);
+    if (one >= first && one < first + designs) drawn.push_back(one);
   }
   return drawn;
 }
@@ -98,8 +106,7 @@ std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Ti
 std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
                                        std::size_t first, std::span<const Outcome> outcomes) {
   std::vector<AuditSample> samples;
-  for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile)) {
-    if (drawn < first || drawn >= first + outcomes.size()) continue;
+  for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile, first, outcomes.size())) {
     samples.push_back({tiling.number(tile, drawn), outcomes[drawn - first]});
     for (const Field& field : map_fields()) {
       const auto* quantity = std::get_if<Quantity>(&field.source);

@@ -29,6 +29,9 @@ struct AuditSample {
 /// The designs of a tile that the audit looks at, by their place in it; which ones depends on share and map
 /// alone. Over all tiles, ceil(share * designs).
 std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile);
+/// Of those the ones in a piece of the tile, from its design `first` on.
+std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile, std::size_t first,
+                                    std::size_t designs);
 
 /// The samples drawn from a piece of a tile, its outcomes `first`, first + 1, ..., rounded as the map rounds
 /// them.

@@ -76,9 +76,10 @@ class Sweeping {
     const auto auditor = audit_ ? std::make_shared<Auditor>(spec_) : nullptr;
     const auto drawn = std::make_shared<std::vector<AuditSample>>();  // of the tile in hand
     return {
-        [this, encoder, drawn](const Tile& tile, std::size_t first, std::span<const Outcome> outcomes) {
+        [this, encoder, drawn, auditor](const Tile& tile, std::size_t first,
+                                        std::span<const Outcome> outcomes) {
           encoder->take(first, outcomes);
-          if (audit_)
+          if (auditor)
             std::ranges::copy(audit_samples(spec_, tiling_, tile, first, outcomes),
                               std::back_inserter(*drawn));
         },

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "support/designs.hpp"
+#include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/ordered_delivery.hpp"
 #include "sweep/parallel.hpp"
@@ -84,6 +85,54 @@ TEST(Engine, AnErrorOfTheSinkEndsTheSweepAndIsThrownOn) {
                 })),
       std::runtime_error);
   EXPECT_EQ(taken, 3) << "nothing is handed on after an error";
+}
+
+/// 2,911 designs in rows of 71, so that pieces begin in the middle of one.
+TEST(Engine, ATileOfSeveralPiecesIsFilledSolvedAndAuditedAsAWhole) {
+  const Spec spec = read_spec(
+      "", {"slope={from=0.1,to=0.8,count=41}", "mass_ratio={from=0.5,to=10,count=71}", "audit=0.3"});
+  const std::vector<std::size_t> shape = shape_of(spec);
+  const Tiling tiling(shape, shape);
+  const DesignSpace space(spec);
+  std::vector<AuditSample> samples;
+  std::size_t taken = 0, pieces = 0;
+  run_sweep(spec, tiling, {}, [&] {
+    return TileWork{[&](const Tile& tile, std::size_t first, std::span<const Outcome> outcomes) {
+                      EXPECT_EQ(first, taken);
+                      std::vector<Design> designs(outcomes.size());
+                      space.fill(tile, first, designs);
+                      for (std::size_t i = 0; i < designs.size(); ++i) {
+                        const Design expected = space.at(first + i);
+                        EXPECT_EQ(designs[i].slope, expected.slope);
+                        EXPECT_EQ(designs[i].mass_ratio, expected.mass_ratio);
+                        if (outcomes[i].status == Status::jumped) {
+                          EXPECT_EQ(outcomes[i].jump_distance,
+                                    outcomes[i].jump_angle - expected.release_angle);
+                        }
+                      }
+                      for (const AuditSample& sample : audit_samples(spec, tiling, tile, first, outcomes)) {
+                        EXPECT_EQ(std::memcmp(&sample.outcome.jump_height,
+                                              &outcomes[sample.number - first].jump_height, sizeof(double)),
+                                  0);
+                        samples.push_back(sample);
+                      }
+                      taken += outcomes.size(), ++pieces;
+                    },
+                    [](std::size_t, const Tile&) { return Prepared{[] {}}; }};
+  });
+  EXPECT_EQ(taken, 41u * 71u);
+  EXPECT_GT(pieces, 2u);
+  const std::vector<std::size_t> drawn = audit_draw(0.3, tiling, tiling.tile(0));
+  ASSERT_EQ(samples.size(), drawn.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i) EXPECT_EQ(samples[i].number, drawn[i]);
+
+  std::vector<Outcome> alone(taken);
+  const Solver solve = make_solver(spec);
+  for (const AuditSample& sample : samples) {
+    const Design design = space.at(sample.number);
+    solve({&design, 1}, {&alone[sample.number], 1});
+    EXPECT_TRUE(same_flags(alone[sample.number], sample.outcome));
+  }
 }
 
 TEST(Engine, AStopKeepsWhatWasDoneInOrder) {
