@@ -103,15 +103,18 @@ struct Ascent {
 namespace toss_detail {
 
 /// The zero of y' after its minimum at top - 2 (pi - opening), where y has a minimum. There
-/// gamma eta - sin(eta) is known, eta the turn past phi + psi = pi: its cubic gives the guess.
+/// gamma eta - sin(eta) is known, eta the turn past phi + psi = pi: its cubic gives the guess. To more than
+/// half of its digits: y there, which is all that is asked of it, is then good to the last.
 template <class T>
 T bottom(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
-  const T pi(std::numbers::pi_v<ScalarOf<T>>), epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
+  using S = ScalarOf<T>;
+  constexpr S half_digits = sizeof(S) > 8 ? S(1e-11L) : S(1e-9L);
+  const T pi(std::numbers::pi_v<S>);
   const T valley = top - (pi - toss.opening), slack = T(1) - toss.gravity;
   const T eta = (toss.gravity * valley - toss.phi.sin) / slack;
   return polish_root(
       [&](const T& psi) { return toss_climb(toss, psi); }, larger(valley - (pi - toss.opening), T(0)), top,
-      valley + eta + eta * eta * eta / (T(6) * slack), wanted | !wanted, T(2) * epsilon * top, wanted);
+      valley + eta + eta * eta * eta / (T(6) * slack), wanted | !wanted, T(half_digits) * top, wanted);
 }
 
 /// The zero of y' after its maximum at top, where y has a maximum: likewise, eta the turn past phi + psi = 2
@@ -125,8 +128,8 @@ T crown(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted, ScalarOf<T> 
                      T(resolution) * middle, wanted);
 }
 
-/// The same, and y there, for one evaluation less: from within 1e-6 of the root, and with y'' well below
-/// zero, Halley's step takes it to its last digits, and Taylor's series y along with it.
+/// The same, and y there, for one evaluation less: Halley's step takes a place near the root to its last
+/// digits, and Taylor's series y along with it.
 template <class T>
 struct Crown {
   T at, height;
@@ -135,14 +138,18 @@ template <class T>
 Crown<T> crown_and_height(const Toss<T>& toss, const T& top, const MaskOf<T>& wanted) {
   using S = ScalarOf<T>;
   using std::abs;
-  constexpr S near = S(1e-6L), flat = S(0.03L);
-  const T x = crown(toss, top, wanted, sizeof(S) > 8 ? S(1e-8L) : near);
+  constexpr S epsilon = std::numeric_limits<S>::epsilon();
+  const T x = crown(toss, top, wanted, sizeof(S) > 8 ? S(1e-8L) : S(1e-7L));
   const CurvedSample<T> y = toss_height(toss, x);
-  const T step = T(-2) * y.rate * y.curvature / (T(2) * y.curvature * y.curvature - y.rate * y.jerk);
+  const T square = y.curvature * y.curvature;
+  const T step = T(-2) * y.rate * y.curvature / (T(2) * square - y.rate * y.jerk), length = abs(step);
   Crown<T> crest{x + step, y.value + step * (y.rate + step * (T(0.5) * y.curvature + step * y.jerk / T(6)))};
-  const MaskOf<T> unsure = wanted & !((abs(step) <= T(2 * near) * x) & (y.curvature < T(-flat)));
+  // The step is off by its cube times (jerk / (2 curvature))^2 - y'''' / (6 curvature), where |y''''| <= 1.
+  const T off = length * length * length * (T(0.25) * y.jerk * y.jerk + abs(y.curvature) * T(S(1) / S(6)));
+  const MaskOf<T> sure = (off <= T(2 * epsilon) * square * x) & (length <= T(1e-4)) & (y.curvature < T(0));
+  const MaskOf<T> unsure = wanted & !sure;
   if (any(unsure)) {
-    const T at = crown(toss, top, unsure, S(2) * std::numeric_limits<S>::epsilon());
+    const T at = crown(toss, top, unsure, S(2) * epsilon);
     crest.at = select(unsure, at, crest.at);
     crest.height = select(unsure, toss_height(toss, at).value, crest.height);
   }
@@ -231,7 +238,10 @@ Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>&
     dip = select(dips, smaller(dip, lowest), dip);
   }
   const CurvedSample<T> apex = toss_height(toss, ascent.last_apex);
-  const T guess = ascent.last_apex + sqrt(T(-2) * apex.value / apex.curvature);
+  // The apex's parabola, which comes down late, as y'' falls on.
+  const T fall = ascent.sunk - ascent.last_apex;
+  const T guess =
+      ascent.last_apex + smaller(sqrt(T(-2) * apex.value / apex.curvature), T(ScalarOf<T>(0.93L)) * fall);
   const T landing = polish_root([&](const T& psi) { return toss_height(toss, psi); }, ascent.last_apex,
                                 ascent.sunk, guess, wanted & !wanted, T(2) * epsilon * ascent.sunk, seldom);
   Flight<T> flight{ascent.height, ascent.apex, select(flies, landing, T(0)), dip};
