@@ -3,7 +3,7 @@
 /// without any file and with one at several levels of compression, in one run.
 ///
 /// Compare items_per_second of the rows: they are designs a second. bytes is of the file, a design. Space for
-/// a file of 0.7 GB is needed in the folder for temporary files (TMPDIR).
+/// a file of 0.8 GB is needed in the folder for temporary files (TMPDIR).
 #include <benchmark/benchmark.h>
 
 #include <filesystem>

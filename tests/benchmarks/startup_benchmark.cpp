@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -74,11 +75,17 @@ void add_leapmap(const std::string& name, const std::string& program, const std:
 
 int main(int count, char** words) {
   benchmark::Initialize(&count, words);
-  const char* program = std::getenv("LEAPMAP");
+  const char* named = std::getenv("LEAPMAP");
+  const std::string program = named ? named : "leapmap";
+  if (cpu_seconds({program, "--version"}) < 0.0) {
+    std::fprintf(stderr, "startup-benchmark: cannot run %s; LEAPMAP must name the program\n",
+                 program.c_str());
+    return 2;
+  }
   const std::string map = std::filesystem::temp_directory_path() / "leapmap_startup_benchmark.h5";
   add("True", {"true"});
   add("H5Dump", {"h5dump", "-V"});
-  add_leapmap("Leapmap", program ? program : "leapmap", map);
+  add_leapmap("Leapmap", program, map);
   if (const char* other = std::getenv("OTHER_LEAPMAP")) add_leapmap("Other", other, map);
   benchmark::RunSpecifiedBenchmarks();
   std::filesystem::remove(map);
