@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Dual numbers: a value and its derivatives by N parameters, carried through every operation.
+///
+/// A template on its scalar gives derivatives to rounding when it is used on a Dual, and on the lanes of a
+/// batch those of as many designs. Comparisons look at values only. A root that was found in plain numbers is
+/// given its derivatives by one Newton step in duals, x - f(x) / f'(x).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+
+#include "numerics/lanes.hpp"
+
+namespace leapmap {
+
+template <class T, std::size_t N>
+struct Dual {
+  using Scalar = ScalarOf<T>;
+
+  T value = T(Scalar(0));
+  std::array<T, N> by = zeros();  ///< derivatives, by each parameter
+
+  Dual() = default;
+  /// A constant.
+  explicit Dual(const T& constant) : value(constant) {}
+  explicit Dual(Scalar constant) requires(!std::is_same_v<T, Scalar>) : value(constant) {}
+  /// Parameter number k.
+  static Dual parameter(const T& value, std::size_t k) {
+    Dual x(value);
+    x.by[k] = T(Scalar(1));
+    return x;
+  }
+
+  friend Dual operator+(const Dual& a, const Dual& b) {
+    return made(a.value + b.value, [&](std::size_t k) { return a.by[k] + b.by[k]; });
+  }
+  friend Dual operator-(const Dual& a, const Dual& b) {
+    return made(a.value - b.value, [&](std::size_t k) { return a.by[k] - b.by[k]; });
+  }
+  friend Dual operator-(const Dual& a) {
+    return made(-a.value, [&](std::size_t k) { return -a.by[k]; });
+  }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return made(a.value * b.value, [&](std::size_t k) { return a.by[k] * b.value + a.value * b.by[k]; });
+  }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    const T inverse = T(Scalar(1)) / b.value, quotient = a.value / b.value;
+    return made(quotient, [&](std::size_t k) { return (a.by[k] - quotient * b.by[k]) * inverse; });
+  }
+
+  friend MaskOf<T> operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
+  friend MaskOf<T> operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
+  friend MaskOf<T> operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
+  friend MaskOf<T> operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
+  friend MaskOf<T> operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
+  friend MaskOf<T> operator!=(const Dual& a, const Dual& b) { return a.value != b.value; }
+  friend Dual select(const MaskOf<T>& mask, const Dual& a, const Dual& b) {
+    using leapmap::select;
+    return made(select(mask, a.value, b.value),
+                [&](std::size_t k) { return select(mask, a.by[k], b.by[k]); });
+  }
+
+  friend Dual abs(const Dual& a) { return select(a.value < T(Scalar(0)), -a, a); }
+  friend Dual floor(const Dual& a) {
+    using std::floor;
+    return Dual(floor(a.value));
+  }
+  friend Dual sqrt(const Dual& a) {
+    using std::sqrt;
+    const T root = sqrt(a.value);
+    return a.through_edge(root, T(Scalar(0.5)) / root);
+  }
+  friend Dual asin(const Dual& a) {
+    using std::asin;
+    return a.through_edge(asin(a.value), a.slope_of_arc());
+  }
+  friend Dual acos(const Dual& a) {
+    using std::acos;
+    return a.through_edge(acos(a.value), -a.slope_of_arc());
+  }
+  friend SinCos<Dual> sincos_of(const Dual& a) {
+    const auto [s, c] = sincos_of(a.value);
+    return {a.through(s, c), a.through(c, -s)};
+  }
+
+ private:
+  static std::array<T, N> zeros() {
+    std::array<T, N> all;
+    all.fill(T(Scalar(0)));
+    return all;
+  }
+  template <class Rate>
+  static Dual made(const T& value, const Rate& rate) {
+    Dual x(value);
+    for (std::size_t k = 0; k < N; ++k) x.by[k] = rate(k);
+    return x;
+  }
+  /// f(*this), by f and f' of the value.
+  Dual through(const T& f, const T& slope) const {
+    return made(f, [&](std::size_t k) { return slope * by[k]; });
+  }
+  /// The same where the slope may be infinite: what a parameter does not act on it does not act on there
+  /// either.
+  Dual through_edge(const T& f, const T& slope) const {
+    using leapmap::select;
+    const T none(Scalar(0));
+    return made(f, [&](std::size_t k) { return select(by[k] == none, none, slope * by[k]); });
+  }
+  /// 1 / sqrt(1 - value^2)
+  T slope_of_arc() const {
+    using std::sqrt;
+    const T one(Scalar(1));
+    return one / sqrt((one - value) * (one + value));
+  }
+};
+
+/// Of the values: derivatives are neither loaded nor stored.
+template <class T, std::size_t N>
+struct Lanes<Dual<T, N>> : Lanes<T> {
+  static Dual<T, N> load(const ScalarOf<T>* from) { return Dual<T, N>(Lanes<T>::load(from)); }
+  static void store(const Dual<T, N>& dual, ScalarOf<T>* to) { Lanes<T>::store(dual.value, to); }
+};
+
+}  // namespace leapmap
