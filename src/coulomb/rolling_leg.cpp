@@ -42,14 +42,11 @@ struct Looks {
     void put(std::size_t k, const Sample<S>& sample) { value[k] = sample.value, rate[k] = sample.rate; }
     Sample<S> at(std::size_t k) const { return {value[k], rate[k]}; }
 
-    /// Between which of the neighbours, `apart` from each other, it surely does not fall to zero: it is above
-    /// at both, and the tangents there do not meet below.
-    MaskOf<T> stays_above(const T& apart) const {
-      const T a = Lanes<T>::load(value.data()), b = Lanes<T>::load(value.data() + 1),
-              a_rate = Lanes<T>::load(rate.data()), b_rate = Lanes<T>::load(rate.data() + 1);
-      const T turns = b_rate - a_rate;  // above zero where there is a minimum
-      return (smaller(a, b) > T(S(0))) & (((a_rate >= T(S(0))) | (b_rate <= T(S(0)))) |
-                                          (a * turns + a_rate * (b_rate * apart - (b - a)) > T(S(0))));
+    /// Between which of the neighbours, `apart` from each other, it surely does not fall to zero.
+    MaskOf<T> clear(const T& apart) const {
+      const Sample<T> a{Lanes<T>::load(value.data()), Lanes<T>::load(rate.data())},
+          b{Lanes<T>::load(value.data() + 1), Lanes<T>::load(rate.data() + 1)};
+      return (smaller(a.value, b.value) > T(S(0))) & stays_above(a, b, apart);
     }
   };
   Numbers angle;
@@ -67,8 +64,7 @@ struct Looks {
   /// Between which neighbours neither spin nor friction is used up, a bit for each two.
   unsigned clear_of_ends() const {
     const T apart = Lanes<T>::load(angle.data() + 1) - Lanes<T>::load(angle.data());
-    return Lanes<T>::bits(vis_viva.stays_above(apart) & downhill.stays_above(apart) &
-                          uphill.stays_above(apart));
+    return Lanes<T>::bits(vis_viva.clear(apart) & downhill.clear(apart) & uphill.clear(apart));
   }
 };
 

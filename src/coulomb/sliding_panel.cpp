@@ -19,10 +19,10 @@ S largest(std::initializer_list<S> values) {
   return most;
 }
 
-/// w^2 where n0 is known.
+/// w^2, of which y is the value, or n0 where it is known `by_force`.
 template <class T>
-T spin_squared_by_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& n0) {
-  return (n0 - free_normal_force(hoop, phi, T(ScalarOf<T>(0)))) / (hoop.rho * phi.cos);
+T spin_squared(const Hoop<T>& hoop, const Trig<T>& phi, const T& y, bool by_force) {
+  return by_force ? (y - free_normal_force(hoop, phi, T(ScalarOf<T>(0)))) / (hoop.rho * phi.cos) : y;
 }
 
 }  // namespace
@@ -100,9 +100,6 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S start_u = from.spin * from.spin, start_force = slide.free_force;
   const S start_y = panel.start_y = by_force ? start_force : start_u;
   const S end_y = std::exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
-  const auto spin_squared = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
-    return by_force ? spin_squared_by_force(hoop_at, at, y) : y;
-  };
   const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
     return by_force ? y : free_normal_force(hoop_at, at, y);
   };
@@ -110,14 +107,14 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
                                        const R& turn) {
     return free_normal_force_rate(hoop_at, at, u, R(turn * n0 + hoop_at.drive / hoop_at.Ic));
   };
-  const S end_u = spin_squared(hoop, end_phi, end_y);
+  const S end_u = spin_squared(hoop, end_phi, end_y, by_force);
   T least_u(std::min(start_u > S(0) ? start_u : end_u, end_u));
   Values& time_rate = panel.time_rate;
   for (std::size_t i = 0; i < nodes; i += width) {
     const Trig<T>& at = phi[i / width];
     const SlidingCoefficients<T>& there = coefficients[i / width];
     const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
-    const T u = spin_squared(hoops, at, y), n0 = force(hoops, at, y);
+    const T u = spin_squared(hoops, at, y, by_force), n0 = force(hoops, at, y);
     least_u = smaller(least_u, u);
     const T w = get(weight, i), rate = w / sqrt(u);
     put(rate, time_rate, i);
@@ -179,7 +176,7 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
   ContactState<S> at = from;
   at.angle += way * stretch.angle(place);
   const S y = std::exp(grid_.value(panel.growth, place)) * (panel.start_y + grid_.value(panel.driven, place));
-  const S u = panel.by_force ? spin_squared_by_force(slide.hoop, trig(at.angle), y) : y;
+  const S u = spin_squared(slide.hoop, trig(at.angle), y, panel.by_force);
   if (!(u > small * std::max(from.spin * from.spin, panel.end.spin * panel.end.spin))) return {};
   at.spin = way * std::sqrt(u);
   at.time += grid_.value(grid_.integrals(panel.time_rate), place);

@@ -93,14 +93,15 @@ TileEncoder::TileEncoder(const MapLayout& layout, const Tiling& tiling) : layout
 }
 
 void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes) {
-  assert(first + outcomes.size() <= Tiling(tiling_->tile_shape(), tiling_->tile_shape()).designs());
   for (const Outcome& outcome : outcomes) ++statuses_[static_cast<std::size_t>(outcome.status)];
   constexpr std::size_t block = 128;  // outcomes that stay in the first cache for all fields
   for (std::size_t from = 0; from < outcomes.size(); from += block) {
     const auto some = outcomes.subspan(from, std::min(block, outcomes.size() - from));
     for (std::size_t f = 0; f < columns_.size(); ++f) {
       const Field& field = *layout_->fields[f];
-      std::byte* to = columns_[f].data() + (first + from) * value_bytes(*layout_, field);
+      const std::size_t size = value_bytes(*layout_, field);
+      assert((first + from + some.size()) * size <= columns_[f].size());
+      std::byte* to = columns_[f].data() + (first + from) * size;
       if (const auto* code = std::get_if<Code>(&field.source)) {
         gather_as<std::uint8_t>(some, to, code->value);
         continue;
@@ -137,7 +138,7 @@ std::span<const std::byte> TileEncoder::spread(const Tile& tile, std::size_t fie
   if (tile.extent == shape) return columns_[field];
   const std::size_t size = value_bytes(*layout_, *layout_->fields[field]);
   const std::size_t row = tile.extent.back() * size;
-  chunk_.resize(std::accumulate(shape.begin(), shape.end(), size, std::multiplies<>()));
+  chunk_.resize(columns_[field].size());
   const void* fill = fill_value(*layout_, *layout_->fields[field]);
   for (std::size_t i = 0; i < chunk_.size(); i += size) std::memcpy(chunk_.data() + i, fill, size);
   std::vector<std::size_t> position;

@@ -10,6 +10,15 @@
 
 namespace leapmap {
 
+/// Whether a smooth function that is above zero at both ends of a short interval, `apart` from each other,
+/// surely is so between them: it has no minimum there, or the tangents at the ends meet above zero.
+template <class T>
+MaskOf<T> stays_above(const Sample<T>& at_a, const Sample<T>& at_b, const T& apart) {
+  const T none(ScalarOf<T>(0)), turns = at_b.rate - at_a.rate;  // above zero where there is a minimum
+  const T meet = at_a.value * turns + at_a.rate * (at_b.rate * apart - (at_b.value - at_a.value));
+  return (at_a.rate >= none) | (at_b.rate <= none) | (meet > none);
+}
+
 /// A smooth function on an interval: where it first falls from above to below zero. Its ends' values and
 /// rates tell; where they leave a minimum near zero in doubt, it is asked. NaN: it does not fall.
 template <class S, class F>
@@ -18,11 +27,8 @@ S first_fall(const F& f, const S& a, const S& b, const Sample<S>& at_a, const Sa
   const S resolution = S(2) * std::numeric_limits<S>::epsilon() * (std::abs(a) + std::abs(b));
   if (has_fallen(at_a)) return a;
   if (has_fallen(at_b)) return polish_root(f, a, b, a + h * S(0.5), false, resolution);
-  if (!(at_a.rate < S(0) && at_b.rate > S(0))) return none;
-  // A minimum, by the cubic's slope; the interval is short, so that it is near there. It is beyond doubt
-  // where the tangents at both ends meet above zero.
-  const S meet = (at_b.value - at_a.value - at_b.rate * h) / (at_a.rate - at_b.rate);
-  if (at_a.value + at_a.rate * meet > S(0)) return none;
+  if (stays_above(at_a, at_b, h)) return none;
+  // A minimum in doubt, by the cubic's slope; the interval is short, so that it is near there.
   S left = a, right = b, left_rate = at_a.rate, right_rate = at_b.rate;
   for (int i = 0; i < 60 && right - left > resolution; ++i) {
     S x = i % 3 == 2 ? left + (right - left) * S(0.5)

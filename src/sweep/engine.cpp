@@ -53,11 +53,12 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
       },
       most_waiting_bytes);
 
+  const std::size_t most = std::min(piece, tiling.tile(0).count);  // no tile is larger than the first
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
-    return [&, solve = make_solver(spec), work = make_work(), designs = std::vector<Design>(piece),
-            outcomes = std::vector<Outcome>(piece)](std::size_t i) mutable {
+    return [&, solve = make_solver(spec), work = make_work(), designs = std::vector<Design>(most),
+            outcomes = std::vector<Outcome>(most)](std::size_t i) mutable {
       try {
         const std::size_t number = options.first_tile + i;
         const Tile tile = tiling.tile(number);

@@ -66,7 +66,7 @@ void add(const std::string& name, const Command& command, const std::string& mad
 }
 
 void add_leapmap(const std::string& name, const std::string& program, const std::string& map) {
-  add(name + "/hop", {program, "hop", "--slope", "0.6", "--mass-ratio", "3"}, "");
+  add(name + "/hop", {program, "hop", "--slope", "0.6", "--mass-ratio", "3"});
   add(name + "/sweep", {program, "sweep", "--set", "slope={from=0.1,to=0.8,count=8}", "-o", map, "--quiet"},
       map);
 }
