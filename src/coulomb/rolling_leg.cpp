@@ -253,7 +253,7 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
   for (std::size_t i = 0; i < nodes; i += Lanes<T>::count) {
     const T q = T(from) + T(to - from) * Lanes<T>::load(panel_.node.data() + i), x = T(shift) + q * q;
     const Trig<T> turned = trig(x);
-    const T E = vis_viva_past_release(rolls, x, turned, x_minus_sin(x, turned.sin));
+    const T E = vis_viva_past_release(rolls, x, turned, x_minus_sin(x, turned));
     const T J = contact_inertia(rolls.hoop, trig(T(rolls.release + x)));
     Lanes<T>::store(T(2) * q * slowness(J, E), f.data() + i);
     least_E = smaller(least_E, E);

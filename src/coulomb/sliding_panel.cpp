@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <limits>
 
+#include "trajectory/gradient.hpp"
+
 namespace leapmap {
 namespace {
 
@@ -14,9 +16,20 @@ constexpr int most_iterations = 60;
 /// The largest, and infinity if any is no number: such a panel is not resolved.
 template <class S>
 S largest(std::initializer_list<S> values) {
+  using std::isfinite;
   S most(0);
-  for (const S& value : values) most = std::isfinite(value) ? std::max(most, value) : S(HUGE_VAL);
+  for (const S& value : values) most = isfinite(value) ? std::max(most, value) : S(HUGE_VAL);
   return most;
+}
+
+/// The same hoop for the nodes, one or many at once.
+template <class T, class S>
+Hoop<T> at_nodes(const Hoop<S>& hoop) {
+  if constexpr (std::is_same_v<T, S>) {
+    return hoop;
+  } else {
+    return widened<T>(hoop);
+  }
 }
 
 /// w^2, of which y is the value, or n0 where it is known `by_force`.
@@ -30,9 +43,10 @@ T spin_squared(const Hoop<T>& hoop, const Trig<T>& phi, const T& y, bool by_forc
 template <class S>
 auto SlidingPanels<S>::stretch_of(const S& spin, const S& rise, const S& length) -> Stretch {
   // x = shift + q^2 takes out u's zero just before the start, where the spin is small and grows.
+  using std::sqrt;
   const S shift = rise > S(0) ? std::max(-spin * spin / (S(2) * rise), -length) : -length;
-  const S begin = std::sqrt(-shift);
-  return {shift, begin, std::sqrt(length - shift) - begin};
+  const S begin = sqrt(-shift);
+  return {shift, begin, sqrt(length - shift) - begin};
 }
 
 template <class S>
@@ -40,7 +54,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
                                       Panel& panel) const {
   // The nodes in lanes.
   using T = typename Grid::T;
-  using std::exp, std::sqrt;
+  using std::abs, std::exp, std::sqrt;
   constexpr std::size_t width = Lanes<T>::count;
   const auto get = [](const Values& values, std::size_t i) { return Lanes<T>::load(values.data() + i); };
   const auto put = [](const T& value, Values& values, std::size_t i) {
@@ -48,11 +62,11 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   };
   const Hoop<S>& hoop = slide.hoop;
   const S& friction = slide.friction;
-  const Hoop<T> hoops = widened<T>(hoop);
+  const Hoop<T> hoops = at_nodes<T>(hoop);
   const T m(friction);
   const S way = from.spin < S(0) ? S(-1) : S(1), length = stretch.length();
   panel.indeterminate = panel.spin_vanishes = false;
-  panel.excess = std::numeric_limits<S>::infinity();
+  panel.excess = std::numeric_limits<Number>::infinity();
   panel.turned = way * length;
   panel.end.angle = from.angle + panel.turned;
   const Trig<S> start_phi = trig(from.angle), end_phi = trig(panel.end.angle);
@@ -99,7 +113,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.driven = grid_.integrals(driven);
   const S start_u = from.spin * from.spin, start_force = slide.free_force;
   const S start_y = panel.start_y = by_force ? start_force : start_u;
-  const S end_y = std::exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
+  const S end_y = exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
   const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
     return by_force ? y : free_normal_force(hoop_at, at, y);
   };
@@ -123,22 +137,22 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     put(T(way) * w * force_rate(hoops, at, u, n0, there.turn), panel.free_force.rate, i);
   }
   const auto least = lanes_of(least_u);
-  const S slowest = *std::min_element(least.begin(), least.end());
-  panel.spin_vanishes = !(slowest > S(0));
+  const Number slowest = *std::min_element(least.begin(), least.end());
+  panel.spin_vanishes = !(slowest > Number(0));
   if (panel.spin_vanishes) return;
 
   const S end_force = force(hoop, end_phi, end_y);
   const S end_weight = S(2) * stretch.span * (stretch.begin + stretch.span),
-          end_rate = end_weight / std::sqrt(end_u);
+          end_rate = end_weight / sqrt(end_u);
   const S start_weight = S(2) * stretch.span * stretch.begin;
   const SlidingCoefficients<S> start = slide.coefficients(hoop, start_phi, S(0));
-  panel.end.spin = way * std::sqrt(end_u);
+  panel.end.spin = way * sqrt(end_u);
   panel.free_force.end = {end_force,
                           way * end_weight * force_rate(hoop, end_phi, end_u, end_force, end.turn)};
   panel.free_force.start = {
       start_force, way * start_weight * force_rate(hoop, start_phi, start_u, start_force, start.turn)};
   // At rest weight over spin has a limit.
-  const S start_rate = start_u > S(0) ? start_weight / std::sqrt(start_u) : time_rate[0];
+  const S start_rate = start_u > S(0) ? S(start_weight / sqrt(start_u)) : time_rate[0];
   panel.slip.start = {
       from.slip, start_rate * sliding_motion(hoop, start_phi, start_u, friction, start, start_force).slip};
 
@@ -159,26 +173,28 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.slip.end = {panel.end.slip,
                     end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
   panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
-  const S noise = slide.rounding_at_end(end.pivot) +
-                  S(16) * std::numeric_limits<S>::epsilon() * std::min(start_u / slowest, S(1e6));
-  panel.excess = largest<S>({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
-                             S(0.1) * grid_.tail(time_rate) / duration,
-                             grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
+  const Number noise =
+      slide.rounding_at_end(end.pivot) +
+      Number(16) * std::numeric_limits<Number>::epsilon() * std::min(value_of(start_u) / slowest, Number(1e6));
+  panel.excess = value_of(largest<S>({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
+                                      S(0.1) * grid_.tail(time_rate) / duration,
+                                      grid_.tail(panel.slip.rate) / (S(1) + abs(from.slip))})) /
                  (tolerance_ + noise);
 }
 
 template <class S>
 auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                                 const Panel& panel, const S& place) const -> std::optional<ContactState<S>> {
-  constexpr S beside(0.1), small(0.01);
+  using std::exp, std::sqrt;
+  const S beside(0.1), small(0.01);
   if (!(place > beside)) return {};
   const S way = panel.turned < S(0) ? S(-1) : S(1);
   ContactState<S> at = from;
   at.angle += way * stretch.angle(place);
-  const S y = std::exp(grid_.value(panel.growth, place)) * (panel.start_y + grid_.value(panel.driven, place));
+  const S y = exp(grid_.value(panel.growth, place)) * (panel.start_y + grid_.value(panel.driven, place));
   const S u = spin_squared(slide.hoop, trig(at.angle), y, panel.by_force);
   if (!(u > small * std::max(from.spin * from.spin, panel.end.spin * panel.end.spin))) return {};
-  at.spin = way * std::sqrt(u);
+  at.spin = way * sqrt(u);
   at.time += grid_.value(grid_.integrals(panel.time_rate), place);
   at.slip = grid_.value(panel.slip.value, place);
   at.travel = grid_.value(panel.travel.value, place);
@@ -190,25 +206,27 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
                                      Panel& panel) const {
   using T = typename Grid::T;
   constexpr std::size_t width = Lanes<T>::count;
+  using std::abs;
   const Hoop<S>& hoop = slide.hoop;
   const S& friction = slide.friction;
   panel.indeterminate = panel.spin_vanishes = false;
-  panel.excess = std::numeric_limits<S>::infinity();
+  panel.excess = std::numeric_limits<Number>::infinity();
   Values turned, spin, angular;
   for (std::size_t i = 0; i < nodes; ++i)
     spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
   bool settled = false;
-  const Hoop<T> hoops = widened<T>(hoop);
+  int left = has_derivatives<S> ? 6 : 0;  // iterations once the values are settled: derivatives come after
+  const Hoop<T> hoops = at_nodes<T>(hoop);
   const T m(friction), length(duration);
-  for (int iteration = 0; iteration < most_iterations && !settled; ++iteration) {
-    S least_pivot(hoop.Ic + S(2));
+  for (int iteration = 0; iteration < most_iterations && !(settled && left-- <= 0); ++iteration) {
+    Number least_pivot = value_of(hoop.Ic) + Number(2);
     for (std::size_t i = 0; i < nodes; i += width) {
       const T x = Lanes<T>::load(turned.data() + i);
       const Trig<T> phi = trig(T(from.angle) + x);
       const SlidingCoefficients<T> at = slide.coefficients(hoops, phi, x);
       const auto pivots = lanes_of(at.pivot);
       least_pivot = std::min(least_pivot, *std::min_element(pivots.begin(), pivots.end()));
-      if (!(least_pivot > S(0))) {
+      if (!(least_pivot > Number(0))) {
         panel.indeterminate = true;
         return;
       }
@@ -224,15 +242,16 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
     const Values gained = grid_.integrals(angular);
     S change(0), most(1);
     for (std::size_t i = 0; i < nodes; ++i) {
-      change = largest<S>({change, std::abs(from.spin + gained[i] - spin[i])});
-      most = std::max({most, std::abs(from.spin), std::abs(angular[i])});
+      change = largest<S>({change, abs(from.spin + gained[i] - spin[i])});
+      most = std::max({most, S(abs(from.spin)), S(abs(angular[i]))});
       spin[i] = from.spin + gained[i];
     }
     const Values spun = grid_.integrals(spin);
     for (std::size_t i = 0; i < nodes; ++i) turned[i] = duration * spun[i];
     // Near the edge, or a needle of the spin, accelerations are known to some roundings more.
-    const S noise = std::min(slide.rounding(least_pivot), S(1e4) * std::numeric_limits<S>::epsilon());
-    settled = change <= (S(8) * std::numeric_limits<S>::epsilon() + noise) * most;
+    constexpr Number epsilon = std::numeric_limits<Number>::epsilon();
+    const Number noise = std::min(slide.rounding(least_pivot), Number(1e4) * epsilon);
+    settled = value_of(change) <= (Number(8) * epsilon + noise) * value_of(most);
   }
   panel.end.spin = from.spin + grid_.integral(angular);
   panel.turned = duration * grid_.integral(spin);
@@ -269,13 +288,14 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   panel.slip.end = {panel.end.slip, duration * end.slip};
   panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
   if (settled)
-    panel.excess = largest<S>({grid_.tail(angular) / (S(1) + std::abs(from.spin)),
-                               grid_.tail(panel.slip.rate) / (S(1) + std::abs(from.slip))}) /
+    panel.excess = value_of(largest<S>({grid_.tail(angular) / (S(1) + abs(from.spin)),
+                                        grid_.tail(panel.slip.rate) / (S(1) + abs(from.slip))})) /
                    (tolerance_ + slide.rounding_at_end(at_end.pivot));
 }
 
 #ifdef LEAPMAP_KERNELS
 template class SlidingPanels<double>;
+template class SlidingPanels<DesignDual>;
 #endif
 #ifdef LEAPMAP_SCALARS
 template class SlidingPanels<long double>;

@@ -17,9 +17,11 @@
 
 namespace leapmap {
 
+/// S: a number, or a dual, whose derivatives panels of given lengths carry along.
 template <class S>
 class SlidingPanels {
  public:
+  using Number = ScalarOf<S>;
   static constexpr std::size_t nodes = 24;
   using Grid = SpectralPanel<S, nodes>;
   using Values = typename Grid::Values;
@@ -39,7 +41,7 @@ class SlidingPanels {
     bool by_force;
     ContactState<S> end;
     S turned;  ///< from start to end
-    S excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    Number excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
     bool indeterminate, spin_vanishes;
   };
   /// A panel by angle: |phi - from| = shift + q^2, q from begin to begin + span.
@@ -64,15 +66,16 @@ class SlidingPanels {
       return sliding_coefficients(hoops, phi, m, edge->pivot(hoops, m, T(left) - T(edge->way) * turned));
     }
     /// Relative rounding of the accelerations where the pivot is so large: it comes of terms that may cancel.
-    S rounding(const S& pivot) const {
-      return S(16) * std::numeric_limits<S>::epsilon() *
-             (hoop.Ic + hoop.rho * (hoop.rho + S(2) * std::abs(friction))) / pivot;
+    Number rounding(Number pivot) const {
+      const Number Ic = value_of(hoop.Ic), rho = value_of(hoop.rho);
+      return Number(16) * std::numeric_limits<Number>::epsilon() *
+             (Ic + rho * (rho + Number(2) * std::abs(value_of(friction)))) / pivot;
     }
     /// The same at a panel's end: near the edge the pivot comes without cancellation.
-    S rounding_at_end(const S& pivot) const { return rounding(edge ? S(1) : pivot); }
+    Number rounding_at_end(const S& pivot) const { return rounding(edge ? Number(1) : value_of(pivot)); }
   };
 
-  explicit SlidingPanels(const S& tolerance) : tolerance_(tolerance) {}
+  explicit SlidingPanels(Number tolerance) : tolerance_(tolerance) {}
 
   /// The stretch of that length, its nodes closer where the spin is small and grows. rise: of w^2 / 2, an
   /// angle.
@@ -88,7 +91,7 @@ class SlidingPanels {
   const Grid& grid() const { return grid_; }
 
  private:
-  S tolerance_;
+  Number tolerance_;
   Grid grid_;
 };
 

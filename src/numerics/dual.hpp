@@ -33,6 +33,11 @@ struct Dual {
     return x;
   }
 
+  /// f(*this), by f and f' of the value.
+  Dual through(const T& f, const T& slope) const {
+    return made(f, [&](std::size_t k) { return slope * by[k]; });
+  }
+
   friend Dual operator+(const Dual& a, const Dual& b) {
     return made(a.value + b.value, [&](std::size_t k) { return a.by[k] + b.by[k]; });
   }
@@ -49,6 +54,20 @@ struct Dual {
     const T inverse = T(Scalar(1)) / b.value, quotient = a.value / b.value;
     return made(quotient, [&](std::size_t k) { return (a.by[k] - quotient * b.by[k]) * inverse; });
   }
+
+  // With a number, which has no derivatives.
+  friend Dual operator+(const Dual& a, Scalar b) { return moved(a, a.value + b); }
+  friend Dual operator+(Scalar a, const Dual& b) { return moved(b, a + b.value); }
+  friend Dual operator-(const Dual& a, Scalar b) { return moved(a, a.value - b); }
+  friend Dual operator-(Scalar a, const Dual& b) { return a + -b; }
+  friend Dual operator*(const Dual& a, Scalar b) {
+    return made(a.value * b, [&](std::size_t k) { return a.by[k] * b; });
+  }
+  friend Dual operator*(Scalar a, const Dual& b) { return b * a; }
+
+  Dual& operator+=(const Dual& b) { return *this = *this + b; }
+  Dual& operator-=(const Dual& b) { return *this = *this - b; }
+  Dual& operator*=(const Dual& b) { return *this = *this * b; }
 
   friend MaskOf<T> operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
   friend MaskOf<T> operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
@@ -80,6 +99,29 @@ struct Dual {
     using std::acos;
     return a.through_edge(acos(a.value), -a.slope_of_arc());
   }
+  friend Dual atan2(const Dual& y, const Dual& x) {
+    using std::atan2;
+    const T inverse = T(Scalar(1)) / (x.value * x.value + y.value * y.value);
+    return made(atan2(y.value, x.value),
+                [&](std::size_t k) { return (x.value * y.by[k] - y.value * x.by[k]) * inverse; });
+  }
+  friend Dual exp(const Dual& a) {
+    using std::exp;
+    const T grown = exp(a.value);
+    return a.through(grown, grown);
+  }
+  friend Dual reciprocal_sqrt(const Dual& a) {
+    using leapmap::reciprocal_sqrt;
+    const T inverse = reciprocal_sqrt(a.value);
+    return a.through(inverse, T(Scalar(-0.5)) * inverse * inverse * inverse);
+  }
+  /// Whether the value is.
+  friend bool isfinite(const Dual& a) requires std::is_same_v<T, Scalar> { return std::isfinite(a.value); }
+  friend SinCos<Dual> sincos_of_small(const Dual& a) {
+    using leapmap::sincos_of_small;
+    const auto [s, c] = sincos_of_small(a.value);
+    return {a.through(s, c), a.through(c, -s)};
+  }
   friend SinCos<Dual> sincos_of(const Dual& a) {
     const auto [s, c] = sincos_of(a.value);
     return {a.through(s, c), a.through(c, -s)};
@@ -91,15 +133,17 @@ struct Dual {
     all.fill(T(Scalar(0)));
     return all;
   }
+  /// With a's derivatives.
+  static Dual moved(const Dual& a, const T& value) {
+    Dual x(a);
+    x.value = value;
+    return x;
+  }
   template <class Rate>
   static Dual made(const T& value, const Rate& rate) {
     Dual x(value);
     for (std::size_t k = 0; k < N; ++k) x.by[k] = rate(k);
     return x;
-  }
-  /// f(*this), by f and f' of the value.
-  Dual through(const T& f, const T& slope) const {
-    return made(f, [&](std::size_t k) { return slope * by[k]; });
   }
   /// The same where the slope may be infinite: what a parameter does not act on it does not act on there
   /// either.
@@ -116,11 +160,50 @@ struct Dual {
   }
 };
 
-/// Of the values: derivatives are neither loaded nor stored.
+/// Of the values: to and from numbers derivatives are neither loaded nor stored.
 template <class T, std::size_t N>
 struct Lanes<Dual<T, N>> : Lanes<T> {
   static Dual<T, N> load(const ScalarOf<T>* from) { return Dual<T, N>(Lanes<T>::load(from)); }
   static void store(const Dual<T, N>& dual, ScalarOf<T>* to) { Lanes<T>::store(dual.value, to); }
+  static Dual<T, N> load(const Dual<T, N>* from) requires(Lanes<T>::count == 1) { return *from; }
+  static void store(const Dual<T, N>& dual, Dual<T, N>* to) requires(Lanes<T>::count == 1) { *to = dual; }
 };
+
+template <class T>
+inline constexpr bool has_derivatives = false;
+template <class T, std::size_t N>
+inline constexpr bool has_derivatives<Dual<T, N>> = true;
+
+/// A number, or a dual without its derivatives.
+template <class T>
+const T& value_of(const T& number) {
+  return number;
+}
+template <class T, std::size_t N>
+const T& value_of(const Dual<T, N>& dual) {
+  return dual.value;
+}
+
+/// The size of a number, and of a dual the largest among those of its value and its derivatives.
+template <class T>
+T largest_part(const T& number) {
+  using std::abs;
+  return abs(number);
+}
+template <class T, std::size_t N>
+T largest_part(const Dual<T, N>& dual) {
+  using std::abs;
+  T most = abs(dual.value);
+  for (const T& derivative : dual.by) most = larger(most, T(abs(derivative)));
+  return most;
+}
+
+/// A root x of f that was found in plain numbers, with its derivatives: f, there in duals, and its slope.
+template <class T, std::size_t N>
+Dual<T, N> with_derivatives(const T& root, const Dual<T, N>& f, const T& slope) {
+  Dual<T, N> x(root);
+  for (std::size_t k = 0; k < N; ++k) x.by[k] = -f.by[k] / slope;
+  return x;
+}
 
 }  // namespace leapmap

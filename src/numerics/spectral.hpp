@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "numerics/dual.hpp"
 #include "numerics/lanes.hpp"
 #include "numerics/quadrature.hpp"
 

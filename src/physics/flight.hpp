@@ -56,7 +56,7 @@ template <class T>
 CurvedSample<T> toss_height(const Toss<T>& toss, const T& psi) {
   const Trig<T> turned = trig(psi);
   const T s = toss.phi.sin, c = toss.phi.cos;
-  return {s * x_minus_sin(psi, turned.sin) - c * turned.versine - T(0.5) * toss.gravity * psi * psi,
+  return {s * x_minus_sin(psi, turned) - c * turned.versine - T(0.5) * toss.gravity * psi * psi,
           s * turned.versine - c * turned.sin - toss.gravity * psi,
           s * turned.sin - c * turned.cos - toss.gravity, s * turned.cos + c * turned.sin};
 }
@@ -109,7 +109,7 @@ HeightAbovePlane<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, 
                                        const T& normal_velocity = T(0)) {
   const Trig<T> turned = trig(spin * t);
   const T s = phi.sin, c = phi.cos;
-  return {hoop.rho * (s * x_minus_sin(spin * t, turned.sin) - c * turned.versine) +
+  return {hoop.rho * (s * x_minus_sin(spin * t, turned) - c * turned.versine) +
               t * (normal_velocity - T(0.5) * hoop.cos_slope * t),
           normal_velocity - hoop.cos_slope * t + hoop.rho * spin * (s * turned.versine - c * turned.sin),
           hoop.rho * spin * spin * (s * turned.sin - c * turned.cos) - hoop.cos_slope};

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "numerics/dual.hpp"
 #include "physics/parameters.hpp"
 
 namespace leapmap {
@@ -20,21 +21,30 @@ struct Trig {
 
 template <class T>
 Trig<T> trig(const T& angle) {
+  if constexpr (has_derivatives<T>) {
+    const auto [sin, cos, versine] = trig(angle.value);
+    return {angle.through(sin, cos), angle.through(cos, -sin), angle.through(versine, sin)};
+  }
   const SinCos<T> half = sincos_of(angle * T(0.5));
   const T versine = T(2) * half.sin * half.sin;
   return {T(2) * half.sin * half.cos, T(1) - versine, versine};
 }
 
-/// x - sin x without cancellation, given sin x. Its series is used below 0.7, to 4e-22 of the sum.
+/// x - sin x without cancellation, turned: trig(x). Its series is used below 0.7, to 4e-22 of the sum.
 template <class T>
-T x_minus_sin(const T& x, const T& sin_x) {
+T x_minus_sin(const T& x, const Trig<T>& turned) {
   using std::abs;
-  const auto small = abs(x) < T(0.7);
-  if (!any(small)) return x - sin_x;
-  const T square = x * x;
-  T sum(1);
-  for (int k = 18; k >= 4; k -= 2) sum = T(1) - sum * square / T(k * (k + 1));
-  return select(small, x * square * sum / T(6), x - sin_x);
+  if constexpr (has_derivatives<T>) {
+    const auto& [sin, cos, versine] = turned;
+    return x.through(x_minus_sin(x.value, {sin.value, cos.value, versine.value}), versine.value);
+  } else {
+    const auto small = abs(x) < T(0.7);
+    if (!any(small)) return x - turned.sin;
+    const T square = x * x;
+    T sum(1);
+    for (int k = 18; k >= 4; k -= 2) sum = T(1) - sum * square / T(k * (k + 1));
+    return select(small, x * square * sum / T(6), x - turned.sin);
+  }
 }
 
 /// Inertia about the contact, J(phi) = J0 + 1 - 2 rho cos phi.

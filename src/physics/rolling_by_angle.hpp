@@ -78,6 +78,14 @@ T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {
 /// sqrt(J / E) = dt / dphi.
 template <class T>
 T slowness(const T& inertia, const T& vis_viva) {
+  if constexpr (has_derivatives<T>) {  // for less than its parts' derivatives cost
+    auto slow = T(slowness(inertia.value, vis_viva.value));
+    const auto half = slow.value * ScalarOf<T>(0.5), by_J = half / inertia.value,
+               by_E = -half / vis_viva.value;
+    for (std::size_t k = 0; k < slow.by.size(); ++k)
+      slow.by[k] = by_J * inertia.by[k] + by_E * vis_viva.by[k];
+    return slow;
+  }
   return inertia * reciprocal_sqrt(inertia * vis_viva);
 }
 
@@ -93,7 +101,7 @@ T vis_viva_past_release(const Roll<T>& roll, const T& x, const Trig<T>& turned, 
 template <class T>
 T vis_viva_past_release(const Roll<T>& roll, const T& x) {
   const Trig<T> turned = trig(x);
-  return vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned.sin));
+  return vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned));
 }
 
 /// Where E is least for the first time after the release, or, where E falls from turn to turn, least for the

@@ -32,6 +32,8 @@ class ExactSolver {
   /// time.
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
              Told* told = nullptr);
+  /// What the solver knows of the last designs it solved, as many as a block holds.
+  const Block<T>& block() const { return block_; }
 
  private:
   void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);

@@ -33,11 +33,14 @@ ReleaseParabola<T> parabola_at_release(const Roll<T>& roll) {
   return p;
 }
 
+/// S: a number, or a dual, whose time is then as well resolved in every derivative.
 template <class S>
 class HalvedTime {
  public:
+  using Number = ScalarOf<S>;
+
   /// The rule is applied to each half.
-  HalvedTime(const Roll<S>& roll, const S& tolerance, const GaussRule<S>& rule);
+  HalvedTime(const Roll<S>& roll, Number tolerance, const GaussRule<Number>& rule);
 
   /// From the release over an angle. NaN where it cannot be told: so near a stall that E is lost in its
   /// roundings. To be called once.
@@ -52,15 +55,16 @@ class HalvedTime {
   template <class F>
   void halve(const F& f, const S& a, const S& b, const S& whole, int depth);
 
-  static constexpr S epsilon = std::numeric_limits<S>::epsilon();
+  static constexpr Number epsilon = std::numeric_limits<Number>::epsilon();
   static constexpr int most_halvings = 60;
 
   const Roll<S>& roll_;
-  const GaussRule<S>& gauss_;
-  S tolerance_;
-  S release_;    // less whole turns, of which nothing depends
-  S q0_;         // x = q (2 q0 + q) takes out E's zero before the release
-  S unsure_{0};  // relative, of J / E in the panel at hand: roundings of E's terms, and of the angle in J
+  const GaussRule<Number>& gauss_;
+  Number tolerance_;
+  S release_;         // less whole turns, of which nothing depends
+  S q0_, two_q0_;     // x = q (2 q0 + q) takes out E's zero before the release
+  S rho2_, push2_, by_sine_, by_versine_;  // of E and J, as functions of x
+  Number unsure_{0};  // relative, of J / E in the panel at hand: roundings of E's terms, and of the angle in J
   S total_{0};
   long panels_left_ = 20'000;
 };

@@ -4,12 +4,17 @@
 #pragma once
 
 #include "leapmap/motion.hpp"
+#include "trajectory/gradient.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap::rolling {
 
 /// By the energy integral (exact.hpp), in lanes. tolerance: relative, of times.
 Solver exact(const Scene& scene, double tolerance, const Wanted& wanted);
+
+/// The same with derivatives (gradient.hpp).
+GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,
+                         const GradientWanted& asked);
 
 /// By integration in time (rolling_integration.hpp).
 Solver integration(const Scene& scene, const IntegrationOptions& options);

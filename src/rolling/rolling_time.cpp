@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "rolling/halved_time.hpp"
+#include "trajectory/gradient.hpp"
 
 namespace leapmap {
 namespace {
@@ -122,22 +123,26 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
   const T by_sine = rho2 * sin_from_vertical(hoop, phi0), by_versine = -rho2 * cos_from_vertical(hoop, phi0);
   const T push2 = T(2) * roll.push, J_cos = rho2 * phi0.versine, J_sin = rho2 * phi0.sin;
   const auto slowness_at = [&](const auto& x, const auto& turned, const auto& x_less_sin) {
-    const T E = roll.released + push2 * T(x) + by_sine * T(x_less_sin) + by_versine * T(turned.versine);
-    const T J = hoop.J_min + rho2 * T(turned.versine) + J_cos * T(turned.cos) + J_sin * T(turned.sin);
+    const T E = roll.released + push2 * x + by_sine * x_less_sin + by_versine * turned.versine;
+    const T J = hoop.J_min + rho2 * turned.versine + J_cos * turned.cos + J_sin * turned.sin;
     return slowness(J, E);
   };
   const S first_span = lanes_of(span)[0];
   T total(0);
   if (all((q0 == T(0)) & (span == T(first_span)))) {
     for (const SharedNode& node : start_from_rest(first_span, n))
-      total = total + T(node.weight) * slowness_at(node.x, node.trig, node.x_less_sin);
+      total = total + node.weight * slowness_at(node.x, node.trig, node.x_less_sin);
+    if constexpr (has_derivatives<T>) {  // of the span, which the nodes do not have
+      const auto at_end = value_of(slowness_at(first_span, trig(first_span), x_minus_sin(first_span, trig(first_span))));
+      total = total + span.through(at_end - at_end, at_end);
+    }
     return total;
   }
   const GaussRule<S>& rule = rule_of<S>(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const T past = reach * T(rule.node[i]), x = past * (T(2) * q0 + past);
+    const T past = reach * rule.node[i], x = past * (T(2) * q0 + past);
     const Trig<T> turned = trig(x);
-    total = total + T(rule.weight[i]) * (q0 + past) * slowness_at(x, turned, x_minus_sin(x, turned.sin));
+    total = total + rule.weight[i] * (q0 + past) * slowness_at(x, turned, x_minus_sin(x, turned));
   }
   return T(2) * reach * total;
 }
@@ -157,7 +162,7 @@ const std::vector<typename RollingTime<T>::SharedNode>& RollingTime<T>::start_fr
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const S q = q1 * rule.node[i], x = q * q;
     const Trig<S> turned = trig(x);
-    start.nodes.push_back({S(2) * q1 * q * rule.weight[i], x, x_minus_sin(x, turned.sin), turned});
+    start.nodes.push_back({S(2) * q1 * q * rule.weight[i], x, x_minus_sin(x, turned), turned});
   }
   return start.nodes;
 }
@@ -179,35 +184,38 @@ T RollingTime<T>::panel(const Roll<T>& roll, long panel, int nodes) {
   const T level = roll.level + gain * T(pi_of<S> * S(panel - odd));
   T total(0);
   for (const SharedNode& node : shared) {
-    const T E = level + gain * T(node.x) + swing * T(node.trig.cos) - sway * T(node.trig.sin);
-    total = total + T(node.weight) * slowness(hoop.J_min + rho2 * T(node.trig.versine), E);
+    const T E = level + gain * node.x + swing * node.trig.cos - sway * node.trig.sin;
+    total = total + node.weight * slowness(T(hoop.J_min + rho2 * node.trig.versine), E);
   }
   return total;
 }
 
 /// By a rule of an even number of nodes: those at +x and -x from the middle share their sine and cosine.
 template <class T>
-T RollingTime<T>::rest(const Roll<T>& roll, const NodesNeeded<T>& needed, long panel, const T& length) const {
+T RollingTime<T>::rest(const Roll<T>& roll, const NodesNeeded<T>& needed, const T& panel,
+                       const T& length) const {
+  using std::floor;
   MaskOf<T> hard = length != length;
   const auto need = lanes_of(nodes_for_length(needed, larger(length, T(1e-3)), hard));
   const auto half_of_nodes = (static_cast<std::size_t>(*std::max_element(need.begin(), need.end())) + 1) / 2;
   const GaussRule<S>& rule = rule_of<S>(2 * half_of_nodes);
 
   const Hoop<T>& hoop = roll.hoop;
-  const T half = T(0.5) * length, from_edge = T(S(panel & 1) * pi_of<S>) + half;
+  const T even = T(2) * floor(panel * T(0.5)), pi(pi_of<S>);
+  const T half = T(0.5) * length, from_edge = (panel - even) * pi + half;
   const Trig<T> phi = trig(from_edge);
   const T gain = T(2) * hoop.thrust, rho2 = T(2) * hoop.rho;
-  const T level = roll.level + gain * (T(pi_of<S> * S(panel & ~1L)) + from_edge);
+  const T level = roll.level + gain * (even * pi + from_edge);
   const T swing = rho2 * cos_from_vertical(hoop, phi), sway = rho2 * sin_from_vertical(hoop, phi);
   const T J_mean = hoop.J_min + rho2, J_cos = rho2 * phi.cos, J_sin = rho2 * phi.sin;
   T total(0);
   for (std::size_t i = half_of_nodes; i < rule.node.size(); ++i) {
-    const T x = half * T(S(2) * rule.node[i] - S(1));  // up to pi / 2
+    const T x = half * (S(2) * rule.node[i] - S(1));  // up to pi / 2
     const SinCos<T> part = sincos_of_small(x * T(0.5));
     const T sine = T(2) * part.sin * part.cos, versine = T(2) * part.sin * part.sin, cosine = T(1) - versine;
     const T E = level + swing * cosine, E_odd = gain * x - sway * sine;
     const T J = J_mean - J_cos * cosine, J_odd = J_sin * sine;
-    total = total + T(rule.weight[i]) * (slowness(J + J_odd, E + E_odd) + slowness(J - J_odd, E - E_odd));
+    total = total + rule.weight[i] * (slowness(J + J_odd, E + E_odd) + slowness(J - J_odd, E - E_odd));
   }
   return length * total;
 }
@@ -222,6 +230,7 @@ ScalarOf<T> RollingTime<T>::halving_past(const Roll<S>& roll, const S& past) con
 template class RollingTime<double>;
 #ifdef LEAPMAP_KERNELS
 template class RollingTime<Batch>;
+template class RollingTime<LanesDual>;
 #endif
 #ifdef LEAPMAP_SCALARS
 template class RollingTime<long double>;

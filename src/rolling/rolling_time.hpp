@@ -63,7 +63,7 @@ class RollingTime {
   T panel(const Roll<T>& roll, long panel, int nodes);
 
   /// The time from `panel` pi for less than a half-turn.
-  T rest(const Roll<T>& roll, const NodesNeeded<T>& needed, long panel, const T& length) const;
+  T rest(const Roll<T>& roll, const NodesNeeded<T>& needed, const T& panel, const T& length) const;
 
   /// The time from release to an angle by halving intervals until they agree (halved_time.hpp): for any
   /// design. NaN where it cannot be told: so near a stall that E is lost in its roundings.

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rolling/gradient.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "physics/flight_search.hpp"
+#include "rolling/model.hpp"
+#include "trajectory/units.hpp"
+
+namespace leapmap {
+namespace {
+
+/// Times are quadratures of which the derivatives have steeper terms: they get as many nodes as there are
+/// digits.
+constexpr double finest = 1e-14;
+
+/// A lift-off with its derivatives, as seen on its leg.
+template <class D>
+struct LiftOffDual {
+  D angle, spin;
+};
+
+/// The roll of a design whose parameters are the duals' own, seen as it goes; release: its angle, less whole
+/// turns.
+template <class D, class T>
+Roll<D> dual_roll(const std::array<T, without_slip>& parameter, const T& way) {
+  std::array<D, without_slip> p;
+  for (std::size_t k = 0; k < p.size(); ++k) p[k] = D::parameter(parameter[k], k);
+  const Hoop<D> hoop = derive(p[0], p[1], p[2], p[3], p[6]);
+  return begin_roll(seen(hoop, D(way)), D(way) * p[by_release_angle], D(way) * p[by_release_spin]);
+}
+
+/// The roll of one design, seen as it is, with whole turns of the release.
+Roll<RollingDual> dual_roll_of(const Design& design) {
+  std::array<double, without_slip> parameter;
+  for (std::size_t k = 0; k < parameter.size(); ++k) parameter[k] = design.*differentiable[k];
+  return dual_roll<RollingDual>(parameter, 1.0);
+}
+
+template <class T, std::size_t N>
+Roll<T> plain(const Roll<Dual<T, N>>& roll) {
+  const Hoop<Dual<T, N>>& h = roll.hoop;
+  const Trig<Dual<T, N>>& phi = roll.release_trig;
+  return {.hoop = {h.sin_slope.value, h.cos_slope.value, h.rho.value, h.clearance.value, h.Ic.value,
+                   h.J_min.value, h.drive.value, h.thrust.value},
+          .release = roll.release.value,
+          .release_trig = {phi.sin.value, phi.cos.value, phi.versine.value},
+          .released = roll.released.value,
+          .level = roll.level.value,
+          .push = roll.push.value};
+}
+
+/// A lift-off that was found in plain numbers. Where G hardly falls, on a fold, the root itself is known to
+/// so few digits that the derivative's own error would be beyond a millionth of it: NaN.
+template <class D, class T>
+LiftOffDual<D> lift_off_at(const Roll<D>& roll, const T& angle) {
+  using std::abs, std::sqrt;
+  using S = ScalarOf<T>;
+  const Roll<T> known = plain(roll);
+  const CurvedSample<T> G = lift(known, angle);
+  const Trig<T> at = trig(angle);
+  const LiftTerms<T> terms = lift_terms(known.hoop, at);
+  const T rho = known.hoop.rho;
+  const T rounding = T(S(8) * std::numeric_limits<S>::epsilon()) *
+                     (abs(terms.P) * terms.J +
+                      rho * abs(terms.K) * (abs(known.level) + T(2) * (abs(angle * known.hoop.thrust) + rho)));
+  const MaskOf<T> folded = !(rounding * abs(G.curvature) <= T(S(1e-6)) * G.rate * G.rate);
+  const T slope = select(folded, T(std::numeric_limits<S>::quiet_NaN()), G.rate);
+
+  const D here(angle);
+  const Trig<D> there = trig(here);
+  const D E = vis_viva(roll, here, there);
+  const D root = with_derivatives(
+      angle, lift(roll.hoop, lift_terms(roll.hoop, there), E, D(2) * torque(roll.hoop, there)).value, slope);
+  const Trig<D> phi = trig(root);
+  return {root, sqrt(vis_viva(roll, root, phi) / contact_inertia(roll.hoop, phi))};
+}
+
+/// Where, in turned angle, the flight is deepest below the plane before its apex; zero: nowhere.
+template <class T>
+T lowest_before(const Toss<T>& toss, const T& apex) {
+  using S = ScalarOf<T>;
+  const T two_pi(S(2) * pi_of<S>);
+  T top = toss.top, lowest(0), at(0);
+  MaskOf<T> sinks = toss.top > T(2) * (T(pi_of<S>) - toss.opening);  // after later tops it does at any rate
+  for (; any(top < apex); top = top + two_pi, sinks = top == top) {
+    const MaskOf<T> before = sinks & (top < apex);
+    if (!any(before)) continue;
+    const T bottom = toss_detail::bottom(toss, top, before), y = toss_height(toss, bottom).value;
+    const MaskOf<T> lower = before & (y < lowest);
+    lowest = select(lower, y, lowest), at = select(lower, bottom, at);
+  }
+  return at;
+}
+
+/// A time at which the height above the plane is extreme, or zero, found in plain numbers: its derivatives.
+template <class D, class T>
+D extremum_at(const HeightAbovePlane<D>& y, const T& t) {
+  return with_derivatives(t, y.rate, y.acceleration.value);
+}
+template <class D, class T>
+D zero_at(const HeightAbovePlane<D>& y, const T& t) {
+  return with_derivatives(t, y.value, y.rate.value);
+}
+
+template <class T>
+Toss<T> toss_from(const Hoop<T>& hoop, const T& angle, const T& spin) {
+  return toss_of(hoop, angle, trig(angle), spin);
+}
+
+}  // namespace
+
+/// A block of designs that was solved.
+struct RollingGradients::Lot {
+  std::span<const Design> designs;
+  const Scene& scene;
+  std::span<const Outcome> outcomes;
+  Gradients& gradients;
+  std::size_t first;  ///< the place of its first design in gradients
+  double second;
+  std::vector<LiftOffAt>& hard;  ///< whose times could not be told in lanes
+};
+
+RollingGradients::RollingGradients(double tolerance, const Wanted& wanted, const GradientWanted& gradients)
+    : of_first_(gradients.wants(&Outcome::first_jump_height) || gradients.wants(&Outcome::first_jump_time)),
+      of_time_(gradients.wants(&Outcome::jump_time)),
+      of_first_time_(gradients.wants(&Outcome::first_jump_time)),
+      of_descent_(gradients.wants(&Outcome::flight_time)),
+      of_dip_(gradients.wants(&Outcome::dip)),
+      solver_(tolerance,
+              [&] {
+                Wanted all = wanted;
+                all.descent = all.descent || gradients.wants(&Outcome::flight_time);
+                return all;
+              }()),
+      teller_(tolerance, {.first_jump_time = false, .jump_time = false, .descent = false}),
+      clock_(finest) {
+  of_jump_ = std::ranges::any_of(gradients.of, [](double Outcome::*quantity) {
+    return quantity != &Outcome::first_jump_height && quantity != &Outcome::first_jump_time;
+  });
+}
+
+void RollingGradients::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
+                             Gradients& gradients) {
+  gradients.begin(designs.size());
+  std::vector<LiftOffAt> lift_offs, hard;
+  std::vector<std::uint32_t> turn_round;
+  for (std::size_t first = 0; first < designs.size(); first += Block<T>::most_designs) {
+    const std::size_t count = std::min(Block<T>::most_designs, designs.size() - first);
+    const Lot lot{designs.subspan(first, count), scene, outcomes.subspan(first, count), gradients, first,
+                  time_unit(scene), hard};
+    solver_.solve(lot.designs, scene, outcomes.subspan(first, count));
+    lift_offs.clear(), hard.clear(), turn_round.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Outcome& outcome = lot.outcomes[i];
+      const auto& found = solver_.block().found[i];
+      if (outcome.candidates == 0 || outcome.status == Status::failed) continue;
+      if (found.leg > 1) {
+        turn_round.push_back(i);
+        continue;
+      }
+      const bool jumps = outcome.status == Status::jumped, same = jumps && outcome.candidates == 1;
+      if (jumps && (of_jump_ || (same && of_first_)))
+        lift_offs.push_back({i, found.jump_angle, true, same});
+      if (!same && of_first_) lift_offs.push_back({i, found.first_angle, false, true});
+    }
+    // Those that have about as far to roll side by side: they have the quadrature's panels in common.
+    if (of_time_ || of_first_time_)
+      std::ranges::stable_sort(lift_offs, {}, [](const LiftOffAt& at) {
+        return static_cast<long>(std::floor(at.angle * (1.0 / pi_of<double>)));
+      });
+    for (std::size_t i = 0; i < lift_offs.size(); i += Lanes<T>::count)
+      in_lanes(lot, std::span(lift_offs).subspan(i, std::min(Lanes<T>::count, lift_offs.size() - i)));
+    for (const LiftOffAt& lift_off : hard) alone(lot, lift_off);
+    for (const std::uint32_t design : turn_round) turning(lot, design);
+  }
+}
+
+void RollingGradients::in_lanes(const Lot& lot, std::span<const LiftOffAt> lift_offs) {
+  const std::size_t count = lift_offs.size();
+  const auto lane_of = [&](std::size_t k) -> const LiftOffAt& { return lift_offs[k < count ? k : 0]; };
+  DesignLanes<T> index, place;
+  std::array<LaneArray<T>, without_slip> parameters;
+  LaneArray<T> ways, angles, apexes, flights;
+  unsigned jump_bits = 0, first_bits = 0;
+  for (std::size_t k = 0; k < Lanes<T>::count; ++k) {
+    const LiftOffAt& at = lane_of(k);
+    index[k] = at.design, place[k] = static_cast<std::uint32_t>(lot.first) + at.design;
+    const auto& found = solver_.block().found[at.design];
+    for (std::size_t p = 0; p < without_slip; ++p)
+      parameters[p][k] = lot.designs[at.design].*differentiable[p];
+    parameters[by_release_angle][k] = found.way * found.release;
+    ways[k] = found.way, angles[k] = at.angle;
+    apexes[k] = at.jumps ? lot.outcomes[at.design].apex_time / lot.second : 0.0;
+    flights[k] = at.jumps ? lot.outcomes[at.design].flight_time / lot.second : 0.0;
+    if (k < count) jump_bits |= unsigned{at.jumps} << k, first_bits |= unsigned{at.first} << k;
+  }
+  const auto load = [](const LaneArray<T>& lanes) { return Lanes<T>::load(lanes.data()); };
+  std::array<T, without_slip> parameter;
+  for (std::size_t p = 0; p < without_slip; ++p) parameter[p] = load(parameters[p]);
+  const T way = load(ways), angle = load(angles);
+  const Roll<D> roll = dual_roll<D>(parameter, way);
+  const LiftOffDual<D> off = lift_off_at(roll, angle);
+
+  T apex = load(apexes);
+  if (jump_bits != (1u << count) - 1u) {
+    const Toss<T> toss = toss_from(plain(roll).hoop, angle, off.spin.value);
+    const T found = ascend(toss, angle == angle).apex / off.spin.value;
+    apex = select(apex == T(0.0), found, apex);
+  }
+  const Trig<D> phi = trig(off.angle);
+  const auto height_at = [&](const T& t) { return height_above_plane(roll.hoop, phi, off.spin, D(t)); };
+  const HeightAbovePlane<D> top = height_at(apex);
+  const D height = D(0.5) * top.value;
+
+  const auto put = [&](unsigned lanes, double Outcome::*quantity, const D& value, double unit) {
+    lot.gradients.put(quantity, place, lanes, value, unit);
+  };
+  MaskOf<T> hard = angle != angle;
+  if (first_bits != 0) put(first_bits, &Outcome::first_jump_height, height, 1.0);
+  if (jump_bits != 0) {
+    const D seen_from(way);
+    put(jump_bits, &Outcome::jump_height, height, 1.0);
+    put(jump_bits, &Outcome::jump_angle, seen_from * off.angle, 1.0);
+    put(jump_bits, &Outcome::jump_spin, seen_from * off.spin, 1.0);
+    put(jump_bits, &Outcome::jump_distance, seen_from * (off.angle - roll.release), 1.0);
+    put(jump_bits, &Outcome::apex_time, extremum_at(top, apex), lot.second);
+    if (of_descent_) {
+      const T landing = load(flights);
+      put(jump_bits, &Outcome::flight_time, zero_at(height_at(landing), landing), lot.second);
+    }
+    if (of_dip_) {
+      const Toss<T> toss = toss_from(plain(roll).hoop, angle, off.spin.value);
+      const T lowest = lowest_before(toss, T(apex * off.spin.value)) / off.spin.value;
+      put(jump_bits, &Outcome::dip, D(0.5) * height_at(lowest).value, 1.0);
+    }
+  }
+  if (of_time_ || (of_first_time_ && first_bits != 0)) {
+    const D time = time_in_lanes(index, roll, off.angle, way, hard);
+    if (jump_bits != 0) put(jump_bits, &Outcome::jump_time, time, lot.second);
+    if (first_bits != 0) put(first_bits, &Outcome::first_jump_time, time, lot.second);
+  }
+  const unsigned left = Lanes<T>::bits(hard);
+  for (std::size_t k = 0; k < count; ++k)
+    if (left >> k & 1u) lot.hard.push_back(lift_offs[k]);
+}
+
+/// As the clock reads it (rolling/clock.hpp), with the panels of all lanes one after the other.
+auto RollingGradients::time_in_lanes(const DesignLanes<T>& index, const Roll<D>& roll, const D& angle,
+                                     const T& way, MaskOf<T>& hard) -> D {
+  using std::floor;
+  const D pi(pi_of<double>);
+  const Quiet<T> known = solver_.block().load_quiet<T>(index.data());
+  const Quiet<D> quiet{D(known.vis_viva), D(known.distance)};
+  const NodesNeeded<D> needed = clock_.needed(roll, quiet, hard);
+  const T first = RollingTime<D>::first_panel(roll).value, last = floor(angle.value * T(1.0 / pi_of<double>));
+  const MaskOf<T> early = last < first;
+  const D span = select(early, angle - roll.release, D(first) * pi - roll.release);
+  D time = clock_.stretch(roll, quiet, needed, span, hard);
+  if (!all(early)) {
+    const auto firsts = lanes_of(first), lasts = lanes_of(last), nodes = lanes_of(needed.panel.value);
+    const unsigned by_halving = Lanes<T>::bits(hard | early);
+    double from = 1e9, to = -1e9, most = 2.0;
+    for (std::size_t k = 0; k < firsts.size(); ++k) {
+      if (by_halving >> k & 1u) continue;
+      from = std::min(from, firsts[k]), to = std::max(to, lasts[k]), most = std::max(most, nodes[k]);
+    }
+    for (double panel = from; panel < to; ++panel) {
+      const D part = clock_.panel(roll, static_cast<long>(panel), static_cast<int>(most));
+      time = select((T(panel) >= first) & (T(panel) < last) & !early, time + part, time);
+    }
+    const D end(select(early, first, last));
+    const D rest = clock_.rest(roll, needed, end, select(early | hard, D(0.0), angle - end * pi));
+    time = select(early, time, time + rest);
+  }
+  // As in DualTime::time.
+  const MaskOf<T> at_rest = roll.released.value == T(0.0);
+  const T acceleration = roll.push.value / contact_inertia(roll.hoop, roll.release_trig).value;
+  time.by[by_release_spin] =
+      select(at_rest, time.by[by_release_spin] - way / acceleration, time.by[by_release_spin]);
+  hard = hard | (time.value != time.value);
+  return time;
+}
+
+/// A time that is hard.
+void RollingGradients::alone(const Lot& lot, const LiftOffAt& lift_off) {
+  using S = RollingDual;
+  const Design& design = lot.designs[lift_off.design];
+  const auto& found = solver_.block().found[lift_off.design];
+  const Roll<S> roll = dual_roll_of(design);
+  const double angle = found.way * lift_off.angle + found.turned_back;
+  const S time = time_.time(roll.hoop, roll.release, S::parameter(design.release_spin, by_release_spin), {},
+                            lift_off_at(roll, angle).angle);
+  const std::size_t place = lot.first + lift_off.design;
+  if (lift_off.jumps) lot.gradients.put(&Outcome::jump_time, place, time, lot.second);
+  if (lift_off.first) lot.gradients.put(&Outcome::first_jump_time, place, time, lot.second);
+}
+
+/// A design that turns round.
+void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
+  using S = RollingDual;
+  using std::abs;
+  const Design& design = lot.designs[number];
+  Told told;
+  Outcome outcome;
+  teller_.solve({&design, 1}, lot.scene, {&outcome, 1}, &told);
+  const std::size_t place = lot.first + number;
+  if (!same_flags(outcome, lot.outcomes[number]) || told.lift_offs.empty()) return;
+
+  const Roll<S> roll = dual_roll_of(design);
+  const Hoop<S>& hoop = roll.hoop;
+  const auto differentiate = [&](std::size_t i, bool jumps) {
+    const S way(told.lift_offs[i].spin < 0.0 ? -1.0 : 1.0);
+    // The same N at every angle, whichever way it rolls.
+    LiftOffDual<S> off = lift_off_at(roll, told.lift_offs[i].angle);
+    off.spin = way * off.spin;
+    const Trig<S> phi = trig(off.angle);
+    const auto height_at = [&](double t) { return height_above_plane(hoop, phi, off.spin, S(t)); };
+    const double spin = abs(off.spin.value);
+    const Toss<double> toss =
+        toss_from(seen(plain(roll).hoop, way.value), way.value * off.angle.value, spin);
+    const Flight<double> flight = descend(toss, ascend(toss, true), true);
+    const HeightAbovePlane<S> top = height_at(flight.apex_time / spin);
+    const S height = S(0.5) * top.value;
+    const auto put = [&](double Outcome::*quantity, const S& value, double unit = 1.0) {
+      lot.gradients.put(quantity, place, value, unit);
+    };
+    const bool timed = jumps ? of_time_ || (i == 0 && of_first_time_) : of_first_time_;
+    const S time = timed ? time_.time(hoop, roll.release, S::parameter(design.release_spin, by_release_spin),
+                                      std::span(told.turns).first(told.legs[i]), off.angle)
+                         : S(0.0);
+    if (i == 0) {
+      put(&Outcome::first_jump_height, height);
+      put(&Outcome::first_jump_time, time, lot.second);
+    }
+    if (!jumps) return;
+    put(&Outcome::jump_height, height);
+    put(&Outcome::jump_time, time, lot.second);
+    put(&Outcome::jump_angle, off.angle);
+    put(&Outcome::jump_spin, off.spin);
+    put(&Outcome::jump_distance, off.angle - roll.release);
+    put(&Outcome::apex_time, extremum_at(top, flight.apex_time / spin), lot.second);
+    const double landing = flight.flight_time / spin;
+    put(&Outcome::flight_time, zero_at(height_at(landing), landing), lot.second);
+    if (of_dip_)
+      put(&Outcome::dip, S(0.5) * height_at(lowest_before(toss, flight.apex_time) / spin).value);
+  };
+  const bool jumps = outcome.status == Status::jumped;
+  const std::size_t last = told.lift_offs.size() - 1;
+  if (jumps) differentiate(last, true);
+  if (!(jumps && last == 0)) differentiate(0, false);
+}
+
+namespace rolling {
+
+GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,
+                         const GradientWanted& asked) {
+  return [solver = std::make_shared<RollingGradients>(tolerance, wanted, asked), scene](
+             std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+    solver->solve(designs, scene, outcomes, gradients);
+  };
+}
+
+}  // namespace rolling
+}  // namespace leapmap

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Derivatives of outcomes by the parameters of their designs: which are asked for, and where they go.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "numerics/dual.hpp"
+
+namespace leapmap {
+
+/// The parameters, in the order in which duals hold their derivatives. Without slip only the first seven
+/// matter.
+inline constexpr std::array<double Design::*, 10> differentiable{
+    &Design::slope,        &Design::mass_ratio,   &Design::offset_ratio, &Design::inertia_factor, &Design::release_angle,
+    &Design::release_spin, &Design::drive_torque, &Design::mu_static,    &Design::mu_kinetic,     &Design::restitution};
+inline constexpr std::size_t without_slip = 7;
+inline constexpr std::size_t by_release_angle = 4, by_release_spin = 5;  ///< places among them
+
+/// A number with its derivatives by every parameter of one design.
+using DesignDual = Dual<double, differentiable.size()>;
+/// The same without friction's, of one design and of as many as the machine has lanes.
+using RollingDual = Dual<double, without_slip>;
+using LanesDual = Dual<Batch, without_slip>;
+
+/// Which derivatives are asked for.
+struct GradientWanted {
+  std::vector<double Outcome::*> of;
+  std::vector<std::size_t> by;  ///< places in `differentiable`
+
+  bool wants(double Outcome::*quantity) const {
+    return std::find(of.begin(), of.end(), quantity) != of.end();
+  }
+};
+
+/// Derivatives of designs, a column for each quantity and parameter asked for; NaN where a quantity does not
+/// apply, or a derivative is infinite or cannot be told.
+class Gradients {
+ public:
+  Gradients() = default;
+  explicit Gradients(GradientWanted wanted)
+      : wanted_(std::move(wanted)), columns_(wanted_.of.size() * wanted_.by.size()) {}
+
+  /// Makes room for so many designs, of which nothing is known.
+  void begin(std::size_t designs) {
+    for (std::vector<double>& column : columns_)
+      column.assign(designs, std::numeric_limits<double>::quiet_NaN());
+  }
+  /// d of[i] / d by[j] of every design.
+  std::span<const double> column(std::size_t i, std::size_t j) const {
+    return columns_[i * wanted_.by.size() + j];
+  }
+  const GradientWanted& wanted() const { return wanted_; }
+
+  /// The derivatives of one quantity of one design, in `unit` of the solver's own. Does nothing if they are
+  /// not asked for.
+  template <std::size_t N>
+  void put(double Outcome::*quantity, std::size_t design, const Dual<double, N>& value, double unit = 1.0) {
+    for_each(quantity, [&](std::vector<double>& column, std::size_t by) {
+      if (by < N) column[design] = unit * value.by[by];
+    });
+  }
+  /// The same of several designs, each in the lane of its bit.
+  template <class T, std::size_t N, class Index>
+  void put(double Outcome::*quantity, const Index& designs, unsigned lanes, const Dual<T, N>& value,
+           double unit) {
+    for_each(quantity, [&](std::vector<double>& column, std::size_t by) {
+      if (by >= N) return;
+      const auto derivatives = lanes_of(value.by[by]);
+      for (std::size_t k = 0; k < derivatives.size(); ++k)
+        if (lanes >> k & 1u) column[designs[k]] = unit * derivatives[k];
+    });
+  }
+  /// Nothing is to be believed of a design after all.
+  void forget(std::size_t design) {
+    for (std::vector<double>& column : columns_) column[design] = std::numeric_limits<double>::quiet_NaN();
+  }
+
+ private:
+  template <class Visit>
+  void for_each(double Outcome::*quantity, const Visit& visit) {
+    for (std::size_t i = 0; i < wanted_.of.size(); ++i)
+      if (wanted_.of[i] == quantity)
+        for (std::size_t j = 0; j < wanted_.by.size(); ++j)
+          visit(columns_[i * wanted_.by.size() + j], wanted_.by[j]);
+  }
+
+  GradientWanted wanted_;
+  std::vector<std::vector<double>> columns_;
+};
+
+/// Solves designs[i] into outcomes[i], and puts their derivatives. Owns its workspace: one a thread.
+using GradientSolver =
+    std::function<void(std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients)>;
+
+}  // namespace leapmap
