@@ -6,7 +6,8 @@
 namespace leapmap {
 
 template <class S>
-Outcome CoulombSolver<S>::solve(const Design& design, const Scene& scene, const CoulombObserver& observer) {
+Outcome CoulombSolver<S>::solve(const Design& design, const Scene& scene, const CoulombObserver& observer,
+                                std::vector<SlideTold<S>>* slides) {
   return go_through_phases<S>(
       design, scene, observer,
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway) {
@@ -15,7 +16,10 @@ Outcome CoulombSolver<S>::solve(const Design& design, const Scene& scene, const 
         return rolling_.run(hoop, contact.mu_static, at, runway, turns);
       },
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway,
-          int direction) { return sliding_.run(hoop, contact.mu_kinetic, at, runway, direction); });
+          int direction) {
+        SlideTold<S>* taken = slides ? &slides->emplace_back() : nullptr;
+        return sliding_.run(hoop, contact.mu_kinetic, at, runway, direction, taken);
+      });
 }
 
 #ifdef LEAPMAP_KERNELS

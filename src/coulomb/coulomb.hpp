@@ -26,6 +26,10 @@ struct CoulombObserver {
   std::function<void(const ContactState<double>&)> end;
 };
 
+/// The panels of a slide, as the exact solver took them.
+template <class S>
+using SlideTold = std::vector<typename SlidingPanels<S>::Taken>;
+
 /// A thread's own workspace. S: double, or long double for the tests' reference.
 template <class S>
 class CoulombSolver {
@@ -34,7 +38,9 @@ class CoulombSolver {
   explicit CoulombSolver(double tolerance) : rolling_(tolerance), sliding_(tolerance) {}
 
   /// Never throws for a bad design: what cannot be solved has status failed and a reason.
-  Outcome solve(const Design& design, const Scene& scene, const CoulombObserver& observer = {});
+  /// slides, if there, is told the panels of every slide, one after the other.
+  Outcome solve(const Design& design, const Scene& scene, const CoulombObserver& observer = {},
+                std::vector<SlideTold<S>>* slides = nullptr);
 
  private:
   RollingLeg<S> rolling_;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "leapmap/motion.hpp"
+#include "trajectory/gradient.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap::coulomb {
@@ -11,6 +12,10 @@ namespace leapmap::coulomb {
 /// Rolling by its energy integral, sliding by quadratures, flights in closed form. tolerance: relative, of
 /// times.
 Solver exact(const Scene& scene, double tolerance, const Wanted& wanted);
+
+/// The same with derivatives (gradient.hpp).
+GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,
+                         const GradientWanted& asked);
 
 /// By integration in time (coulomb_integration.hpp).
 Solver integration(const Scene& scene, const IntegrationOptions& options);

@@ -122,7 +122,7 @@ std::optional<PhaseEnd> SlidingLeg<S>::end_at_edge(const Slide& slide, const Con
 
 template <class S>
 PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& runway,
-                            int direction) const {
+                            int direction, std::vector<typename Panels::Taken>* taken) const {
   Slide slide{hoop, direction > 0 ? mu_kinetic : -mu_kinetic, {}, {}, {}};
   const S& friction = slide.friction;
   const bool has_edges = !keeps_off_painleve(hoop, friction);
@@ -141,7 +141,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
     return std::isfinite(tried.excess) ? change(tried, S(0.85)) : S(0.5);
   };
   int refined = 0, shortened = 0;
-  for (int taken = 0; taken < most_panels; ++taken) {
+  for (int tried = 0; tried < most_panels; ++tried) {
     // By angle while the hoop turns and its spin does not vanish soon; else by time.
     slide.edge.reset();
     if (const auto* near = edges.near()) slide.edge = near->edge, slide.left = near->left;
@@ -197,6 +197,13 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       continue;
     }
     refined = shortened = 0;
+    if (taken) {
+      const S share = std::min(event.place, S(1));
+      typename Panels::Stretch part = stretch;
+      part.span *= share;
+      taken->push_back(by_angle ? typename Panels::Taken{part, S(0)}
+                                : typename Panels::Taken{std::nullopt, duration * share});
+    }
     if (event.place > S(1)) {
       edges.turn(panel.turned);
       at = panel.end;

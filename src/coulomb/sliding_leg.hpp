@@ -2,6 +2,8 @@
 /// One sliding phase, panel by panel (coulomb/sliding_panel.hpp), to whatever ends it.
 #pragma once
 
+#include <vector>
+
 #include "coulomb/sliding_panel.hpp"
 
 namespace leapmap {
@@ -13,9 +15,9 @@ class SlidingLeg {
   explicit SlidingLeg(double tolerance);
 
   /// Slides on from a state with n0 > 0 (or zero but for rounding), towards `direction` (1 or -1), to the
-  /// phase's end.
-  PhaseEnd run(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& runway,
-               int direction) const;
+  /// phase's end. taken, if there, is told the panels, the last of which ends where the phase does.
+  PhaseEnd run(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& runway, int direction,
+               std::vector<typename SlidingPanels<S>::Taken>* taken = nullptr) const;
 
   /// Slides on for a time, with no look at what would end the phase. False: it could not be solved.
   bool advance(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& duration,

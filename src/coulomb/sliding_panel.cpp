@@ -14,11 +14,10 @@ namespace {
 constexpr int most_iterations = 60;
 
 /// The largest, and infinity if any is no number: such a panel is not resolved.
-template <class S>
-S largest(std::initializer_list<S> values) {
-  using std::isfinite;
-  S most(0);
-  for (const S& value : values) most = isfinite(value) ? std::max(most, value) : S(HUGE_VAL);
+template <class Number>
+Number largest(std::initializer_list<Number> values) {
+  Number most(0);
+  for (const Number& value : values) most = std::isfinite(value) ? std::max(most, value) : Number(HUGE_VAL);
   return most;
 }
 
@@ -82,7 +81,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   std::array<Trig<T>, nodes / width> phi;
   std::array<SlidingCoefficients<T>, nodes / width> coefficients;
   for (std::size_t i = 0; i < nodes; i += width) {
-    const T q = T(stretch.begin) + T(stretch.span) * get(grid_.node, i);
+    const T q = T(stretch.begin) + T(stretch.span) * Lanes<T>::load(grid_.node.data() + i);
     const T w = q * T(S(2) * stretch.span), x = T(stretch.shift) + q * q;
     const Trig<T> at_node = phi[i / width] = trig(T(from.angle) + T(way) * x);
     const SlidingCoefficients<T> at = coefficients[i / width] =
@@ -176,9 +175,10 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const Number noise =
       slide.rounding_at_end(end.pivot) +
       Number(16) * std::numeric_limits<Number>::epsilon() * std::min(value_of(start_u) / slowest, Number(1e6));
-  panel.excess = value_of(largest<S>({grid_.tail(a), grid_.tail(driven) / (by_force ? S(1) : S(1) + start_u),
-                                      S(0.1) * grid_.tail(time_rate) / duration,
-                                      grid_.tail(panel.slip.rate) / (S(1) + abs(from.slip))})) /
+  const Number of_one = by_force ? Number(1) : largest_part(S(S(1) + start_u));
+  panel.excess = largest<Number>({grid_.tail(a), grid_.tail(driven) / of_one,
+                                  Number(0.1) * grid_.tail(time_rate) / largest_part(duration),
+                                  grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
                  (tolerance_ + noise);
 }
 
@@ -240,10 +240,10 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
                       panel.free_force.rate.data() + i);
     }
     const Values gained = grid_.integrals(angular);
-    S change(0), most(1);
+    Number change(0), most(1);
     for (std::size_t i = 0; i < nodes; ++i) {
-      change = largest<S>({change, abs(from.spin + gained[i] - spin[i])});
-      most = std::max({most, S(abs(from.spin)), S(abs(angular[i]))});
+      change = largest<Number>({change, std::abs(value_of(from.spin + gained[i] - spin[i]))});
+      most = std::max({most, std::abs(value_of(from.spin)), std::abs(value_of(angular[i]))});
       spin[i] = from.spin + gained[i];
     }
     const Values spun = grid_.integrals(spin);
@@ -251,7 +251,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
     // Near the edge, or a needle of the spin, accelerations are known to some roundings more.
     constexpr Number epsilon = std::numeric_limits<Number>::epsilon();
     const Number noise = std::min(slide.rounding(least_pivot), Number(1e4) * epsilon);
-    settled = value_of(change) <= (Number(8) * epsilon + noise) * value_of(most);
+    settled = change <= (Number(8) * epsilon + noise) * most;
   }
   panel.end.spin = from.spin + grid_.integral(angular);
   panel.turned = duration * grid_.integral(spin);
@@ -288,8 +288,8 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   panel.slip.end = {panel.end.slip, duration * end.slip};
   panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
   if (settled)
-    panel.excess = value_of(largest<S>({grid_.tail(angular) / (S(1) + abs(from.spin)),
-                                        grid_.tail(panel.slip.rate) / (S(1) + abs(from.slip))})) /
+    panel.excess = largest<Number>({grid_.tail(angular) / largest_part(S(S(1) + abs(from.spin))),
+                                    grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
                    (tolerance_ + slide.rounding_at_end(at_end.pivot));
 }
 

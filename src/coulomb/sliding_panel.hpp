@@ -50,6 +50,11 @@ class SlidingPanels {
     S angle(const S& place) const { return shift + (begin + span * place) * (begin + span * place); }
     S length() const { return angle(S(1)); }
   };
+  /// A panel as a slide took it: a stretch by angle, or else a duration.
+  struct Taken {
+    std::optional<Stretch> stretch;
+    S duration;
+  };
   /// What a slide is about.
   struct Slide {
     Hoop<S> hoop;

@@ -3,6 +3,7 @@
 /// nodes, and how well the nodes resolve them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -14,22 +15,24 @@
 
 namespace leapmap {
 
-/// n nodes on (0, 1). Values between and integrals up to a node are exact for polynomials of degree n - 1,
+/// n nodes on (0, 1) for functions of values S, numbers or duals. Values between and integrals up to a node are exact for polynomials of degree n - 1,
 /// integrals over the whole panel up to 2 n - 1.
 template <class S, std::size_t n>
 struct SpectralPanel {
+  using Number = ScalarOf<S>;
+  using Numbers = std::array<Number, n>;
   using Values = std::array<S, n>;
   using T = std::conditional_t<std::is_same_v<S, double>, Batch, S>;  ///< nodes in lanes
   static constexpr std::size_t width = Lanes<T>::count;
   static_assert(n % width == 0);
-  Values node, weight;
-  std::array<Values, n>
+  Numbers node, weight;
+  std::array<Numbers, n>
       running;  ///< integral of the j-th cardinal polynomial from 0 to node i is running[j][i]
-  Values barycentric;
-  std::array<Values, n>
+  Numbers barycentric;
+  std::array<Numbers, n>
       expansion;              ///< Legendre coefficient k of the j-th cardinal polynomial is expansion[j][k]
-  Values last, last_but_one;  ///< the last two, by j
-  Values fourth;              ///< fourth derivatives of Legendre's polynomials at 1
+  Numbers last, last_but_one;  ///< the last two, by j
+  Numbers fourth;             ///< fourth derivatives of Legendre's polynomials at 1
 
   SpectralPanel() {
     const GaussRule<long double> rule = gauss_rule<long double>(n);
@@ -45,10 +48,10 @@ struct SpectralPanel {
       return P;
     };
     for (std::size_t k = 0; k < n; ++k) {
-      node[k] = S(rule.node[k]), weight[k] = S(rule.weight[k]);
+      node[k] = Number(rule.node[k]), weight[k] = Number(rule.weight[k]);
       long double product = k < 4 ? 0 : 1;  // (k + 4)! / (k - 4)!
       for (std::size_t m = k < 4 ? 0 : k - 3; m <= k + 4; ++m) product *= static_cast<long double>(m);
-      fourth[k] = S(product / 24);
+      fourth[k] = Number(product / 24);
     }
     for (std::size_t j = 0; j < n; ++j) {
       const auto at_j = legendre(rule.node[j]);
@@ -56,13 +59,13 @@ struct SpectralPanel {
         const auto at_i = legendre(rule.node[i]);
         long double sum = rule.node[i];  // k = 0: integral of 1
         for (std::size_t k = 1; k < n; ++k) sum += at_j[k] * (at_i[k + 1] - at_i[k - 1]) / 2;
-        running[j][i] = S(rule.weight[j] * sum);
+        running[j][i] = Number(rule.weight[j] * sum);
       }
       for (std::size_t k = 0; k < n; ++k)
-        expansion[j][k] = S(rule.weight[j] * at_j[k] * static_cast<long double>(2 * k + 1));
+        expansion[j][k] = Number(rule.weight[j] * at_j[k] * static_cast<long double>(2 * k + 1));
       last[j] = expansion[j][n - 1], last_but_one[j] = expansion[j][n - 2];
       const long double x = rule.node[j];
-      barycentric[j] = S((j % 2 == 0 ? 1 : -1) * std::sqrt(x * (1 - x) * rule.weight[j]));
+      barycentric[j] = Number((j % 2 == 0 ? 1 : -1) * std::sqrt(x * (1 - x) * rule.weight[j]));
     }
   }
 
@@ -77,7 +80,7 @@ struct SpectralPanel {
       const T away = T(x) - Lanes<T>::load(node.data() + i);
       if (any(away == T(S(0)))) {
         for (std::size_t k = i;; ++k)
-          if (node[k] == x) return f[k];
+          if (node[k] == value_of(x)) return f[k];
       }
       const T share = Lanes<T>::load(barycentric.data() + i) / away;
       above += share * Lanes<T>::load(f.data() + i), below += share;
@@ -85,7 +88,7 @@ struct SpectralPanel {
     return sum(above) / sum(below);
   }
   /// The longest way between neighbours among the nodes and both ends.
-  S longest_spacing() const { return node[n / 2] - node[n / 2 - 1]; }
+  Number longest_spacing() const { return node[n / 2] - node[n / 2 - 1]; }
   /// A bound of f's fourth derivative: that of a Legendre polynomial is largest at the panel's ends.
   S fourth_derivative_bound(const Values& f) const {
     using std::abs;
@@ -96,20 +99,19 @@ struct SpectralPanel {
     return sum(bound);
   }
   /// The larger of f's last two Legendre coefficients: about the error of values between the nodes, and the
-  /// square root of that of the integral, both where f is of size 1.
-  S tail(const Values& f) const {
-    using std::abs, std::max;
-    return max(abs(dot(last_but_one, f)), abs(dot(last, f)));
+  /// square root of that of the integral, both where f is of size 1. Of duals, of all derivatives too.
+  Number tail(const Values& f) const {
+    return std::max(largest_part(dot(last_but_one, f)), largest_part(dot(last, f)));
   }
 
  private:
   /// The sum of the matrix's columns, column j times f[j].
-  static Values product(const std::array<Values, n>& columns, const Values& f) {
+  static Values product(const std::array<Numbers, n>& columns, const Values& f) {
     std::array<T, n / width> sums;
     sums.fill(T(S(0)));
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t i = 0; i < n / width; ++i)
-        sums[i] += Lanes<T>::load(columns[j].data() + i * width) * T(f[j]);
+        sums[i] += times(columns[j].data() + i * width, T(f[j]));
     Values values;
     for (std::size_t i = 0; i < n / width; ++i) Lanes<T>::store(sums[i], values.data() + i * width);
     return values;
@@ -121,10 +123,18 @@ struct SpectralPanel {
       return value;
     }
   }
-  static S dot(const Values& a, const Values& b) {
+  /// Values times as many factors.
+  static T times(const Number* factors, const T& values) {
+    if constexpr (has_derivatives<S>) {
+      return values * *factors;
+    } else {
+      return Lanes<T>::load(factors) * values;
+    }
+  }
+  static S dot(const Numbers& a, const Values& b) {
     T products(S(0));
     for (std::size_t i = 0; i < n; i += width)
-      products += Lanes<T>::load(a.data() + i) * Lanes<T>::load(b.data() + i);
+      products += times(a.data() + i, Lanes<T>::load(b.data() + i));
     return sum(products);
   }
 };

@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "physics/flight_search.hpp"
+#include "physics/flight_dual.hpp"
 #include "rolling/model.hpp"
 #include "trajectory/units.hpp"
 
@@ -79,33 +79,6 @@ LiftOffDual<D> lift_off_at(const Roll<D>& roll, const T& angle) {
   return {root, sqrt(vis_viva(roll, root, phi) / contact_inertia(roll.hoop, phi))};
 }
 
-/// Where, in turned angle, the flight is deepest below the plane before its apex; zero: nowhere.
-template <class T>
-T lowest_before(const Toss<T>& toss, const T& apex) {
-  using S = ScalarOf<T>;
-  const T two_pi(S(2) * pi_of<S>);
-  T top = toss.top, lowest(0), at(0);
-  MaskOf<T> sinks = toss.top > T(2) * (T(pi_of<S>) - toss.opening);  // after later tops it does at any rate
-  for (; any(top < apex); top = top + two_pi, sinks = top == top) {
-    const MaskOf<T> before = sinks & (top < apex);
-    if (!any(before)) continue;
-    const T bottom = toss_detail::bottom(toss, top, before), y = toss_height(toss, bottom).value;
-    const MaskOf<T> lower = before & (y < lowest);
-    lowest = select(lower, y, lowest), at = select(lower, bottom, at);
-  }
-  return at;
-}
-
-/// A time at which the height above the plane is extreme, or zero, found in plain numbers: its derivatives.
-template <class D, class T>
-D extremum_at(const HeightAbovePlane<D>& y, const T& t) {
-  return with_derivatives(t, y.rate, y.acceleration.value);
-}
-template <class D, class T>
-D zero_at(const HeightAbovePlane<D>& y, const T& t) {
-  return with_derivatives(t, y.value, y.rate.value);
-}
-
 template <class T>
 Toss<T> toss_from(const Hoop<T>& hoop, const T& angle, const T& spin) {
   return toss_of(hoop, angle, trig(angle), spin);
@@ -128,7 +101,6 @@ RollingGradients::RollingGradients(double tolerance, const Wanted& wanted, const
     : of_first_(gradients.wants(&Outcome::first_jump_height) || gradients.wants(&Outcome::first_jump_time)),
       of_time_(gradients.wants(&Outcome::jump_time)),
       of_first_time_(gradients.wants(&Outcome::first_jump_time)),
-      of_descent_(gradients.wants(&Outcome::flight_time)),
       of_dip_(gradients.wants(&Outcome::dip)),
       solver_(tolerance,
               [&] {
@@ -212,30 +184,25 @@ void RollingGradients::in_lanes(const Lot& lot, std::span<const LiftOffAt> lift_
     apex = select(apex == T(0.0), found, apex);
   }
   const Trig<D> phi = trig(off.angle);
-  const auto height_at = [&](const T& t) { return height_above_plane(roll.hoop, phi, off.spin, D(t)); };
-  const HeightAbovePlane<D> top = height_at(apex);
-  const D height = D(0.5) * top.value;
+  const FlightDual<D> flight = with_derivatives(roll.hoop, phi, off.spin, D(0.0), apex, load(flights));
 
   const auto put = [&](unsigned lanes, double Outcome::*quantity, const D& value, double unit) {
     lot.gradients.put(quantity, place, lanes, value, unit);
   };
   MaskOf<T> hard = angle != angle;
-  if (first_bits != 0) put(first_bits, &Outcome::first_jump_height, height, 1.0);
+  if (first_bits != 0) put(first_bits, &Outcome::first_jump_height, flight.height, 1.0);
   if (jump_bits != 0) {
     const D seen_from(way);
-    put(jump_bits, &Outcome::jump_height, height, 1.0);
+    put(jump_bits, &Outcome::jump_height, flight.height, 1.0);
     put(jump_bits, &Outcome::jump_angle, seen_from * off.angle, 1.0);
     put(jump_bits, &Outcome::jump_spin, seen_from * off.spin, 1.0);
     put(jump_bits, &Outcome::jump_distance, seen_from * (off.angle - roll.release), 1.0);
-    put(jump_bits, &Outcome::apex_time, extremum_at(top, apex), lot.second);
-    if (of_descent_) {
-      const T landing = load(flights);
-      put(jump_bits, &Outcome::flight_time, zero_at(height_at(landing), landing), lot.second);
-    }
+    put(jump_bits, &Outcome::apex_time, flight.apex_time, lot.second);
+    put(jump_bits, &Outcome::flight_time, flight.flight_time, lot.second);
     if (of_dip_) {
       const Toss<T> toss = toss_from(plain(roll).hoop, angle, off.spin.value);
       const T lowest = lowest_before(toss, T(apex * off.spin.value)) / off.spin.value;
-      put(jump_bits, &Outcome::dip, D(0.5) * height_at(lowest).value, 1.0);
+      put(jump_bits, &Outcome::dip, D(0.5) * height_above_plane(roll.hoop, phi, off.spin, D(lowest)).value, 1.0);
     }
   }
   if (of_time_ || (of_first_time_ && first_bits != 0)) {
@@ -318,13 +285,12 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
     LiftOffDual<S> off = lift_off_at(roll, told.lift_offs[i].angle);
     off.spin = way * off.spin;
     const Trig<S> phi = trig(off.angle);
-    const auto height_at = [&](double t) { return height_above_plane(hoop, phi, off.spin, S(t)); };
     const double spin = abs(off.spin.value);
     const Toss<double> toss =
         toss_from(seen(plain(roll).hoop, way.value), way.value * off.angle.value, spin);
-    const Flight<double> flight = descend(toss, ascend(toss, true), true);
-    const HeightAbovePlane<S> top = height_at(flight.apex_time / spin);
-    const S height = S(0.5) * top.value;
+    const Flight<double> tossed = descend(toss, ascend(toss, true), true);
+    const FlightDual<S> flight = with_derivatives(hoop, phi, off.spin, S(0.0), tossed.apex_time / spin,
+                                                  tossed.flight_time / spin);
     const auto put = [&](double Outcome::*quantity, const S& value, double unit = 1.0) {
       lot.gradients.put(quantity, place, value, unit);
     };
@@ -333,20 +299,20 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
                                       std::span(told.turns).first(told.legs[i]), off.angle)
                          : S(0.0);
     if (i == 0) {
-      put(&Outcome::first_jump_height, height);
+      put(&Outcome::first_jump_height, flight.height);
       put(&Outcome::first_jump_time, time, lot.second);
     }
     if (!jumps) return;
-    put(&Outcome::jump_height, height);
+    put(&Outcome::jump_height, flight.height);
     put(&Outcome::jump_time, time, lot.second);
     put(&Outcome::jump_angle, off.angle);
     put(&Outcome::jump_spin, off.spin);
     put(&Outcome::jump_distance, off.angle - roll.release);
-    put(&Outcome::apex_time, extremum_at(top, flight.apex_time / spin), lot.second);
-    const double landing = flight.flight_time / spin;
-    put(&Outcome::flight_time, zero_at(height_at(landing), landing), lot.second);
-    if (of_dip_)
-      put(&Outcome::dip, S(0.5) * height_at(lowest_before(toss, flight.apex_time) / spin).value);
+    put(&Outcome::apex_time, flight.apex_time, lot.second);
+    put(&Outcome::flight_time, flight.flight_time, lot.second);
+    if (!of_dip_) return;
+    const double lowest = lowest_before(toss, tossed.apex_time) / spin;
+    put(&Outcome::dip, S(0.5) * height_above_plane(hoop, phi, off.spin, S(lowest)).value);
   };
   const bool jumps = outcome.status == Status::jumped;
   const std::size_t last = told.lift_offs.size() - 1;

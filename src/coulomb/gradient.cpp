@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coulomb/gradient.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "coulomb/model.hpp"
+#include "physics/flight_dual.hpp"
+#include "physics/landing.hpp"
+#include "physics/sliding.hpp"
+#include "physics/stick.hpp"
+#include "trajectory/units.hpp"
+
+namespace leapmap {
+namespace {
+
+using D = DesignDual;
+
+constexpr std::size_t by_mu_static = 7, by_mu_kinetic = 8, by_restitution = 9;
+
+/// A guard, in weights, that passes zero more slowly than this, per sqrt(R/g) or per radian: its zero is
+/// known to so few digits that no derivative is worth telling.
+constexpr double slowest = 1e-4;
+/// The chain of duals repeats the plain solver's states so closely, or something was not as it seemed.
+constexpr double agreement = 1e-6;
+
+/// What the plain solver went through.
+struct Recorded {
+  struct Begun {
+    Phase phase;
+    ContactState<double> at;
+    int direction;
+    std::vector<double> turns;
+  };
+  std::vector<Begun> phases;
+  std::vector<Flight<double>> flights;
+  std::vector<SlideTold<double>> slides;
+  ContactState<double> end;
+};
+
+/// Whether mu_kinetic is what mu_static is, and goes where that goes.
+bool follows(const Design& design) {
+  return std::isnan(design.mu_kinetic) || design.mu_kinetic == design.mu_static;
+}
+
+/// As contact_of has it. Where mu_kinetic follows mu_static both are one parameter, and so they are where
+/// mu_static, being less than mu_kinetic, counts as much.
+Contact<D> dual_contact(const Design& design, const Scene& scene) {
+  const bool one = follows(design) || design.mu_static < design.mu_kinetic;
+  const D fixed = follows(design) ? D::parameter(design.mu_static, by_mu_static)
+                                  : D::parameter(design.mu_kinetic, by_mu_kinetic);
+  return {one ? fixed : D::parameter(design.mu_static, by_mu_static), fixed,
+          D::parameter(design.restitution, by_restitution), D(scene.rest_speed)};
+}
+
+/// The chain of one design's phases.
+class Chain {
+ public:
+  Chain(const Design& design, const Scene& scene, const SlidingPanels<D>& panels, const DualTime<D>& time)
+      : panels_(panels), time_(time), second_(time_unit(scene)), contact_(dual_contact(design, scene)) {
+    std::array<D, without_slip> p;
+    for (std::size_t k = 0; k < p.size(); ++k) p[k] = D::parameter(design.*differentiable[k], k);
+    hoop_ = derive(p[0], p[1], p[2], p[3], p[6]);
+    at_.angle = p[by_release_angle], at_.spin = p[by_release_spin];
+    released_ = contact_energy(hoop_, at_);
+  }
+
+  /// put(quantity, value, unit) takes what is known; a chain that breaks puts no more.
+  template <class Put>
+  void run(const Recorded& recorded, const Outcome& outcome, const Put& put) {
+    std::size_t flight = 0, slide = 0;
+    for (std::size_t k = 0; k < recorded.phases.size(); ++k) {
+      const Recorded::Begun& begun = recorded.phases[k];
+      const bool last = k + 1 == recorded.phases.size();
+      const ContactState<double>& next = last ? recorded.end : recorded.phases[k + 1].at;
+      if (!agrees(begun.at)) return;
+      switch (begun.phase) {
+        case Phase::rolling:
+          if (last) break;  // it stalls, or the runway ends: nothing slips any more
+          if (!roll(begun, next)) return;
+          break;
+        case Phase::sliding:
+          if (slide == recorded.slides.size()) break;  // it rocks to rest, which nobody followed
+          if (!slide_on(recorded.slides[slide++], begun.direction, next,
+                        !last && recorded.phases[k + 1].phase == Phase::flight))
+            return;
+          break;
+        case Phase::flight:
+          if (!fly(recorded.flights[flight], flight == 0, last && outcome.status == Status::jumped, put))
+            return;
+          ++flight;
+          break;
+      }
+    }
+    put(&Outcome::slip_distance, slipped_, 1.0);
+  }
+
+ private:
+  /// Takes the plain solver's values, if the chain came to the same.
+  bool agrees(const ContactState<double>& there) {
+    const auto same = [](D& value, double number) {
+      const bool near = std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
+      value.value = number;
+      return near;
+    };
+    return same(at_.time, there.time) & same(at_.travel, there.travel) & same(at_.angle, there.angle) &
+           same(at_.spin, there.spin) & same(at_.slip, there.slip) & same(at_.normal, there.normal);
+  }
+
+  bool roll(const Recorded::Begun& begun, const ContactState<double>& to) {
+    const Roll<D> roll = begin_roll(hoop_, at_.angle, at_.spin);
+    const D there(to.angle);
+    const D E = vis_viva_past_release(roll, D(there - at_.angle));
+    const Trig<D> phi = trig(there);
+    const StickGuards<D> guards = stick_guards(hoop_, phi, E, contact_.mu_static);
+    const Sample<D>& guard =
+        abs(guards.downhill.value) < abs(guards.uphill.value) ? guards.downhill : guards.uphill;
+    const double J = contact_inertia(hoop_, phi).value;
+    if (!(std::abs(guard.rate.value) > slowest * J * J)) return false;
+    const D end = with_derivatives(to.angle, guard.value, guard.rate.value);
+    const D left = vis_viva_past_release(roll, D(end - at_.angle)) / contact_inertia(hoop_, trig(end));
+    if (!(left > D(0.0))) return false;
+    at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
+    at_.travel += end - at_.angle;
+    driven_ += hoop_.drive * (end - at_.angle);
+    at_.angle = end;
+    at_.spin = to.spin < 0.0 ? -sqrt(left) : sqrt(left);
+    return true;
+  }
+
+  bool slide_on(const SlideTold<double>& taken, int direction, const ContactState<double>& to, bool then_flies) {
+    const ContactState<D> from = at_;
+    SlidingPanels<D>::Slide slide{hoop_, contact_.mu_kinetic * static_cast<double>(direction), {}, {}, {}};
+    slide.free_force = free_normal_force(hoop_, trig(at_.angle), at_.spin * at_.spin);
+    if (at_.spin == D(0.0)) set_out_from_rest(slide.friction);
+    for (const auto& one : taken)
+      if (!over_panel(slide, one, HUGE_VAL)) return false;
+    const Trig<D> phi = trig(at_.angle);
+    const SlidingMotion<D> motion = sliding_motion(hoop_, phi, at_.spin * at_.spin, slide.friction);
+    const double travels = at_.slip.value + at_.spin.value;
+    // What is zero here, and how fast it falls or rises.
+    const bool slip_ends = to.slip == 0.0;
+    const D zero = slip_ends ? at_.slip : then_flies ? slide.free_force : at_.travel;
+    const double rate =
+        slip_ends    ? motion.slip.value
+        : then_flies ? at_.spin.value *
+                           free_normal_force_rate(hoop_, phi, at_.spin * at_.spin, motion.angular).value
+                     : travels;
+    if (!(std::abs(rate) > slowest)) return false;
+    for (std::size_t k = 0; k < zero.by.size(); ++k) {
+      const double later = -zero.by[k] / rate;
+      at_.time.by[k] += later;
+      at_.angle.by[k] += later * at_.spin.value;
+      at_.spin.by[k] += later * motion.angular.value;
+      at_.slip.by[k] += later * motion.slip.value;
+      at_.travel.by[k] += later * travels;
+    }
+    if (slip_ends) at_.slip = D(0.0);
+    const D turned = at_.angle - from.angle;
+    driven_ += hoop_.drive * turned;
+    slipped_ += abs(at_.travel - from.travel - turned);
+    return true;
+  }
+
+  /// Slides over a panel, in halves where that resolves the values but not their derivatives, and as long as
+  /// that helps. excess: of the panel that it is half of.
+  bool over_panel(SlidingPanels<D>::Slide& slide, const SlidingPanels<double>::Taken& one, double excess) {
+    constexpr double resolved = 1e3;  // times the finest tolerance
+    constexpr int most_panels = 2'000;
+    SlidingPanels<D>::Panel panel;
+    if (one.stretch)
+      panels_.solve_by_angle(slide, at_, {D(one.stretch->shift), D(one.stretch->begin), D(one.stretch->span)},
+                             panel);
+    else
+      panels_.solve_by_time(slide, at_, D(one.duration), panel);
+    if (!std::isfinite(panel.excess) || ++panels_taken_ > most_panels) return false;
+    if (panel.excess <= resolved || !(panel.excess < 0.5 * excess)) {
+      at_ = panel.end;
+      slide.free_force = panel.free_force.end.value;
+      return true;
+    }
+    SlidingPanels<double>::Taken first = one, second = one;
+    if (one.stretch) {
+      const double half = 0.5 * one.stretch->span;
+      first.stretch->span = second.stretch->span = half;
+      second.stretch->shift -= first.stretch->length(), second.stretch->begin += half;
+    } else {
+      first.duration = second.duration = 0.5 * one.duration;
+    }
+    return over_panel(slide, first, panel.excess) && over_panel(slide, second, panel.excess);
+  }
+
+  /// From rest u = w^2 does not depend on the spin to first order, and yet time and slip at an angle do: a
+  /// hoop with a small spin is one that was at rest spin / phi'' ago, but for the slip gained since.
+  void set_out_from_rest(const D& friction) {
+    const SlidingMotion<D> motion = sliding_motion(hoop_, trig(at_.angle), D(0.0), friction);
+    for (std::size_t k = 0; k < at_.spin.by.size(); ++k) {
+      const double ago = at_.spin.by[k] / motion.angular.value;
+      at_.time.by[k] -= ago, at_.slip.by[k] -= ago * motion.slip.value, at_.spin.by[k] = 0.0;
+    }
+  }
+
+  template <class Put>
+  bool fly(const Flight<double>& flight, bool first, bool jumps, const Put& put) {
+    const Trig<D> phi = trig(at_.angle);
+    const FlightDual<D> flown =
+        with_derivatives(hoop_, phi, at_.spin, at_.normal, flight.apex_time, flight.flight_time);
+    if (first) {
+      put(&Outcome::first_jump_height, flown.height, 1.0);
+      put(&Outcome::first_jump_time, at_.time, second_);
+    }
+    if (jumps) {
+      put(&Outcome::jump_height, flown.height, 1.0);
+      put(&Outcome::jump_time, at_.time, second_);
+      put(&Outcome::jump_angle, at_.angle, 1.0);
+      put(&Outcome::jump_spin, at_.spin, 1.0);
+      put(&Outcome::jump_distance, at_.travel, 1.0);
+      put(&Outcome::apex_time, flown.apex_time, second_);
+      put(&Outcome::flight_time, flown.flight_time, second_);
+      put(&Outcome::dip, D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
+      put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
+    }
+    const Sample<D> travel = travel_in_flight(hoop_, phi, at_.spin, at_.slip, flown.flight_time);
+    const D climb = height_above_plane(hoop_, phi, at_.spin, flown.flight_time, at_.normal).rate;
+    at_.time += flown.flight_time;
+    at_.travel += travel.value;
+    at_.angle += at_.spin * flown.flight_time;
+    const Landing<D> landing = land(hoop_, trig(at_.angle), {travel.rate - at_.spin, climb, at_.spin},
+                                    contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
+    at_.spin = landing.after.spin, at_.slip = landing.after.slip, at_.normal = landing.after.normal;
+    if (jumps) put(&Outcome::landing_spin, at_.spin, 1.0);
+    return true;
+  }
+
+  /// When the flight is deepest below the plane before its apex; zero: it never is.
+  double deepest(const Flight<double>& flight) const {
+    if (!(flight.dip < 0.0)) return 0.0;
+    const double way = at_.spin.value < 0.0 ? -1.0 : 1.0, spin = way * at_.spin.value;
+    const Hoop<D>& h = hoop_;
+    Hoop<double> hoop{};  // of which a toss sees two numbers
+    hoop.cos_slope = h.cos_slope.value, hoop.rho = h.rho.value;
+    const double angle = way * at_.angle.value;
+    return lowest_before(toss_of(hoop, angle, trig(angle), spin), flight.apex_time * spin) / spin;
+  }
+
+  const SlidingPanels<D>& panels_;
+  const DualTime<D>& time_;
+  double second_;
+  Contact<D> contact_;
+  Hoop<D> hoop_;
+  ContactState<D> at_;
+  D released_{0.0}, driven_{0.0}, slipped_{0.0};
+  int panels_taken_ = 0;
+};
+
+}  // namespace
+
+void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
+                             Gradients& gradients) {
+  gradients.begin(designs.size());
+  Recorded recorded;
+  CoulombObserver observer;
+  observer.phase = [&](Phase phase, const ContactState<double>& at, int direction) {
+    recorded.phases.push_back({phase, at, direction, {}});
+  };
+  observer.lift_off = [&](const LiftOff<double>&, const Flight<double>& flight) {
+    recorded.flights.push_back(flight);
+  };
+  observer.turn = [&](const ContactState<double>& at) { recorded.phases.back().turns.push_back(at.angle); };
+  observer.end = [&](const ContactState<double>& at) { recorded.end = at; };
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    recorded = {};
+    outcomes[i] = solver_.solve(designs[i], scene);
+    if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate) continue;
+    if (!same_flags(outcomes[i], finer_.solve(designs[i], scene, observer, &recorded.slides))) continue;
+    Chain(designs[i], scene, panels_, time_)
+        .run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
+          if (follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
+          if (std::isfinite(outcomes[i].*quantity)) gradients.put(quantity, i, value, unit);
+        });
+  }
+}
+
+GradientSolver coulomb::gradients(const Scene& scene, double tolerance, const Wanted&,
+                                  const GradientWanted&) {
+  return [solver = std::make_shared<CoulombGradients>(tolerance), scene](
+             std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+    solver->solve(designs, scene, outcomes, gradients);
+  };
+}
+
+}  // namespace leapmap
