@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/hop_gradient.hpp"
 #include "cli/motor.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
@@ -30,7 +31,7 @@ struct HopArguments {
   double trace_interval = 1e-3;
   double mass = 0.0;                          // 0: not given
   std::vector<std::string> overrides, flags;  // KEY=VALUE; flags hold whatever their place on the line
-  bool json = false;
+  bool json = false, gradient = false;
   Locking locking = Locking::required;
 };
 
@@ -173,7 +174,7 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 
 /// The outcome under the map's names and units, so that a script finds the same words in both.
 std::string json_text(const Spec& spec, const Motion& motion, const Outcome& checked,
-                      const std::optional<Motor>& motor) {
+                      const std::optional<Motor>& motor, bool gradient) {
   const double second = time_unit(spec.scene);
   std::vector<std::string> design, outcome, candidates, grazes, phases;
   for (const Option* parameter : design_parameters(spec))
@@ -219,12 +220,13 @@ std::string json_text(const Spec& spec, const Motion& motion, const Outcome& che
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
       "\"radius\": {}, "
-      "\"gravity\": {}, \"rest_speed\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  {}"
+      "\"gravity\": {}, \"rest_speed\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  {}{}"
       "\"lift_offs\": [{}],\n  "
       "\"grazes\": [{}],\n  \"check\": {},\n  \"phases\": [{}]\n}}\n",
       fmt::join(design, ", "), model_of(spec.scene).name, spec.scene.runway, spec.scene.hop_height,
       spec.scene.radius, spec.scene.gravity, spec.scene.rest_speed, resolved_method(spec.numerics),
-      spec.numerics.tolerance, fmt::join(outcome, ",\n  "), motor_told, fmt::join(candidates, ", "),
+      spec.numerics.tolerance, fmt::join(outcome, ",\n  "), motor_told,
+      gradient ? fmt::format("\"gradient\": {},\n  ", gradient_json(spec)) : "", fmt::join(candidates, ", "),
       fmt::join(grazes, ", "), check, fmt::join(phases, ", "));
 }
 
@@ -260,9 +262,10 @@ int run(const HopArguments& arguments) {
       driven && moves ? std::optional(motor_of(spec, motion, is_example ? papers_mass : arguments.mass))
                       : std::nullopt;
   if (arguments.json) {
-    say("{}", json_text(spec, motion, check.outcome, motor));
+    say("{}", json_text(spec, motion, check.outcome, motor, arguments.gradient));
   } else {
     print_table(spec, motion, check.outcome, motor, is_example);
+    if (arguments.gradient) print_gradient(spec);
     if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
   }
   return motion.outcome.status == Status::failed ? 1 : 0;
@@ -289,6 +292,8 @@ void add_hop(CLI::App& app, int& status) {
                    "kilograms of hoop and weight together, for what --drive-torque asks of a motor; default "
                    "0.0282, the paper's hoop")
       ->check(CLI::Range(1e-9, 1e9));
+  command->add_flag("--gradient", arguments->gradient,
+                    "tell the derivatives of every quantity by every parameter, too");
   command->add_flag("--json", arguments->json, "print JSON, under the map's names and units");
   command->footer(options_help());
   add_no_lock(*command, arguments->locking);

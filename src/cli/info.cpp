@@ -199,6 +199,12 @@ int run(const InfoArguments& arguments) {
     say("referee: {} of them from the paper's (7) to (9): {} wrong, largest error {}, {} it cannot decide\n",
         told("audit_referee_designs"), told("audit_overruled"), short_form("audit_referee_max_error", ".1e"),
         told("audit_referee_undecided"));
+  if (const std::string compared = map.attribute("audit_gradient_designs");
+      !compared.empty() && compared != "0")
+    say("gradient: of {} designs by differences in long double: {} wrong, largest error {}, {} it cannot "
+        "decide\n",
+        compared, told("audit_gradients_wrong"), short_form("audit_gradient_max_error", ".1e"),
+        told("audit_gradient_undecided"));
   if (hdf5::has_attribute(map.file(), "retry_designs"))
     say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),
         told("retry_tolerance"));

@@ -126,6 +126,10 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
     say("referee  {} of them from the paper's (7) to (9), in SI units: {} wrong, largest error {:.1e}{}\n",
         grouped(report.refereed), report.overruled, report.referee_max_error,
         report.referee_undecided > 0 ? fmt::format("; {} it cannot decide", report.referee_undecided) : "");
+  if (!arguments.quiet && report.gradient_designs > 0)
+    say("gradient {} of them by differences in long double: {} wrong, largest error {:.1e}{}\n",
+        grouped(report.gradient_designs), report.gradients_wrong, report.gradient_max_error,
+        report.gradient_undecided > 0 ? fmt::format("; {} it cannot decide", report.gradient_undecided) : "");
   const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
       tell(fmt::format("audit: {} on design {}; see it by: {}", what, told_design(spec, *design),
@@ -134,6 +138,8 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
   const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
   complain(report.first_mismatch, both + " disagree on status, flag or candidates");
   complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
+  complain(report.first_wrong_gradient,
+           "a derivative differs by more than 1e-6 from differences in long double");
   complain(report.first_overruled,
            resolved_method(spec.numerics) + " and an integration of the paper's (7) to (9) disagree");
   return disagree(report) ? 1 : 0;

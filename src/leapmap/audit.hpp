@@ -32,11 +32,18 @@ struct AuditReport {
   std::size_t overruled = 0;                   ///< designs that it finds wrong
   double referee_max_error = 0.0;              ///< the largest of the three errors above, by the referee
   std::optional<std::size_t> first_overruled;  ///< the least design number that it finds wrong
+  // The derivatives' part, where the sweep stores some: by differences of the exact solver in long double.
+  std::size_t gradient_designs = 0;    ///< designs whose derivatives by one parameter were looked at
+  std::size_t gradient_undecided = 0;  ///< of those, designs whose outcome is another a hair away
+  std::size_t gradients_wrong = 0;     ///< designs one of whose derivatives is off by more than 1e-6
+  double gradient_max_error = 0.0;     ///< relative; of derivatives below a thousandth, to that
+  std::optional<std::size_t> first_wrong_gradient;  ///< the least design number of those
 };
 
 /// Whether the second method or the referee disagrees on some design, by flags or beyond the tolerance.
 inline bool disagree(const AuditReport& report) {
-  return report.first_mismatch || report.first_inaccurate || report.first_overruled;
+  return report.first_mismatch || report.first_inaccurate || report.first_overruled ||
+         report.first_wrong_gradient;
 }
 
 }  // namespace leapmap

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "leapmap/audit.hpp"
+#include "leapmap/boundaries.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/errors.hpp"
+#include "leapmap/gradient.hpp"
 #include "leapmap/map.hpp"
 #include "leapmap/motion.hpp"
 #include "leapmap/outcome.hpp"

@@ -26,6 +26,8 @@ struct Numerics {
 struct Output {
   std::string file{};                 ///< the map; -o overrides it
   std::vector<std::string> fields{};  ///< datasets to store; empty: all
+  std::vector<std::string> gradients{};  ///< quantities whose derivatives are stored; empty: none
+  std::vector<std::string> gradients_by{};  ///< the parameters by which; empty: all that the model has
   std::string precision = "f8";       ///< of stored numbers: "f8" or "f4"
   long compression = 1;               ///< deflate's level, 0 to 9; 0: none
 };

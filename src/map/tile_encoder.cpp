@@ -18,10 +18,10 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "chunks are written as they lie in memory");
 
-template <class T, class Value>
-void gather_as(std::span<const Outcome> outcomes, std::byte* to, const Value& value) {
-  for (const Outcome& outcome : outcomes) {
-    const T stored = value(outcome);
+template <class T, class Row, class Value>
+void gather_as(std::span<const Row> rows, std::byte* to, const Value& value) {
+  for (const Row& row : rows) {
+    const T stored = value(row);
     std::memcpy(to, &stored, sizeof stored);
     to += sizeof stored;
   }
@@ -92,7 +92,7 @@ TileEncoder::TileEncoder(const MapLayout& layout, const Tiling& tiling) : layout
   if (!compressor_) throw std::bad_alloc();
 }
 
-void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes) {
+void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes, const Gradients& gradients) {
   for (const Outcome& outcome : outcomes) ++statuses_[static_cast<std::size_t>(outcome.status)];
   constexpr std::size_t block = 128;  // outcomes that stay in the first cache for all fields
   for (std::size_t from = 0; from < outcomes.size(); from += block) {
@@ -110,11 +110,19 @@ void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes) {
         gather_as<std::uint64_t>(some, to, [&](const Outcome& o) { return o.*word->member; });
         continue;
       }
+      const auto gather = [&](const auto& values, const auto& value) {
+        using Row = std::decay_t<decltype(values[0])>;
+        layout_->single
+            ? gather_as<float>(values, to, [&](const Row& row) { return static_cast<float>(value(row)); })
+            : gather_as<double>(values, to, value);
+      };
+      if (const auto* derivative = std::get_if<Derivative>(&field.source)) {
+        gather(gradients.column(derivative->of, derivative->by).subspan(from, some.size()),
+               [](double value) { return value; });
+        continue;
+      }
       const auto& quantity = std::get<Quantity>(field.source);
-      const auto value = [&](const Outcome& outcome) { return outcome.*quantity.member; };
-      layout_->single
-          ? gather_as<float>(some, to, [&](const Outcome& o) { return static_cast<float>(value(o)); })
-          : gather_as<double>(some, to, value);
+      gather(some, [&](const Outcome& outcome) { return outcome.*quantity.member; });
     }
   }
 }

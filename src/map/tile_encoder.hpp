@@ -12,6 +12,7 @@
 
 #include "leapmap/outcome.hpp"
 #include "map/layout.hpp"
+#include "trajectory/gradient.hpp"
 
 struct libdeflate_compressor;
 
@@ -44,8 +45,9 @@ class TileEncoder {
  public:
   /// Keeps references to both.
   TileEncoder(const MapLayout& layout, const Tiling& tiling);
-  /// Takes a piece of a tile: its outcomes `first`, first + 1, ...
-  void take(std::size_t first, std::span<const Outcome> outcomes);
+  /// Takes a piece of a tile: its outcomes `first`, first + 1, ... and their derivatives, if the layout has
+  /// any.
+  void take(std::size_t first, std::span<const Outcome> outcomes, const Gradients& gradients = {});
   /// Encodes the tile whose outcomes were taken. What reaches over the map's edge holds fill values.
   EncodedTile encode(std::size_t number);
 

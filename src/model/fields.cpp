@@ -3,6 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "model/parameters.hpp"
 
 namespace leapmap {
 namespace {
@@ -67,10 +72,63 @@ const std::array fields{
 
 std::span<const Field> map_fields() { return fields; }
 
+namespace {
+
+/// What the rows of derivatives refer to.
+struct GradientTexts {
+  std::string name, unit, long_name;
+};
+
+std::string unit_of_derivative(std::string_view of, std::string_view by) {
+  if (by != "rad") return std::string(of);  // a pure number, or one that is told in words
+  return of == "rad" ? "1" : of == "1" ? "rad-1" : std::string(of) + " rad-1";
+}
+
+struct GradientTable {
+  std::deque<GradientTexts> texts;
+  std::vector<Field> rows;
+
+  GradientTable() {
+    for (const Field& field : fields)
+      for (const Parameter& parameter : parameters()) {
+        const auto* of = std::get_if<Quantity>(&field.source);
+        const auto* by = std::get_if<double Design::*>(&parameter.member);
+        if (!of || !by) continue;
+        const bool own = parameter.unit != "rad" && parameter.unit != "1";
+        const std::string name(field.name), parameter_name(parameter.name);
+        const GradientTexts& text = texts.emplace_back(GradientTexts{
+            name + "_by_" + parameter_name, unit_of_derivative(field.unit, parameter.unit),
+            "derivative of " + name + " by " + parameter_name +
+                (own ? ", which is in " + std::string(parameter.unit) : std::string())});
+        rows.push_back(Field{text.name, Derivative{of->member, *by}, text.unit, text.long_name, 7,
+                             parameter.only_of ? parameter.only_of : field.only_of});
+      }
+  }
+};
+
+}  // namespace
+
+std::span<const Field> gradient_fields() {
+  static const GradientTable table;
+  return table.rows;
+}
+
+const Field* find_gradient(double Outcome::*of, double Design::*by) {
+  for (const Field& field : gradient_fields()) {
+    const auto& derivative = std::get<Derivative>(field.source);
+    if (derivative.of == of && derivative.by == by) return &field;
+  }
+  return nullptr;
+}
+
 const Field* find_field(std::string_view name) {
-  const auto found =
-      std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
-  return found == fields.end() ? nullptr : &*found;
+  const auto find_among = [&](std::span<const Field> rows) {
+    const auto found =
+        std::find_if(rows.begin(), rows.end(), [&](const Field& field) { return field.name == name; });
+    return found == rows.end() ? nullptr : &*found;
+  };
+  const Field* found = find_among(fields);
+  return found || name.find("_by_") == name.npos ? found : find_among(gradient_fields());
 }
 
 double stored_number(const Field& field, const Outcome& outcome) {

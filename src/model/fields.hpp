@@ -10,6 +10,7 @@
 #include <string_view>
 #include <variant>
 
+#include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
 
@@ -38,9 +39,16 @@ struct Word {
   std::uint64_t Outcome::*member;
 };
 
+/// A derivative of a quantity by a parameter of the design, stored as f8, NaN where the quantity does not apply
+/// or the derivative is infinite.
+struct Derivative {
+  double Outcome::*of;
+  double Design::*by;
+};
+
 struct Field {
   std::string_view name;
-  std::variant<Quantity, Code, Word> source;
+  std::variant<Quantity, Code, Word, Derivative> source;
   std::string_view unit;  ///< as UDUNITS reads it; "1": a pure number
   std::string_view long_name;
   int since = 0;                      ///< the minor version of the map's format that brought it
@@ -50,10 +58,16 @@ struct Field {
 /// A field's value where it is a number, NaN where it does not apply. Words have none.
 double stored_number(const Field& field, const Outcome& outcome);
 
-/// Every field of a map, in the order of the file.
+/// Every field of a map, in the order of the file, but for derivatives.
 std::span<const Field> map_fields();
 
-/// The field of that name, or nullptr.
+/// The derivatives that a map may hold besides, jump_height_by_slope and so on: of each quantity, in the order
+/// of map_fields, by each parameter of a design, in the order of parameters.
+std::span<const Field> gradient_fields();
+/// One of these; nullptr: the member is no quantity, or no parameter.
+const Field* find_gradient(double Outcome::*of, double Design::*by);
+
+/// The field of that name, a derivative or not, or nullptr.
 const Field* find_field(std::string_view name);
 
 }  // namespace leapmap

@@ -86,6 +86,43 @@ py::dict solve(const py::dict& given, const std::string& friction, const std::ve
   return columns.arrays();
 }
 
+py::dict gradient(const py::dict& given, const std::string& friction, const std::string& of, double tolerance,
+                  int threads) {
+  const Designs designs(given, scene_of(friction));
+  const Field* field = find_field(of);
+  const auto* quantity = field ? std::get_if<Quantity>(&field->source) : nullptr;
+  if (!quantity || !has(designs.scene().friction, field->only_of)) {
+    std::vector<std::string_view> allowed;
+    for (const Field& each : map_fields())
+      if (std::holds_alternative<Quantity>(each.source) && has(designs.scene().friction, each.only_of))
+        allowed.push_back(each.name);
+    throw InputError(
+        fmt::format("of = '{}': has no derivatives; allowed: one of {}", of, fmt::join(allowed, ", ")));
+  }
+  Interrupts interrupts;
+  SolveOptions options{.tolerance = tolerance, .threads = threads_here(threads)};
+  options.stop_requested = [&] { return interrupts(); };
+  std::vector<Design> found;
+  try {
+    const py::gil_scoped_release unlocked;
+    std::vector<Design> all(designs.count());
+    designs.fill(0, all);
+    found = leapmap::gradient(all, quantity->member, designs.scene(), options);
+  } catch (const Stopped&) {
+    interrupts.rethrow();
+    throw;
+  }
+  py::dict arrays;
+  for (const Parameter& parameter : parameters()) {
+    const auto* member = std::get_if<double Design::*>(&parameter.member);
+    if (!member || !has(designs.scene().friction, parameter.only_of)) continue;
+    py::array_t<double> array(designs.shape());
+    std::ranges::transform(found, array.mutable_data(), [&](const Design& one) { return one.**member; });
+    arrays[py::str(std::string(parameter.name))] = array;
+  }
+  return arrays;
+}
+
 py::dict trace(const py::dict& given, const std::string& friction, double interval, const std::string& method,
                double tolerance, long max_steps) {
   const Designs designs(given, scene_of(friction));
@@ -185,6 +222,7 @@ PYBIND11_MODULE(_core, module) {
     }
   });
   module.def("solve", &python::solve);
+  module.def("gradient", &python::gradient);
   module.def("trace", &python::trace);
   module.def("sweep", &python::sweep);
   module.def("spec_file", [](const std::string& path_or_text, const std::optional<std::string>& origin,

@@ -104,16 +104,24 @@ std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Ti
 }
 
 std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
-                                       std::size_t first, std::span<const Outcome> outcomes) {
+                                       std::size_t first, std::span<const Outcome> outcomes,
+                                       const Gradients& gradients) {
   std::vector<AuditSample> samples;
+  const bool single = spec.output.precision == "f4";
+  const GradientWanted& derivatives = gradients.wanted();
   for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile, first, outcomes.size())) {
     samples.push_back({tiling.number(tile, drawn), outcomes[drawn - first]});
     for (const Field& field : map_fields()) {
       const auto* quantity = std::get_if<Quantity>(&field.source);
       if (!quantity) continue;
       double& value = samples.back().outcome.*quantity->member;
-      if (spec.output.precision == "f4") value = static_cast<float>(value);
+      if (single) value = static_cast<float>(value);
     }
+    for (std::size_t i = 0; i < derivatives.of.size(); ++i)
+      for (std::size_t j = 0; j < derivatives.by.size(); ++j) {
+        const double value = gradients.column(i, j)[drawn - first];
+        samples.back().gradient.push_back(single ? static_cast<float>(value) : value);
+      }
   }
   return samples;
 }
@@ -128,6 +136,14 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
     const Design design = space.at(samples.back().number);
     solve({&design, 1}, {&samples.back().outcome, 1});
   }
+  const GradientWanted derivatives = gradients_of(spec);
+  for (const auto of : derivatives.of)
+    for (const std::size_t by : derivatives.by) {
+      if (samples.empty()) continue;
+      const std::vector<double> values =
+          map.read(std::string(find_gradient(of, differentiable[by])->name), tile);
+      for (std::size_t i = 0; i < samples.size(); ++i) samples[i].gradient.push_back(values[drawn[i]]);
+    }
   for (const Field& field : map_fields()) {
     if (samples.empty() || !map.has(std::string(field.name))) continue;
     const auto place = [&](const auto& values, const auto& put) {
@@ -181,6 +197,7 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
               make_solver(spec, audit_method(spec.numerics), coarser_tolerance)},
       referee_{solver_by_referee(spec.scene, audit_tolerance),
                solver_by_referee(spec.scene, coarser_tolerance)},
+      gradients_(spec),
       referee_every_(referee_every),
       allowed_(begin_audit(spec).allowed_error) {
   if (referee_every == 0) {
@@ -277,6 +294,7 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
     return;
   }
   const Design design = space_.at(number);
+  if (!sample.gradient.empty()) gradients_.look_at(number, design, ours, sample.gradient, report);
   Verdict verdict = verdict_of(second_, design, ours);
   std::optional<Verdict> ruling;
   // Where an integration convicts exact, the referee is asked for its opinion.

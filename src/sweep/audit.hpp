@@ -13,6 +13,7 @@
 #include "leapmap/outcome.hpp"
 #include "map/reader.hpp"
 #include "map/tile.hpp"
+#include "sweep/audit_gradient.hpp"
 #include "sweep/audit_report.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/solver.hpp"
@@ -24,6 +25,7 @@ namespace leapmap {
 struct AuditSample {
   std::size_t number;  ///< of the design, C order over the whole map
   Outcome outcome;
+  std::vector<double> gradient{};  ///< what the map stores, of each quantity by each parameter; empty: none
 };
 
 /// The designs of a tile that the audit looks at, by their place in it; which ones depends on share and map
@@ -36,7 +38,8 @@ std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Ti
 /// The samples drawn from a piece of a tile, its outcomes `first`, first + 1, ..., rounded as the map rounds
 /// them.
 std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
-                                       std::size_t first, std::span<const Outcome> outcomes);
+                                       std::size_t first, std::span<const Outcome> outcomes,
+                                       const Gradients& gradients = {});
 
 /// The samples of a tile of a finished map: the outcomes are the solver's, but all that the map stores is the
 /// map's.
@@ -86,6 +89,7 @@ class Auditor {
   const Spec& spec_;
   DesignSpace space_;
   Judge second_, referee_;
+  GradientAuditor gradients_;
   std::size_t referee_every_;
   double allowed_;
 };

@@ -31,6 +31,11 @@ void merge(AuditReport& report, const AuditReport& other) {
   report.overruled += other.overruled;
   report.referee_max_error = std::max(report.referee_max_error, other.referee_max_error);
   least(report.first_overruled, other.first_overruled);
+  report.gradient_designs += other.gradient_designs;
+  report.gradient_undecided += other.gradient_undecided;
+  report.gradients_wrong += other.gradients_wrong;
+  report.gradient_max_error = std::max(report.gradient_max_error, other.gradient_max_error);
+  least(report.first_wrong_gradient, other.first_wrong_gradient);
 }
 
 namespace {
@@ -52,15 +57,20 @@ constexpr std::array counts{Count{"audit_designs", &AuditReport::designs, 0},
                             Count{"audit_failed", &AuditReport::failed, 4},
                             Count{"audit_referee_designs", &AuditReport::refereed, 5},
                             Count{"audit_referee_undecided", &AuditReport::referee_undecided, 5},
-                            Count{"audit_overruled", &AuditReport::overruled, 5}};
+                            Count{"audit_overruled", &AuditReport::overruled, 5},
+                            Count{"audit_gradient_designs", &AuditReport::gradient_designs, 7},
+                            Count{"audit_gradient_undecided", &AuditReport::gradient_undecided, 7},
+                            Count{"audit_gradients_wrong", &AuditReport::gradients_wrong, 7}};
 constexpr std::array errors{Error{"audit_max_abs_height_error", &AuditReport::max_abs_height_error, 0},
                             Error{"audit_max_rel_time_error", &AuditReport::max_rel_time_error, 0},
                             Error{"audit_max_rel_motion_error", &AuditReport::max_rel_motion_error, 5},
                             Error{"audit_allowed_error", &AuditReport::allowed_error, 4},
-                            Error{"audit_referee_max_error", &AuditReport::referee_max_error, 5}};
+                            Error{"audit_referee_max_error", &AuditReport::referee_max_error, 5},
+                            Error{"audit_gradient_max_error", &AuditReport::gradient_max_error, 7}};
 constexpr std::array firsts{First{"audit_first_mismatch", &AuditReport::first_mismatch, 4},
                             First{"audit_first_inaccurate", &AuditReport::first_inaccurate, 4},
-                            First{"audit_first_overruled", &AuditReport::first_overruled, 5}};
+                            First{"audit_first_overruled", &AuditReport::first_overruled, 5},
+                            First{"audit_first_wrong_gradient", &AuditReport::first_wrong_gradient, 7}};
 
 }  // namespace
 

@@ -31,7 +31,7 @@ std::function<TileWork()> in_order(TileSink sink) {
   return [sink = std::move(sink)] {
     const auto kept = std::make_shared<std::vector<Outcome>>();
     return TileWork{
-        [kept](const Tile&, std::size_t, std::span<const Outcome> outcomes) {
+        [kept](const Tile&, std::size_t, std::span<const Outcome> outcomes, const Gradients&) {
           kept->insert(kept->end(), outcomes.begin(), outcomes.end());
         },
         [sink, kept](std::size_t, const Tile& tile) {
@@ -57,7 +57,8 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
-    return [&, solve = make_solver(spec), work = make_work(), designs = std::vector<Design>(most),
+    return [&, solve = make_gradient_solver(spec), gradients = Gradients(gradients_of(spec)),
+            work = make_work(), designs = std::vector<Design>(most),
             outcomes = std::vector<Outcome>(most)](std::size_t i) mutable {
       try {
         const std::size_t number = options.first_tile + i;
@@ -67,8 +68,8 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
           const std::span some(designs.data(), count);
           const std::span solved(outcomes.data(), count);
           space.fill(tile, first, some);
-          solve(some, solved);
-          work.take(tile, first, solved);
+          solve(some, solved, gradients);
+          work.take(tile, first, solved, gradients);
         }
         Prepared prepared = work.prepare(number, tile);
         if (!prepared.take) {
@@ -92,7 +93,8 @@ double seconds_per_design(const Spec& spec, double seconds) {
   using Clock = std::chrono::steady_clock;
   const DesignSpace space(spec);
   const std::size_t count = Tiling(shape_of(spec)).designs();
-  const Solver solve = make_solver(spec);
+  const GradientSolver solve = make_gradient_solver(spec);
+  Gradients gradients(gradients_of(spec));
   std::mt19937_64 random(1);
   std::uniform_int_distribution<std::size_t> pick(0, count - 1);
   // Few at a time while it is not known how long one takes: an integration may need seconds.
@@ -104,7 +106,7 @@ double seconds_per_design(const Spec& spec, double seconds) {
     for (Design& design : designs) design = space.at(pick(random));
     outcomes.resize(designs.size());
     const auto begin = Clock::now();
-    solve(designs, outcomes);
+    solve(designs, outcomes, gradients);
     passed += Clock::now() - begin;
     solved += designs.size();
     if (passed.count() < 0.1 * seconds) designs.resize(std::min<std::size_t>(2 * designs.size(), 8192));

@@ -9,6 +9,7 @@
 #include "leapmap/outcome.hpp"
 #include "map/tile.hpp"
 #include "sweep/spec.hpp"
+#include "trajectory/gradient.hpp"
 
 namespace leapmap {
 
@@ -32,7 +33,7 @@ struct Prepared {
 /// What a thread does with the tiles it solves, one after the other. A tile's outcomes come a piece at a
 /// time, in its order and while they are still in the cache.
 struct TileWork {
-  std::function<void(const Tile&, std::size_t first, std::span<const Outcome>)> take;
+  std::function<void(const Tile&, std::size_t first, std::span<const Outcome>, const Gradients&)> take;
   /// The whole tile was taken: encodes it, compresses it.
   std::function<Prepared(std::size_t number, const Tile&)> prepare;
 };

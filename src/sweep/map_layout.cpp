@@ -5,6 +5,7 @@
 
 #include "model/model.hpp"
 #include "sweep/options.hpp"
+#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -33,6 +34,10 @@ MapLayout layout_of(const Spec& spec) {
   layout.labels = spec.list.labels;
   for (const Field& field : map_fields())
     if (stores(spec, field)) layout.fields.push_back(&field);
+  const GradientWanted derivatives = gradients_of(spec);
+  for (const auto of : derivatives.of)
+    for (const std::size_t by : derivatives.by)
+      layout.fields.push_back(find_gradient(of, differentiable[by]));
   layout.single = spec.output.precision == "f4";
   layout.compression = static_cast<int>(spec.output.compression);
   return layout;

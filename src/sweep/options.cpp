@@ -38,6 +38,20 @@ std::vector<std::string_view> field_names() {
   return names;
 }
 
+std::vector<std::string_view> quantity_names() {
+  std::vector<std::string_view> names;
+  for (const Field& field : map_fields())
+    if (std::holds_alternative<Quantity>(field.source)) names.push_back(field.name);
+  return names;
+}
+
+std::vector<std::string_view> design_parameter_names() {
+  std::vector<std::string_view> names;
+  for (const Parameter& parameter : parameters())
+    if (std::holds_alternative<double Design::*>(parameter.member)) names.push_back(parameter.name);
+  return names;
+}
+
 /// The keys that are no parameters, in order.
 const std::array keys{
     Option{"scene",
@@ -95,6 +109,21 @@ const std::array keys{
            "datasets to store; default: all",
            {},
            field_names},
+    Option{"output",
+           "gradients",
+           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients; }},
+           "",
+           "quantities whose derivatives are stored too, as jump_height_by_slope and so on (exact only); "
+           "default: none",
+           {},
+           quantity_names},
+    Option{"output",
+           "gradients_by",
+           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients_by; }},
+           "",
+           "the parameters by which; default: all that the model has",
+           {},
+           design_parameter_names},
     Option{"output",
            "precision",
            TextSlot{[](Spec& s) -> std::string& { return s.output.precision; }},
@@ -159,7 +188,7 @@ std::string default_of(const Option& option) {
         } else if constexpr (std::is_same_v<Slot, TextSlot>) {
           return fmt::format("\"{}\"", slot(spec));
         } else if constexpr (std::is_same_v<Slot, TextsSlot>) {
-          return "[all]";
+          return option.key == "gradients" ? "[none]" : "[all]";
         } else {
           return fmt::format("{}", slot(spec));
         }

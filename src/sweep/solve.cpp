@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
+#include "leapmap/gradient.hpp"
 #include "leapmap/spec.hpp"
 #include "leapmap/trace.hpp"
+#include "model/fields.hpp"
 #include "model/parameters.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
@@ -101,6 +104,41 @@ std::vector<Outcome> solve(std::span<const Design> designs, const Scene& scene, 
   std::vector<Outcome> outcomes(designs.size());
   solve_into(outcomes, designs, scene, options);
   return outcomes;
+}
+
+Design gradient(const Design& design, double Outcome::*of, const Scene& scene, const SolveOptions& options) {
+  return gradient(std::span(&design, 1), of, scene, options)[0];
+}
+
+std::vector<Design> gradient(std::span<const Design> designs, double Outcome::*of, const Scene& scene,
+                             const SolveOptions& options) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Spec spec = spec_of(scene, options);
+  spec.output.fields = {"status"};
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source); quantity && quantity->member == of)
+      spec.output.gradients = {std::string(field.name)};
+  check_spec(spec);
+  const GradientWanted wanted = gradients_of(spec);
+  std::vector<Design> found(designs.size());
+  const std::size_t most = std::min(designs.size(), std::size_t{256});
+  parallel_for_each((designs.size() + most - 1) / std::max<std::size_t>(most, 1), options.threads, [&] {
+    return [&, solver = make_gradient_solver(spec), gradients = Gradients(wanted),
+            outcomes = std::vector<Outcome>(most)](std::size_t block) mutable {
+      const std::size_t first = block * most, size = std::min(most, designs.size() - first);
+      check_designs(designs.subspan(first, size), scene, first, designs.size());
+      solver(designs.subspan(first, size), std::span(outcomes).first(size), gradients);
+      for (std::size_t i = 0; i < size; ++i) {
+        for (double Design::*parameter : differentiable) found[first + i].*parameter = nan;
+        for (std::size_t j = 0; j < wanted.by.size(); ++j)
+          found[first + i].*differentiable[wanted.by[j]] = gradients.column(0, j)[i];
+      }
+      if (options.stop_requested && options.stop_requested())
+        throw Stopped("gradient was asked to stop");
+      return true;
+    };
+  });
+  return found;
 }
 
 Motion trace(const Design& design, const Scene& scene, const TraceOptions& options) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sweep/solver.hpp"
 
+#include <algorithm>
+
+#include "model/fields.hpp"
 #include "model/model.hpp"
+#include "model/parameters.hpp"
 
 namespace leapmap {
 
@@ -13,15 +17,49 @@ IntegrationOptions integration_options(const Numerics& numerics) {
   return options;
 }
 
+namespace {
+
+Wanted wanted_of(const Output& output) {
+  const auto stored = [&](std::string_view field) { return stores(output, field); };
+  return {.first_jump_time = stored("first_jump_time"),
+          .jump_time = stored("jump_time"),
+          .descent = stored("flight_time") || stored("dip")};
+}
+
+}  // namespace
+
 Solver make_solver(const Spec& spec) {
   const Model& model = model_of(spec.scene);
   if (resolved_method(spec.numerics) != "exact")
     return model.integration(spec.scene, integration_options(spec.numerics));
-  const auto stored = [&](std::string_view field) { return stores(spec.output, field); };
-  return model.exact(spec.scene, spec.numerics.tolerance,
-                     {.first_jump_time = stored("first_jump_time"),
-                      .jump_time = stored("jump_time"),
-                      .descent = stored("flight_time") || stored("dip")});
+  return model.exact(spec.scene, spec.numerics.tolerance, wanted_of(spec.output));
+}
+
+GradientWanted gradients_of(const Spec& spec) {
+  GradientWanted wanted;
+  for (const std::string& name : spec.output.gradients)
+    wanted.of.push_back(std::get<Quantity>(find_field(name)->source).member);
+  if (wanted.of.empty()) return wanted;
+  const std::vector<std::string>& by = spec.output.gradients_by;
+  for (std::size_t k = 0; k < differentiable.size(); ++k) {
+    const auto parameter = std::ranges::find_if(parameters(), [&](const Parameter& row) {
+      const auto* member = std::get_if<double Design::*>(&row.member);
+      return member && *member == differentiable[k];
+    });
+    if (has(spec.scene.friction, parameter->only_of) &&
+        (by.empty() || std::ranges::find(by, parameter->name) != by.end()))
+      wanted.by.push_back(k);
+  }
+  return wanted;
+}
+
+GradientSolver make_gradient_solver(const Spec& spec) {
+  const GradientWanted asked = gradients_of(spec);
+  if (asked.of.empty())
+    return [solver = make_solver(spec)](std::span<const Design> designs, std::span<Outcome> outcomes,
+                                        Gradients&) { solver(designs, outcomes); };
+  return model_of(spec.scene)
+      .gradients(spec.scene, spec.numerics.tolerance, wanted_of(spec.output), asked);
 }
 
 Solver make_solver(const Spec& spec, std::string_view method, double tolerance) {

@@ -6,6 +6,7 @@
 
 #include "leapmap/motion.hpp"
 #include "sweep/spec.hpp"
+#include "trajectory/gradient.hpp"
 #include "trajectory/integration_options.hpp"
 #include "trajectory/solver.hpp"
 
@@ -17,6 +18,12 @@ IntegrationOptions integration_options(const Numerics& numerics);
 /// The solver of spec.numerics.method. What spec.output.fields leaves out need not be computed, and may be
 /// NaN.
 Solver make_solver(const Spec& spec);
+
+/// Which derivatives the spec asks for.
+GradientWanted gradients_of(const Spec& spec);
+
+/// The same with the derivatives that the spec asks for, if any.
+GradientSolver make_gradient_solver(const Spec& spec);
 
 /// The solver of a method other than the spec's: exact at that tolerance, or one of GSL's steppers.
 Solver make_solver(const Spec& spec, std::string_view method, double tolerance);

@@ -44,6 +44,23 @@ void check_values(const Spec& spec, const std::vector<Axis>& axes) {
   }
 }
 
+/// That there is a method that has derivatives, and that the model has what is to be differentiated.
+void check_gradients(const Spec& spec) {
+  const Output& output = spec.output;
+  if (output.gradients.empty() && !output.gradients_by.empty())
+    refuse(spec, "gradients_by", "has no use without gradients", "with gradients = [\"jump_height\"], say");
+  if (!output.gradients.empty() && resolved_method(spec.numerics) != "exact")
+    refuse(spec, "gradients", fmt::format("has no use with method \"{}\"", spec.numerics.method),
+           "with method = \"exact\"");
+  for (const std::string& name : output.gradients)
+    if (const Field* field = find_field(name); field && !has(spec.scene.friction, field->only_of))
+      refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)), with_model(*field->only_of));
+  for (const std::string& name : output.gradients_by)
+    if (const Option* option = find_option("", name); option && !has(spec.scene.friction, option->only_of))
+      refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene)),
+             with_model(*option->only_of));
+}
+
 /// What all designs of the spec have in common.
 void check_common(const Spec& spec) {
   Design common = spec.design;
@@ -101,6 +118,7 @@ void check_spec(const Spec& spec) {
       (spec.numerics.fixed_step > 0.0 || spec.numerics.absolute_tolerance > 0.0))
     refuse(spec, "fixed_step or absolute_tolerance", "is set, and exact takes no steps",
            "with method = \"gsl-...\"");
+  check_gradients(spec);
   check_count(spec);
   check_values(spec, spec.axes);
   check_values(spec, spec.list.columns);

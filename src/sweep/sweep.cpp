@@ -77,10 +77,10 @@ class Sweeping {
     const auto drawn = std::make_shared<std::vector<AuditSample>>();  // of the tile in hand
     return {
         [this, encoder, drawn, auditor](const Tile& tile, std::size_t first,
-                                        std::span<const Outcome> outcomes) {
-          encoder->take(first, outcomes);
+                                        std::span<const Outcome> outcomes, const Gradients& gradients) {
+          encoder->take(first, outcomes, gradients);
           if (auditor)
-            std::ranges::copy(audit_samples(spec_, tiling_, tile, first, outcomes),
+            std::ranges::copy(audit_samples(spec_, tiling_, tile, first, outcomes, gradients),
                               std::back_inserter(*drawn));
         },
         [this, encoder, drawn, auditor](std::size_t number, const Tile&) -> Prepared {

@@ -56,6 +56,14 @@ class Gradients {
   std::span<const double> column(std::size_t i, std::size_t j) const {
     return columns_[i * wanted_.by.size() + j];
   }
+  /// The same by what it is; it must be asked for.
+  std::span<const double> column(double Outcome::*of, double Design::*by) const {
+    const auto i = std::find(wanted_.of.begin(), wanted_.of.end(), of) - wanted_.of.begin();
+    const auto j = std::find_if(wanted_.by.begin(), wanted_.by.end(),
+                                [&](std::size_t k) { return differentiable[k] == by; }) -
+                   wanted_.by.begin();
+    return column(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+  }
   const GradientWanted& wanted() const { return wanted_; }
 
   /// The derivatives of one quantity of one design, in `unit` of the solver's own. Does nothing if they are

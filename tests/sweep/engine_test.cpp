@@ -97,7 +97,7 @@ TEST(Engine, ATileOfSeveralPiecesIsFilledSolvedAndAuditedAsAWhole) {
   std::vector<AuditSample> samples;
   std::size_t taken = 0, pieces = 0;
   run_sweep(spec, tiling, {}, [&] {
-    return TileWork{[&](const Tile& tile, std::size_t first, std::span<const Outcome> outcomes) {
+    return TileWork{[&](const Tile& tile, std::size_t first, std::span<const Outcome> outcomes, const Gradients&) {
                       EXPECT_EQ(first, taken);
                       std::vector<Design> designs(outcomes.size());
                       space.fill(tile, first, designs);
@@ -145,7 +145,7 @@ TEST(Engine, AStopKeepsWhatWasDoneInOrder) {
   options.stop_requested = [&] { return solved > 200; };
   const std::size_t done = run_sweep(spec, tiling, options, [&] {
     return TileWork{
-        [&](const Tile&, std::size_t, std::span<const Outcome> outcomes) { solved += outcomes.size(); },
+        [&](const Tile&, std::size_t, std::span<const Outcome> outcomes, const Gradients&) { solved += outcomes.size(); },
         [&](std::size_t, const Tile& tile) {
           return Prepared{[&taken, count = tile.count] { taken += count; }};
         }};

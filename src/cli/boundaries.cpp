@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap boundaries: where outcomes jump, to rounding.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/spoken.hpp"
+#include "cli/sweep.hpp"
+#include "leapmap/boundaries.hpp"
+#include "map/hdf5_driver.hpp"
+#include "map/schema.hpp"
+#include "map/table_file.hpp"
+#include "sweep/begin_map.hpp"
+#include "sweep/map_spec.hpp"
+#include "sweep/options.hpp"
+#include "sweep/parallel.hpp"
+#include "sweep/provenance.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct BoundariesArguments {
+  std::string input, output, csv;
+  std::vector<std::string> overrides;
+  BoundaryOptions options;
+  bool quiet = false;
+  Locking locking = Locking::required;
+};
+
+/// "jumped on 2", "no_jump" and the like.
+std::string told(const Discrete& outcome) {
+  std::string text(name_of(outcome.status));
+  if (outcome.jumps_on > 0) text += fmt::format(" on {}", outcome.jumps_on);
+  if (outcome.status != Status::jumped && outcome.spurious_first_jump == 1) text += ", after a spurious one";
+  if (outcome.phase_sequence != 0) text += " " + phase_letters(outcome.phase_sequence);
+  return text;
+}
+
+/// Every cliff a row; then every place of every curve.
+std::vector<Table> tables_of(const Boundaries& found) {
+  Table cliffs{numbered_rows(found.cliffs.size())};
+  cliffs[0].name = "cliff";
+  std::vector<std::vector<double>> places;
+  for (const Cliff& cliff : found.cliffs) places.push_back(place_of(found, cliff));
+  const auto axis_column = [&](std::size_t k, const std::string& prefix, const std::vector<double>& values) {
+    const Option& option = *find_option("", found.axes[k].key);
+    const bool own = option.unit != "rad" && option.unit != "1";
+    return TableColumn{prefix + found.axes[k].key, std::string(own ? "1" : option.unit),
+                       std::string(option.meaning), values};
+  };
+  const auto texts_of = [&](const auto& text) {
+    std::vector<std::string> texts;
+    for (const Cliff& cliff : found.cliffs) texts.emplace_back(text(cliff));
+    return texts;
+  };
+  for (std::size_t k = 0; k < found.axes.size(); ++k) {
+    std::vector<double> values;
+    for (const std::vector<double>& place : places) values.push_back(place[k]);
+    cliffs.push_back(axis_column(k, "", values));
+  }
+  cliffs.push_back({"along", "1", "axis along which it was bisected: the value is the last below",
+                    texts_of([&](const Cliff& cliff) { return found.axes[cliff.axis].key; })});
+  cliffs.push_back({"kind", "1", "what happens there",
+                    texts_of([](const Cliff& cliff) { return name_of(cliff.kind); })});
+  cliffs.push_back({"below", "1", "outcome at the value and below",
+                    texts_of([](const Cliff& cliff) { return told(cliff.below); })});
+  cliffs.push_back({"above", "1", "outcome next above",
+                    texts_of([](const Cliff& cliff) { return told(cliff.above); })});
+  if (found.curves.empty()) return {cliffs};
+
+  std::vector<double> curve, number;
+  std::vector<std::string> kinds;
+  std::vector<std::vector<double>> at(found.axes.size());
+  const auto add = [&](std::size_t i, double cliff, const std::vector<double>& place) {
+    curve.push_back(static_cast<double>(i)), number.push_back(cliff);
+    kinds.emplace_back(name_of(found.curves[i].kind));
+    for (std::size_t k = 0; k < at.size(); ++k) at[k].push_back(place[k]);
+  };
+  const auto meeting = [&](std::size_t i, const std::vector<double>& there, std::size_t beside) {
+    std::vector<double> place = places[beside];
+    std::ranges::copy(there, place.end() - 2);
+    add(i, -1.0, place);
+  };
+  for (std::size_t i = 0; i < found.curves.size(); ++i) {
+    const CliffCurve& one = found.curves[i];
+    if (!one.meeting_from.empty()) meeting(i, one.meeting_from, one.cliffs.front());
+    for (const std::size_t cliff : one.cliffs) add(i, static_cast<double>(cliff), places[cliff]);
+    if (!one.meeting_to.empty()) meeting(i, one.meeting_to, one.cliffs.back());
+  }
+  Table curves{numbered_rows(curve.size())};
+  curves[0].name = "vertex";
+  curves.push_back({"curve", "1", "number of the curve, whose places stand one after the other", curve});
+  curves.push_back({"curve_kind", "1", "what happens along the curve", kinds});
+  curves.push_back({"curve_cliff", "1",
+                    "the cliff, by its row; -1: where outcomes meet, known only to a cell of the grid", number});
+  for (std::size_t k = 0; k < at.size(); ++k) curves.push_back(axis_column(k, "curve_", at[k]));
+  return {cliffs, curves};
+}
+
+void write_csv(const std::string& path, const Boundaries& found) {
+  std::string text = "kind,along";
+  for (const Axis& axis : found.axes) text += "," + axis.key;
+  text += ",below,above\n";
+  for (const Cliff& cliff : found.cliffs)
+    text += fmt::format("{},{},{},\"{}\",\"{}\"\n", name_of(cliff.kind), found.axes[cliff.axis].key,
+                        fmt::join(place_of(found, cliff), ","), told(cliff.below), told(cliff.above));
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw IoError(path + ": cannot be written");
+}
+
+void print_counts(const Boundaries& found) {
+  for (int kind = 0; kind < cliff_kinds; ++kind) {
+    const auto is_kind = [&](const auto& one) { return one.kind == static_cast<CliffKind>(kind); };
+    const auto cliffs = std::ranges::count_if(found.cliffs, is_kind);
+    if (cliffs == 0) continue;
+    const auto curves = std::ranges::count_if(found.curves, is_kind);
+    say("{:<9}{} places{}\n", name_of(static_cast<CliffKind>(kind)),
+        grouped(static_cast<std::uint64_t>(cliffs)),
+        curves > 0 ? fmt::format(" on {} curves", grouped(static_cast<std::uint64_t>(curves))) : "");
+  }
+  if (found.cliffs.empty()) say("no cliffs: all neighbours have the same outcome\n");
+}
+
+/// Whether a file begins as HDF5's do.
+bool is_hdf5(const std::string& path) {
+  std::array<char, 8> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == "\x89HDF\r\n\x1a\n";
+}
+
+Spec spec_of_input(const BoundariesArguments& arguments) {
+  if (!is_hdf5(arguments.input)) return read_spec(arguments.input, arguments.overrides);
+  if (!arguments.overrides.empty())
+    throw InputError("--set: has no use with a map; allowed: with a spec, or the map's own by leapmap info --spec");
+  return spec_of(MapReader(arguments.input, arguments.locking), arguments.input);
+}
+
+int run(const BoundariesArguments& arguments) {
+  const Spec spec = spec_of_input(arguments);
+  if (!arguments.output.empty()) hdf5::refuse_other_file(arguments.output, cliffs_filetype, arguments.locking);
+  note_signals();
+  const auto begin = std::chrono::steady_clock::now();
+  BoundaryOptions options = arguments.options;
+  options.stop_requested = [] { return noted_signal() != 0; };
+  // The grid's designs first; how many edges there are to bisect is known once they are solved.
+  std::unique_ptr<Progress> progress;
+  std::size_t shown = 0;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    if (total != shown) {
+      progress.reset();
+      progress = std::make_unique<Progress>(total, shown, arguments.quiet);
+      shown = total;
+    }
+    progress->update(done);
+  };
+  Boundaries found;
+  try {
+    found = find_boundaries(spec, options);
+  } catch (const Stopped&) {
+    progress.reset();
+    tell("interrupted; nothing is written");
+    return 128 + noted_signal();
+  }
+  progress.reset();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!arguments.quiet) {
+    say("cliffs   {} in {}\n", grouped(found.cliffs.size()), spoken_duration(seconds));
+    print_counts(found);
+  }
+  if (!arguments.output.empty()) {
+    std::vector<hdf5::Attribute> attributes =
+        provenance(spec, cliffs_filetype, "Where the outcomes of passive hoops jump");
+    attributes.emplace_back("phases", std::int64_t{options.phases});
+    attributes.emplace_back("wall_time", seconds);
+    if (!write_tables(behind_links(arguments.output), std::string(cliffs_filetype), tables_of(found), attributes,
+                      arguments.locking))
+      tell_of_folder(arguments.output);
+    if (!arguments.quiet) say("file     {}\n", arguments.output);
+  }
+  if (!arguments.csv.empty()) write_csv(arguments.csv, found);
+  return 0;
+}
+
+}  // namespace
+
+void add_boundaries(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("boundaries", "find where outcomes jump between neighbours of a grid, to rounding");
+  auto arguments = std::make_shared<BoundariesArguments>();
+  command->add_option("SPEC|MAP", arguments->input, "a sweep's spec, TOML, or the map that it made, HDF5")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "write cliffs and curves to this file, HDF5")
+      ->check(named_file());
+  command->add_option("--csv", arguments->csv, "write the cliffs, a line each, to this file, too")
+      ->check(named_file());
+  command
+      ->add_option("--set", arguments->overrides,
+                   "KEY=VALUE: override a key of the spec, for example --set tolerance=1e-12")
+      ->expected(1)
+      ->take_all();
+  command->add_flag("--phases", arguments->options.phases,
+                    "with friction: tell sequences of phases apart, too");
+  command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
+      ->check(CLI::Range(1, most_threads));
+  command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
+  add_no_lock(*command, arguments->locking);
+  command->footer(
+      "Each neighbouring pair of the grid whose status, flag or number of the lift-off that jumps differs is "
+      "bisected\n"
+      "until no number is left between. Where what lies beside a cliff is not what the two designs have, there "
+      "are more\n"
+      "between them, and they are found too. Kinds: threshold (a lift-off's height passes hop_height), fold (a "
+      "lift-off is\n"
+      "born), runway (one passes its end), turn (the hoop just turns round), release (the plane just has to "
+      "pull at the\n"
+      "release), phase and painleve (with friction), unresolved (on one side the method gave up). Two axes give "
+      "curves,\n"
+      "more axes curves in each plane of the last two.\n"
+      "Examples:\n"
+      "  leapmap boundaries sweeps/slope_mass_ratio.toml -o maps/slope_mass_ratio.cliffs.h5\n"
+      "  leapmap boundaries maps/slope_mass_ratio.h5 --csv cliffs.csv\n"
+      "A chart of MAP.h5 draws the cliffs of MAP.cliffs.h5 if that is beside it.");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/hop_gradient.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cli/output.hpp"
+#include "model/fields.hpp"
+#include "model/model.hpp"
+#include "sweep/options.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct Row {
+  const Field* quantity;
+  std::vector<double> by;
+};
+
+/// The rows of what the design has, and the parameters of the columns.
+struct Table {
+  std::vector<const Option*> parameters;
+  std::vector<Row> rows;
+};
+
+Table table_of(const Spec& original) {
+  Spec spec = original;
+  spec.output = {};
+  for (const Field& field : map_fields())
+    if (std::holds_alternative<Quantity>(field.source) && has(spec.scene.friction, field.only_of))
+      spec.output.gradients.emplace_back(field.name);
+  check_spec(spec);
+  const GradientWanted wanted = gradients_of(spec);
+  Gradients gradients(wanted);
+  Outcome outcome;
+  make_gradient_solver(spec)({&spec.design, 1}, {&outcome, 1}, gradients);
+
+  Table table;
+  for (const std::size_t by : wanted.by)
+    for (const Option* parameter : design_parameters(spec))
+      if (std::get<ParameterSlot>(parameter->slot).member == differentiable[by])
+        table.parameters.push_back(parameter);
+  for (std::size_t i = 0; i < wanted.of.size(); ++i) {
+    if (std::isnan(outcome.*wanted.of[i])) continue;
+    Row row{find_field(spec.output.gradients[i]), {}};
+    for (std::size_t j = 0; j < wanted.by.size(); ++j) row.by.push_back(gradients.column(i, j)[0]);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+}  // namespace
+
+void print_gradient(const Spec& spec) {
+  const Table table = table_of(spec);
+  if (table.rows.empty()) {
+    say("\nNo derivatives: nothing lifts off.\n");
+    return;
+  }
+  say("\nDerivatives, each of a quantity in its unit by a parameter in its own (angles in rad):\n{:<22}", "");
+  for (const Option* parameter : table.parameters) say(" {:>14}", parameter->key);
+  say("\n");
+  bool infinite = false;
+  for (const Row& row : table.rows) {
+    const std::string_view unit = row.quantity->unit;
+    say("{:<22}", unit == "1" ? std::string(row.quantity->name)
+                              : fmt::format("{} [{}]", row.quantity->name, unit));
+    for (const double value : row.by) say(" {:>14.7g}", value);
+    infinite = infinite || std::ranges::any_of(row.by, [](double value) { return std::isnan(value); });
+    say("\n");
+  }
+  if (infinite)
+    say("nan: infinite here, or not known to six digits, as on a fold, where a lift-off appears; by "
+        "mu_kinetic:\nit follows mu_static, whose derivatives are of both.\n");
+}
+
+std::string gradient_json(const Spec& spec) {
+  const Table table = table_of(spec);
+  std::vector<std::string> rows;
+  for (const Row& row : table.rows) {
+    std::vector<std::string> cells;
+    for (std::size_t j = 0; j < row.by.size(); ++j)
+      cells.push_back(fmt::format("\"{}\": {}", table.parameters[j]->key,
+                                  std::isfinite(row.by[j]) ? fmt::format("{}", row.by[j]) : "null"));
+    rows.push_back(fmt::format("\"{}\": {{{}}}", row.quantity->name, fmt::join(cells, ", ")));
+  }
+  return fmt::format("{{{}}}", fmt::join(rows, ",\n    "));
+}
+
+}  // namespace leapmap::cli

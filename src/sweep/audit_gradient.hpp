@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// How right a sweep's derivatives are: some of a sample's again, by differences of the exact solver in long
+/// double, which knows nothing of duals.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "leapmap/audit.hpp"
+#include "leapmap/spec.hpp"
+#include "trajectory/gradient.hpp"
+
+namespace leapmap {
+
+class GradientAuditor {
+ public:
+  /// Keeps a reference to spec.
+  explicit GradientAuditor(const Spec& spec);
+
+  /// Looks at the derivatives by one parameter, which the design's number picks. gradient: those of all
+  /// quantities, each by all parameters that the spec asks for. A design that has another outcome a hair away
+  /// is undecided.
+  void look_at(std::size_t number, const Design& design, const Outcome& ours,
+               std::span<const double> gradient, AuditReport& report) const;
+
+ private:
+  const Spec& spec_;
+  GradientWanted wanted_;
+  double rounding_;  ///< of what is stored, relative
+};
+
+}  // namespace leapmap
