@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws the design charts of a map: jump height, time and agility over two of its axes, a panel for each value of the others.
 
-A cell a design, with labelled isolines; hatched where the first lift-off is spurious; other colours where there is no jump, by
+With labelled isolines; hatched where the first lift-off is spurious; with cliffs, as leapmap boundaries finds them, as curves
+that nothing is drawn across, and without them a cell a design; other colours where there is no jump, by
 the reason; a star at the paper's hoop. Agility is the jump's height over the time from release to its apex; the colour bar
 marks published jumpers. Draws what the map holds: agility wants jump_height, jump_time and apex_time;
 spurious_first_jump, jump_angle (gaps at cliffs) and status are drawn if they are there.
@@ -13,6 +14,7 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize, PowerNorm
 
+import cliffs
 import looks
 import planes
 import style
@@ -47,37 +49,44 @@ def scale_of(look, levels, values):
     return ListedColormap(plt.get_cmap(look.colours)(np.linspace(*ends, 256))), norm, levels
 
 
-def draw_panel(axis, grid, plane, flags, course, told, scale, ink):
+def draw_panel(axis, crisp, plane, flags, course, told, scale, ink):
     """One panel: what happened where there is no jump, the field, its isolines, and hatching where spurious."""
     colours, norm, levels = scale
-    x, y, cells = grid.values(grid.x), grid.values(grid.y), (grid.edges(grid.x), grid.edges(grid.y))
+    grid = crisp.grid
     codes = list(looks.STATUSES)
     background = np.full(plane.shape, np.nan)
     for i, code in enumerate(codes):
         background[told[code]] = i
+    if crisp.crisp:
+        x, y, cells = (crisp.centres(grid.x), crisp.centres(grid.y), (crisp.edges(grid.x), crisp.edges(grid.y)))
+        torn = np.where(crisp.torn, np.nan, crisp.field(plane))
+        plane, background, flags = crisp.field(plane), crisp.code(background), crisp.code(flags)
+    else:
+        x, y, cells = grid.values(grid.x), grid.values(grid.y), (grid.edges(grid.x), grid.edges(grid.y))
+        torn = without_cliffs(plane, course)
     axis.pcolormesh(*cells, background, shading="flat", norm=BoundaryNorm(np.arange(len(codes) + 1) - 0.5, len(codes)),
                     cmap=ListedColormap([looks.STATUSES[c][0] for c in codes]), rasterized=True)
-    # Cells, no filled contours: those would reach across cliffs, and miss a lone design.
+    # Cells or pixels, no filled contours: those would reach across cliffs, and miss a lone design.
     axis.pcolormesh(*cells, np.maximum(plane, norm.vmin), shading="flat", cmap=colours, norm=norm, rasterized=True)
     if not np.isfinite(plane).any():
         return
-    torn = without_cliffs(plane, course)
     present = [v for v in levels if np.isfinite(torn).any() and np.nanmin(torn) < v < np.nanmax(torn)]
     if present:
         lines = axis.contour(x, y, np.ma.masked_invalid(torn), levels=present, colors=ink, linewidths=0.8)
         axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7)
     hatched = np.ma.masked_where(~np.isfinite(plane), (flags == 1) * 1.0)
     if hatched.max() > 0:
-        # Every cell by its four corners, so that the hatching ends where cells do.
-        corners = [np.repeat(edges, 2)[1:-1] for edges in cells]
-        hatched = hatched.repeat(2, axis=0).repeat(2, axis=1)
+        corners = (x, y)
+        if not crisp.crisp:  # every cell by its four corners, so that the hatching ends where cells do
+            corners = [np.repeat(edges, 2)[1:-1] for edges in cells]
+            hatched = hatched.repeat(2, axis=0).repeat(2, axis=1)
         axis.contourf(*corners, hatched, levels=[0.5, 1.5], colors="none", hatches=["///"])
-        if hatched.min() == 0:
+        if hatched.min() == 0 and not crisp.crisp:
             axis.contour(*corners, hatched, levels=[0.5], colors=style.EDGE, linewidths=0.7)
 
 
-def chart(grid, name):
-    """One figure of one quantity."""
+def chart(grid, name, panels_of):
+    """One figure of one quantity. panels_of: cliffs.Panel of each panel."""
     m, look = grid.map, looks.LOOKS[name]
     values = looks.quantity(m, name)
     panels = grid.cut(values)
@@ -89,9 +98,10 @@ def chart(grid, name):
                       for array in (m.fields.get("spurious_first_jump"), looks.course(m)))
     told = grid.told()
     figure, axes = grid.figure()
-    starred = False
+    starred, kinds = False, set()
     for i, axis in enumerate(axes):
-        draw_panel(axis, grid, panels[i], flags[i], courses[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
+        draw_panel(axis, panels_of[i], panels[i], flags[i], courses[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
+        kinds |= panels_of[i].draw(axis)
         if place := grid.paper(grid.panels[i]):
             starred = True
             style.draw_star(axis, place, look.star)
@@ -112,6 +122,7 @@ def chart(grid, name):
     for code, (colour, words) in looks.STATUSES.items():
         if any(t.any() for t in told[code]):
             handles.append(style.swatch(colour, words))
+    handles += cliffs.handles(kinds)
     if starred:
         handles.append(style.star_handle(look.star))
     if name == "agility":
@@ -123,6 +134,7 @@ def chart(grid, name):
 def main():
     p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "")
     planes.add_options(p)
+    cliffs.add_options(p)
     arguments = p.parse_args()
     m = read_map(arguments.source)
     drawn = [name for name in planes.FIELDS if looks.quantity(m, name) is not None]
@@ -131,8 +143,10 @@ def main():
     grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)
     if not m.whole:
         print(f"{m.path}: INCOMPLETE, {m.computed().mean():.0%} of its designs are computed; the others are left white", file=sys.stderr)
+    curves = cliffs.read_cliffs(m, arguments.cliffs)
+    panels_of = [cliffs.Panel(grid, panel, curves) for panel in grid.panels]
     for name in drawn:
-        style.save(chart(grid, name), f"{style.stem(arguments.output)}_{name}")
+        style.save(chart(grid, name, panels_of), f"{style.stem(arguments.output)}_{name}")
 
 
 if __name__ == "__main__":

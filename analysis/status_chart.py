@@ -6,6 +6,7 @@ spurious one, and why there is no jump elsewhere. A star at the paper's hoop. Ne
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
+import cliffs
 import looks
 import planes
 import style
@@ -16,7 +17,7 @@ JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a 
 NONE_SPURIOUS = ("#dfc27d", "no jump: its lift-offs stay below the hop height")
 
 
-def chart(grid):
+def chart(grid, curves):
     m = grid.map
     if "status" not in m.fields:
         raise NotAMap(f"{m.path}: has no status; a status chart wants it")
@@ -33,14 +34,17 @@ def chart(grid):
     panels = grid.cut(kind)
 
     figure, axes = grid.figure()
+    drawn = set()
     for axis, panel, plane in zip(axes, grid.panels, panels):
-        axis.pcolormesh(grid.edges(grid.x), grid.edges(grid.y), plane, shading="flat", rasterized=True,
+        crisp = cliffs.Panel(grid, panel, curves)
+        axis.pcolormesh(crisp.edges(grid.x), crisp.edges(grid.y), crisp.code(plane), shading="flat", rasterized=True,
                         norm=BoundaryNorm(np.arange(len(kinds) + 1) - 0.5, len(kinds)), cmap=ListedColormap([c for c, _ in kinds]))
+        drawn |= crisp.draw(axis)
         if place := grid.paper(panel):
             style.draw_star(axis, place)
     shares = np.bincount(np.concatenate([p.ravel() for p in panels]), minlength=len(kinds)) / sum(p.size for p in panels)
     handles = [style.swatch(colour, f"{words}: {100 * share:.3g} %")
-               for (colour, words), share in zip(kinds, shares) if share > 0]
+               for (colour, words), share in zip(kinds, shares) if share > 0] + cliffs.handles(drawn)
     if any(grid.paper(p) for p in grid.panels):
         handles.append(style.star_handle())
     style.legend_above(figure, handles)
@@ -50,8 +54,11 @@ def chart(grid):
 def main():
     p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "_status")
     planes.add_options(p)
+    cliffs.add_options(p)
     arguments = p.parse_args()
-    style.save(chart(planes.Planes(read_map(arguments.source), arguments.x, arguments.y, arguments.at)), arguments.output)
+    m = read_map(arguments.source)
+    grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)
+    style.save(chart(grid, cliffs.read_cliffs(m, arguments.cliffs)), arguments.output)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/info_place.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
@@ -34,19 +35,25 @@ struct BoundariesArguments {
   Locking locking = Locking::required;
 };
 
-/// "jumped on 2", "no_jump" and the like.
-std::string told(const Discrete& outcome) {
-  std::string text(name_of(outcome.status));
-  if (outcome.jumps_on > 0) text += fmt::format(" on {}", outcome.jumps_on);
-  if (outcome.status != Status::jumped && outcome.spurious_first_jump == 1) text += ", after a spurious one";
-  if (outcome.phase_sequence != 0) text += " " + phase_letters(outcome.phase_sequence);
-  return text;
+/// "0 threshold, 1 fold, ..."
+std::string numbered(const std::vector<std::string>& names) {
+  std::vector<std::string> told;
+  for (std::size_t i = 0; i < names.size(); ++i) told.push_back(fmt::format("{} {}", i, names[i]));
+  return fmt::format("{}", fmt::join(told, ", "));
+}
+
+std::string kinds_told() {
+  std::vector<std::string> names;
+  for (int kind = 0; kind < cliff_kinds; ++kind) names.emplace_back(name_of(static_cast<CliffKind>(kind)));
+  return numbered(names);
 }
 
 /// Every cliff a row; then every place of every curve.
 std::vector<Table> tables_of(const Boundaries& found) {
   Table cliffs{numbered_rows(found.cliffs.size())};
   cliffs[0].name = "cliff";
+  std::vector<std::string> axis_names;
+  for (const Axis& axis : found.axes) axis_names.push_back(axis.key);
   std::vector<std::vector<double>> places;
   for (const Cliff& cliff : found.cliffs) places.push_back(place_of(found, cliff));
   const auto axis_column = [&](std::size_t k, const std::string& prefix, const std::vector<double>& values) {
@@ -55,37 +62,47 @@ std::vector<Table> tables_of(const Boundaries& found) {
     return TableColumn{prefix + found.axes[k].key, std::string(own ? "1" : option.unit),
                        std::string(option.meaning), values};
   };
-  const auto texts_of = [&](const auto& text) {
-    std::vector<std::string> texts;
-    for (const Cliff& cliff : found.cliffs) texts.emplace_back(text(cliff));
-    return texts;
+  const auto add_numbers = [&](const std::string& name, const std::string& meaning, const auto& number) {
+    std::vector<double> numbers;
+    for (const Cliff& cliff : found.cliffs) numbers.push_back(static_cast<double>(number(cliff)));
+    cliffs.push_back({name, "1", meaning, numbers});
   };
   for (std::size_t k = 0; k < found.axes.size(); ++k) {
     std::vector<double> values;
     for (const std::vector<double>& place : places) values.push_back(place[k]);
     cliffs.push_back(axis_column(k, "", values));
   }
-  cliffs.push_back({"along", "1", "axis along which it was bisected: the value is the last below",
-                    texts_of([&](const Cliff& cliff) { return found.axes[cliff.axis].key; })});
-  cliffs.push_back({"kind", "1", "what happens there",
-                    texts_of([](const Cliff& cliff) { return name_of(cliff.kind); })});
-  cliffs.push_back({"below", "1", "outcome at the value and below",
-                    texts_of([](const Cliff& cliff) { return told(cliff.below); })});
-  cliffs.push_back({"above", "1", "outcome next above",
-                    texts_of([](const Cliff& cliff) { return told(cliff.above); })});
+  add_numbers("along", fmt::format("axis along which it was bisected: its value is the last below; {}", numbered(axis_names)),
+              [](const Cliff& cliff) { return cliff.axis; });
+  add_numbers("kind", "what happens there: " + kinds_told(), [](const Cliff& cliff) { return cliff.kind; });
+  for (const auto& [side, which] : {std::pair{std::string("below"), &Cliff::below}, {"above", &Cliff::above}}) {
+    add_numbers(side + "_status", "status " + side + ", as in maps",
+                [which](const Cliff& cliff) { return (cliff.*which).status; });
+    add_numbers(side + "_jumps_on", "number of the lift-off that is the jump " + side + "; 0: none",
+                [which](const Cliff& cliff) { return (cliff.*which).jumps_on; });
+    add_numbers(side + "_spurious_first_jump", "as in maps, " + side + "; 255: no lift-off",
+                [which](const Cliff& cliff) { return (cliff.*which).spurious_first_jump; });
+  }
+  if (std::ranges::any_of(found.cliffs, [](const Cliff& cliff) {
+        return cliff.below.phase_sequence != cliff.above.phase_sequence;
+      }))
+    for (const auto& [side, which] : {std::pair{"below", &Cliff::below}, {"above", &Cliff::above}}) {
+      std::vector<std::string> letters;
+      for (const Cliff& cliff : found.cliffs) letters.push_back(phase_letters((cliff.*which).phase_sequence));
+      cliffs.push_back({std::string(side) + "_phases", "1", fmt::format("phases {}", side), letters});
+    }
   if (found.curves.empty()) return {cliffs};
 
-  std::vector<double> curve, number;
-  std::vector<std::string> kinds;
+  std::vector<double> curve, number, kinds;
   std::vector<std::vector<double>> at(found.axes.size());
   const auto add = [&](std::size_t i, double cliff, const std::vector<double>& place) {
     curve.push_back(static_cast<double>(i)), number.push_back(cliff);
-    kinds.emplace_back(name_of(found.curves[i].kind));
+    kinds.push_back(static_cast<double>(found.curves[i].kind));
     for (std::size_t k = 0; k < at.size(); ++k) at[k].push_back(place[k]);
   };
   const auto meeting = [&](std::size_t i, const std::vector<double>& there, std::size_t beside) {
     std::vector<double> place = places[beside];
-    std::ranges::copy(there, place.end() - 2);
+    for (std::size_t k = 0; k < 2; ++k) place[found.plane[k]] = there[k];
     add(i, -1.0, place);
   };
   for (std::size_t i = 0; i < found.curves.size(); ++i) {
@@ -97,7 +114,7 @@ std::vector<Table> tables_of(const Boundaries& found) {
   Table curves{numbered_rows(curve.size())};
   curves[0].name = "vertex";
   curves.push_back({"curve", "1", "number of the curve, whose places stand one after the other", curve});
-  curves.push_back({"curve_kind", "1", "what happens along the curve", kinds});
+  curves.push_back({"curve_kind", "1", "what happens along the curve: " + kinds_told(), kinds});
   curves.push_back({"curve_cliff", "1",
                     "the cliff, by its row; -1: where outcomes meet, known only to a cell of the grid", number});
   for (std::size_t k = 0; k < at.size(); ++k) curves.push_back(axis_column(k, "curve_", at[k]));
@@ -122,7 +139,7 @@ void print_counts(const Boundaries& found) {
     const auto cliffs = std::ranges::count_if(found.cliffs, is_kind);
     if (cliffs == 0) continue;
     const auto curves = std::ranges::count_if(found.curves, is_kind);
-    say("{:<9}{} places{}\n", name_of(static_cast<CliffKind>(kind)),
+    say("{:<10} {} places{}\n", name_of(static_cast<CliffKind>(kind)),
         grouped(static_cast<std::uint64_t>(cliffs)),
         curves > 0 ? fmt::format(" on {} curves", grouped(static_cast<std::uint64_t>(curves))) : "");
   }
@@ -223,7 +240,7 @@ void add_boundaries(CLI::App& app, int& status) {
       "pull at the\n"
       "release), phase and painleve (with friction), unresolved (on one side the method gave up). Two axes give "
       "curves,\n"
-      "more axes curves in each plane of the last two.\n"
+      "more axes curves in each plane of the two with the most values.\n"
       "Examples:\n"
       "  leapmap boundaries sweeps/slope_mass_ratio.toml -o maps/slope_mass_ratio.cliffs.h5\n"
       "  leapmap boundaries maps/slope_mass_ratio.h5 --csv cliffs.csv\n"

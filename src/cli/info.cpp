@@ -11,6 +11,7 @@
 #include <map>
 
 #include "cli/commands.hpp"
+#include "cli/info_place.hpp"
 #include "cli/output.hpp"
 #include "cli/spoken.hpp"
 #include "leapmap/errors.hpp"
@@ -26,6 +27,7 @@ namespace {
 
 struct InfoArguments {
   std::string path;
+  std::string at;
   bool only_spec = false, failed = false;
   std::size_t limit = 20;
   Locking locking = Locking::required;
@@ -176,6 +178,10 @@ int run(const InfoArguments& arguments) {
     return 0;
   }
   if (arguments.failed) return list_failed(map, arguments);
+  if (!arguments.at.empty()) {
+    print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at);
+    return 0;
+  }
   const auto told = [&](const std::string& name) { return printable(map.attribute(name)); };
   const auto short_form = [&](const std::string& name, const char* form) {
     return hdf5::has_attribute(map.file(), name)
@@ -257,6 +263,8 @@ void add_info(CLI::App& app, int& status) {
   command->add_flag("--spec", arguments->only_spec, "print the resolved spec that made it, and nothing else");
   command->add_flag("--failed", arguments->failed,
                     "list the failed designs, each as the command that reproduces it");
+  command->add_option("--at", arguments->at,
+                      "AXIS=VALUE,...: tell a design's outcome and gradient, and the nearest cliffs around it");
   command->add_option("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
       ->check(CLI::Range(0.0, 1e15));
   add_no_lock(*command, arguments->locking);
@@ -264,6 +272,7 @@ void add_info(CLI::App& app, int& status) {
       "Examples:\n"
       "  leapmap info m.h5                                       axes, statuses, extremes\n"
       "  leapmap info m.h5 --spec > again.toml                   the spec that makes it again\n"
+      "  leapmap info m.h5 --at slope=0.4,mass_ratio=2.4         one design, and how far the next cliff is\n"
       "  leapmap info m.h5 --failed --limit 3                    commands that show what failed");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

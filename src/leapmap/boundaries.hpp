@@ -46,20 +46,21 @@ struct Cliff {
   Discrete below, above;
 };
 
-/// A curve in the plane of the last two axes: cliffs of one kind between the same two outcomes, one after the
+/// A curve in the plane of two axes: cliffs of one kind between the same two outcomes, one after the
 /// other.
 struct CliffCurve {
   CliffKind kind;
   /// Places in Boundaries::cliffs. An end where three outcomes meet is `meeting`, which is known only to
   /// its cell of the grid: the middle of what leads to it.
   std::vector<std::size_t> cliffs;
-  std::vector<double> meeting_from, meeting_to;  ///< there, along the two axes; empty: it just ends
+  std::vector<double> meeting_from, meeting_to;  ///< there, along the plane's axes; empty: it just ends
 };
 
 struct Boundaries {
   std::vector<Axis> axes;
+  std::vector<std::size_t> plane;  ///< the two axes with the most values, in their order; empty: there is one
   std::vector<Cliff> cliffs;       ///< in order of axis, design and value
-  std::vector<CliffCurve> curves;  ///< with two axes or more; slice by slice, in the order of the grid
+  std::vector<CliffCurve> curves;  ///< in that plane, for all values of the other axes, in the grid's order
 };
 
 /// Where along its axes a cliff lies.

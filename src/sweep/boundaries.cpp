@@ -178,7 +178,12 @@ Boundaries find_boundaries(const Spec& original, const BoundaryOptions& asked) {
   const std::size_t designs = Tiling(shape_of(spec)).designs();
   const std::vector<std::uint64_t> words = solve_grid(spec, options, designs);
   const std::vector<Edge> edges = edges_of(shape_of(spec), words);
-  Boundaries boundaries{spec.axes, polish(spec, edges, options, designs), {}};
+  Boundaries boundaries{spec.axes, {}, polish(spec, edges, options, designs), {}};
+  for (std::size_t k = 0; k < spec.axes.size(); ++k) boundaries.plane.push_back(k);
+  std::ranges::stable_sort(boundaries.plane, std::ranges::greater{},
+                           [&](std::size_t k) { return spec.axes[k].values.size(); });
+  boundaries.plane.resize(spec.axes.size() < 2 ? 0 : 2);
+  std::ranges::sort(boundaries.plane);
   boundaries.curves = curves_of(boundaries);
   return boundaries;
 }

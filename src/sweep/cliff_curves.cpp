@@ -27,34 +27,48 @@ bool between_the_same(const Cliff& a, const Cliff& b) {
   return (a.below == b.below && a.above == b.above) || (a.below == b.above && a.above == b.below);
 }
 
-/// A plane of the last two axes of a grid.
+/// The planes of two axes of a grid.
 class Plane {
  public:
-  Plane(const Boundaries& boundaries) : boundaries_(boundaries), cliffs_(boundaries.cliffs) {
+  explicit Plane(const Boundaries& boundaries) : boundaries_(boundaries), cliffs_(boundaries.cliffs) {
     for (const Axis& axis : boundaries.axes) shape_.push_back(axis.values.size());
-    const std::size_t last = shape_.size() - 1;
-    rows_ = shape_[last - 1], columns_ = shape_[last];
+    for (std::size_t k = 0; k < shape_.size(); ++k)
+      if (k != row_axis() && k != column_axis()) others_.push_back(shape_[k]);
     for (std::size_t i = 0; i < cliffs_.size(); ++i)
-      if (cliffs_[i].axis + 2 > last) on_edge_[edge(cliffs_[i].design, cliffs_[i].axis == last)].push_back(i);
+      if (cliffs_[i].axis == row_axis() || cliffs_[i].axis == column_axis())
+        on_edge_[edge(cliffs_[i].design, cliffs_[i].axis == column_axis())].push_back(i);
   }
 
   std::size_t planes() const {
     std::size_t count = 1;
-    for (std::size_t k = 0; k + 2 < shape_.size(); ++k) count *= shape_[k];
+    for (const std::size_t other : others_) count *= other;
     return count;
   }
 
   /// The segments in every cell of a plane.
   std::vector<Segment> segments(std::size_t plane) const {
+    std::vector<std::size_t> elsewhere;
+    unravel(plane, others_, elsewhere);
+    std::size_t first = 0;  // the plane's first design
+    for (std::size_t k = 0, other = 0; k < shape_.size(); ++k)
+      if (k != row_axis() && k != column_axis()) first += elsewhere[other++] * stride(k);
     std::vector<Segment> all;
-    for (std::size_t row = 0; row + 1 < rows_; ++row)
-      for (std::size_t column = 0; column + 1 < columns_; ++column)
-        in_cell(plane * rows_ * columns_ + row * columns_ + column, all);
+    for (std::size_t row = 0; row + 1 < shape_[row_axis()]; ++row)
+      for (std::size_t column = 0; column + 1 < shape_[column_axis()]; ++column)
+        in_cell(first + row * stride(row_axis()) + column * stride(column_axis()), all);
     return all;
   }
 
  private:
-  static std::size_t edge(std::size_t design, bool along_last) { return 2 * design + along_last; }
+  std::size_t row_axis() const { return boundaries_.plane[0]; }
+  std::size_t column_axis() const { return boundaries_.plane[1]; }
+  /// How far apart designs are that are neighbours along an axis.
+  std::size_t stride(std::size_t axis) const {
+    std::size_t step = 1;
+    for (std::size_t k = axis + 1; k < shape_.size(); ++k) step *= shape_[k];
+    return step;
+  }
+  static std::size_t edge(std::size_t design, bool along_columns) { return 2 * design + along_columns; }
 
   /// The cliffs around a cell whose first corner is `design`, in order around it.
   std::vector<std::size_t> around(std::size_t design) const {
@@ -69,8 +83,8 @@ class Plane {
       found.insert(found.end(), some.begin(), some.end());
     };
     add(edge(design, true), true);
-    add(edge(design + 1, false), true);
-    add(edge(design + columns_, true), false);
+    add(edge(design + stride(column_axis()), false), true);
+    add(edge(design + stride(row_axis()), true), false);
     add(edge(design, false), false);
     return found;
   }
@@ -117,7 +131,7 @@ class Plane {
 
   std::vector<double> place(std::size_t i) const {
     const std::vector<double> at = place_of(boundaries_, cliffs_[i]);
-    return {at[at.size() - 2], at[at.size() - 1]};
+    return {at[row_axis()], at[column_axis()]};
   }
 
   /// In cells of the grid.
@@ -129,18 +143,17 @@ class Plane {
     const Cliff& cliff = cliffs_[i];
     std::vector<std::size_t> position;
     unravel(cliff.design, shape_, position);
-    const std::size_t first = shape_.size() - 2;
-    std::vector<double> at{static_cast<double>(position[first]), static_cast<double>(position[first + 1])};
+    std::vector<double> at{static_cast<double>(position[row_axis()]),
+                           static_cast<double>(position[column_axis()])};
     const std::vector<double>& values = boundaries_.axes[cliff.axis].values;
     const std::size_t k = position[cliff.axis];
-    at[cliff.axis - first] += (cliff.value - values[k]) / (values[k + 1] - values[k]);
+    at[cliff.axis == column_axis()] += (cliff.value - values[k]) / (values[k + 1] - values[k]);
     return at;
   }
 
   const Boundaries& boundaries_;
   const std::vector<Cliff>& cliffs_;
-  std::vector<std::size_t> shape_;
-  std::size_t rows_ = 0, columns_ = 0;
+  std::vector<std::size_t> shape_, others_;
   std::unordered_map<std::size_t, std::vector<std::size_t>> on_edge_;
 };
 
@@ -184,7 +197,7 @@ void chain(const std::vector<Segment>& segments, std::vector<CliffCurve>& curves
 
 std::vector<CliffCurve> curves_of(const Boundaries& boundaries) {
   std::vector<CliffCurve> curves;
-  if (boundaries.axes.size() < 2) return curves;
+  if (boundaries.plane.empty()) return curves;
   const Plane plane(boundaries);
   for (std::size_t k = 0; k < plane.planes(); ++k) chain(plane.segments(k), curves);
   return curves;

@@ -6,7 +6,7 @@
 
 namespace leapmap {
 
-/// The curves in each plane of the last two axes; none where there is one axis only.
+/// The curves in boundaries.plane, plane by plane.
 std::vector<CliffCurve> curves_of(const Boundaries& boundaries);
 
 }  // namespace leapmap

@@ -121,8 +121,8 @@ std::vector<Design> gradient(std::span<const Design> designs, double Outcome::*o
   check_spec(spec);
   const GradientWanted wanted = gradients_of(spec);
   std::vector<Design> found(designs.size());
-  const std::size_t most = std::min(designs.size(), std::size_t{256});
-  parallel_for_each((designs.size() + most - 1) / std::max<std::size_t>(most, 1), options.threads, [&] {
+  constexpr std::size_t most = 256;
+  parallel_for_each((designs.size() + most - 1) / most, options.threads, [&] {
     return [&, solver = make_gradient_solver(spec), gradients = Gradients(wanted),
             outcomes = std::vector<Outcome>(most)](std::size_t block) mutable {
       const std::size_t first = block * most, size = std::min(most, designs.size() - first);

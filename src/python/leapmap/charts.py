@@ -11,7 +11,7 @@ import sys
 from leapmap._analysis import FOLDER
 
 CHARTS = {name: name + "_chart.py" for name in ("adequacy", "cut", "design", "experiment", "list", "precision", "stability", "status", "trace")}
-CHARTS["explorer"] = "explorer"
+CHARTS |= {"explorer": "explorer", "phases": "phase_diagram.py"}
 
 
 def main():

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/info_place.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/hop_gradient.hpp"
+#include "cli/output.hpp"
+#include "leapmap/errors.hpp"
+#include "model/fields.hpp"
+#include "model/model.hpp"
+#include "sweep/cliff.hpp"
+#include "sweep/options.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+/// The spec's design with the axes' parameters as given.
+Design design_at(const Spec& spec, const std::string& at) {
+  Design design = spec.design;
+  std::vector<std::string> given;
+  for (std::size_t begin = 0; begin <= at.size();) {
+    const std::size_t end = std::min(at.find(',', begin), at.size());
+    const std::string part = at.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t equals = part.find('=');
+    const std::string name = part.substr(0, equals);
+    const auto axis = std::ranges::find(spec.axes, name, &Axis::key);
+    if (equals == std::string::npos || axis == spec.axes.end() || std::ranges::find(given, name) != given.end()) {
+      std::vector<std::string> names;
+      for (const Axis& each : spec.axes) names.push_back(fmt::format("{}=VALUE", each.key));
+      throw InputError(fmt::format("--at {}: '{}' is not an axis with its value; allowed: {}", at, part,
+                                   fmt::join(names, ",")));
+    }
+    given.push_back(name);
+    const Option& option = *find_option("", name);
+    design.*std::get<ParameterSlot>(option.slot).member = parse_number(option, part.substr(equals + 1));
+  }
+  for (const Axis& axis : spec.axes)
+    if (std::ranges::find(given, axis.key) == given.end())
+      throw InputError(fmt::format("--at {}: does not say the {}; allowed: a value of every axis", at, axis.key));
+  return design;
+}
+
+void print_outcome(const Outcome& outcome) {
+  say("{}\n", told(discrete(outcome, false)));
+  for (const Field& field : map_fields()) {
+    const auto* quantity = std::get_if<Quantity>(&field.source);
+    if (!quantity || std::isnan(outcome.*quantity->member)) continue;
+    say("  {:<20} {:<14.8g} {}\n", field.name, outcome.*quantity->member, field.unit == "1" ? "" : field.unit);
+  }
+  if (outcome.phase_sequence != 0) say("  {:<20} {}\n", "phases", phase_letters(outcome.phase_sequence));
+}
+
+}  // namespace
+
+std::string told(const Discrete& outcome) {
+  std::string text(name_of(outcome.status));
+  if (outcome.jumps_on > 0) text += fmt::format(" on {}", outcome.jumps_on);
+  if (outcome.status != Status::jumped && outcome.spurious_first_jump == 1) text += ", after a spurious one";
+  if (outcome.phase_sequence != 0) text += fmt::format(" {}", phase_letters(outcome.phase_sequence));
+  return text;
+}
+
+void print_place(const Spec& original, const std::string& at) {
+  if (original.axes.empty())
+    throw InputError(origin_of(original) + ": is a list of designs; allowed: --at with a map over axes");
+  Spec one = original;
+  one.design = design_at(original, at);
+  const NearCliffs cliffs = near_cliffs(original, one.design);
+  one.axes.clear();
+  one.output = {};
+  Outcome outcome;
+  make_solver(one)({&one.design, 1}, {&outcome, 1});
+  print_outcome(outcome);
+  if (resolved_method(one.numerics) == "exact") print_gradient(one);
+
+  say("\nNearest cliffs within the map\n");
+  const auto place = [&](std::size_t k, double value) {
+    const Option& option = *find_option("", original.axes[k].key);
+    return fmt::format("{} {:.8g} ({:+.3g})", option.key, value, value - value_of(option, one.design));
+  };
+  bool none = true;
+  for (std::size_t k = 0; k < original.axes.size(); ++k)
+    for (const NearCliff& cliff : cliffs.along[k]) {
+      none = false;
+      say("  {:<34} {:<10} beyond: {}\n", place(k, cliff.at[k]), name_of(cliff.kind), told(cliff.beyond));
+    }
+  if (none) say("  none along any axis\n");
+  if (cliffs.nearest.empty()) return;
+  std::vector<std::string> places;
+  for (std::size_t k = 0; k < original.axes.size(); ++k) places.push_back(place(k, cliffs.nearest[0].at[k]));
+  say("In all, as a share of the axes' ranges: {:.3g} away, at {}: {}\n", cliffs.nearest[0].distance,
+      fmt::join(places, ", "), name_of(cliffs.nearest[0].kind));
+}
+
+}  // namespace leapmap::cli

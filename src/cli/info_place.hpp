@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap info MAP --at: one design of a map's space, and what is around it.
+#pragma once
+
+#include <string>
+
+#include "leapmap/boundaries.hpp"
+#include "sweep/spec.hpp"
+
+namespace leapmap::cli {
+
+/// Tells the design's outcome, its derivatives, and the nearest cliffs along each axis and in all. at:
+/// AXIS=VALUE,... with every axis of the spec. Throws InputError.
+void print_place(const Spec& spec, const std::string& at);
+
+/// "jumped on 2", "no_jump" and the like.
+std::string told(const Discrete& outcome);
+
+}  // namespace leapmap::cli
