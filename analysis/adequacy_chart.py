@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
+import cliffs
 import looks
 import planes
 import style
@@ -41,7 +42,8 @@ def plane_of(m, values):
     return np.moveaxis(values, [names.index(k) for k in KEEP], [-2, -1])
 
 
-def chart(rigid, slipping):
+def chart(rigid, slipping, of_rigid, of_slipping):
+    """of_...: the cliffs of the two maps, or None."""
     for k in KEEP:
         if k not in rigid.dims or k not in slipping.dims or not np.array_equal(rigid.dims[k], slipping.dims[k]):
             raise NotAMap(f"{rigid.path} and {slipping.path}: are not over the same {k}")
@@ -58,20 +60,29 @@ def chart(rigid, slipping):
     figure, axes = plt.subplots(*shape, sharex=True, sharey=True, squeeze=False, figsize=(5.4 * shape[1], 4.2 * shape[0] + 0.8),
                                 layout="constrained")
     degrees, ratios = np.degrees(rigid.dims["slope"]), rigid.dims["mass_ratio"]
+    across, up = KEEP
+    grids = [planes.Planes(m, across, up) for m in (rigid, slipping)]
+    left = cliffs.Panel(grids[0], grids[0].panels[0], of_rigid if of_slipping is not None else None)
+    drawn = set()
     unknown = plane_of(slipping, slipping.code("status", "indeterminate") | slipping.code("status", "failed"))
     heights, jump, flags = (plane_of(slipping, v) for v in (slipping.fields["jump_height"], slipping.code("status", "jumped"),
                                                            slipping.fields["spurious_first_jump"]))
     for i, (axis, mu) in enumerate(zip(axes.flat, mus)):
         here = (i,) if "mu_static" in slipping.dims else ()
-        kind = kinds(height, heights[here], jumps, jump[here], unknown[here])
-        axis.pcolormesh(planes.edges_of(ratios), planes.edges_of(degrees), kind.T, cmap=ListedColormap([c for c, _ in KINDS]), vmin=-0.5, vmax=len(KINDS) - 0.5,
+        right = cliffs.Panel(grids[1], grids[1].panels[i], of_slipping if of_rigid is not None else None)
+        # Rows along the slope, pixel by pixel where there are cliffs.
+        kind = kinds(left.field(height.T), right.field(heights[here].T), left.code(jumps.T), right.code(jump[here].T), right.code(unknown[here].T))
+        axis.pcolormesh(right.edges(across), right.edges(up), kind, cmap=ListedColormap([c for c, _ in KINDS]), vmin=-0.5, vmax=len(KINDS) - 0.5,
                         shading="flat", rasterized=True)
         differs = (flag != flags[here]) & jumps & jump[here]
         if differs.any():
-            axis.contourf(ratios, degrees, differs.T, levels=[0.5, 1.5], colors="none", hatches=["////"])
+            differs = left.code(jumps.T) & right.code(jump[here].T) & (left.code(flag.T) != right.code(flags[here].T))
+            axis.contourf(right.centres(across), right.centres(up), differs, levels=[0.5, 1.5], colors="none", hatches=["////"])
+        drawn |= left.draw(axis) | right.draw(axis)
         axis.plot(looks.PAPER["mass_ratio"], np.degrees(looks.PAPER["slope"]), "*", markersize=10, color=style.MARK, markeredgecolor="white")
         both = jumps & jump[here]
-        share = 100 * (kind == 1).sum() / max(both.sum(), 1)
+        close = kinds(height, heights[here], jumps, jump[here], unknown[here]) == 1
+        share = 100 * close.sum() / max(both.sum(), 1)
         axis.set_title(f"μ = {mu:g}: height agrees for {share:.0f} % of what jumps in both")
         style.log_scale(axis.xaxis)
     for axis in axes[-1]:
@@ -79,6 +90,7 @@ def chart(rigid, slipping):
     for axis in axes[:, 0]:
         axis.set_ylabel("slope [°]")
     handles = [Patch(color=c, label=text) for c, text in KINDS]
+    handles += cliffs.handles(drawn)
     handles += [Patch(facecolor="none", edgecolor=style.EDGE, hatch="////", label="only one sees a spurious first lift-off"),
                 plt.Line2D([], [], marker="*", linestyle="", markersize=10, color=style.MARK, label="the paper's hoop")]
     axes[0, -1].legend(handles=handles, loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False)
@@ -89,7 +101,8 @@ def main():
     p = style.parser(__doc__, "the map without slip, for example maps/adequacy_sticking.h5", "_adequacy")
     p.add_argument("coulomb", help="the map with Coulomb friction, for example maps/adequacy_coulomb.h5")
     arguments = p.parse_args()
-    style.save(chart(read_map(arguments.source), read_map(arguments.coulomb)), arguments.output)
+    maps = [read_map(path) for path in (arguments.source, arguments.coulomb)]
+    style.save(chart(*maps, *(cliffs.read_cliffs(m, None) for m in maps)), arguments.output)
 
 
 if __name__ == "__main__":

@@ -21,9 +21,13 @@ echo
 echo "== 74,240 designs with friction, over slope x mass ratio x friction coefficient"
 $leapmap sweep sweeps/adequacy_coulomb.toml --overwrite || [ $? = 1 ]
 echo
+echo "== where the outcomes of both jump"
+for map in slope_mass_ratio_offset adequacy_coulomb; do $leapmap boundaries maps/$map.h5 -o maps/$map.cliffs.h5; done
+echo
 echo "== charts"
 /usr/bin/python3 analysis/design_chart.py maps/slope_mass_ratio_offset.h5 -o maps/design_chart
 /usr/bin/python3 analysis/design_chart.py maps/adequacy_coulomb.h5 -o maps/design_chart_friction
+/usr/bin/python3 analysis/phase_diagram.py maps/slope_mass_ratio_offset.h5 -o maps/phase_diagram
 /usr/bin/python3 analysis/status_chart.py maps/slope_mass_ratio_offset.h5 -o maps/status
 /usr/bin/python3 analysis/cut_chart.py maps/slope_mass_ratio_offset.h5 -o maps/cut
 /usr/bin/python3 analysis/trace_chart.py maps/paper_figures.h5 --paper -o maps/paper_figures

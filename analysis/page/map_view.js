@@ -1,4 +1,7 @@
-// The map as an image: cells, hatching, isolines, axes, and a cursor on the design pointed at.
+// The map as an image: cells, hatching, isolines, cliffs, axes, and a cursor on the design pointed at.
+
+/** Of the lines of cliffs, by what happens there. */
+const DASHES = { fold: [4, 2], runway: [1, 2], turn: [5, 2, 1, 2], release: [1, 1], phase: [3, 1, 1, 1], unresolved: [1, 2] };
 
 /**
  * Draws into a canvas; `map` holds axes, fields with their values, codes. Calls onPoint(index) for the design pointed at,
@@ -32,6 +35,7 @@ function mapView(canvas, map, onPoint, onPick) {
     context.fillRect(0, 0, canvas.width, canvas.height);
     paintCells(context);
     paintIsolines(context);
+    paintCliffs(context);
     paintAxes(context, frame, sx, sy, labelOf(map.axes[view.x]), labelOf(map.axes[view.y]));
     paintBar(context);
     paintPaper(context);
@@ -102,6 +106,30 @@ function mapView(canvas, map, onPoint, onPick) {
         context.stroke();
         if (label) { context.fillText(text, ...label); labels.push(label); }
       }
+  }
+
+  /** Where outcomes jump, as leapmap boundaries found it. */
+  function paintCliffs(context) {
+    const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1);
+    context.save();
+    context.beginPath();
+    context.rect(frame.left, frame.top, frame.right - frame.left, frame.bottom - frame.top);
+    context.clip();
+    for (const curve of map.curves) {
+      const [a, b] = curve.axes, swapped = a === view.y && b === view.x;
+      if (!swapped && (a !== view.x || b !== view.y)) continue;
+      if (Object.entries(curve.at).some(([k, i]) => view.index[k] !== i)) continue;
+      const [us, vs] = swapped ? [curve.y, curve.x] : [curve.x, curve.y];
+      for (const [colour, width, dashes] of [["#ffffffa0", 2.6, []], [EDGE, 1.2, DASHES[curve.kind] ?? []]]) {
+        context.strokeStyle = colour;
+        context.lineWidth = width * frame.ratio;
+        context.setLineDash(dashes.map((d) => d * frame.ratio));
+        context.beginPath();
+        us.forEach((u, k) => context.lineTo(sx.pixel(u * unit(map.axes[view.x])), sy.pixel(vs[k] * unit(map.axes[view.y]))));
+        context.stroke();
+      }
+    }
+    context.restore();
   }
 
   /** The colour scale, with its isolines, and published jumpers beside agility. */

@@ -153,6 +153,8 @@ function start(map, solver) {
     if (flags?.values.includes(1) && map.columns) items.push(symbol("first lift-off is spurious", "○", "#1f4e79"));
     if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", "#d62728"));
     items.push(symbol("pointed at", "⊕", "#000"), symbol("shown beside", "⊕", "#d62728"));
+    for (const kind of new Set(map.curves.map((curve) => curve.kind)))
+      items.push(symbol(map.cliff_words[kind], kind === "threshold" || kind === "painleve" ? "—" : "╌", EDGE));
     element("legend").replaceChildren(...items);
   }
 

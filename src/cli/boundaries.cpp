@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 
@@ -121,16 +122,47 @@ std::vector<Table> tables_of(const Boundaries& found) {
   return {cliffs, curves};
 }
 
+/// Whether a file begins as HDF5's do.
+bool is_hdf5(const std::string& path) {
+  std::array<char, 8> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == "\x89HDF\r\n\x1a\n";
+}
+
+/// Curve after curve, place after place, and then the cliffs that are on none.
 void write_csv(const std::string& path, const Boundaries& found) {
-  std::string text = "kind,along";
-  for (const Axis& axis : found.axes) text += "," + axis.key;
+  std::string text = "curve,kind,along";
+  for (const Axis& axis : found.axes) text += fmt::format(",{}", axis.key);
   text += ",below,above\n";
-  for (const Cliff& cliff : found.cliffs)
-    text += fmt::format("{},{},{},\"{}\",\"{}\"\n", name_of(cliff.kind), found.axes[cliff.axis].key,
+  std::vector<bool> on_curve(found.cliffs.size(), false);
+  const auto line = [&](const std::string& curve, std::size_t i) {
+    const Cliff& cliff = found.cliffs[i];
+    on_curve[i] = true;
+    text += fmt::format("{},{},{},{},\"{}\",\"{}\"\n", curve, name_of(cliff.kind), found.axes[cliff.axis].key,
                         fmt::join(place_of(found, cliff), ","), told(cliff.below), told(cliff.above));
-  std::ofstream file(path, std::ios::binary);
+  };
+  for (std::size_t k = 0; k < found.curves.size(); ++k)
+    for (const std::size_t cliff : found.curves[k].cliffs) line(fmt::format("{}", k), cliff);
+  for (std::size_t i = 0; i < found.cliffs.size(); ++i)
+    if (!on_curve[i]) line("", i);
+  const std::string part = path + ".part";
+  std::ofstream file(part, std::ios::binary);
   file << text;
-  if (!file.flush()) throw IoError(path + ": cannot be written");
+  file.close();
+  std::error_code failed;
+  if (file) std::filesystem::rename(part, path, failed);
+  if (!file || failed) throw IoError(fmt::format("{}: cannot be written", path));
+}
+
+/// What is somebody's is not overwritten by a table.
+void refuse_csv(const BoundariesArguments& arguments) {
+  if (arguments.csv.empty()) return;
+  std::error_code ignored;
+  for (const std::string& other : {arguments.input, arguments.output})
+    if (arguments.csv == other || std::filesystem::equivalent(arguments.csv, other, ignored))
+      throw InputError(fmt::format("--csv {}: is the file of something else here; allowed: another name", other));
+  if (is_hdf5(arguments.csv))
+    throw InputError(fmt::format("--csv {}: is an HDF5 file; allowed: another name", arguments.csv));
 }
 
 void print_counts(const Boundaries& found) {
@@ -146,13 +178,6 @@ void print_counts(const Boundaries& found) {
   if (found.cliffs.empty()) say("no cliffs: all neighbours have the same outcome\n");
 }
 
-/// Whether a file begins as HDF5's do.
-bool is_hdf5(const std::string& path) {
-  std::array<char, 8> begin{};
-  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
-  return std::string_view(begin.data(), begin.size()) == "\x89HDF\r\n\x1a\n";
-}
-
 Spec spec_of_input(const BoundariesArguments& arguments) {
   if (!is_hdf5(arguments.input)) return read_spec(arguments.input, arguments.overrides);
   if (!arguments.overrides.empty())
@@ -162,6 +187,7 @@ Spec spec_of_input(const BoundariesArguments& arguments) {
 
 int run(const BoundariesArguments& arguments) {
   const Spec spec = spec_of_input(arguments);
+  refuse_csv(arguments);
   if (!arguments.output.empty()) hdf5::refuse_other_file(arguments.output, cliffs_filetype, arguments.locking);
   note_signals();
   const auto begin = std::chrono::steady_clock::now();

@@ -40,6 +40,9 @@ bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
         report.sample->referee_undecided > 0
             ? fmt::format("; {} it cannot decide", report.sample->referee_undecided)
             : "");
+  if (report.sample && report.sample->gradient_designs > 0)
+    say("gradient of {} designs by differences in long double: largest error {:.1e}\n",
+        grouped(report.sample->gradient_designs), report.sample->gradient_max_error);
   if (report.whole && !report.sealed)
     say("note     its format is older than 1.4: it has no checksum of all of it\n");
   say("right    {}\n", printable(arguments.path));

@@ -72,8 +72,8 @@ void print_gradient(const Spec& spec) {
     say("\n");
   }
   if (infinite)
-    say("nan: infinite here, or not known to six digits, as on a fold, where a lift-off appears; by "
-        "mu_kinetic:\nit follows mu_static, whose derivatives are of both.\n");
+    say("nan: infinite, as on a fold, where a lift-off is born, or not known to six digits; by mu_kinetic: it "
+        "follows\nmu_static, not being given or being equal, and the derivatives by that are of both.\n");
 }
 
 std::string gradient_json(const Spec& spec) {

@@ -35,7 +35,11 @@ Design design_at(const Spec& spec, const std::string& at) {
     }
     given.push_back(name);
     const Option& option = *find_option("", name);
-    design.*std::get<ParameterSlot>(option.slot).member = parse_number(option, part.substr(equals + 1));
+    try {
+      design.*std::get<ParameterSlot>(option.slot).member = parse_number(option, part.substr(equals + 1));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("--at {}: {}: {}", at, name, error.what()));
+    }
   }
   for (const Axis& axis : spec.axes)
     if (std::ranges::find(given, axis.key) == given.end())
@@ -76,7 +80,7 @@ void print_place(const Spec& original, const std::string& at) {
   print_outcome(outcome);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);
 
-  say("\nNearest cliffs within the map\n");
+  say("\nNearest cliffs within the map (a band narrower than a thousandth of an axis may be passed over)\n");
   const auto place = [&](std::size_t k, double value) {
     const Option& option = *find_option("", original.axes[k].key);
     return fmt::format("{} {:.8g} ({:+.3g})", option.key, value, value - value_of(option, one.design));

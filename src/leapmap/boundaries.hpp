@@ -22,7 +22,7 @@ enum class CliffKind : std::uint8_t {
   release,     ///< the plane just has to pull at the release
   phase,       ///< with friction: a phase appears or vanishes
   painleve,    ///< with friction: sliding comes to where rigid bodies have no answer or two
-  unresolved,  ///< on one side the method gave up
+  unresolved,  ///< above it the method gives up: where it does is not looked for
 };
 inline constexpr int cliff_kinds = 8;
 std::string_view name_of(CliffKind kind);
@@ -93,8 +93,9 @@ struct NearCliff {
   Discrete beyond;
 };
 
-/// The cliffs nearest to a design within the ranges of the spec's axes: below and above it along each axis, in
-/// this order, and over all directions. No value: there is none.
+/// The cliffs nearest to a design within the ranges of the spec's axes: along each axis, and over all
+/// directions. A band narrower than a thousandth of a range, or in all some hundredths of the way, may be passed
+/// over.
 struct NearCliffs {
   std::vector<std::vector<NearCliff>> along;  ///< of each axis: none, one or two, nearest first
   std::vector<NearCliff> nearest;             ///< none or one

@@ -15,7 +15,8 @@ namespace leapmap {
 ///
 /// NaN where the quantity does not apply; where the derivative is infinite, as on a fold, where a lift-off
 /// appears, or so nearly that it is not known to six digits; by parameters that the scene's model has not;
-/// and by mu_kinetic where that follows mu_static, whose derivative is then of both. Method exact only.
+/// and by mu_kinetic where that is not given or equal to mu_static, which it then follows: the derivative by
+/// mu_static is of both. Method exact only.
 /// Throws as solve does.
 Design gradient(const Design& design, double Outcome::*of, const Scene& scene = {},
                 const SolveOptions& options = {});

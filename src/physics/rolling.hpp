@@ -24,10 +24,11 @@ Trig<T> trig(const T& angle) {
   if constexpr (has_derivatives<T>) {
     const auto [sin, cos, versine] = trig(angle.value);
     return {angle.through(sin, cos), angle.through(cos, -sin), angle.through(versine, sin)};
+  } else {
+    const SinCos<T> half = sincos_of(angle * T(0.5));
+    const T versine = T(2) * half.sin * half.sin;
+    return {T(2) * half.sin * half.cos, T(1) - versine, versine};
   }
-  const SinCos<T> half = sincos_of(angle * T(0.5));
-  const T versine = T(2) * half.sin * half.sin;
-  return {T(2) * half.sin * half.cos, T(1) - versine, versine};
 }
 
 /// x - sin x without cancellation, turned: trig(x). Its series is used below 0.7, to 4e-22 of the sum.

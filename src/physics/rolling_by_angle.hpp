@@ -85,8 +85,9 @@ T slowness(const T& inertia, const T& vis_viva) {
     for (std::size_t k = 0; k < slow.by.size(); ++k)
       slow.by[k] = by_J * inertia.by[k] + by_E * vis_viva.by[k];
     return slow;
+  } else {
+    return inertia * reciprocal_sqrt(inertia * vis_viva);
   }
-  return inertia * reciprocal_sqrt(inertia * vis_viva);
 }
 
 /// E an angle x past the release, without cancellation however small x is and however near the release is to

@@ -23,15 +23,9 @@ class DualTime {
 
  private:
   D past(const Roll<D>& roll, const D& length) const;
+  D length_to_rest(const Roll<D>& roll, double about) const;
 
   GaussRule<double> rule_;
 };
-
-/// Where the vis viva of a roll is zero, at an angle found in plain numbers.
-template <class D>
-D turn_of(const Roll<D>& roll, double turn) {
-  const Trig<D> phi = trig(D(turn));
-  return with_derivatives(turn, vis_viva(roll, D(turn), phi), 2.0 * torque(roll.hoop, phi).value);
-}
 
 }  // namespace leapmap

@@ -67,6 +67,7 @@ void HalvedTime<S>::halve(const F& f, const S& a, const S& b, const S& whole, in
                               unsure_ * largest_part(sum));
   if (agree || depth == 0 || panels_left_ <= 0 || !(unsure_ < Number(1))) {
     total_ += agree ? sum : S(std::numeric_limits<Number>::quiet_NaN());
+    doubt_ += Number(1.5) * unsure_ * largest_part(sum);
     return;
   }
   halve(f, a, middle, left, depth - 1);
@@ -110,6 +111,9 @@ S HalvedTime<S>::until(const S& end) {
     }
     x = to;
   }
+  if constexpr (has_derivatives<S>)
+    if (!(doubt_ <= Number(1e-6) * largest_part(total_)))
+      total_.by.fill(std::numeric_limits<Number>::quiet_NaN());
   return total_;
 }
 

@@ -43,7 +43,7 @@ class HalvedTime {
   HalvedTime(const Roll<S>& roll, Number tolerance, const GaussRule<Number>& rule);
 
   /// From the release over an angle. NaN where it cannot be told: so near a stall that E is lost in its
-  /// roundings. To be called once.
+  /// roundings. Derivatives are NaN where they are not known to six digits. To be called once.
   S until(const S& end);
 
  private:
@@ -66,6 +66,7 @@ class HalvedTime {
   S rho2_, push2_, by_sine_, by_versine_;  // of E and J, as functions of x
   Number unsure_{0};  // relative, of J / E in the panel at hand: roundings of E's terms, and of the angle in J
   S total_{0};
+  Number doubt_{0};  // of the total, where it has derivatives: what roundings of E make of them
   long panels_left_ = 20'000;
 };
 

@@ -132,7 +132,7 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
       for (std::size_t i = 0; i < some.size(); ++i)
         stretches[i].below.outcome = outcomes[2 * i], stretches[i].above.outcome = outcomes[2 * i + 1];
       bisect(
-          solve, options.phases, std::move(stretches), design_at,
+          solve, options.phases, stretches, design_at,
           [&](const Stretch& at) {
             const CliffKind kind = kind_of(spec.scene, design_at(at.line, at.below.at), at.below,
                                            design_at(at.line, at.above.at), at.above);

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "model/model.hpp"
-#include "physics/rolling.hpp"
+#include "physics/rolling_by_angle.hpp"
 
 namespace leapmap {
 namespace {
@@ -26,6 +26,22 @@ bool touches(const Design& design, const Outcome& outcome) {
   return std::abs(normal_force_rate(hoop, phi, spin, angular_acceleration(hoop, phi, spin))) < touching;
 }
 
+/// Whether the normal force is zero where the runway ends, either way.
+bool ends_the_runway(const Scene& scene, const Design& design) {
+  const Hoop<double> hoop = derive<double>(design);
+  const Roll<double> roll = begin_roll(hoop, design.release_angle, design.release_spin);
+  const auto touches_at = [&](double angle) {
+    const Trig<double> phi = trig(angle);
+    const double square = vis_viva(roll, angle, phi) / contact_inertia(hoop, phi);
+    if (!(square > 0.0)) return false;
+    const double spin = std::sqrt(square);
+    const double force = normal_force(hoop, phi, spin, angular_acceleration(hoop, phi, spin));
+    return std::abs(force) <= near_bound * (1.0 + hoop.rho * square);
+  };
+  const double length = 2.0 * std::numbers::pi * scene.runway;
+  return touches_at(design.release_angle + length) || touches_at(design.release_angle - length);
+}
+
 }  // namespace
 
 std::string_view name_of(CliffKind kind) {
@@ -35,8 +51,10 @@ std::string_view name_of(CliffKind kind) {
 }
 
 Discrete discrete(const Outcome& outcome, bool phases) {
+  // What is not known of a design is no outcome of its own.
+  const bool known = outcome.status != Status::failed && outcome.status != Status::indeterminate;
   return {outcome.status, outcome.status == Status::jumped ? outcome.candidates : std::uint8_t{0},
-          outcome.spurious_first_jump, phases ? outcome.phase_sequence : 0};
+          outcome.spurious_first_jump, phases && known ? outcome.phase_sequence : 0};
 }
 
 CliffKind kind_of(const Scene& scene, const Design& below, const Probe& from, const Design& above,
@@ -47,7 +65,7 @@ CliffKind kind_of(const Scene& scene, const Design& below, const Probe& from, co
   if (either(Status::failed)) return CliffKind::unresolved;
   if (either(Status::indeterminate)) return CliffKind::painleve;
   if (either(Status::airborne_at_release)) return CliffKind::release;
-  if (one_has([&](const Outcome& o) {
+  if (scene.hop_height > 0.0 && one_has([&](const Outcome& o) {
         return is_near(o.jump_height, scene.hop_height) || is_near(o.first_jump_height, scene.hop_height);
       }))
     return CliffKind::threshold;
@@ -59,7 +77,8 @@ CliffKind kind_of(const Scene& scene, const Design& below, const Probe& from, co
     return CliffKind::runway;
   if (a.status != b.status && either(Status::stalled)) return CliffKind::turn;
   if (slips) return CliffKind::phase;
-  return a.jump_spin * b.jump_spin < 0.0 ? CliffKind::turn : CliffKind::fold;
+  if (a.jump_spin * b.jump_spin < 0.0) return CliffKind::turn;
+  return ends_the_runway(scene, below) ? CliffKind::runway : CliffKind::fold;
 }
 
 }  // namespace leapmap

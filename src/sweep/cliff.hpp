@@ -32,54 +32,61 @@ CliffKind kind_of(const Scene& scene, const Design& below, const Probe& from, co
                   const Probe& to);
 
 /// Bisects all stretches, side by side, until each has nothing between its ends; what lies beyond them that is
-/// another cliff again becomes a stretch more. design_at(line, number) is the design there. found(stretch) is
-/// called for each. stop() is asked now and then; true: it throws Stopped.
+/// another cliff again becomes a stretch more. Where the method gives up on a design between, it is not asked
+/// again: what is found is from the last it could solve to there, or, where that is a sliver, to the next.
+/// design_at(line, number) is the design there. found(stretch) is called for each, stop() now and then.
 template <class DesignAt, class Found, class Stop>
-void bisect(const Solver& solve, bool phases, std::vector<Stretch> stretches, const DesignAt& design_at,
+void bisect(const Solver& solve, bool phases, const std::vector<Stretch>& stretches, const DesignAt& design_at,
             const Found& found, const Stop& stop) {
-  std::vector<Design> designs;
-  std::vector<Outcome> outcomes;
-  const auto same = [&](const Outcome& a, const Outcome& b) { return discrete(a, phases) == discrete(b, phases); };
-  struct Half {
+  constexpr double sliver = 1e-9;  // of a stretch
+  const auto same = [&](const Probe& a, const Probe& b) {
+    return discrete(a.outcome, phases) == discrete(b.outcome, phases);
+  };
+  const auto failed = [](const Probe& probe) { return probe.outcome.status == Status::failed; };
+  struct Open {
     Stretch stretch;
     Probe end;  // of the whole; above.outcome may be another's by now
-    double middle;
+    double width;
   };
-  std::vector<Half> open;
-  for (const Stretch& stretch : stretches) open.push_back({stretch, stretch.above, 0.0});
+  std::vector<Open> open, asked;
+  for (const Stretch& whole : stretches) {
+    if (failed(whole.below) || failed(whole.above))
+      found(whole);
+    else
+      open.push_back({whole, whole.above, whole.above.at - whole.below.at});
+  }
+  std::vector<Design> designs;
+  std::vector<Outcome> outcomes;
   while (!open.empty()) {
     stop();
-    std::vector<Half> next;
-    designs.clear();
-    for (Half& half : open) {
-      const auto& [line, below, above, resolution] = half.stretch;
-      half.middle = below.at + 0.5 * (above.at - below.at);
-      if (half.middle > below.at && half.middle < above.at && above.at - below.at > resolution) {
-        designs.push_back(design_at(line, half.middle));
-        next.push_back(half);
+    asked.clear(), designs.clear();
+    for (std::size_t i = 0; i < open.size(); ++i) {  // it may grow
+      const auto [stretch, end, width] = open[i];
+      const auto& [line, below, above, resolution] = stretch;
+      const double middle = below.at + 0.5 * (above.at - below.at);
+      if (middle > below.at && middle < above.at && above.at - below.at > resolution) {
+        designs.push_back(design_at(line, middle));
+        asked.push_back(open[i]);
         continue;
       }
-      found(half.stretch);
+      found(stretch);
       // What follows is not what the line ends in: another cliff.
-      if (!same(above.outcome, half.end.outcome)) {
-        Half beyond{{line, above, half.end, resolution}, half.end, 0.0};
-        beyond.middle = beyond.stretch.below.at + 0.5 * (half.end.at - beyond.stretch.below.at);
-        if (!(beyond.middle > beyond.stretch.below.at && beyond.middle < half.end.at)) {
-          found(beyond.stretch);
-          continue;
-        }
-        designs.push_back(design_at(line, beyond.middle));
-        next.push_back(beyond);
-      }
+      if (!same(above, end)) open.push_back({{line, above, end, resolution}, end, width});
     }
     outcomes.resize(designs.size());
     solve(designs, outcomes);
-    for (std::size_t i = 0; i < next.size(); ++i) {
-      Stretch& stretch = next[i].stretch;
-      (same(outcomes[i], stretch.below.outcome) ? stretch.below : stretch.above) = Probe{next[i].middle,
-                                                                                   outcomes[i]};
+    open.clear();
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      Stretch& stretch = asked[i].stretch;
+      const Probe middle{stretch.below.at + 0.5 * (stretch.above.at - stretch.below.at), outcomes[i]};
+      if (failed(middle)) {
+        if (stretch.above.at - stretch.below.at > sliver * asked[i].width) stretch.above = middle;
+        found(stretch);
+        continue;
+      }
+      (same(middle, stretch.below) ? stretch.below : stretch.above) = middle;
+      open.push_back(asked[i]);
     }
-    open = std::move(next);
   }
 }
 

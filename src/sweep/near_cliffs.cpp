@@ -21,7 +21,8 @@ using Vector = std::vector<double>;
 Vector unit(Vector direction) {
   double square = 0.0;
   for (const double part : direction) square += part * part;
-  for (double& part : direction) part /= std::sqrt(square);
+  if (square > 0.0)
+    for (double& part : direction) part /= std::sqrt(square);
   return direction;
 }
 
@@ -127,7 +128,7 @@ class Looking {
     std::vector<NearCliff> found(directions.size(), NearCliff{{}, HUGE_VAL, CliffKind::unresolved, {}});
     const auto design_at = [&](std::size_t line, double at) { return box_.at(directions[line], at); };
     bisect(
-        solve_, false, std::move(stretches), design_at,
+        solve_, false, stretches, design_at,
         [&](const Stretch& cliff) {
           NearCliff& nearest = found[cliff.line];
           if (!(cliff.below.at < nearest.distance)) return;
@@ -193,10 +194,11 @@ NearCliffs near_cliffs(const Spec& original, const Design& design) {
   if (flat || box.dimensions() < 2) return cliffs;
   // All around first, then ever closer about the nearest so far.
   std::mt19937_64 random(1);
-  Vector best = nowhere;
+  Vector best = cliffs.nearest.empty() ? nowhere : box.direction_to(cliffs.nearest[0].at);
   for (double spread = 1.0; spread > 1e-9; spread *= 0.4) {
     const double most = cliffs.nearest.empty() ? HUGE_VAL : cliffs.nearest[0].distance;
-    const auto directions = directions_about(best, spread, 128, box, random);
+    if (most == 0.0) break;  // it lies on it
+    const auto directions = directions_about(spread == 1.0 ? nowhere : best, spread, 128, box, random);
     const auto found = looking.along(directions, most, spread == 1.0 ? 64 : 16);
     if (found.empty() || !(found[0].distance < most)) continue;
     cliffs.nearest = {found[0]};

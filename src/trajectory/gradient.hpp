@@ -85,10 +85,6 @@ class Gradients {
         if (lanes >> k & 1u) column[designs[k]] = unit * derivatives[k];
     });
   }
-  /// Nothing is to be believed of a design after all.
-  void forget(std::size_t design) {
-    for (std::vector<double>& column : columns_) column[design] = std::numeric_limits<double>::quiet_NaN();
-  }
 
  private:
   template <class Visit>

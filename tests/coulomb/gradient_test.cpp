@@ -25,8 +25,8 @@ std::vector<Design> designs_with_friction(std::size_t count, bool follows) {
     design.mu_static = uniform(random, 0.1, 0.9);
     design.mu_kinetic =
         follows ? std::numeric_limits<double>::quiet_NaN() : design.mu_static * uniform(random, 0.5, 1.0);
-    design.restitution = random() % 2 == 0 ? 0.0 : uniform(random, 0.0, 0.7);
-    design.drive_torque *= random() % 2 == 0 ? 0.0 : 0.3;
+    design.restitution = random() % 2 != 0 ? 0.0 : uniform(random, 0.0, 0.7);
+    design.drive_torque *= random() % 2 != 0 ? 0.0 : 0.3;
     designs.push_back(design);
   }
   return designs;
