@@ -78,7 +78,8 @@ class Panel:
                 self.curves.append((curve["kind"], *(self._places(n, curve[n]) for n in (grid.x, grid.y))))
         self.crisp = curves is not None
         shape = [len(grid.values(n)) for n in (grid.y, grid.x)]
-        self.fine = max(1, min(8, MOST_PIXELS // max(shape))) if self.crisp else 1
+        most = MOST_PIXELS if len(grid.panels) == 1 else MOST_PIXELS // 2
+        self.fine = max(1, min(8, most // max(shape))) if self.crisp else 1
         self._weigh(shape)
 
     def _places(self, name, values):

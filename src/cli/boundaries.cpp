@@ -73,10 +73,13 @@ std::vector<Table> tables_of(const Boundaries& found) {
     for (const std::vector<double>& place : places) values.push_back(place[k]);
     cliffs.push_back(axis_column(k, "", values));
   }
-  add_numbers("along", fmt::format("axis along which it was bisected: its value is the last below; {}", numbered(axis_names)),
-              [](const Cliff& cliff) { return cliff.axis; });
+  add_numbers(
+      "along",
+      fmt::format("axis along which it was bisected: its value is the last below; {}", numbered(axis_names)),
+      [](const Cliff& cliff) { return cliff.axis; });
   add_numbers("kind", "what happens there: " + kinds_told(), [](const Cliff& cliff) { return cliff.kind; });
-  for (const auto& [side, which] : {std::pair{std::string("below"), &Cliff::below}, {"above", &Cliff::above}}) {
+  for (const auto& [side, which] :
+       {std::pair{std::string("below"), &Cliff::below}, {"above", &Cliff::above}}) {
     add_numbers(side + "_status", "status " + side + ", as in maps",
                 [which](const Cliff& cliff) { return (cliff.*which).status; });
     add_numbers(side + "_jumps_on", "number of the lift-off that is the jump " + side + "; 0: none",
@@ -117,7 +120,8 @@ std::vector<Table> tables_of(const Boundaries& found) {
   curves.push_back({"curve", "1", "number of the curve, whose places stand one after the other", curve});
   curves.push_back({"curve_kind", "1", "what happens along the curve: " + kinds_told(), kinds});
   curves.push_back({"curve_cliff", "1",
-                    "the cliff, by its row; -1: where outcomes meet, known only to a cell of the grid", number});
+                    "the cliff, by its row; -1: where outcomes meet, known only to a cell of the grid",
+                    number});
   for (std::size_t k = 0; k < at.size(); ++k) curves.push_back(axis_column(k, "curve_", at[k]));
   return {cliffs, curves};
 }
@@ -160,7 +164,8 @@ void refuse_csv(const BoundariesArguments& arguments) {
   std::error_code ignored;
   for (const std::string& other : {arguments.input, arguments.output})
     if (arguments.csv == other || std::filesystem::equivalent(arguments.csv, other, ignored))
-      throw InputError(fmt::format("--csv {}: is the file of something else here; allowed: another name", other));
+      throw InputError(
+          fmt::format("--csv {}: is the file of something else here; allowed: another name", other));
   if (is_hdf5(arguments.csv))
     throw InputError(fmt::format("--csv {}: is an HDF5 file; allowed: another name", arguments.csv));
 }
@@ -181,14 +186,16 @@ void print_counts(const Boundaries& found) {
 Spec spec_of_input(const BoundariesArguments& arguments) {
   if (!is_hdf5(arguments.input)) return read_spec(arguments.input, arguments.overrides);
   if (!arguments.overrides.empty())
-    throw InputError("--set: has no use with a map; allowed: with a spec, or the map's own by leapmap info --spec");
+    throw InputError(
+        "--set: has no use with a map; allowed: with a spec, or the map's own by leapmap info --spec");
   return spec_of(MapReader(arguments.input, arguments.locking), arguments.input);
 }
 
 int run(const BoundariesArguments& arguments) {
   const Spec spec = spec_of_input(arguments);
   refuse_csv(arguments);
-  if (!arguments.output.empty()) hdf5::refuse_other_file(arguments.output, cliffs_filetype, arguments.locking);
+  if (!arguments.output.empty())
+    hdf5::refuse_other_file(arguments.output, cliffs_filetype, arguments.locking);
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
   BoundaryOptions options = arguments.options;
@@ -223,8 +230,8 @@ int run(const BoundariesArguments& arguments) {
         provenance(spec, cliffs_filetype, "Where the outcomes of passive hoops jump");
     attributes.emplace_back("phases", std::int64_t{options.phases});
     attributes.emplace_back("wall_time", seconds);
-    if (!write_tables(behind_links(arguments.output), std::string(cliffs_filetype), tables_of(found), attributes,
-                      arguments.locking))
+    if (!write_tables(behind_links(arguments.output), std::string(cliffs_filetype), tables_of(found),
+                      attributes, arguments.locking))
       tell_of_folder(arguments.output);
     if (!arguments.quiet) say("file     {}\n", arguments.output);
   }
@@ -258,13 +265,16 @@ void add_boundaries(CLI::App& app, int& status) {
   command->footer(
       "Each neighbouring pair of the grid whose status, flag or number of the lift-off that jumps differs is "
       "bisected\n"
-      "until no number is left between. Where what lies beside a cliff is not what the two designs have, there "
+      "until no number is left between. Where what lies beside a cliff is not what the two designs have, "
+      "there "
       "are more\n"
-      "between them, and they are found too. Kinds: threshold (a lift-off's height passes hop_height), fold (a "
+      "between them, and they are found too. Kinds: threshold (a lift-off's height passes hop_height), fold "
+      "(a "
       "lift-off is\n"
       "born), runway (one passes its end), turn (the hoop just turns round), release (the plane just has to "
       "pull at the\n"
-      "release), phase and painleve (with friction), unresolved (on one side the method gave up). Two axes give "
+      "release), phase and painleve (with friction), unresolved (on one side the method gave up). Two axes "
+      "give "
       "curves,\n"
       "more axes curves in each plane of the two with the most values.\n"
       "Examples:\n"

@@ -65,14 +65,15 @@ void print_gradient(const Spec& spec) {
   bool infinite = false;
   for (const Row& row : table.rows) {
     const std::string_view unit = row.quantity->unit;
-    say("{:<22}", unit == "1" ? std::string(row.quantity->name)
-                              : fmt::format("{} [{}]", row.quantity->name, unit));
+    say("{:<22}",
+        unit == "1" ? std::string(row.quantity->name) : fmt::format("{} [{}]", row.quantity->name, unit));
     for (const double value : row.by) say(" {:>14.7g}", value);
     infinite = infinite || std::ranges::any_of(row.by, [](double value) { return std::isnan(value); });
     say("\n");
   }
   if (infinite)
-    say("nan: infinite, as on a fold, where a lift-off is born, or not known to six digits; by mu_kinetic: it "
+    say("nan: infinite, as on a fold, where a lift-off is born, or not known to six digits; by mu_kinetic: "
+        "it "
         "follows\nmu_static, not being given or being equal, and the derivatives by that are of both.\n");
 }
 

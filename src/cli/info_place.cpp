@@ -27,7 +27,8 @@ Design design_at(const Spec& spec, const std::string& at) {
     const std::size_t equals = part.find('=');
     const std::string name = part.substr(0, equals);
     const auto axis = std::ranges::find(spec.axes, name, &Axis::key);
-    if (equals == std::string::npos || axis == spec.axes.end() || std::ranges::find(given, name) != given.end()) {
+    if (equals == std::string::npos || axis == spec.axes.end() ||
+        std::ranges::find(given, name) != given.end()) {
       std::vector<std::string> names;
       for (const Axis& each : spec.axes) names.push_back(fmt::format("{}=VALUE", each.key));
       throw InputError(fmt::format("--at {}: '{}' is not an axis with its value; allowed: {}", at, part,
@@ -43,7 +44,8 @@ Design design_at(const Spec& spec, const std::string& at) {
   }
   for (const Axis& axis : spec.axes)
     if (std::ranges::find(given, axis.key) == given.end())
-      throw InputError(fmt::format("--at {}: does not say the {}; allowed: a value of every axis", at, axis.key));
+      throw InputError(
+          fmt::format("--at {}: does not say the {}; allowed: a value of every axis", at, axis.key));
   return design;
 }
 
@@ -52,7 +54,8 @@ void print_outcome(const Outcome& outcome) {
   for (const Field& field : map_fields()) {
     const auto* quantity = std::get_if<Quantity>(&field.source);
     if (!quantity || std::isnan(outcome.*quantity->member)) continue;
-    say("  {:<20} {:<14.8g} {}\n", field.name, outcome.*quantity->member, field.unit == "1" ? "" : field.unit);
+    say("  {:<20} {:<14.8g} {}\n", field.name, outcome.*quantity->member,
+        field.unit == "1" ? "" : field.unit);
   }
   if (outcome.phase_sequence != 0) say("  {:<20} {}\n", "phases", phase_letters(outcome.phase_sequence));
 }

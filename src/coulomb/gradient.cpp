@@ -130,7 +130,8 @@ class Chain {
     return true;
   }
 
-  bool slide_on(const SlideTold<double>& taken, int direction, const ContactState<double>& to, bool then_flies) {
+  bool slide_on(const SlideTold<double>& taken, int direction, const ContactState<double>& to,
+                bool then_flies) {
     const ContactState<D> from = at_;
     SlidingPanels<D>::Slide slide{hoop_, contact_.mu_kinetic * static_cast<double>(direction), {}, {}, {}};
     slide.free_force = free_normal_force(hoop_, trig(at_.angle), at_.spin * at_.spin);
@@ -144,10 +145,10 @@ class Chain {
     const bool slip_ends = to.slip == 0.0;
     const D zero = slip_ends ? at_.slip : then_flies ? slide.free_force : at_.travel;
     const double rate =
-        slip_ends    ? motion.slip.value
-        : then_flies ? at_.spin.value *
-                           free_normal_force_rate(hoop_, phi, at_.spin * at_.spin, motion.angular).value
-                     : travels;
+        slip_ends ? motion.slip.value
+        : then_flies
+            ? at_.spin.value * free_normal_force_rate(hoop_, phi, at_.spin * at_.spin, motion.angular).value
+            : travels;
     if (!(std::abs(rate) > slowest)) return false;
     for (std::size_t k = 0; k < zero.by.size(); ++k) {
       const double later = -zero.by[k] / rate;
@@ -219,7 +220,8 @@ class Chain {
       put(&Outcome::jump_distance, at_.travel, 1.0);
       put(&Outcome::apex_time, flown.apex_time, second_);
       put(&Outcome::flight_time, flown.flight_time, second_);
-      put(&Outcome::dip, D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
+      put(&Outcome::dip,
+          D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
     }
     const Sample<D> travel = travel_in_flight(hoop_, phi, at_.spin, at_.slip, flown.flight_time);

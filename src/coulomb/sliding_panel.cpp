@@ -173,8 +173,8 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
                     end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
   panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
   const Number noise =
-      slide.rounding_at_end(end.pivot) +
-      Number(16) * std::numeric_limits<Number>::epsilon() * std::min(value_of(start_u) / slowest, Number(1e6));
+      slide.rounding_at_end(end.pivot) + Number(16) * std::numeric_limits<Number>::epsilon() *
+                                             std::min(value_of(start_u) / slowest, Number(1e6));
   const Number of_one = by_force ? Number(1) : largest_part(S(S(1) + start_u));
   panel.excess = largest<Number>({grid_.tail(a), grid_.tail(driven) / of_one,
                                   Number(0.1) * grid_.tail(time_rate) / largest_part(duration),

@@ -40,7 +40,7 @@ class SlidingPanels {
     S start_y;
     bool by_force;
     ContactState<S> end;
-    S turned;  ///< from start to end
+    S turned;       ///< from start to end
     Number excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
     bool indeterminate, spin_vanishes;
   };

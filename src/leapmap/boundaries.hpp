@@ -78,9 +78,9 @@ struct BoundaryOptions {
 /// Most designs of a grid whose cliffs are looked for: their outcomes are kept in memory.
 inline constexpr std::size_t most_bounded_designs = 200'000'000;
 
-/// Solves the grid of the spec, and bisects every edge between neighbours whose discrete outcomes differ until
-/// no number is left between. Where the outcomes beside a cliff are not those of the two designs, there are
-/// more on that edge, and they are found too. What begins and ends between two neighbours with the same
+/// Solves the grid of the spec, and bisects every edge between neighbours whose discrete outcomes differ
+/// until no number is left between. Where the outcomes beside a cliff are not those of the two designs, there
+/// are more on that edge, and they are found too. What begins and ends between two neighbours with the same
 /// outcome is not seen. Throws InputError for a list, for a grid without two values along some axis or with
 /// too many designs, and as sweep does.
 Boundaries find_boundaries(const Spec& spec, const BoundaryOptions& options = {});
@@ -94,8 +94,8 @@ struct NearCliff {
 };
 
 /// The cliffs nearest to a design within the ranges of the spec's axes: along each axis, and over all
-/// directions. A band narrower than a thousandth of a range, or in all some hundredths of the way, may be passed
-/// over.
+/// directions. A band narrower than a thousandth of a range, or in all some hundredths of the way, may be
+/// passed over.
 struct NearCliffs {
   std::vector<std::vector<NearCliff>> along;  ///< of each axis: none, one or two, nearest first
   std::vector<NearCliff> nearest;             ///< none or one

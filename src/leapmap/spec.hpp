@@ -24,12 +24,12 @@ struct Numerics {
 };
 
 struct Output {
-  std::string file{};                 ///< the map; -o overrides it
-  std::vector<std::string> fields{};  ///< datasets to store; empty: all
-  std::vector<std::string> gradients{};  ///< quantities whose derivatives are stored; empty: none
+  std::string file{};                       ///< the map; -o overrides it
+  std::vector<std::string> fields{};        ///< datasets to store; empty: all
+  std::vector<std::string> gradients{};     ///< quantities whose derivatives are stored; empty: none
   std::vector<std::string> gradients_by{};  ///< the parameters by which; empty: all that the model has
-  std::string precision = "f8";       ///< of stored numbers: "f8" or "f4"
-  long compression = 1;               ///< deflate's level, 0 to 9; 0: none
+  std::string precision = "f8";             ///< of stored numbers: "f8" or "f4"
+  long compression = 1;                     ///< deflate's level, 0 to 9; 0: none
 };
 
 /// One parameter that varies over a grid of designs: values in the parameter's own unit (angles in rad).

@@ -96,10 +96,10 @@ struct GradientTable {
         if (!of || !by) continue;
         const bool own = parameter.unit != "rad" && parameter.unit != "1";
         const std::string name(field.name), parameter_name(parameter.name);
-        const GradientTexts& text = texts.emplace_back(GradientTexts{
-            name + "_by_" + parameter_name, unit_of_derivative(field.unit, parameter.unit),
-            "derivative of " + name + " by " + parameter_name +
-                (own ? ", which is in " + std::string(parameter.unit) : std::string())});
+        const GradientTexts& text = texts.emplace_back(
+            GradientTexts{name + "_by_" + parameter_name, unit_of_derivative(field.unit, parameter.unit),
+                          "derivative of " + name + " by " + parameter_name +
+                              (own ? ", which is in " + std::string(parameter.unit) : std::string())});
         rows.push_back(Field{text.name, Derivative{of->member, *by}, text.unit, text.long_name, 7,
                              parameter.only_of ? parameter.only_of : field.only_of});
       }

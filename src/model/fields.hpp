@@ -39,8 +39,8 @@ struct Word {
   std::uint64_t Outcome::*member;
 };
 
-/// A derivative of a quantity by a parameter of the design, stored as f8, NaN where the quantity does not apply
-/// or the derivative is infinite.
+/// A derivative of a quantity by a parameter of the design, stored as f8, NaN where the quantity does not
+/// apply or the derivative is infinite.
 struct Derivative {
   double Outcome::*of;
   double Design::*by;
@@ -61,8 +61,8 @@ double stored_number(const Field& field, const Outcome& outcome);
 /// Every field of a map, in the order of the file, but for derivatives.
 std::span<const Field> map_fields();
 
-/// The derivatives that a map may hold besides, jump_height_by_slope and so on: of each quantity, in the order
-/// of map_fields, by each parameter of a design, in the order of parameters.
+/// The derivatives that a map may hold besides, jump_height_by_slope and so on: of each quantity, in the
+/// order of map_fields, by each parameter of a design, in the order of parameters.
 std::span<const Field> gradient_fields();
 /// One of these; nullptr: the member is no quantity, or no parameter.
 const Field* find_gradient(double Outcome::*of, double Design::*by);

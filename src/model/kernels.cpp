@@ -14,8 +14,8 @@ namespace {
 
 // Made by the compiler: nothing of a set may run before it is chosen.
 constinit const std::array list{
-    Model{Friction::sticking, "sticking", "never slips (the paper's model)", false, rolling::exact, rolling::gradients,
-          rolling::integration, rolling::refined, rolling::tell_exactly,
+    Model{Friction::sticking, "sticking", "never slips (the paper's model)", false, rolling::exact,
+          rolling::gradients, rolling::integration, rolling::refined, rolling::tell_exactly,
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
             return rolling::tell_by_integration(design, scene, options, interval);
           },

@@ -15,8 +15,8 @@
 
 namespace leapmap {
 
-/// n nodes on (0, 1) for functions of values S, numbers or duals. Values between and integrals up to a node are exact for polynomials of degree n - 1,
-/// integrals over the whole panel up to 2 n - 1.
+/// n nodes on (0, 1) for functions of values S, numbers or duals. Values between and integrals up to a node
+/// are exact for polynomials of degree n - 1, integrals over the whole panel up to 2 n - 1.
 template <class S, std::size_t n>
 struct SpectralPanel {
   using Number = ScalarOf<S>;
@@ -30,9 +30,9 @@ struct SpectralPanel {
       running;  ///< integral of the j-th cardinal polynomial from 0 to node i is running[j][i]
   Numbers barycentric;
   std::array<Numbers, n>
-      expansion;              ///< Legendre coefficient k of the j-th cardinal polynomial is expansion[j][k]
+      expansion;               ///< Legendre coefficient k of the j-th cardinal polynomial is expansion[j][k]
   Numbers last, last_but_one;  ///< the last two, by j
-  Numbers fourth;             ///< fourth derivatives of Legendre's polynomials at 1
+  Numbers fourth;              ///< fourth derivatives of Legendre's polynomials at 1
 
   SpectralPanel() {
     const GaussRule<long double> rule = gauss_rule<long double>(n);
@@ -110,8 +110,7 @@ struct SpectralPanel {
     std::array<T, n / width> sums;
     sums.fill(T(S(0)));
     for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = 0; i < n / width; ++i)
-        sums[i] += times(columns[j].data() + i * width, T(f[j]));
+      for (std::size_t i = 0; i < n / width; ++i) sums[i] += times(columns[j].data() + i * width, T(f[j]));
     Values values;
     for (std::size_t i = 0; i < n / width; ++i) Lanes<T>::store(sums[i], values.data() + i * width);
     return values;
@@ -133,8 +132,7 @@ struct SpectralPanel {
   }
   static S dot(const Numbers& a, const Values& b) {
     T products(S(0));
-    for (std::size_t i = 0; i < n; i += width)
-      products += times(a.data() + i, Lanes<T>::load(b.data() + i));
+    for (std::size_t i = 0; i < n; i += width) products += times(a.data() + i, Lanes<T>::load(b.data() + i));
     return sum(products);
   }
 };

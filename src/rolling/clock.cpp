@@ -199,7 +199,8 @@ void Clock<T>::read_due(const Block<T>& block) {
     for (long panel = begin; panel < end; ++panel)
       taken = taken + select(T(S(panel)) >= first_panel, time_.panel(roll, panel, lanes.nodes), T(0));
     const auto at_edge = lanes_of(taken);
-    const auto times = lanes_of(taken + time_.rest(roll, lanes.needed, T(S(end)), lanes.to - T(S(end) * pi_of<S>)));
+    const auto times =
+        lanes_of(taken + time_.rest(roll, lanes.needed, T(S(end)), lanes.to - T(S(end) * pi_of<S>)));
     for (std::size_t i = 0; i < count; ++i) {
       Dial& dial = dials_[lanes.designs[i]];
       dial.panel = end, dial.time = at_edge[i];

@@ -18,7 +18,9 @@ D DualTime<D>::past(const Roll<D>& roll, const D& length) const {
 template <class D>
 D DualTime<D>::length_to_rest(const Roll<D>& roll, double about) const {
   const auto E_at = [&](double x) { return vis_viva_past_release(roll, D(x)); };
-  const auto rate_at = [&](double x) { return 2.0 * torque(roll.hoop, trig(D(roll.release.value + x))).value; };
+  const auto rate_at = [&](double x) {
+    return 2.0 * torque(roll.hoop, trig(D(roll.release.value + x))).value;
+  };
   double length = about;
   for (int k = 0; k < 3; ++k) {
     const double next = length - E_at(length).value / rate_at(length);

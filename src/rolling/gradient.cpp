@@ -64,9 +64,10 @@ LiftOffDual<D> lift_off_at(const Roll<D>& roll, const T& angle) {
   const Trig<T> at = trig(angle);
   const LiftTerms<T> terms = lift_terms(known.hoop, at);
   const T rho = known.hoop.rho;
-  const T rounding = T(S(8) * std::numeric_limits<S>::epsilon()) *
-                     (abs(terms.P) * terms.J +
-                      rho * abs(terms.K) * (abs(known.level) + T(2) * (abs(angle * known.hoop.thrust) + rho)));
+  const T rounding =
+      T(S(8) * std::numeric_limits<S>::epsilon()) *
+      (abs(terms.P) * terms.J +
+       rho * abs(terms.K) * (abs(known.level) + T(2) * (abs(angle * known.hoop.thrust) + rho)));
   const MaskOf<T> folded = !(rounding * abs(G.curvature) <= T(S(1e-6)) * G.rate * G.rate);
   const T slope = select(folded, T(std::numeric_limits<S>::quiet_NaN()), G.rate);
 
@@ -122,8 +123,13 @@ void RollingGradients::solve(std::span<const Design> designs, const Scene& scene
   std::vector<std::uint32_t> turn_round;
   for (std::size_t first = 0; first < designs.size(); first += Block<T>::most_designs) {
     const std::size_t count = std::min(Block<T>::most_designs, designs.size() - first);
-    const Lot lot{designs.subspan(first, count), scene, outcomes.subspan(first, count), gradients, first,
-                  time_unit(scene), hard};
+    const Lot lot{designs.subspan(first, count),
+                  scene,
+                  outcomes.subspan(first, count),
+                  gradients,
+                  first,
+                  time_unit(scene),
+                  hard};
     solver_.solve(lot.designs, scene, outcomes.subspan(first, count));
     lift_offs.clear(), hard.clear(), turn_round.clear();
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -135,8 +141,7 @@ void RollingGradients::solve(std::span<const Design> designs, const Scene& scene
         continue;
       }
       const bool jumps = outcome.status == Status::jumped, same = jumps && outcome.candidates == 1;
-      if (jumps && (of_jump_ || (same && of_first_)))
-        lift_offs.push_back({i, found.jump_angle, true, same});
+      if (jumps && (of_jump_ || (same && of_first_))) lift_offs.push_back({i, found.jump_angle, true, same});
       if (!same && of_first_) lift_offs.push_back({i, found.first_angle, false, true});
     }
     // Those that have about as far to roll side by side: they have the quadrature's panels in common.
@@ -202,7 +207,8 @@ void RollingGradients::in_lanes(const Lot& lot, std::span<const LiftOffAt> lift_
     if (of_dip_) {
       const Toss<T> toss = toss_from(plain(roll).hoop, angle, off.spin.value);
       const T lowest = lowest_before(toss, T(apex * off.spin.value)) / off.spin.value;
-      put(jump_bits, &Outcome::dip, D(0.5) * height_above_plane(roll.hoop, phi, off.spin, D(lowest)).value, 1.0);
+      put(jump_bits, &Outcome::dip, D(0.5) * height_above_plane(roll.hoop, phi, off.spin, D(lowest)).value,
+          1.0);
     }
   }
   if (of_time_ || (of_first_time_ && first_bits != 0)) {
@@ -286,11 +292,10 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
     off.spin = way * off.spin;
     const Trig<S> phi = trig(off.angle);
     const double spin = abs(off.spin.value);
-    const Toss<double> toss =
-        toss_from(seen(plain(roll).hoop, way.value), way.value * off.angle.value, spin);
+    const Toss<double> toss = toss_from(seen(plain(roll).hoop, way.value), way.value * off.angle.value, spin);
     const Flight<double> tossed = descend(toss, ascend(toss, true), true);
-    const FlightDual<S> flight = with_derivatives(hoop, phi, off.spin, S(0.0), tossed.apex_time / spin,
-                                                  tossed.flight_time / spin);
+    const FlightDual<S> flight =
+        with_derivatives(hoop, phi, off.spin, S(0.0), tossed.apex_time / spin, tossed.flight_time / spin);
     const auto put = [&](double Outcome::*quantity, const S& value, double unit = 1.0) {
       lot.gradients.put(quantity, place, value, unit);
     };

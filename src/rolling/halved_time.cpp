@@ -62,9 +62,9 @@ void HalvedTime<S>::halve(const F& f, const S& a, const S& b, const S& whole, in
   const S middle = a + (b - a) * S(0.5L);
   unsure_ = Number(0);
   const S left = rule(f, a, middle), right = rule(f, middle, b), sum = left + right;
-  const bool agree = largest_part(S(sum - whole)) <=
-                     std::max(Number(0.1L) * tolerance_ * largest_part(S(total_ + sum)),
-                              unsure_ * largest_part(sum));
+  const bool agree =
+      largest_part(S(sum - whole)) <=
+      std::max(Number(0.1L) * tolerance_ * largest_part(S(total_ + sum)), unsure_ * largest_part(sum));
   if (agree || depth == 0 || panels_left_ <= 0 || !(unsure_ < Number(1))) {
     total_ += agree ? sum : S(std::numeric_limits<Number>::quiet_NaN());
     doubt_ += Number(1.5) * unsure_ * largest_part(sum);

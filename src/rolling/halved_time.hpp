@@ -61,10 +61,11 @@ class HalvedTime {
   const Roll<S>& roll_;
   const GaussRule<Number>& gauss_;
   Number tolerance_;
-  S release_;         // less whole turns, of which nothing depends
-  S q0_, two_q0_;     // x = q (2 q0 + q) takes out E's zero before the release
+  S release_;                              // less whole turns, of which nothing depends
+  S q0_, two_q0_;                          // x = q (2 q0 + q) takes out E's zero before the release
   S rho2_, push2_, by_sine_, by_versine_;  // of E and J, as functions of x
-  Number unsure_{0};  // relative, of J / E in the panel at hand: roundings of E's terms, and of the angle in J
+  Number unsure_{
+      0};  // relative, of J / E in the panel at hand: roundings of E's terms, and of the angle in J
   S total_{0};
   Number doubt_{0};  // of the total, where it has derivatives: what roundings of E make of them
   long panels_left_ = 20'000;

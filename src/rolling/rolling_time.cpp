@@ -133,7 +133,8 @@ T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const Node
     for (const SharedNode& node : start_from_rest(first_span, n))
       total = total + node.weight * slowness_at(node.x, node.trig, node.x_less_sin);
     if constexpr (has_derivatives<T>) {  // of the span, which the nodes do not have
-      const auto at_end = value_of(slowness_at(first_span, trig(first_span), x_minus_sin(first_span, trig(first_span))));
+      const auto at_end =
+          value_of(slowness_at(first_span, trig(first_span), x_minus_sin(first_span, trig(first_span))));
       total = total + span.through(at_end - at_end, at_end);
     }
     return total;

@@ -56,14 +56,17 @@ std::vector<std::uint64_t> solve_grid(const Spec& spec, const BoundaryOptions& o
   std::mutex telling;
   std::size_t done = 0;
   run_sweep(spec, tiling, {options.threads, 0, options.stop_requested}, [&] {
-    return TileWork{[&](const Tile& tile, std::size_t first, std::span<const Outcome> some, const Gradients&) {
-                      for (std::size_t i = 0; i < some.size(); ++i)
-                        words[tiling.number(tile, first + i)] = word_of(discrete(some[i], options.phases));
-                      const std::lock_guard lock(telling);
-                      done += some.size();
-                      if (options.progress) options.progress(done, total);
-                    },
-                    [](std::size_t, const Tile&) { return Prepared{[] {}, 0}; }};
+    return TileWork{
+        [&](const Tile& tile, std::size_t first, std::span<const Outcome> some, const Gradients&) {
+          for (std::size_t i = 0; i < some.size(); ++i)
+            words[tiling.number(tile, first + i)] = word_of(discrete(some[i], options.phases));
+          const std::lock_guard lock(telling);
+          done += some.size();
+          if (options.progress) options.progress(done, total);
+        },
+        [](std::size_t, const Tile&) {
+          return Prepared{[] {}, 0};
+        }};
   });
   if (options.stop_requested && options.stop_requested()) throw Stopped("boundaries was asked to stop");
   return words;
@@ -108,8 +111,8 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
   std::size_t done = 0;
   parallel_for_each(found.size(), options.threads, [&] {
     return [&, solve = make_solver(spec)](std::size_t block) {
-      const std::span some = std::span(edges).subspan(block * at_once,
-                                                      std::min(at_once, edges.size() - block * at_once));
+      const std::span some =
+          std::span(edges).subspan(block * at_once, std::min(at_once, edges.size() - block * at_once));
       const auto design_at = [&](std::size_t line, double value) {
         Design design = space.at(some[line].design);
         design.*member_of(spec.axes[some[line].axis]) = value;
@@ -122,9 +125,11 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
         const std::size_t k = place_along(shape, some[i].design, some[i].axis);
         // From the lesser to the greater value, whichever way the axis runs.
         const auto [low, high] = std::minmax(values[k], values[k + 1]);
-        stretches.push_back({i, {low, {}}, {high, {}},
-                             std::numeric_limits<double>::epsilon() * 0.25 *
-                                 std::max(std::abs(low), std::abs(high))});
+        stretches.push_back(
+            {i,
+             {low, {}},
+             {high, {}},
+             std::numeric_limits<double>::epsilon() * 0.25 * std::max(std::abs(low), std::abs(high))});
         ends.push_back(design_at(i, low)), ends.push_back(design_at(i, high));
       }
       std::vector<Outcome> outcomes(ends.size());

@@ -112,7 +112,8 @@ void check_sample(Check& check) {
        "the map has another status, flag, number of candidates or sequence than " + audited.method);
   tell(audited.first_inaccurate,
        fmt::format("the map differs by more than {:.1e} from {}", audited.allowed_error, audited.method));
-  tell(audited.first_wrong_gradient, "a derivative differs by more than 1e-6 from differences in long double");
+  tell(audited.first_wrong_gradient,
+       "a derivative differs by more than 1e-6 from differences in long double");
   tell(audited.first_overruled, "the map differs from an integration of the paper's (7) to (9)");
   check.report.sample = audited;
 }

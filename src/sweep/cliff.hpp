@@ -31,13 +31,13 @@ struct Stretch {
 CliffKind kind_of(const Scene& scene, const Design& below, const Probe& from, const Design& above,
                   const Probe& to);
 
-/// Bisects all stretches, side by side, until each has nothing between its ends; what lies beyond them that is
-/// another cliff again becomes a stretch more. Where the method gives up on a design between, it is not asked
-/// again: what is found is from the last it could solve to there, or, where that is a sliver, to the next.
-/// design_at(line, number) is the design there. found(stretch) is called for each, stop() now and then.
+/// Bisects all stretches, side by side, until each has nothing between its ends; what lies beyond them that
+/// is another cliff again becomes a stretch more. Where the method gives up on a design between, it is not
+/// asked again: what is found is from the last it could solve to there, or, where that is a sliver, to the
+/// next. design_at(line, number) is the design there. found(stretch) is called for each, stop() now and then.
 template <class DesignAt, class Found, class Stop>
-void bisect(const Solver& solve, bool phases, const std::vector<Stretch>& stretches, const DesignAt& design_at,
-            const Found& found, const Stop& stop) {
+void bisect(const Solver& solve, bool phases, const std::vector<Stretch>& stretches,
+            const DesignAt& design_at, const Found& found, const Stop& stop) {
   constexpr double sliver = 1e-9;  // of a stretch
   const auto same = [&](const Probe& a, const Probe& b) {
     return discrete(a.outcome, phases) == discrete(b.outcome, phases);

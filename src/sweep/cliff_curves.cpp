@@ -120,7 +120,8 @@ class Plane {
     std::vector<double> middle(2, 0.0);
     for (const std::size_t i : open) {
       const std::vector<double> at = place(i);
-      middle[0] += at[0] / static_cast<double>(open.size()), middle[1] += at[1] / static_cast<double>(open.size());
+      middle[0] += at[0] / static_cast<double>(open.size()),
+          middle[1] += at[1] / static_cast<double>(open.size());
     }
     for (const std::size_t i : open) all.push_back({i, none, middle, cliffs_[i].kind});
   }

@@ -57,33 +57,33 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
-    return [&, solve = make_gradient_solver(spec), gradients = Gradients(gradients_of(spec)),
-            work = make_work(), designs = std::vector<Design>(most),
-            outcomes = std::vector<Outcome>(most)](std::size_t i) mutable {
-      try {
-        const std::size_t number = options.first_tile + i;
-        const Tile tile = tiling.tile(number);
-        for (std::size_t first = 0; first < tile.count; first += piece) {
-          const std::size_t count = std::min(piece, tile.count - first);
-          const std::span some(designs.data(), count);
-          const std::span solved(outcomes.data(), count);
-          space.fill(tile, first, some);
-          solve(some, solved, gradients);
-          work.take(tile, first, solved, gradients);
-        }
-        Prepared prepared = work.prepare(number, tile);
-        if (!prepared.take) {
-          delivery.close(number);
-          return false;
-        }
-        const std::size_t bytes = prepared.bytes;
-        const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
-        return wanted && !(options.stop_requested && options.stop_requested());
-      } catch (...) {
-        delivery.abandon();
-        throw;
-      }
-    };
+    return
+        [&, solve = make_gradient_solver(spec), gradients = Gradients(gradients_of(spec)), work = make_work(),
+         designs = std::vector<Design>(most), outcomes = std::vector<Outcome>(most)](std::size_t i) mutable {
+          try {
+            const std::size_t number = options.first_tile + i;
+            const Tile tile = tiling.tile(number);
+            for (std::size_t first = 0; first < tile.count; first += piece) {
+              const std::size_t count = std::min(piece, tile.count - first);
+              const std::span some(designs.data(), count);
+              const std::span solved(outcomes.data(), count);
+              space.fill(tile, first, some);
+              solve(some, solved, gradients);
+              work.take(tile, first, solved, gradients);
+            }
+            Prepared prepared = work.prepare(number, tile);
+            if (!prepared.take) {
+              delivery.close(number);
+              return false;
+            }
+            const std::size_t bytes = prepared.bytes;
+            const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
+            return wanted && !(options.stop_requested && options.stop_requested());
+          } catch (...) {
+            delivery.abandon();
+            throw;
+          }
+        };
   });
   delivery.finish();
   return delivered;

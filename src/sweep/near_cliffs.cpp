@@ -37,8 +37,8 @@ class Box {
       sides_.push_back({std::get<ParameterSlot>(find_option("", axis.key)->slot).member, low, high, log});
       const double value = design.*sides_.back().member;
       if (!(value >= low && value <= high))
-        throw InputError(fmt::format("{} = {} is outside the map; allowed: from {} to {}", axis.key, value, low,
-                                     high));
+        throw InputError(
+            fmt::format("{} = {} is outside the map; allowed: from {} to {}", axis.key, value, low, high));
       centre_.push_back(high > low ? sides_.back().coordinate(value) : 0.0);
     }
   }
@@ -108,7 +108,8 @@ class Looking {
     std::vector<double> reaches;
     for (const Vector& direction : directions) {
       reaches.push_back(std::min(box_.reach(direction), most));
-      for (int k = 1; k <= steps; ++k) designs.push_back(box_.at(direction, station(reaches.back(), k, steps)));
+      for (int k = 1; k <= steps; ++k)
+        designs.push_back(box_.at(direction, station(reaches.back(), k, steps)));
     }
     std::vector<Outcome> outcomes(designs.size());
     solve_(designs, outcomes);
@@ -132,9 +133,11 @@ class Looking {
         [&](const Stretch& cliff) {
           NearCliff& nearest = found[cliff.line];
           if (!(cliff.below.at < nearest.distance)) return;
-          const Design below = design_at(cliff.line, cliff.below.at), above = design_at(cliff.line, cliff.above.at);
+          const Design below = design_at(cliff.line, cliff.below.at),
+                       above = design_at(cliff.line, cliff.above.at);
           nearest = {box_.place(below), cliff.below.at,
-                     kind_of(scene_, below, cliff.below, above, cliff.above), discrete(cliff.above.outcome, false)};
+                     kind_of(scene_, below, cliff.below, above, cliff.above),
+                     discrete(cliff.above.outcome, false)};
         },
         [] {});
     std::erase_if(found, [](const NearCliff& cliff) { return cliff.at.empty(); });

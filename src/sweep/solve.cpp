@@ -133,8 +133,7 @@ std::vector<Design> gradient(std::span<const Design> designs, double Outcome::*o
         for (std::size_t j = 0; j < wanted.by.size(); ++j)
           found[first + i].*differentiable[wanted.by[j]] = gradients.column(0, j)[i];
       }
-      if (options.stop_requested && options.stop_requested())
-        throw Stopped("gradient was asked to stop");
+      if (options.stop_requested && options.stop_requested()) throw Stopped("gradient was asked to stop");
       return true;
     };
   });

@@ -58,8 +58,7 @@ GradientSolver make_gradient_solver(const Spec& spec) {
   if (asked.of.empty())
     return [solver = make_solver(spec)](std::span<const Design> designs, std::span<Outcome> outcomes,
                                         Gradients&) { solver(designs, outcomes); };
-  return model_of(spec.scene)
-      .gradients(spec.scene, spec.numerics.tolerance, wanted_of(spec.output), asked);
+  return model_of(spec.scene).gradients(spec.scene, spec.numerics.tolerance, wanted_of(spec.output), asked);
 }
 
 Solver make_solver(const Spec& spec, std::string_view method, double tolerance) {

@@ -54,7 +54,8 @@ void check_gradients(const Spec& spec) {
            "with method = \"exact\"");
   for (const std::string& name : output.gradients)
     if (const Field* field = find_field(name); field && !has(spec.scene.friction, field->only_of))
-      refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)), with_model(*field->only_of));
+      refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)),
+             with_model(*field->only_of));
   for (const std::string& name : output.gradients_by)
     if (const Option* option = find_option("", name); option && !has(spec.scene.friction, option->only_of))
       refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene)),

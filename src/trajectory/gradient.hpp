@@ -18,8 +18,9 @@ namespace leapmap {
 /// The parameters, in the order in which duals hold their derivatives. Without slip only the first seven
 /// matter.
 inline constexpr std::array<double Design::*, 10> differentiable{
-    &Design::slope,        &Design::mass_ratio,   &Design::offset_ratio, &Design::inertia_factor, &Design::release_angle,
-    &Design::release_spin, &Design::drive_torque, &Design::mu_static,    &Design::mu_kinetic,     &Design::restitution};
+    &Design::slope,         &Design::mass_ratio,   &Design::offset_ratio, &Design::inertia_factor,
+    &Design::release_angle, &Design::release_spin, &Design::drive_torque, &Design::mu_static,
+    &Design::mu_kinetic,    &Design::restitution};
 inline constexpr std::size_t without_slip = 7;
 inline constexpr std::size_t by_release_angle = 4, by_release_spin = 5;  ///< places among them
 

@@ -284,3 +284,57 @@ def test_a_list_of_designs_is_drawn_a_dot_each_over_a_parameter_that_varies(tmp_
     assert wrong.returncode == 2 and "allowed: design, " in wrong.stderr
     grid = draw("list_chart.py", sweep(tmp_path, CHART, name="grid.h5"), "-o", tmp_path / "grid")
     assert grid.returncode == 2 and "is no list of designs" in grid.stderr
+
+
+@pytest.fixture(scope="module")
+def with_cliffs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("cliffs")
+    path = sweep(folder, CHART.replace("values = [0.7, 1.0]", "values = [1.0]").replace("offset_ratio = { values = [1.0] }", "offset_ratio = 1.0"))
+    done = leapmap("boundaries", path, "-o", folder / "map.cliffs.h5")
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+@pytest.mark.parametrize("script, words", [
+    ("design_chart.py", ["cliff: a lift-off passes the hop height", "cliff: a lift-off is born (fold)"]),
+    ("status_chart.py", ["cliff: a lift-off passes the hop height"]),
+    ("phase_diagram.py", ["jumps on the 1st lift-off", "jumps on the 2nd lift-off", "1st", "2nd", "no jump", "the paper's hoop"])])
+def test_charts_draw_the_cliffs_beside_a_map_as_curves_named_in_the_legend(with_cliffs, tmp_path, script, words):
+    done = draw(script, with_cliffs / "map.h5", "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    svg = next(line for line in done.stdout.split() if line.endswith(".svg"))
+    told = texts(svg)
+    for word in words:
+        assert word in told, word
+    without = draw(script, with_cliffs / "map.h5", "--cliffs", "none", "-o", tmp_path / "plain")
+    assert without.returncode == 0, without.stderr
+    plain = texts(next(line for line in without.stdout.split() if line.endswith(".svg")))
+    assert not any(word.startswith("cliff") for word in plain)
+
+
+def test_pixels_beside_a_cliff_are_of_the_side_they_are_on(with_cliffs, monkeypatch):
+    monkeypatch.syspath_prepend(str(TOP / "analysis"))
+    import cliffs
+    import planes
+    from read_map import read_map
+    m = read_map(str(with_cliffs / "map.h5"))
+    grid = planes.Planes(m)
+    panel = cliffs.Panel(grid, (), cliffs.read_cliffs(m, None))
+    ours = panel.code(grid.cut(np.where(m.code("status", "jumped"), m.fields["candidates"], 0))[0])
+    slopes, ratios = np.radians(panel.centres("slope")), panel.centres("mass_ratio")
+    rng = np.random.default_rng(3)
+    rows, columns = rng.integers(0, len(ratios), 400), rng.integers(0, len(slopes), 400)
+    designs = with_cliffs / "pixels.csv"
+    designs.write_text("slope,mass_ratio\n" + "".join(f"{slopes[c]!r},{ratios[r]!r}\n" for r, c in zip(rows, columns)))
+    sweep(with_cliffs, '[design]\npoints = "pixels.csv"\n[numerics]\naudit = 0\n', name="pixels.h5")
+    with h5py.File(with_cliffs / "pixels.h5") as f:
+        truth = np.where(f["status"][()] == 1, f["candidates"][()], 0)
+    right = (ours[rows, columns] == truth).mean()
+    # Bands narrower than a cell of this coarse grid are not seen; cells alone are right for 93 % or fewer.
+    assert right > 0.95, right
+
+
+def test_cliffs_of_another_map_are_refused(with_cliffs, tmp_path):
+    other = sweep(tmp_path, CHART)
+    done = draw("design_chart.py", other, "--cliffs", with_cliffs / "map.cliffs.h5", "-o", tmp_path / "no")
+    assert done.returncode == 2 and "not of the same designs" in done.stderr and done.stderr.count("\n") == 1

@@ -94,7 +94,9 @@ def test_boundaries_are_told_and_written_of_a_spec_and_of_its_map(tmp_path):
         below, above = f["below_jumps_on"][()], f["above_jumps_on"][()]
     with open(table, encoding="utf-8") as f:
         rows = list(csv.DictReader(f))
-    assert len(rows) == count and {row["kind"] for row in rows} == {"threshold", "fold"}
+    assert {row["kind"] for row in rows} == {"threshold", "fold"}
+    # A cliff where a curve changes its kind is on two.
+    assert len({(row["along"], row["slope"], row["mass_ratio"]) for row in rows}) == count and count <= len(rows) < 1.2 * count
     # At the place and below it is one outcome, the next number above another.
     i = int(np.flatnonzero((along == 0) & (below > 0) & (above > 0))[0])
     for slope, jumps_on in ((slopes[i], below[i]), (math.nextafter(slopes[i], 1.0), above[i])):

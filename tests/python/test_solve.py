@@ -222,3 +222,29 @@ def test_help_and_stubs_know_every_parameter_and_field():
         name = row["name"]
         assert re.search(rf"^ *{name}( \[.*\])?: ", leapmap.solve.__doc__, re.M) and re.search(rf"\b{name}: ", text), name
     assert "slope" in inspect.signature(leapmap.solve).parameters
+
+
+def test_gradient_agrees_with_the_45_digit_table():
+    t = table("noslip_gradient.csv")
+    given = {key: numbers(t[key]) for key in (*INPUTS, "drive_torque")}
+    compared = 0
+    for of in ("jump_height", "jump_time", "apex_time", "flight_time", "jump_angle", "jump_spin"):
+        g = leapmap.gradient(of=of, **given, **UNIT)
+        assert list(g) == [name for name in (*INPUTS, "drive_torque")]
+        for name, found in g.items():
+            truth = numbers(t[f"{of}_by_{name}"])
+            known = np.isfinite(truth)
+            np.testing.assert_allclose(found[known], truth[known], rtol=1e-9)
+            compared += known.sum()
+    assert compared > 1500
+
+
+def test_gradient_broadcasts_and_refuses_what_has_none():
+    g = leapmap.gradient(slope=np.linspace(0.1, 0.8, 5)[:, None], offset_ratio=[0.8, 1.0], friction="coulomb", mu_static=0.4)
+    assert g["mu_static"].shape == (5, 2) and np.isnan(g["mu_kinetic"]).all() and np.isfinite(g["slope"]).any()
+    assert isinstance(leapmap.gradient()["slope"], float)
+    for of, word in (("status", "status"), ("slip_distance", "jump_height"), ("weight", "weight")):
+        with pytest.raises(ValueError, match=word):
+            leapmap.gradient(of=of)
+    with pytest.raises(ValueError, match="slope"):
+        leapmap.gradient(slope=2.0)

@@ -137,7 +137,8 @@ TEST(RollingGradients, OfATimeFromRestByTheSpinIsThatOfASpinEitherWay) {
               (time(h) - time(-h)) / (2.0 * h), 1e-6);  // the error of differences, h squared
 }
 
-/// Uphill it turns round a hair from where it was released; time is a smooth function of the spin through zero.
+/// Uphill it turns round a hair from where it was released; time is a smooth function of the spin through
+/// zero.
 TEST(RollingGradients, OfTimesBySmallSpinsEitherWayAreThatFromRest) {
   const auto by_spin = [](double spin, Friction friction) {
     Design design;
@@ -177,7 +178,8 @@ TEST(RollingGradients, OfTimesBesideAStallAreRightOrNaN) {
 
 TEST(Gradients, OfDesignsAreInSecondsAndNaNByWhatTheModelHasNot) {
   const Design hoop;
-  const Design si = gradient(hoop, &Outcome::jump_time), own = gradient(hoop, &Outcome::jump_time, unit_scene());
+  const Design si = gradient(hoop, &Outcome::jump_time),
+               own = gradient(hoop, &Outcome::jump_time, unit_scene());
   EXPECT_NEAR(si.slope / own.slope, time_unit(Scene{}), 1e-14);
   EXPECT_TRUE(std::isnan(si.mu_static) && std::isnan(si.mu_kinetic) && std::isnan(si.restitution));
   Design never;

@@ -59,7 +59,8 @@ inline Comparison compare_with_differences(std::span<const Design> designs, cons
         const double near = (beside[0].*of - beside[1].*of) / (2.0 * h),
                      far = (beside[2].*of - beside[3].*of) / (4.0 * h), truth = (4.0 * near - far) / 3.0;
         const double ours = gradients.column(i, j)[d], error = std::abs(ours - truth);
-        const std::string where = fmt::format("design {}, quantity {} by parameter {}: {} for {}", d, i, j, ours, truth);
+        const std::string where =
+            fmt::format("design {}, quantity {} by parameter {}: {} for {}", d, i, j, ours, truth);
         ++found.compared;
         if (std::isnan(ours)) {
           if (found.missing++ == 0) found.first_missing = where;

@@ -14,9 +14,7 @@ inline void sweep_into(MapWriter& writer, const Spec& spec, const MapLayout& lay
   run_sweep(spec, tiling, options, [&] {
     const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
     return TileWork{[encoder](const Tile&, std::size_t first, std::span<const Outcome> outcomes,
-                              const Gradients& gradients) {
-                      encoder->take(first, outcomes, gradients);
-                    },
+                              const Gradients& gradients) { encoder->take(first, outcomes, gradients); },
                     [&writer, encoder](std::size_t number, const Tile&) {
                       const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number));
                       return Prepared{[&writer, encoded] { writer.write(*encoded); }, encoded->bytes()};

@@ -29,8 +29,8 @@ Spec over(std::vector<Axis> axes) {
   return spec;
 }
 
-/// On level ground a thin hoop whose mass lies on top, all but at rest, leaves the ground if its mass ratio is
-/// more than 13: the normal force then grazes zero. w0^2 > sqrt(27 (1 - rho) / (1 + rho)) - 1 moves it by
+/// On level ground a thin hoop whose mass lies on top, all but at rest, leaves the ground if its mass ratio
+/// is more than 13: the normal force then grazes zero. w0^2 > sqrt(27 (1 - rho) / (1 + rho)) - 1 moves it by
 /// 1e-17.
 TEST(Boundaries, OnLevelGroundTheHoopLeavesItFromAMassRatioOf13On) {
   Spec spec = over({spaced("mass_ratio", 12.0, 14.5, 6)});
@@ -99,7 +99,9 @@ TEST(Boundaries, FindEveryCliffBetweenTwoNeighboursThatDiffer) {
 TEST(Bisection, FindsANarrowBandThatIsLikeNeitherSide) {
   const auto outcome_at = [](double x) {
     Outcome outcome;
-    outcome.status = x < 0.3 ? Status::no_jump : x < 0.3 + 1e-9 ? Status::stalled : Status::airborne_at_release;
+    outcome.status = x < 0.3          ? Status::no_jump
+                     : x < 0.3 + 1e-9 ? Status::stalled
+                                      : Status::airborne_at_release;
     return outcome;
   };
   const Solver solve = [&](std::span<const Design> designs, std::span<Outcome> outcomes) {
@@ -237,7 +239,8 @@ TEST(NearCliffs, AlongAxesAreThoseOfTheGridAndNoneIsNearerThanTheNearest) {
   Spec line = over({spaced("slope", 0.4, 0.85, 46)});
   const Boundaries ahead = find_boundaries(line);
   ASSERT_FALSE(ahead.cliffs.empty());
-  const auto up = std::ranges::find_if(near.along[0], [](const NearCliff& cliff) { return cliff.at[0] > 0.4; });
+  const auto up =
+      std::ranges::find_if(near.along[0], [](const NearCliff& cliff) { return cliff.at[0] > 0.4; });
   ASSERT_TRUE(up != near.along[0].end());
   EXPECT_NEAR(up->at[0], ahead.cliffs.front().value, 1e-14);
   for (const auto& axis : near.along)
@@ -257,8 +260,9 @@ TEST(Boundaries, RefuseWhatIsNoGrid) {
   Spec list;
   EXPECT_THROW(find_boundaries(list), InputError);
   EXPECT_THROW(find_boundaries(over({{"slope", {0.4}}})), InputError);
-  EXPECT_THROW(find_boundaries(over({spaced("slope", 0.1, 0.8, 15'000), spaced("mass_ratio", 0.5, 8.0, 15'000)})),
-               InputError);
+  EXPECT_THROW(
+      find_boundaries(over({spaced("slope", 0.1, 0.8, 15'000), spaced("mass_ratio", 0.5, 8.0, 15'000)})),
+      InputError);
   Design beyond;
   beyond.slope = 1.0;
   EXPECT_THROW(near_cliffs(over({spaced("slope", 0.1, 0.8, 8)}), beyond), InputError);
