@@ -19,6 +19,7 @@
 #include "map/hdf5_driver.hpp"
 #include "map/schema.hpp"
 #include "map/table_file.hpp"
+#include "model/model.hpp"
 #include "sweep/begin_map.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/options.hpp"
@@ -194,6 +195,8 @@ Spec spec_of_input(const BoundariesArguments& arguments) {
 int run(const BoundariesArguments& arguments) {
   const Spec spec = spec_of_input(arguments);
   refuse_csv(arguments);
+  if (arguments.options.phases && !model_of(spec.scene).slips)
+    throw InputError("--phases: has no use where the contact never slips; allowed: with friction = \"coulomb\"");
   if (!arguments.output.empty())
     hdf5::refuse_other_file(arguments.output, cliffs_filetype, arguments.locking);
   note_signals();

@@ -108,6 +108,7 @@ def test_boundaries_are_told_and_written_of_a_spec_and_of_its_map(tmp_path):
     ([TOP / "sweeps" / "paper.toml"], "no grid"),
     (["no_such_spec.toml"], "no_such_spec.toml"),
     ([], "SPEC|MAP"),
+    ([TOP / "sweeps" / "slope_mass_ratio.toml", "--phases"], "--phases"),
 ])
 def test_boundaries_of_no_grid_are_refused_in_one_line(arguments, words):
     answer = leapmap("boundaries", *arguments)
