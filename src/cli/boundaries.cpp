@@ -196,7 +196,8 @@ int run(const BoundariesArguments& arguments) {
   const Spec spec = spec_of_input(arguments);
   refuse_csv(arguments);
   if (arguments.options.phases && !model_of(spec.scene).slips)
-    throw InputError("--phases: has no use where the contact never slips; allowed: with friction = \"coulomb\"");
+    throw InputError(
+        "--phases: has no use where the contact never slips; allowed: with friction = \"coulomb\"");
   if (!arguments.output.empty())
     hdf5::refuse_other_file(arguments.output, cliffs_filetype, arguments.locking);
   note_signals();
