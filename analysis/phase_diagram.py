@@ -10,9 +10,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 
 import cliffs
 import looks
-import planes
 import style
-from read_map import NotAMap, read_map
+from read_map import NotAMap
 
 MOST = 6  # lift-offs told apart
 COLOURS = ["#e8e8e8", "#fde725", "#5ec962", "#21918c", "#3b528b", "#440154", "#8c6bb1"]
@@ -74,15 +73,5 @@ def chart(grid, curves):
     return figure
 
 
-def main():
-    p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio.h5", "_phases")
-    planes.add_options(p)
-    cliffs.add_options(p)
-    arguments = p.parse_args()
-    m = read_map(arguments.source)
-    grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)
-    style.save(chart(grid, cliffs.read_cliffs(m, arguments.cliffs)), arguments.output)
-
-
 if __name__ == "__main__":
-    style.run(main, NotAMap, OSError)
+    style.run(lambda: cliffs.run(__doc__, "maps/slope_mass_ratio.h5", "_phases", chart), NotAMap, OSError)

@@ -8,9 +8,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 
 import cliffs
 import looks
-import planes
 import style
-from read_map import NotAMap, read_map
+from read_map import NotAMap
 
 JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a spurious first lift-off"),
          ("#5aae61", "jumps (the map does not tell at which lift-off)")]
@@ -51,15 +50,5 @@ def chart(grid, curves):
     return figure
 
 
-def main():
-    p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "_status")
-    planes.add_options(p)
-    cliffs.add_options(p)
-    arguments = p.parse_args()
-    m = read_map(arguments.source)
-    grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)
-    style.save(chart(grid, cliffs.read_cliffs(m, arguments.cliffs)), arguments.output)
-
-
 if __name__ == "__main__":
-    style.run(main, NotAMap, OSError)
+    style.run(lambda: cliffs.run(__doc__, "maps/slope_mass_ratio_offset.h5", "_status", chart), NotAMap, OSError)

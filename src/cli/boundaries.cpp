@@ -127,13 +127,6 @@ std::vector<Table> tables_of(const Boundaries& found) {
   return {cliffs, curves};
 }
 
-/// Whether a file begins as HDF5's do.
-bool is_hdf5(const std::string& path) {
-  std::array<char, 8> begin{};
-  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
-  return std::string_view(begin.data(), begin.size()) == "\x89HDF\r\n\x1a\n";
-}
-
 /// Curve after curve, place after place, and then the cliffs that are on none.
 void write_csv(const std::string& path, const Boundaries& found) {
   std::string text = "curve,kind,along";
@@ -167,7 +160,7 @@ void refuse_csv(const BoundariesArguments& arguments) {
     if (arguments.csv == other || std::filesystem::equivalent(arguments.csv, other, ignored))
       throw InputError(
           fmt::format("--csv {}: is the file of something else here; allowed: another name", other));
-  if (is_hdf5(arguments.csv))
+  if (hdf5::is_hdf5(arguments.csv, arguments.locking))
     throw InputError(fmt::format("--csv {}: is an HDF5 file; allowed: another name", arguments.csv));
 }
 
@@ -185,7 +178,8 @@ void print_counts(const Boundaries& found) {
 }
 
 Spec spec_of_input(const BoundariesArguments& arguments) {
-  if (!is_hdf5(arguments.input)) return read_spec(arguments.input, arguments.overrides);
+  if (!hdf5::is_hdf5(arguments.input, arguments.locking))
+    return read_spec(arguments.input, arguments.overrides);
   if (!arguments.overrides.empty())
     throw InputError(
         "--set: has no use with a map; allowed: with a spec, or the map's own by leapmap info --spec");
@@ -255,11 +249,7 @@ void add_boundaries(CLI::App& app, int& status) {
       ->check(named_file());
   command->add_option("--csv", arguments->csv, "write the cliffs, a line each, to this file, too")
       ->check(named_file());
-  command
-      ->add_option("--set", arguments->overrides,
-                   "KEY=VALUE: override a key of the spec, for example --set tolerance=1e-12")
-      ->expected(1)
-      ->take_all();
+  add_set(*command, arguments->overrides, ", for example --set tolerance=1e-12");
   command->add_flag("--phases", arguments->options.phases,
                     "with friction: tell sequences of phases apart, too");
   command->add_option("--threads", arguments->options.threads, "threads to use; default: all")

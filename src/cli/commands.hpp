@@ -24,6 +24,9 @@ CLI::Validator named_file();
 /// --no-lock, of every command that opens files of ours.
 void add_no_lock(CLI::App& command, Locking& locking);
 
+/// --set KEY=VALUE, which adds to overrides; example: what --help adds of one.
+void add_set(CLI::App& command, std::vector<std::string>& overrides, const std::string& example = {});
+
 /// The flag of a spec's key, which adds KEY=VALUE to overrides.
 void add_flag_of(CLI::App& command, const Option& option, std::vector<std::string>& overrides);
 

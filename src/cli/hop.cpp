@@ -278,9 +278,7 @@ void add_hop(CLI::App& app, int& status) {
   auto arguments = std::make_shared<HopArguments>();
   command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop");
   for (const Option* option : hop_options()) add_flag_of(*command, *option, arguments->flags);
-  command->add_option("--set", arguments->overrides, "KEY=VALUE: override a key of the spec")
-      ->expected(1)
-      ->take_all();
+  add_set(*command, arguments->overrides);
   command->add_option("--trace", arguments->trace, "write the motion over time to this HDF5 file")
       ->check(named_file());
   command

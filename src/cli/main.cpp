@@ -100,6 +100,13 @@ void leapmap::cli::add_no_lock(CLI::App& command, Locking& locking) {
       "a file in use is refused all the same");
 }
 
+void leapmap::cli::add_set(CLI::App& command, std::vector<std::string>& overrides,
+                           const std::string& example) {
+  command.add_option("--set", overrides, "KEY=VALUE: override a key of the spec" + example)
+      ->expected(1)
+      ->take_all();
+}
+
 void leapmap::cli::add_flag_of(CLI::App& command, const Option& option, std::vector<std::string>& overrides) {
   command.add_option_function<std::string>(
       flag_of(option),

@@ -161,11 +161,7 @@ void add_sweep(CLI::App& app, int& status) {
       ->add_option("-o,--output", arguments->map,
                    "the map to write, in a folder made if need be; default: output.file of the spec")
       ->check(named_file());
-  command
-      ->add_option("--set", arguments->overrides,
-                   "KEY=VALUE: override a key of the spec, for example --set tolerance=1e-12")
-      ->expected(1)
-      ->take_all();
+  add_set(*command, arguments->overrides, ", for example --set tolerance=1e-12");
   for (const Option* option : hop_options())
     if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
   command->add_option("--threads", arguments->threads, "threads to use; default: all")

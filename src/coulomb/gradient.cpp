@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "coulomb/model.hpp"
-#include "physics/flight_dual.hpp"
 #include "physics/landing.hpp"
 #include "physics/sliding.hpp"
 #include "physics/stick.hpp"
@@ -40,17 +39,12 @@ struct Recorded {
   ContactState<double> end;
 };
 
-/// Whether mu_kinetic is what mu_static is, and goes where that goes.
-bool follows(const Design& design) {
-  return std::isnan(design.mu_kinetic) || design.mu_kinetic == design.mu_static;
-}
-
 /// As contact_of has it. Where mu_kinetic follows mu_static both are one parameter, and so they are where
 /// mu_static, being less than mu_kinetic, counts as much.
 Contact<D> dual_contact(const Design& design, const Scene& scene) {
-  const bool one = follows(design) || design.mu_static < design.mu_kinetic;
-  const D fixed = follows(design) ? D::parameter(design.mu_static, by_mu_static)
-                                  : D::parameter(design.mu_kinetic, by_mu_kinetic);
+  const bool one = kinetic_follows(design) || design.mu_static < design.mu_kinetic;
+  const D fixed = kinetic_follows(design) ? D::parameter(design.mu_static, by_mu_static)
+                                          : D::parameter(design.mu_kinetic, by_mu_kinetic);
   return {one ? fixed : D::parameter(design.mu_static, by_mu_static), fixed,
           D::parameter(design.restitution, by_restitution), D(scene.rest_speed)};
 }
@@ -60,9 +54,8 @@ class Chain {
  public:
   Chain(const Design& design, const Scene& scene, const SlidingPanels<D>& panels, const DualTime<D>& time)
       : panels_(panels), time_(time), second_(time_unit(scene)), contact_(dual_contact(design, scene)) {
-    std::array<D, without_slip> p;
-    for (std::size_t k = 0; k < p.size(); ++k) p[k] = D::parameter(design.*differentiable[k], k);
-    hoop_ = derive(p[0], p[1], p[2], p[3], p[6]);
+    const std::array<D, without_slip> p = dual_parameters<D>(design);
+    hoop_ = derive(p);
     at_.angle = p[by_release_angle], at_.spin = p[by_release_spin];
     released_ = contact_energy(hoop_, at_);
   }
@@ -88,8 +81,7 @@ class Chain {
             return;
           break;
         case Phase::flight:
-          if (!fly(recorded.flights[flight], flight == 0, last && outcome.status == Status::jumped, put))
-            return;
+          fly(recorded.flights[flight], flight == 0, last && outcome.status == Status::jumped, put);
           ++flight;
           break;
       }
@@ -204,7 +196,7 @@ class Chain {
   }
 
   template <class Put>
-  bool fly(const Flight<double>& flight, bool first, bool jumps, const Put& put) {
+  void fly(const Flight<double>& flight, bool first, bool jumps, const Put& put) {
     const Trig<D> phi = trig(at_.angle);
     const FlightDual<D> flown =
         with_derivatives(hoop_, phi, at_.spin, at_.normal, flight.apex_time, flight.flight_time);
@@ -213,13 +205,8 @@ class Chain {
       put(&Outcome::first_jump_time, at_.time, second_);
     }
     if (jumps) {
-      put(&Outcome::jump_height, flown.height, 1.0);
+      put_jump(put, at_.angle, at_.spin, at_.travel, flown, second_);
       put(&Outcome::jump_time, at_.time, second_);
-      put(&Outcome::jump_angle, at_.angle, 1.0);
-      put(&Outcome::jump_spin, at_.spin, 1.0);
-      put(&Outcome::jump_distance, at_.travel, 1.0);
-      put(&Outcome::apex_time, flown.apex_time, second_);
-      put(&Outcome::flight_time, flown.flight_time, second_);
       put(&Outcome::dip,
           D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
@@ -233,7 +220,6 @@ class Chain {
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
     at_.spin = landing.after.spin, at_.slip = landing.after.slip, at_.normal = landing.after.normal;
     if (jumps) put(&Outcome::landing_spin, at_.spin, 1.0);
-    return true;
   }
 
   /// When the flight is deepest below the plane before its apex; zero: it never is.
@@ -279,7 +265,7 @@ void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene
     if (!same_flags(outcomes[i], finer_.solve(designs[i], scene, observer, &recorded.slides))) continue;
     Chain(designs[i], scene, panels_, time_)
         .run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
-          if (follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
+          if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
           if (std::isfinite(outcomes[i].*quantity)) gradients.put(quantity, i, value, unit);
         });
   }

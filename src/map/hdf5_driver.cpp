@@ -195,6 +195,11 @@ void make_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
+bool is_hdf5(const std::string& path, Locking locking) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) && beginning_of(path, locking) == Beginning::hdf5;
+}
+
 File File::create(const std::string& path, std::string_view filetype, Locking locking) {
   if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) make_folder(folder);
   refuse_other_unfinished(path, filetype, locking);

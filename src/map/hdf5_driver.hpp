@@ -62,6 +62,9 @@ class File {
   Handle handle_;  // after bytes_, as closing it writes there
 };
 
+/// Whether there is a file at path that begins as HDF5's do.
+bool is_hdf5(const std::string& path, Locking locking);
+
 /// An unfinished file is gone on with or emptied only if it is one of ours of that type, or HDF5 too damaged
 /// to say what it is: throws InputError otherwise.
 void refuse_other_unfinished(const std::string& path, std::string_view filetype,

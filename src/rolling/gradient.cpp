@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 
-#include "physics/flight_dual.hpp"
 #include "rolling/model.hpp"
 #include "trajectory/units.hpp"
 
@@ -23,21 +22,11 @@ struct LiftOffDual {
   D angle, spin;
 };
 
-/// The roll of a design whose parameters are the duals' own, seen as it goes; release: its angle, less whole
-/// turns.
-template <class D, class T>
-Roll<D> dual_roll(const std::array<T, without_slip>& parameter, const T& way) {
-  std::array<D, without_slip> p;
-  for (std::size_t k = 0; k < p.size(); ++k) p[k] = D::parameter(parameter[k], k);
-  const Hoop<D> hoop = derive(p[0], p[1], p[2], p[3], p[6]);
-  return begin_roll(seen(hoop, D(way)), D(way) * p[by_release_angle], D(way) * p[by_release_spin]);
-}
-
-/// The roll of one design, seen as it is, with whole turns of the release.
-Roll<RollingDual> dual_roll_of(const Design& design) {
-  std::array<double, without_slip> parameter;
-  for (std::size_t k = 0; k < parameter.size(); ++k) parameter[k] = design.*differentiable[k];
-  return dual_roll<RollingDual>(parameter, 1.0);
+/// The roll of a design of these parameters, seen from the side where it goes.
+template <class D>
+Roll<D> dual_roll(const std::array<D, without_slip>& parameter, const D& way = D(1.0)) {
+  return begin_roll(seen(derive(parameter), way), way * parameter[by_release_angle],
+                    way * parameter[by_release_spin]);
 }
 
 template <class T, std::size_t N>
@@ -176,10 +165,10 @@ void RollingGradients::in_lanes(const Lot& lot, std::span<const LiftOffAt> lift_
     if (k < count) jump_bits |= unsigned{at.jumps} << k, first_bits |= unsigned{at.first} << k;
   }
   const auto load = [](const LaneArray<T>& lanes) { return Lanes<T>::load(lanes.data()); };
-  std::array<T, without_slip> parameter;
-  for (std::size_t p = 0; p < without_slip; ++p) parameter[p] = load(parameters[p]);
+  std::array<D, without_slip> parameter;
+  for (std::size_t p = 0; p < without_slip; ++p) parameter[p] = D::parameter(load(parameters[p]), p);
   const T way = load(ways), angle = load(angles);
-  const Roll<D> roll = dual_roll<D>(parameter, way);
+  const Roll<D> roll = dual_roll(parameter, D(way));
   const LiftOffDual<D> off = lift_off_at(roll, angle);
 
   T apex = load(apexes);
@@ -191,30 +180,28 @@ void RollingGradients::in_lanes(const Lot& lot, std::span<const LiftOffAt> lift_
   const Trig<D> phi = trig(off.angle);
   const FlightDual<D> flight = with_derivatives(roll.hoop, phi, off.spin, D(0.0), apex, load(flights));
 
-  const auto put = [&](unsigned lanes, double Outcome::*quantity, const D& value, double unit) {
-    lot.gradients.put(quantity, place, lanes, value, unit);
+  const auto put_to = [&](unsigned lanes) {
+    return [&lot, &place, lanes](double Outcome::*quantity, const D& value, double unit) {
+      lot.gradients.put(quantity, place, lanes, value, unit);
+    };
   };
+  const auto put_first = put_to(first_bits), put = put_to(jump_bits);
   MaskOf<T> hard = angle != angle;
-  if (first_bits != 0) put(first_bits, &Outcome::first_jump_height, flight.height, 1.0);
+  if (first_bits != 0) put_first(&Outcome::first_jump_height, flight.height, 1.0);
   if (jump_bits != 0) {
     const D seen_from(way);
-    put(jump_bits, &Outcome::jump_height, flight.height, 1.0);
-    put(jump_bits, &Outcome::jump_angle, seen_from * off.angle, 1.0);
-    put(jump_bits, &Outcome::jump_spin, seen_from * off.spin, 1.0);
-    put(jump_bits, &Outcome::jump_distance, seen_from * (off.angle - roll.release), 1.0);
-    put(jump_bits, &Outcome::apex_time, flight.apex_time, lot.second);
-    put(jump_bits, &Outcome::flight_time, flight.flight_time, lot.second);
+    put_jump(put, seen_from * off.angle, seen_from * off.spin, seen_from * (off.angle - roll.release), flight,
+             lot.second);
     if (of_dip_) {
       const Toss<T> toss = toss_from(plain(roll).hoop, angle, off.spin.value);
       const T lowest = lowest_before(toss, T(apex * off.spin.value)) / off.spin.value;
-      put(jump_bits, &Outcome::dip, D(0.5) * height_above_plane(roll.hoop, phi, off.spin, D(lowest)).value,
-          1.0);
+      put(&Outcome::dip, D(0.5) * height_above_plane(roll.hoop, phi, off.spin, D(lowest)).value, 1.0);
     }
   }
-  if (of_time_ || (of_first_time_ && first_bits != 0)) {
+  if ((of_time_ && jump_bits != 0) || (of_first_time_ && first_bits != 0)) {
     const D time = time_in_lanes(index, roll, off.angle, way, hard);
-    if (jump_bits != 0) put(jump_bits, &Outcome::jump_time, time, lot.second);
-    if (first_bits != 0) put(first_bits, &Outcome::first_jump_time, time, lot.second);
+    put(&Outcome::jump_time, time, lot.second);
+    put_first(&Outcome::first_jump_time, time, lot.second);
   }
   const unsigned left = Lanes<T>::bits(hard);
   for (std::size_t k = 0; k < count; ++k)
@@ -263,7 +250,7 @@ void RollingGradients::alone(const Lot& lot, const LiftOffAt& lift_off) {
   using S = RollingDual;
   const Design& design = lot.designs[lift_off.design];
   const auto& found = solver_.block().found[lift_off.design];
-  const Roll<S> roll = dual_roll_of(design);
+  const Roll<S> roll = dual_roll(dual_parameters<S>(design));
   const double angle = found.way * lift_off.angle + found.turned_back;
   const S time = time_.time(roll.hoop, roll.release, S::parameter(design.release_spin, by_release_spin), {},
                             lift_off_at(roll, angle).angle);
@@ -283,7 +270,7 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
   const std::size_t place = lot.first + number;
   if (!same_flags(outcome, lot.outcomes[number]) || told.lift_offs.empty()) return;
 
-  const Roll<S> roll = dual_roll_of(design);
+  const Roll<S> roll = dual_roll(dual_parameters<S>(design));
   const Hoop<S>& hoop = roll.hoop;
   const auto differentiate = [&](std::size_t i, bool jumps) {
     const S way(told.lift_offs[i].spin < 0.0 ? -1.0 : 1.0);
@@ -296,7 +283,7 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
     const Flight<double> tossed = descend(toss, ascend(toss, true), true);
     const FlightDual<S> flight =
         with_derivatives(hoop, phi, off.spin, S(0.0), tossed.apex_time / spin, tossed.flight_time / spin);
-    const auto put = [&](double Outcome::*quantity, const S& value, double unit = 1.0) {
+    const auto put = [&](double Outcome::*quantity, const S& value, double unit) {
       lot.gradients.put(quantity, place, value, unit);
     };
     const bool timed = jumps ? of_time_ || (i == 0 && of_first_time_) : of_first_time_;
@@ -304,20 +291,15 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
                                       std::span(told.turns).first(told.legs[i]), off.angle)
                          : S(0.0);
     if (i == 0) {
-      put(&Outcome::first_jump_height, flight.height);
+      put(&Outcome::first_jump_height, flight.height, 1.0);
       put(&Outcome::first_jump_time, time, lot.second);
     }
     if (!jumps) return;
-    put(&Outcome::jump_height, flight.height);
+    put_jump(put, off.angle, off.spin, off.angle - roll.release, flight, lot.second);
     put(&Outcome::jump_time, time, lot.second);
-    put(&Outcome::jump_angle, off.angle);
-    put(&Outcome::jump_spin, off.spin);
-    put(&Outcome::jump_distance, off.angle - roll.release);
-    put(&Outcome::apex_time, flight.apex_time, lot.second);
-    put(&Outcome::flight_time, flight.flight_time, lot.second);
     if (!of_dip_) return;
     const double lowest = lowest_before(toss, tossed.apex_time) / spin;
-    put(&Outcome::dip, S(0.5) * height_above_plane(hoop, phi, off.spin, S(lowest)).value);
+    put(&Outcome::dip, S(0.5) * height_above_plane(hoop, phi, off.spin, S(lowest)).value, 1.0);
   };
   const bool jumps = outcome.status == Status::jumped;
   const std::size_t last = told.lift_offs.size() - 1;

@@ -29,7 +29,7 @@ bool look_beside(const Design& original, const Scene& scene, double Design::*par
                  Beside& beside) {
   Design design = original;
   // What follows another goes where that goes.
-  if (design.mu_kinetic == design.mu_static) design.mu_kinetic = std::numeric_limits<double>::quiet_NaN();
+  if (kinetic_follows(design)) design.mu_kinetic = std::numeric_limits<double>::quiet_NaN();
   const double value = design.*parameter;
   beside.step = 1e-5 * std::max(1.0, std::abs(value));
   for (std::size_t k = 0; k < beside.outcomes.size(); ++k) {

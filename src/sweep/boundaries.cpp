@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
+#include <tuple>
 
 #include "leapmap/errors.hpp"
 #include "model/parameters.hpp"
@@ -96,16 +97,15 @@ std::size_t place_along(const std::vector<std::size_t>& shape, std::size_t desig
   return position[axis];
 }
 
-double Design::*member_of(const Axis& axis) {
-  return std::get<ParameterSlot>(find_option("", axis.key)->slot).member;
-}
-
 /// Bisects the edges on all threads, some hundred side by side.
 std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, const BoundaryOptions& options,
                           std::size_t designs) {
   constexpr std::size_t at_once = 512;
   const DesignSpace space(spec);
   const std::vector<std::size_t> shape = shape_of(spec);
+  std::vector<double Design::*> members;
+  for (const Axis& axis : spec.axes)
+    members.push_back(std::get<ParameterSlot>(find_option("", axis.key)->slot).member);
   std::vector<std::vector<Cliff>> found((edges.size() + at_once - 1) / at_once);
   std::mutex telling;
   std::size_t done = 0;
@@ -113,9 +113,11 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
     return [&, solve = make_solver(spec)](std::size_t block) {
       const std::span some =
           std::span(edges).subspan(block * at_once, std::min(at_once, edges.size() - block * at_once));
+      std::vector<Design> beginnings;
+      for (const Edge& edge : some) beginnings.push_back(space.at(edge.design));
       const auto design_at = [&](std::size_t line, double value) {
-        Design design = space.at(some[line].design);
-        design.*member_of(spec.axes[some[line].axis]) = value;
+        Design design = beginnings[line];
+        design.*members[some[line].axis] = value;
         return design;
       };
       std::vector<Stretch> stretches;

@@ -45,16 +45,17 @@ void check_designs(std::span<const Design> block, const Scene& scene, std::size_
       check_design(block[i], scene, designs > 1 ? fmt::format("design {}", first + i) : "");
 }
 
-/// make_block() once a thread, and what it returns with a solver, the first design and how many.
+/// At most so many at once: make_block() once a thread, and what it returns with the first design and how
+/// many. what: the call, for messages.
 template <class MakeBlock>
-void solve_in_blocks(const Spec& spec, std::size_t designs, const SolveOptions& options,
-                     const MakeBlock& make_block) {
-  const std::size_t most = designs_a_block(spec);
+void in_blocks(std::string_view what, std::size_t designs, std::size_t most, const SolveOptions& options,
+               const MakeBlock& make_block) {
   parallel_for_each((designs + most - 1) / most, options.threads, [&] {
-    return [&, solver = make_solver(spec), solve_block = make_block()](std::size_t block) mutable {
+    return [&, solve_block = make_block()](std::size_t block) mutable {
       const std::size_t first = block * most;
-      solve_block(solver, first, std::min(most, designs - first));
-      if (options.stop_requested && options.stop_requested()) throw Stopped("solve was asked to stop");
+      solve_block(first, std::min(most, designs - first));
+      if (options.stop_requested && options.stop_requested())
+        throw Stopped(fmt::format("{} was asked to stop", what));
       return true;
     };
   });
@@ -75,8 +76,9 @@ void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, co
   if (designs.size() != outcomes.size())
     throw InputError(
         fmt::format("{} outcomes for {} designs; allowed: as many", outcomes.size(), designs.size()));
-  solve_in_blocks(spec_of(scene, options), designs.size(), options, [&] {
-    return [&](const Solver& solver, std::size_t first, std::size_t size) {
+  const Spec spec = spec_of(scene, options);
+  in_blocks("solve", designs.size(), designs_a_block(spec), options, [&] {
+    return [&, solver = make_solver(spec)](std::size_t first, std::size_t size) {
       check_designs(designs.subspan(first, size), scene, first, designs.size());
       solver(designs.subspan(first, size), outcomes.subspan(first, size));
     };
@@ -87,10 +89,10 @@ void solve_blocks(std::size_t designs, const Scene& scene, const SolveOptions& o
                   const std::vector<std::string>& fields, const BlockEnds& ends) {
   Spec spec = spec_of(scene, options);
   spec.output.fields = fields;
-  solve_in_blocks(spec, designs, options, [&] {
+  in_blocks("solve", designs, designs_a_block(spec), options, [&] {
     const std::size_t most = std::min(designs, designs_a_block(spec));
-    return [&, some = std::vector<Design>(most), outcomes = std::vector<Outcome>(most)](
-               const Solver& solver, std::size_t first, std::size_t size) mutable {
+    return [&, solver = make_solver(spec), some = std::vector<Design>(most),
+            outcomes = std::vector<Outcome>(most)](std::size_t first, std::size_t size) mutable {
       const std::span<Design> block = std::span(some).first(size);
       ends.fill(first, block);
       check_designs(block, scene, first, designs);
@@ -122,10 +124,9 @@ std::vector<Design> gradient(std::span<const Design> designs, double Outcome::*o
   const GradientWanted wanted = gradients_of(spec);
   std::vector<Design> found(designs.size());
   constexpr std::size_t most = 256;
-  parallel_for_each((designs.size() + most - 1) / most, options.threads, [&] {
+  in_blocks("gradient", designs.size(), most, options, [&] {
     return [&, solver = make_gradient_solver(spec), gradients = Gradients(wanted),
-            outcomes = std::vector<Outcome>(most)](std::size_t block) mutable {
-      const std::size_t first = block * most, size = std::min(most, designs.size() - first);
+            outcomes = std::vector<Outcome>(most)](std::size_t first, std::size_t size) mutable {
       check_designs(designs.subspan(first, size), scene, first, designs.size());
       solver(designs.subspan(first, size), std::span(outcomes).first(size), gradients);
       for (std::size_t i = 0; i < size; ++i) {
@@ -133,8 +134,6 @@ std::vector<Design> gradient(std::span<const Design> designs, double Outcome::*o
         for (std::size_t j = 0; j < wanted.by.size(); ++j)
           found[first + i].*differentiable[wanted.by[j]] = gradients.column(0, j)[i];
       }
-      if (options.stop_requested && options.stop_requested()) throw Stopped("gradient was asked to stop");
-      return true;
     };
   });
   return found;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <span>
@@ -12,6 +13,7 @@
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "numerics/dual.hpp"
+#include "physics/flight_dual.hpp"
 
 namespace leapmap {
 
@@ -29,6 +31,26 @@ using DesignDual = Dual<double, differentiable.size()>;
 /// The same without friction's, of one design and of as many as the machine has lanes.
 using RollingDual = Dual<double, without_slip>;
 using LanesDual = Dual<Batch, without_slip>;
+
+/// The first parameters of a design as duals of themselves.
+template <class D>
+std::array<D, without_slip> dual_parameters(const Design& design) {
+  std::array<D, without_slip> parameters;
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    parameters[k] = D::parameter(design.*differentiable[k], k);
+  return parameters;
+}
+
+/// The hoop of those parameters.
+template <class D>
+Hoop<D> derive(const std::array<D, without_slip>& p) {
+  return derive(p[0], p[1], p[2], p[3], p[6]);
+}
+
+/// Whether mu_kinetic is what mu_static is, and goes where that goes.
+inline bool kinetic_follows(const Design& design) {
+  return std::isnan(design.mu_kinetic) || design.mu_kinetic == design.mu_static;
+}
 
 /// Which derivatives are asked for.
 struct GradientWanted {
@@ -99,6 +121,19 @@ class Gradients {
   GradientWanted wanted_;
   std::vector<std::vector<double>> columns_;
 };
+
+/// What the jump's lift-off and its flight come to; put(quantity, derivatives, unit). second: of the solver's
+/// unit of time.
+template <class D, class Put>
+void put_jump(const Put& put, const D& angle, const D& spin, const D& distance, const FlightDual<D>& flight,
+              double second) {
+  put(&Outcome::jump_height, flight.height, 1.0);
+  put(&Outcome::jump_angle, angle, 1.0);
+  put(&Outcome::jump_spin, spin, 1.0);
+  put(&Outcome::jump_distance, distance, 1.0);
+  put(&Outcome::apex_time, flight.apex_time, second);
+  put(&Outcome::flight_time, flight.flight_time, second);
+}
 
 /// Solves designs[i] into outcomes[i], and puts their derivatives. Owns its workspace: one a thread.
 using GradientSolver =
