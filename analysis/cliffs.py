@@ -9,8 +9,9 @@ import numpy as np
 from matplotlib import patheffects
 
 import looks
+import planes
 import style
-from read_map import NotAMap, read_table
+from read_map import NotAMap, read_map, read_table
 from style import plt
 
 # In the order of their numbers. Kind: the line's dashes and colour, and the words of the legend.
@@ -30,6 +31,17 @@ MOST_PIXELS = 900  # along a panel's side
 def add_options(parser):
     parser.add_argument("--cliffs", metavar="FILE", help="what leapmap boundaries found of the map (default: MAP.cliffs.h5 "
                         "beside MAP.h5, if it is there); 'none': draw cells, with stairs")
+
+
+def run(doc, example, suffix, chart):
+    """The main of a script whose chart(grid, curves) is one figure of a map over two axes."""
+    p = style.parser(doc, f"a map over two axes or more, for example {example}", suffix)
+    planes.add_options(p)
+    add_options(p)
+    arguments = p.parse_args()
+    m = read_map(arguments.source)
+    grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)
+    style.save(chart(grid, read_cliffs(m, arguments.cliffs)), arguments.output)
 
 
 def beside(path):
@@ -76,7 +88,9 @@ class Panel:
         for curve in curves or []:
             if all(np.allclose(curve[n], value, rtol=1e-12, atol=0) for n, value in where.items()):
                 self.curves.append((curve["kind"], *(self._places(n, curve[n]) for n in (grid.x, grid.y))))
-        self.crisp = curves is not None
+        # Cliffs are looked for in the planes of two axes: in others cells stay as they are.
+        aside = [n for n in grid.map.dims if n not in (grid.x, grid.y)]
+        self.crisp = curves is not None and all(np.ptp(curve[n]) == 0 for curve in curves for n in aside)
         shape = [len(grid.values(n)) for n in (grid.y, grid.x)]
         most = MOST_PIXELS if len(grid.panels) == 1 else MOST_PIXELS // 2
         self.fine = max(1, min(8, most // max(shape))) if self.crisp else 1

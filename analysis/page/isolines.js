@@ -10,6 +10,7 @@ function isolines(plane, nx, ny, level, px, py, torn) {
     for (let i = 0; i + 1 < nx; ++i) {
       const a = plane(i, j) - level, b = plane(i + 1, j) - level, c = plane(i + 1, j + 1) - level, d = plane(i, j + 1) - level;
       if (!(a - a + b - b + c - c + d - d === 0) || torn(i, j)) continue;
+      if (a > 0 === b > 0 && b > 0 === c > 0 && c > 0 === d > 0) continue;
       const sides = [];  // crossings in order around the square: bottom, right, top, left
       const cross = (u, v, key, x0, y0, x1, y1) => {
         if (u > 0 === v > 0) return;

@@ -13,7 +13,7 @@ function mapView(canvas, map, onPoint, onPick) {
   const view = { x: 0, y: 1, field: map.fields[0], index: shape.map((n) => Math.floor(n / 2)), picked: null };
   const status = map.codes.status, flags = map.codes.spurious_first_jump, cliffs = map.codes.cliffs;
   const background = document.createElement("canvas");  // all but the cursor
-  let sx, sy, frame;
+  let sx, sy, frame, box, chains, pixels;
 
   const offset = (i, j) => {
     let at = i * strides[view.x] + j * strides[view.y];
@@ -33,6 +33,10 @@ function mapView(canvas, map, onPoint, onPick) {
     sy = axisScale(map.axes[view.y], frame.bottom, frame.top);
     context.fillStyle = "#ffffff";
     context.fillRect(0, 0, canvas.width, canvas.height);
+    const x0 = Math.round(frame.left), y0 = Math.round(frame.top);
+    box = { x0, y0, w: Math.round(frame.right) - x0, h: Math.round(frame.bottom) - y0 };
+    chains = chainsHere();
+    pixels = pixelsOf(box);
     paintCells(context);
     paintIsolines(context);
     paintCliffs(context);
@@ -42,39 +46,74 @@ function mapView(canvas, map, onPoint, onPick) {
     paintCursor();
   }
 
-  function paintCells(context) {
-    const { left, top, right, bottom, ratio } = frame;
-    const x0 = Math.round(left), y0 = Math.round(top), w = Math.round(right) - x0, h = Math.round(bottom) - y0;
-    const image = context.createImageData(w, h), pixels = image.data;
+  /** The curves of the plane drawn, as pixels; undefined where its axes are not those that cliffs were looked for along. */
+  function chainsHere() {
+    const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1), chains = [];
+    let looked = false;
+    for (const curve of map.curves) {
+      const [a, b] = curve.axes, swapped = a === view.y && b === view.x;
+      if (!swapped && (a !== view.x || b !== view.y)) continue;
+      looked = true;
+      if (Object.entries(curve.at).some(([k, i]) => view.index[k] !== i)) continue;
+      const [us, vs] = swapped ? [curve.y, curve.x] : [curve.x, curve.y];
+      chains.push({ kind: curve.kind, places: us.flatMap((u, k) => [sx.pixel(u * unit(map.axes[view.x])), sy.pixel(vs[k] * unit(map.axes[view.y]))]) });
+    }
+    return looked ? chains : undefined;
+  }
+
+  /** What every pixel shows: within the curves of its cell, or its cell's. As crispPlane. */
+  function pixelsOf(box) {
+    const { values } = view.field;
+    if (chains) return crispPlane(values, offset, sx, sy, box, chains.map((chain) => chain.places));
+    const { x0, y0, w, h } = box, value = new Float64Array(w * h), design = new Int32Array(w * h);
     const columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5));
-    const { values, table, place } = view.field, period = Math.round(9 * ratio), line = Math.max(1, Math.round(ratio * 0.8));
     for (let q = 0; q < h; ++q) {
       const j = sy.index(y0 + q + 0.5);
       for (let p = 0; p < w; ++p) {
-        const i = columns[p], at = 4 * (q * w + p);
-        let r = 255, g = 255, b = 255;
-        if (i >= 0 && j >= 0) {
-          const k = offset(i, j), value = values[k];
-          if (value === value) {
-            const c = 3 * Math.round(255 * place(value));
-            r = table[c]; g = table[c + 1]; b = table[c + 2];
-            if (flags && flags.values[k] === 1 && (p + q) % period < line) { r *= 0.45; g *= 0.45; b *= 0.45; }
-          } else if (status) {
-            [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
-          } else { r = g = b = 217; }
-        }
-        pixels[at] = r; pixels[at + 1] = g; pixels[at + 2] = b; pixels[at + 3] = 255;
+        const k = columns[p] >= 0 && j >= 0 ? offset(columns[p], j) : -1;
+        design[q * w + p] = k;
+        value[q * w + p] = k >= 0 ? values[k] : NaN;
       }
     }
+    return { value, design };
+  }
+
+  function paintCells(context) {
+    const { x0, y0, w, h } = box, { value, design } = pixels;
+    const image = context.createImageData(w, h), data = image.data;
+    const { table, place } = view.field, period = Math.round(9 * frame.ratio), line = Math.max(1, Math.round(frame.ratio * 0.8));
+    for (let q = 0; q < h; ++q)
+      for (let p = 0; p < w; ++p) {
+        const pixel = q * w + p, at = 4 * pixel, k = design[pixel], shown = value[pixel];
+        let r = 255, g = 255, b = 255;
+        if (shown === shown) {
+          const c = 3 * Math.round(255 * place(shown));
+          r = table[c]; g = table[c + 1]; b = table[c + 2];
+          if (flags && flags.values[k] === 1 && (p + q) % period < line) { r *= 0.45; g *= 0.45; b *= 0.45; }
+        } else if (k >= 0 && status) {
+          [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
+        } else if (k >= 0) { r = g = b = 217; }
+        data[at] = r; data[at + 1] = g; data[at + 2] = b; data[at + 3] = 255;
+      }
     context.putImageData(image, x0, y0);
   }
 
-  function paintIsolines(context) {
-    const { font } = frame, { values, levels, ink } = view.field;
-    const plane = (i, j) => values[offset(i, j)];
+  /** Isolines at a level, each [x, y, x, y, ...] in pixels: between designs, or, within curves, between every other pixel. */
+  function linesAt(level) {
+    if (chains) {
+      const step = 2, { x0, y0, w, h } = box, at = (i, j) => step * j * w + step * i;
+      const near = (i, j) => pixels.torn[at(i, j)] | pixels.torn[at(i + 1, j)] | pixels.torn[at(i, j + 1)] | pixels.torn[at(i + 1, j + 1)];
+      const centre = (first) => (i) => first + step * i + 0.5;
+      return isolines((i, j) => pixels.value[at(i, j)], Math.ceil(w / step), Math.ceil(h / step), level, centre(x0), centre(y0), near);
+    }
     const bitX = 1 << view.x, bitY = 1 << view.y;
     const torn = (i, j) => cliffs !== undefined &&
       ((cliffs.values[offset(i, j)] & (bitX | bitY)) !== 0 || (cliffs.values[offset(i + 1, j)] & bitY) !== 0 || (cliffs.values[offset(i, j + 1)] & bitX) !== 0);
+    return isolines((i, j) => view.field.values[offset(i, j)], sx.n, sy.n, level, sx.centre, sy.centre, torn);
+  }
+
+  function paintIsolines(context) {
+    const { font } = frame, { levels, ink } = view.field;
     context.lineWidth = 1.1 * frame.ratio;
     context.strokeStyle = context.fillStyle = ink;
     context.font = `${0.85 * font}px system-ui, "DejaVu Sans", sans-serif`;
@@ -82,7 +121,7 @@ function mapView(canvas, map, onPoint, onPick) {
     context.textBaseline = "middle";
     const labels = [];  // where there is text already
     for (const level of levels)
-      for (const chain of isolines(plane, sx.n, sy.n, level, sx.centre, sy.centre, torn)) {
+      for (const chain of linesAt(level)) {
         const text = short(level), room = context.measureText(text).width + 0.4 * font;
         let length = 0;
         for (let k = 2; k < chain.length; k += 2) length += Math.hypot(chain[k] - chain[k - 2], chain[k + 1] - chain[k - 1]);
@@ -110,25 +149,19 @@ function mapView(canvas, map, onPoint, onPick) {
 
   /** Where outcomes jump, as leapmap boundaries found it. */
   function paintCliffs(context) {
-    const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1);
     context.save();
     context.beginPath();
     context.rect(frame.left, frame.top, frame.right - frame.left, frame.bottom - frame.top);
     context.clip();
-    for (const curve of map.curves) {
-      const [a, b] = curve.axes, swapped = a === view.y && b === view.x;
-      if (!swapped && (a !== view.x || b !== view.y)) continue;
-      if (Object.entries(curve.at).some(([k, i]) => view.index[k] !== i)) continue;
-      const [us, vs] = swapped ? [curve.y, curve.x] : [curve.x, curve.y];
-      for (const [colour, width, dashes] of [["#ffffffa0", 2.6, []], [EDGE, 1.2, DASHES[curve.kind] ?? []]]) {
+    for (const { kind, places } of chains ?? [])
+      for (const [colour, width, dashes] of [["#ffffffa0", 2.6, []], [EDGE, 1.2, DASHES[kind] ?? []]]) {
         context.strokeStyle = colour;
         context.lineWidth = width * frame.ratio;
         context.setLineDash(dashes.map((d) => d * frame.ratio));
         context.beginPath();
-        us.forEach((u, k) => context.lineTo(sx.pixel(u * unit(map.axes[view.x])), sy.pixel(vs[k] * unit(map.axes[view.y]))));
+        for (let k = 0; k < places.length; k += 2) context.lineTo(places[k], places[k + 1]);
         context.stroke();
       }
-    }
     context.restore();
   }
 
@@ -249,6 +282,11 @@ function mapView(canvas, map, onPoint, onPick) {
 
   return {
     view, paint, pick, point, showsPaper: () => paperPlace() !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
+    /** What the map's pixels are, for tests: the design whose codes each shows, and where its centre lies along the axes. */
+    shown() {
+      const { x0, y0, w, h } = box, places = (scale, first, count) => Array.from({ length: count }, (_, p) => scale.value(first + p + 0.5));
+      return { design: [...pixels.design], x: places(sx, x0, w), y: places(sy, y0, h) };
+    },
     /** Where a design's cell is on the screen, for tests. */
     placeOf(index) {
       const box = canvas.getBoundingClientRect();

@@ -15,6 +15,11 @@ function axisScale(axis, from, to) {
   return {
     shown, n,
     pixel,
+    /** What is drawn at a pixel. */
+    value(p) {
+      const place = edges[0] + (p - from) / factor;
+      return axis.log ? Math.exp(place) : place;
+    },
     centre: (i) => from + (places[i] - edges[0]) * factor,
     edge: (i) => from + (edges[i] - edges[0]) * factor,
     /** The cell at a pixel, -1 outside. */
