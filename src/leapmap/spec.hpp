@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,29 @@ struct PointList {
   std::size_t count = 1;
 };
 
+/// How much a parameter of hoops as made differs from the drawing.
+struct Spread {
+  enum class Law { normal, uniform };
+  std::string parameter{};
+  Law law = Law::normal;
+  double width = 0.0;    ///< standard deviation, or half the width of a uniform law, >= 0
+  bool percent = false;  ///< width is in per cent of the value drawn; else in the parameter's own unit
+};
+
+/// Hoops as made: independent of each other in every parameter named, cut off where a parameter may not be.
+struct Scatter {
+  std::vector<Spread> spreads{};  ///< at most one of a parameter; empty: hoops are as drawn
+  long samples = 1024;            ///< hoops made after each drawing: 16 times a whole number
+  long seed = 1;
+};
+
+/// What a hoop must do: a field of its outcome, in the map's unit or by its code, lies in this range.
+struct Goal {
+  std::string field{};
+  double at_least = -std::numeric_limits<double>::infinity();
+  double at_most = std::numeric_limits<double>::infinity();
+};
+
 struct Spec {
   std::string origin{};  ///< the file it was read from, for messages
   Scene scene{};
@@ -55,6 +79,8 @@ struct Spec {
   std::string points{};      ///< design.points, as an absolute path
   std::vector<Axis> axes{};  ///< in spec order, the first varying slowest; empty: `list` holds the designs
   PointList list{};
+  Scatter scatter{};
+  std::vector<Goal> goals{};  ///< all are to be reached; at most one of a field
 };
 
 /// Reads a spec from a TOML file; overrides are KEY=VALUE, applied in order, KEY with or without its section.

@@ -92,7 +92,7 @@ TileEncoder::TileEncoder(const MapLayout& layout, const Tiling& tiling) : layout
   if (!compressor_) throw std::bad_alloc();
 }
 
-void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes, const Gradients& gradients) {
+void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes, const ColumnOf& column) {
   for (const Outcome& outcome : outcomes) ++statuses_[static_cast<std::size_t>(outcome.status)];
   constexpr std::size_t block = 128;  // outcomes that stay in the first cache for all fields
   for (std::size_t from = 0; from < outcomes.size(); from += block) {
@@ -116,13 +116,10 @@ void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes, con
             ? gather_as<float>(values, to, [&](const Row& row) { return static_cast<float>(value(row)); })
             : gather_as<double>(values, to, value);
       };
-      if (const auto* derivative = std::get_if<Derivative>(&field.source)) {
-        gather(gradients.column(derivative->of, derivative->by).subspan(from, some.size()),
-               [](double value) { return value; });
-        continue;
-      }
-      const auto& quantity = std::get<Quantity>(field.source);
-      gather(some, [&](const Outcome& outcome) { return outcome.*quantity.member; });
+      if (const auto* quantity = std::get_if<Quantity>(&field.source))
+        gather(some, [&](const Outcome& outcome) { return outcome.*quantity->member; });
+      else
+        gather(column(field).subspan(from, some.size()), [](double value) { return value; });
     }
   }
 }

@@ -6,13 +6,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "leapmap/outcome.hpp"
 #include "map/layout.hpp"
-#include "trajectory/gradient.hpp"
 
 struct libdeflate_compressor;
 
@@ -45,9 +45,11 @@ class TileEncoder {
  public:
   /// Keeps references to both.
   TileEncoder(const MapLayout& layout, const Tiling& tiling);
-  /// Takes a piece of a tile: its outcomes `first`, first + 1, ... and their derivatives, if the layout has
-  /// any.
-  void take(std::size_t first, std::span<const Outcome> outcomes, const Gradients& gradients = {});
+  /// The values of a field that is no part of an outcome, of each design of a piece.
+  using ColumnOf = std::function<std::span<const double>(const Field&)>;
+  /// Takes a piece of a tile: its outcomes `first`, first + 1, ... and the columns of other fields that the
+  /// layout has.
+  void take(std::size_t first, std::span<const Outcome> outcomes, const ColumnOf& column = {});
   /// Encodes the tile whose outcomes were taken. What reaches over the map's edge holds fill values.
   EncodedTile encode(std::size_t number);
 

@@ -74,8 +74,8 @@ std::span<const Field> map_fields() { return fields; }
 
 namespace {
 
-/// What the rows of derivatives refer to.
-struct GradientTexts {
+/// What rows that are made of others refer to.
+struct RowTexts {
   std::string name, unit, long_name;
 };
 
@@ -85,7 +85,7 @@ std::string unit_of_derivative(std::string_view of, std::string_view by) {
 }
 
 struct GradientTable {
-  std::deque<GradientTexts> texts;
+  std::deque<RowTexts> texts;
   std::vector<Field> rows;
 
   GradientTable() {
@@ -96,10 +96,10 @@ struct GradientTable {
         if (!of || !by) continue;
         const bool own = parameter.unit != "rad" && parameter.unit != "1";
         const std::string name(field.name), parameter_name(parameter.name);
-        const GradientTexts& text = texts.emplace_back(
-            GradientTexts{name + "_by_" + parameter_name, unit_of_derivative(field.unit, parameter.unit),
-                          "derivative of " + name + " by " + parameter_name +
-                              (own ? ", which is in " + std::string(parameter.unit) : std::string())});
+        const RowTexts& text = texts.emplace_back(
+            RowTexts{name + "_by_" + parameter_name, unit_of_derivative(field.unit, parameter.unit),
+                     "derivative of " + name + " by " + parameter_name +
+                         (own ? ", which is in " + std::string(parameter.unit) : std::string())});
         rows.push_back(Field{text.name, Derivative{of->member, *by}, text.unit, text.long_name, 7,
                              parameter.only_of ? parameter.only_of : field.only_of});
       }
@@ -121,6 +121,48 @@ const Field* find_gradient(double Outcome::*of, double Design::*by) {
   return nullptr;
 }
 
+namespace {
+
+struct ScatterTable {
+  std::deque<RowTexts> texts;
+  std::vector<Field> rows;
+
+  void add(Statistic statistic, const Field* of, std::string_view name, std::string_view meaning,
+           bool has_error) {
+    const std::string full = (of ? std::string(of->name) + "_" : std::string()) + std::string(name);
+    const std::string told =
+        std::string(meaning) + (of ? ", of the hoops made that jump: " + std::string(of->long_name) : "");
+    const auto put = [&](const std::string& as, const std::string& long_name, bool error) {
+      const RowTexts& text = texts.emplace_back(RowTexts{as, std::string(of ? of->unit : "1"), long_name});
+      rows.push_back(Field{text.name,
+                           OfMade{statistic, of ? std::get<Quantity>(of->source).member : nullptr, error},
+                           text.unit, text.long_name, 8, of ? of->only_of : std::nullopt});
+    };
+    put(full, told, false);
+    if (has_error) put(full + "_error", "standard error of " + full, true);
+  }
+
+  ScatterTable() {
+    add(Statistic::yield, nullptr, "yield", "share of the hoops made that reach every goal", true);
+    add(Statistic::cut_off, nullptr, "cut_off", "share of the scatter that lies where no hoop can be", false);
+    for (const Field& field : fields) {
+      if (!std::holds_alternative<Quantity>(field.source)) continue;
+      add(Statistic::mean, &field, "mean", "mean", true);
+      add(Statistic::sd, &field, "sd", "standard deviation", true);
+      add(Statistic::q05, &field, "q05", "5 % quantile", true);
+      add(Statistic::q50, &field, "q50", "median", true);
+      add(Statistic::q95, &field, "q95", "95 % quantile", true);
+    }
+  }
+};
+
+}  // namespace
+
+std::span<const Field> scatter_fields() {
+  static const ScatterTable table;
+  return table.rows;
+}
+
 const Field* find_field(std::string_view name) {
   const auto find_among = [&](std::span<const Field> rows) {
     const auto found =
@@ -128,7 +170,8 @@ const Field* find_field(std::string_view name) {
     return found == rows.end() ? nullptr : &*found;
   };
   const Field* found = find_among(fields);
-  return found || name.find("_by_") == name.npos ? found : find_among(gradient_fields());
+  if (!found && name.find("_by_") != name.npos) found = find_among(gradient_fields());
+  return found ? found : find_among(scatter_fields());
 }
 
 double stored_number(const Field& field, const Outcome& outcome) {

@@ -46,9 +46,19 @@ struct Derivative {
   double Design::*by;
 };
 
+/// What is told of the hoops made after a drawing, of those that jump where it is of a quantity.
+enum class Statistic : std::uint8_t { yield, cut_off, mean, sd, q05, q50, q95 };
+
+/// One of these, or its standard error, stored as f8.
+struct OfMade {
+  Statistic statistic;
+  double Outcome::*of;  ///< nullptr: of all hoops made
+  bool error;
+};
+
 struct Field {
   std::string_view name;
-  std::variant<Quantity, Code, Word, Derivative> source;
+  std::variant<Quantity, Code, Word, Derivative, OfMade> source;
   std::string_view unit;  ///< as UDUNITS reads it; "1": a pure number
   std::string_view long_name;
   int since = 0;                      ///< the minor version of the map's format that brought it
@@ -67,7 +77,10 @@ std::span<const Field> gradient_fields();
 /// One of these; nullptr: the member is no quantity, or no parameter.
 const Field* find_gradient(double Outcome::*of, double Design::*by);
 
-/// The field of that name, a derivative or not, or nullptr.
+/// What a map may hold of hoops as made: yield, jump_height_mean and so on, each followed by its error.
+std::span<const Field> scatter_fields();
+
+/// The field of that name, of any of these kinds, or nullptr.
 const Field* find_field(std::string_view name);
 
 }  // namespace leapmap

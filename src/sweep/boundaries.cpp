@@ -35,6 +35,7 @@ Spec bare(const Spec& original) {
   spec.output = {};
   spec.output.fields = {"status"};
   spec.numerics.audit = 0.0;
+  spec.scatter = {}, spec.goals.clear();  // cliffs are of hoops as drawn
   return spec;
 }
 
@@ -57,17 +58,17 @@ std::vector<std::uint64_t> solve_grid(const Spec& spec, const BoundaryOptions& o
   std::mutex telling;
   std::size_t done = 0;
   run_sweep(spec, tiling, {options.threads, 0, options.stop_requested}, [&] {
-    return TileWork{
-        [&](const Tile& tile, std::size_t first, std::span<const Outcome> some, const Gradients&) {
-          for (std::size_t i = 0; i < some.size(); ++i)
-            words[tiling.number(tile, first + i)] = word_of(discrete(some[i], options.phases));
-          const std::lock_guard lock(telling);
-          done += some.size();
-          if (options.progress) options.progress(done, total);
-        },
-        [](std::size_t, const Tile&) {
-          return Prepared{[] {}, 0};
-        }};
+    return TileWork{[&](const Tile& tile, std::size_t first, const Solved& solved) {
+                      const std::span<const Outcome> some = solved.outcomes;
+                      for (std::size_t i = 0; i < some.size(); ++i)
+                        words[tiling.number(tile, first + i)] = word_of(discrete(some[i], options.phases));
+                      const std::lock_guard lock(telling);
+                      done += some.size();
+                      if (options.progress) options.progress(done, total);
+                    },
+                    [](std::size_t, const Tile&) {
+                      return Prepared{[] {}, 0};
+                    }};
   });
   if (options.stop_requested && options.stop_requested()) throw Stopped("boundaries was asked to stop");
   return words;
@@ -178,6 +179,7 @@ std::vector<double> place_of(const Boundaries& boundaries, const Cliff& cliff) {
 }
 
 Boundaries find_boundaries(const Spec& original, const BoundaryOptions& asked) {
+  check_spec(original);
   const Spec spec = bare(original);
   check_grid(spec);
   BoundaryOptions options = asked;

@@ -17,8 +17,13 @@ namespace leapmap {
 
 namespace {
 
-/// Designs solved at once: what the solvers take as one block, and no more than stays in the second cache.
-constexpr std::size_t piece = 1024;
+/// Designs solved at once: what the solvers take as one block, and no more than stays in the second cache;
+/// with many hoops made after each fewer, so that a stop need not wait long.
+std::size_t piece_of(const Spec& spec) {
+  constexpr std::size_t most = 1024, most_hoops = 1 << 16;
+  if (spec.scatter.spreads.empty()) return most;
+  return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1, most);
+}
 
 struct Item {
   Prepared prepared;
@@ -27,12 +32,33 @@ struct Item {
 
 }  // namespace
 
+std::span<const double> Solved::column(const Field& field) const {
+  const auto* derivative = std::get_if<Derivative>(&field.source);
+  return derivative ? gradients.column(derivative->of, derivative->by) : made.column(field);
+}
+
+BlockSolver::BlockSolver(const Spec& spec, std::size_t most_designs,
+                         const std::shared_ptr<const SobolPoints>& points)
+    : solver_(make_gradient_solver(spec)),
+      gradients_(gradients_of(spec)),
+      made_(scatter_fields_of(spec)),
+      outcomes_(most_designs) {
+  if (!spec.scatter.spreads.empty()) scatter_.emplace(spec, points);
+}
+
+Solved BlockSolver::solve(std::span<const Design> designs) {
+  const std::span outcomes = std::span(outcomes_).first(designs.size());
+  solver_(designs, outcomes, gradients_);
+  if (scatter_) scatter_->solve(designs, made_);
+  return {outcomes, gradients_, made_};
+}
+
 std::function<TileWork()> in_order(TileSink sink) {
   return [sink = std::move(sink)] {
     const auto kept = std::make_shared<std::vector<Outcome>>();
     return TileWork{
-        [kept](const Tile&, std::size_t, std::span<const Outcome> outcomes, const Gradients&) {
-          kept->insert(kept->end(), outcomes.begin(), outcomes.end());
+        [kept](const Tile&, std::size_t, const Solved& solved) {
+          kept->insert(kept->end(), solved.outcomes.begin(), solved.outcomes.end());
         },
         [sink, kept](std::size_t, const Tile& tile) {
           const std::size_t bytes = kept->size() * sizeof(Outcome);
@@ -53,37 +79,36 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
       },
       most_waiting_bytes);
 
-  const std::size_t most = std::min(piece, tiling.tile(0).count);  // no tile is larger than the first
+  const std::size_t piece =
+      std::min(piece_of(spec), tiling.tile(0).count);  // no tile is larger than the first
+  const auto points = points_of(spec.scatter);
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
-    return
-        [&, solve = make_gradient_solver(spec), gradients = Gradients(gradients_of(spec)), work = make_work(),
-         designs = std::vector<Design>(most), outcomes = std::vector<Outcome>(most)](std::size_t i) mutable {
-          try {
-            const std::size_t number = options.first_tile + i;
-            const Tile tile = tiling.tile(number);
-            for (std::size_t first = 0; first < tile.count; first += piece) {
-              const std::size_t count = std::min(piece, tile.count - first);
-              const std::span some(designs.data(), count);
-              const std::span solved(outcomes.data(), count);
-              space.fill(tile, first, some);
-              solve(some, solved, gradients);
-              work.take(tile, first, solved, gradients);
-            }
-            Prepared prepared = work.prepare(number, tile);
-            if (!prepared.take) {
-              delivery.close(number);
-              return false;
-            }
-            const std::size_t bytes = prepared.bytes;
-            const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
-            return wanted && !(options.stop_requested && options.stop_requested());
-          } catch (...) {
-            delivery.abandon();
-            throw;
-          }
-        };
+    return [&, solver = BlockSolver(spec, piece, points), work = make_work(),
+            designs = std::vector<Design>(piece)](std::size_t i) mutable {
+      try {
+        const std::size_t number = options.first_tile + i;
+        const Tile tile = tiling.tile(number);
+        for (std::size_t first = 0; first < tile.count; first += piece) {
+          const std::size_t count = std::min(piece, tile.count - first);
+          const std::span some(designs.data(), count);
+          space.fill(tile, first, some);
+          work.take(tile, first, solver.solve(some));
+        }
+        Prepared prepared = work.prepare(number, tile);
+        if (!prepared.take) {
+          delivery.close(number);
+          return false;
+        }
+        const std::size_t bytes = prepared.bytes;
+        const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
+        return wanted && !(options.stop_requested && options.stop_requested());
+      } catch (...) {
+        delivery.abandon();
+        throw;
+      }
+    };
   });
   delivery.finish();
   return delivered;
@@ -93,23 +118,21 @@ double seconds_per_design(const Spec& spec, double seconds) {
   using Clock = std::chrono::steady_clock;
   const DesignSpace space(spec);
   const std::size_t count = Tiling(shape_of(spec)).designs();
-  const GradientSolver solve = make_gradient_solver(spec);
-  Gradients gradients(gradients_of(spec));
+  constexpr std::size_t most = 8192;
+  BlockSolver solver(spec, most, points_of(spec.scatter));
   std::mt19937_64 random(1);
   std::uniform_int_distribution<std::size_t> pick(0, count - 1);
   // Few at a time while it is not known how long one takes: an integration may need seconds.
-  std::vector<Design> designs(8);
-  std::vector<Outcome> outcomes;
+  std::vector<Design> designs(spec.scatter.spreads.empty() ? 8 : 1);
   std::chrono::duration<double> passed{0};
   std::size_t solved = 0;
   while (passed.count() < seconds) {
     for (Design& design : designs) design = space.at(pick(random));
-    outcomes.resize(designs.size());
     const auto begin = Clock::now();
-    solve(designs, outcomes, gradients);
+    solver.solve(designs);
     passed += Clock::now() - begin;
     solved += designs.size();
-    if (passed.count() < 0.1 * seconds) designs.resize(std::min<std::size_t>(2 * designs.size(), 8192));
+    if (passed.count() < 0.1 * seconds) designs.resize(std::min(2 * designs.size(), most));
   }
   return passed.count() / static_cast<double>(solved);
 }

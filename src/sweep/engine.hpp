@@ -4,10 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 
 #include "leapmap/outcome.hpp"
 #include "map/tile.hpp"
+#include "sweep/scatter.hpp"
 #include "sweep/spec.hpp"
 #include "trajectory/gradient.hpp"
 
@@ -30,10 +33,36 @@ struct Prepared {
   std::size_t bytes = 0;
 };
 
+/// Everything that a spec asks of a block of designs.
+struct Solved {
+  std::span<const Outcome> outcomes;
+  const Gradients& gradients;
+  const MadeColumns& made;
+
+  /// Of a field that is no part of an outcome.
+  std::span<const double> column(const Field& field) const;
+};
+
+/// A thread's own solver of all that.
+class BlockSolver {
+ public:
+  /// points: of hoops as made, shared by all threads.
+  BlockSolver(const Spec& spec, std::size_t most_designs, const std::shared_ptr<const SobolPoints>& points);
+  /// What it returns holds until the next call.
+  Solved solve(std::span<const Design> designs);
+
+ private:
+  GradientSolver solver_;
+  Gradients gradients_;
+  std::optional<ScatterSolver> scatter_;
+  MadeColumns made_;
+  std::vector<Outcome> outcomes_;
+};
+
 /// What a thread does with the tiles it solves, one after the other. A tile's outcomes come a piece at a
 /// time, in its order and while they are still in the cache.
 struct TileWork {
-  std::function<void(const Tile&, std::size_t first, std::span<const Outcome>, const Gradients&)> take;
+  std::function<void(const Tile&, std::size_t first, const Solved&)> take;
   /// The whole tile was taken: encodes it, compresses it.
   std::function<Prepared(std::size_t number, const Tile&)> prepare;
 };

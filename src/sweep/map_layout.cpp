@@ -5,6 +5,7 @@
 
 #include "model/model.hpp"
 #include "sweep/options.hpp"
+#include "sweep/scatter.hpp"
 #include "sweep/solver.hpp"
 
 namespace leapmap {
@@ -38,6 +39,7 @@ MapLayout layout_of(const Spec& spec) {
   for (const auto of : derivatives.of)
     for (const std::size_t by : derivatives.by)
       layout.fields.push_back(find_gradient(of, differentiable[by]));
+  for (const Field* field : scatter_fields_of(spec)) layout.fields.push_back(field);
   layout.single = spec.output.precision == "f4";
   layout.compression = static_cast<int>(spec.output.compression);
   return layout;

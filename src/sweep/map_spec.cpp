@@ -16,6 +16,15 @@ namespace {
 
 /// The values of an option: a number's alone, an axis's all.
 std::vector<double> numbers_of(Spec& spec, const Option& option) {
+  if (std::holds_alternative<SpreadSlot>(option.slot)) {
+    const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
+    if (spread == spec.scatter.spreads.end()) return {};
+    return {static_cast<double>(spread->law), spread->width, spread->percent ? 1.0 : 0.0};
+  }
+  if (std::holds_alternative<GoalSlot>(option.slot)) {
+    const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
+    return goal == spec.goals.end() ? std::vector<double>{} : std::vector{goal->at_least, goal->at_most};
+  }
   const auto axis = std::ranges::find(spec.axes, option.key, &Axis::key);
   if (axis != spec.axes.end()) return axis->values;
   if (const auto* slot = std::get_if<ParameterSlot>(&option.slot)) {
@@ -65,8 +74,10 @@ std::optional<std::string> first_difference(const Spec& original_there, const Sp
   for (Spec* spec : {&there, &here}) {
     spec->numerics.method = resolved_method(spec->numerics);
     spec->output.file.clear();
-    const bool varies =
-        !spec->points.empty() || std::ranges::find(spec->axes, "mu_static", &Axis::key) != spec->axes.end();
+    const bool varies = !spec->points.empty() ||
+                        std::ranges::find(spec->axes, "mu_static", &Axis::key) != spec->axes.end() ||
+                        std::ranges::find(spec->scatter.spreads, "mu_static", &Spread::parameter) !=
+                            spec->scatter.spreads.end();
     if (std::isnan(spec->design.mu_kinetic) && !varies) spec->design.mu_kinetic = spec->design.mu_static;
     spec->points.clear();  // where a list was read from does not count, only what it holds
   }

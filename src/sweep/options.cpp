@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "leapmap/errors.hpp"
 #include "leapmap/units.hpp"
@@ -36,6 +37,10 @@ std::vector<std::string_view> field_names() {
   std::vector<std::string_view> names;
   for (const Field& field : map_fields()) names.push_back(field.name);
   return names;
+}
+
+bool is_of_made(std::string_view name) {
+  return std::ranges::find(scatter_fields(), name, &Field::name) != scatter_fields().end();
 }
 
 std::vector<std::string_view> quantity_names() {
@@ -102,13 +107,18 @@ const std::array keys{
            {0.0, 1.0}},
     Option{"output", "file", TextSlot{[](Spec& s) -> std::string& { return s.output.file; }}, "",
            "the map to write; -o overrides it"},
-    Option{"output",
-           "fields",
-           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.fields; }},
-           "",
-           "datasets to store; default: all",
-           {},
-           field_names},
+    Option{
+        "output",
+        "fields",
+        TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.fields; }},
+        "",
+        "datasets to store; default: all",
+        {},
+        field_names,
+        {},
+        is_of_made,
+        "with [scatter] yield, yield_error, cut_off and jump_height_mean, _sd, _q05, _q50, _q95 and the like "
+        "of any quantity, each also with _error"},
     Option{"output",
            "gradients",
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients; }},
@@ -137,7 +147,40 @@ const std::array keys{
            "1",
            "0: none; 1 (fast) to 9 (small): shuffle and deflate, read by every HDF5 program",
            {0, 9}},
+    Option{"scatter",
+           "samples",
+           IntegerSlot{[](Spec& s) -> long& { return s.scatter.samples; }},
+           "1",
+           "hoops made after each design, in 16 replicates that tell the error: 16 times a whole number, at "
+           "best a power of two",
+           {32, 1 << 20}},
+    Option{"scatter",
+           "seed",
+           IntegerSlot{[](Spec& s) -> long& { return s.scatter.seed; }},
+           "1",
+           "of the hoops made; the same seed, the same hoops",
+           {0, 1e15}},
 };
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// [scatter] has a key for each parameter that a design has of its own.
+Option spread_of(const Parameter& parameter) {
+  return {"scatter",
+          parameter.name,
+          SpreadSlot{},
+          parameter.unit,
+          parameter.meaning,
+          {0.0, infinity, true, false},
+          {},
+          parameter.only_of};
+}
+
+/// [goal] has one for each field.
+Option goal_of(const Field& field) {
+  return {"goal", field.name,   GoalSlot{}, field.unit, field.long_name, {-infinity, infinity, false, false},
+          {},     field.only_of};
+}
 
 Option option_of(const Parameter& parameter) {
   const auto* of_design = std::get_if<double Design::*>(&parameter.member);
@@ -158,7 +201,7 @@ Option option_of(const Parameter& parameter) {
 /// Section by section: what picks the model, the parameters, the other keys.
 std::vector<Option> all_options() {
   std::vector<Option> all;
-  for (const std::string_view section : {"scene", "design", "numerics", "output"}) {
+  for (const std::string_view section : {"scene", "design", "numerics", "output", "scatter", "goal"}) {
     const auto add_keys = [&](bool pick_model) {
       std::ranges::copy_if(keys, std::back_inserter(all), [&](const Option& key) {
         return key.section == section && std::holds_alternative<FrictionSlot>(key.slot) == pick_model;
@@ -167,6 +210,11 @@ std::vector<Option> all_options() {
     add_keys(true);
     for (const Parameter& parameter : parameters())
       if (const Option option = option_of(parameter); option.section == section) all.push_back(option);
+    if (section == "scatter")
+      for (const Parameter& parameter : parameters())
+        if (std::holds_alternative<double Design::*>(parameter.member)) all.push_back(spread_of(parameter));
+    if (section == "goal")
+      for (const Field& field : map_fields()) all.push_back(goal_of(field));
     add_keys(false);
   }
   return all;
@@ -189,6 +237,8 @@ std::string default_of(const Option& option) {
           return fmt::format("\"{}\"", slot(spec));
         } else if constexpr (std::is_same_v<Slot, TextsSlot>) {
           return option.key == "gradients" ? "[none]" : "[all]";
+        } else if constexpr (std::is_same_v<Slot, SpreadSlot> || std::is_same_v<Slot, GoalSlot>) {
+          return "none";
         } else {
           return fmt::format("{}", slot(spec));
         }
@@ -251,10 +301,17 @@ const Option* find_option(std::string_view section, std::string_view key) {
 }
 
 std::string allowed_values(const Option& option) {
-  if (option.choices) return fmt::format("one of {}", fmt::join(option.choices(), ", "));
+  if (option.choices)
+    return fmt::format("one of {}{}{}", fmt::join(option.choices(), ", "), option.also ? "; " : "",
+                       option.also_told);
   if (std::holds_alternative<TextSlot>(option.slot)) return "a string";
   return allowed_values(option.range, option.unit,
                         std::holds_alternative<IntegerSlot>(option.slot) ? "a whole number" : "a number");
+}
+
+bool is_choice(const Option& option, std::string_view text) {
+  const auto choices = option.choices();
+  return std::ranges::find(choices, text) != choices.end() || (option.also && option.also(text));
 }
 
 bool in_range(const Option& option, double value) { return option.range.holds(value); }
@@ -292,7 +349,22 @@ std::string options_help() {
       "  offset_ratio = { values = [0.6, 0.8, 1.0] }\n";
   std::string_view section;
   for (const Option& option : spec_options()) {
-    if (option.section != section) help += fmt::format("[{}]\n", section = option.section);
+    const bool spread = std::holds_alternative<SpreadSlot>(option.slot),
+               goal = std::holds_alternative<GoalSlot>(option.slot);
+    const bool begins = option.section != section;
+    if (begins) help += fmt::format("[{}]\n", section = option.section);
+    if (begins && spread)
+      help +=
+          "  PARAMETER = { normal = \"1 deg\" } or { uniform = \"2 %\" }: how hoops as made differ from the "
+          "drawing, by a standard\n  deviation or half width in the parameter's unit or per cent of its "
+          "value; "
+          "cut off where it may not be. A parameter is any key marked *.\n";
+    if (begins && goal)
+      help +=
+          "  FIELD = { at_least = 0.8 }, { at_most = 0.6 } or { is = 0 }: what a hoop must do. A field is "
+          "any "
+          "of output.fields, in the map's unit.\n";
+    if (spread || goal) continue;
     const bool axis = std::holds_alternative<ParameterSlot>(option.slot);
     const std::string unit =
         option.unit.empty() || option.unit == "1" ? "" : fmt::format(" [{}]", option.unit);

@@ -24,6 +24,10 @@ struct SceneSlot {
 };
 /// The model of the contact, by its name.
 struct FrictionSlot {};
+/// How much a parameter differs in hoops as made: { normal = ... } or { uniform = ... }.
+struct SpreadSlot {};
+/// What a field of a hoop must be: { at_least = ... }, { at_most = ... }, { is = ... }.
+struct GoalSlot {};
 using NumberSlot = double& (*)(Spec&);
 using IntegerSlot = long& (*)(Spec&);
 using TextSlot = std::string& (*)(Spec&);
@@ -32,12 +36,16 @@ using TextsSlot = std::vector<std::string>& (*)(Spec&);
 struct Option {
   std::string_view section;
   std::string_view key;
-  std::variant<ParameterSlot, SceneSlot, FrictionSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot> slot;
+  std::variant<ParameterSlot, SceneSlot, FrictionSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot,
+               SpreadSlot, GoalSlot>
+      slot;
   std::string_view unit;  ///< "rad" marks an angle, which may be written "30 deg"; "1": a pure number
   std::string_view meaning;
   Range range{};                                    ///< numbers and integers
   std::vector<std::string_view> (*choices)() = {};  ///< texts: what is allowed; unset: anything
   std::optional<Friction> only_of{};                ///< the one model that has it; unset: every model
+  bool (*also)(std::string_view) = {};              ///< texts that are allowed besides
+  std::string_view also_told{};                     ///< those in words
 };
 
 /// All keys, in the order of the documentation.
@@ -70,6 +78,9 @@ const Option* find_option(std::string_view section, std::string_view key);
 
 /// "slope must be in [0, 90 deg)" and the like: what values the option takes.
 std::string allowed_values(const Option& option);
+
+/// Whether a text is one of the option's choices.
+bool is_choice(const Option& option, std::string_view text);
 
 /// True if a number is finite and inside the option's range.
 bool in_range(const Option& option, double value);

@@ -13,139 +13,14 @@
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
 #include "support/posix.hpp"
-#include "sweep/options.hpp"
 #include "sweep/point_list.hpp"
-#include "sweep/spacing.hpp"
+#include "sweep/spec_entry.hpp"
 
 namespace leapmap {
 namespace {
 
-constexpr std::int64_t most_axis_values =
-    1'000'000;  // an axis is held in memory and told in the resolved spec
 constexpr std::int64_t most_designs =
     1'000'000'000'000;  // a map of 10^12 designs is terabytes: surely a typing error
-
-constexpr const char* command_line = "command line";  // as an Entry's place
-
-/// One key as written: where, and its value.
-struct Entry {
-  const Option* option;
-  std::string place;  // "file:line" or "--set"
-  toml::source_position position;
-  const toml::node* node;
-};
-
-/// "key = value" as the user wrote it, on one line.
-std::string quoted(const Option& option, const toml::node& node) {
-  std::ostringstream text;
-  if (node.is_floating_point())
-    text << fmt::format("{}", *node.value<double>());  // as short as it was written
-  else
-    node.visit([&](const auto& value) { text << value; });
-  std::string flat = text.str();
-  std::ranges::replace(flat, '\n', ' ');
-  return fmt::format("{}.{} = {}", option.section, option.key, flat);
-}
-
-[[noreturn]] void refuse(const Entry& entry, std::string_view what, std::string_view allowed) {
-  throw InputError(
-      fmt::format("{}: {}: {}; allowed: {}", entry.place, quoted(*entry.option, *entry.node), what, allowed));
-}
-
-double to_number(const Entry& entry, const toml::node& node, std::string_view part = "") {
-  const Option& option = *entry.option;
-  const std::string where = part.empty() ? "" : fmt::format("'{}' ", part);
-  if (const auto* text = node.as_string(); text && option.unit == "rad") {
-    try {
-      return parse_number(option, text->get());
-    } catch (const InputError& error) {
-      throw InputError(
-          fmt::format("{}: {}.{}: {}{}", entry.place, option.section, option.key, where, error.what()));
-    }
-  }
-  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-  if (!value) refuse(entry, where + "is not a number", allowed_values(option));
-  if (!in_range(option, *value)) refuse(entry, where + "is out of range", allowed_values(option));
-  return *value;
-}
-
-/// A whole number, also one written as 1e6.
-std::optional<std::int64_t> to_whole(const toml::node& node) {
-  if (node.is_integer()) return node.value<std::int64_t>();
-  const auto value = node.is_floating_point() ? node.value<double>() : std::nullopt;
-  if (!value || *value != std::floor(*value) || std::abs(*value) > 1e15) return std::nullopt;
-  return static_cast<std::int64_t>(*value);
-}
-
-constexpr std::string_view axis_forms =
-    "{ from, to, count, scale = \"linear\" | \"log\" }, { from, to, step } or { values = [...] }";
-
-/// { values }.
-std::vector<double> to_list(const Entry& entry, const toml::table& table) {
-  const toml::array* array = table["values"].as_array();
-  if (!array || array->empty()) refuse(entry, "'values' is not a list of numbers", axis_forms);
-  std::vector<double> values;
-  for (const toml::node& node : *array) values.push_back(to_number(entry, node, "values"));
-  std::vector<double> sorted = values;
-  std::ranges::sort(sorted);
-  if (std::ranges::adjacent_find(sorted) != sorted.end())
-    refuse(entry, "a value is there twice", "each once");
-  return values;
-}
-
-/// How many steps lead from one bound to the other.
-std::size_t count_of_steps(const Entry& entry, const toml::table& table, double from, double to) {
-  const double step = std::abs(to_number(entry, *table.get("step"), "step")),
-               steps = std::abs(to - from) / step;
-  // Bounds and step are rounded, so that a whole number of steps is one but for some roundings.
-  if (!(steps >= 1.0 && std::abs(steps - std::round(steps)) < 1e-9 * steps))
-    refuse(entry, fmt::format("'step' leads {} steps from 'from' to 'to'", steps),
-           "a whole number of steps, or count in place of step");
-  if (std::round(steps) >= most_axis_values)
-    refuse(entry, "'step' is too small", fmt::format("up to {} values", most_axis_values));
-  return static_cast<std::size_t>(std::round(steps)) + 1;
-}
-
-/// { from, to, count, scale } or { from, to, step }.
-Spacing to_spacing(const Entry& entry, const toml::table& table) {
-  const bool steps = table.contains("step");
-  for (const std::string_view part : {"from", "to", "count"})
-    if (!table.contains(part) && !(steps && part == "count"))
-      refuse(entry, fmt::format("'{}' is missing", part), axis_forms);
-  Spacing spacing{.from = to_number(entry, *table.get("from"), "from"),
-                  .to = to_number(entry, *table.get("to"), "to"),
-                  .count = 1};
-  const double from = spacing.from, to = spacing.to;
-  if (steps) {
-    spacing.count = count_of_steps(entry, table, from, to);
-    return spacing;
-  }
-  const auto count = to_whole(*table.get("count"));
-  if (!count || *count < 1 || *count > most_axis_values)
-    refuse(entry, "'count' is not a number of values",
-           fmt::format("a whole number from 1 to {}", most_axis_values));
-  if (*count > 1 && from == to)
-    refuse(entry, "'from' and 'to' are the same", "two different bounds, or count = 1");
-  if (*count == 1 && from != to) refuse(entry, "'count' is 1", "2 or more, or 'from' equal to 'to'");
-  const std::string scale = table["scale"].value_or(std::string(table.contains("scale") ? "?" : "linear"));
-  if (scale != "linear" && scale != "log") refuse(entry, "'scale' is unknown", "\"linear\" or \"log\"");
-  spacing.log = scale == "log";
-  if (spacing.log && !(from > 0.0 && to > 0.0))
-    refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
-  spacing.count = static_cast<std::size_t>(*count);
-  return spacing;
-}
-
-std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
-  using Names = std::vector<std::string_view>;
-  const Names names = table.contains("values") ? Names{"values"}
-                      : table.contains("step") ? Names{"from", "to", "step"}
-                                               : Names{"from", "to", "count", "scale"};
-  for (const auto& [key, node] : table)
-    if (std::ranges::find(names, key.str()) == names.end())
-      refuse(entry, fmt::format("'{}' does not belong to this axis", key.str()), axis_forms);
-  return table.contains("values") ? to_list(entry, table) : values_of(to_spacing(entry, table));
-}
 
 /// Puts one key's value where its option says.
 struct Assign {
@@ -171,6 +46,8 @@ struct Assign {
       refuse(entry, "is out of range", allowed_values(*entry.option));
     slot(spec) = *value;
   }
+  void operator()(SpreadSlot) const { spec.scatter.spreads.push_back(to_spread(entry)); }
+  void operator()(GoalSlot) const { spec.goals.push_back(to_goal(entry)); }
   void operator()(TextSlot slot) const { slot(spec) = text(*entry.node); }
   void operator()(TextsSlot slot) const {
     const toml::array* array = entry.node->as_array();
@@ -192,8 +69,7 @@ struct Assign {
     const toml::value<std::string>* value = node.as_string();
     if (!value) refuse(entry, "is not a string", allowed_values(*entry.option));
     if (entry.option->choices) {
-      const auto choices = entry.option->choices();
-      if (std::ranges::find(choices, value->get()) == choices.end())
+      if (!is_choice(*entry.option, value->get()))
         refuse(entry, fmt::format("'{}' is unknown", value->get()), allowed_values(*entry.option));
     }
     return value->get();
@@ -220,9 +96,10 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
       throw InputError(fmt::format("{}: {}: a key stands below its section; allowed: [{}] above it", place,
                                    section.str(), option->section));
     if (!known || !table)
-      throw InputError(
-          fmt::format("{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [output]", place,
-                      section.str()));
+      throw InputError(fmt::format(
+          "{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [output], [scatter], "
+          "[goal]",
+          place, section.str()));
     for (const auto& [key, value] : *table) {
       const Option* option = find_option(section.str(), key.str());
       const auto position = value.source().begin;
@@ -263,10 +140,10 @@ void override_with(std::vector<Entry>& entries, const Entry& entry) {
 /// Whether a key says no more than its default.
 bool is_default(const Option& option, const Entry& entry) {
   const auto value = entry.node->value<double>();
-  if (!value) return false;
   const auto* of_scene = std::get_if<SceneSlot>(&option.slot);
-  return is_usual(
-      *value, of_scene ? Scene{}.*of_scene->member : Design{}.*std::get<ParameterSlot>(option.slot).member);
+  const auto* of_design = std::get_if<ParameterSlot>(&option.slot);
+  if (!value || (!of_scene && !of_design)) return false;
+  return is_usual(*value, of_scene ? Scene{}.*of_scene->member : Design{}.*of_design->member);
 }
 
 /// Nothing given is ignored without a word. A file may spell defaults out.
@@ -344,18 +221,23 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
     override_with(entries, {option, command_line, {}, values.back().get("v")});
   }
 
-  const auto given = [&](std::string_view key) {
-    return std::ranges::any_of(entries, [&](const Entry& e) { return e.option->key == key; });
+  const auto given = [&](std::string_view key, bool scattered = false) {
+    return std::ranges::any_of(entries, [&](const Entry& e) {
+      return e.option->key == key && std::holds_alternative<SpreadSlot>(e.option->slot) == scattered;
+    });
   };
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
   if (!lenient) refuse_what_has_no_use(entries, spec);
   // Where mu_static varies, mu_kinetic follows it from design to design.
-  const bool varies =
-      std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() || !spec.points.empty();
+  const bool varies = std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() ||
+                      !spec.points.empty() || given("mu_static", true);
   if (!given("mu_kinetic") && !varies) spec.design.mu_kinetic = spec.design.mu_static;
 
   for (const Entry& entry : entries) {
     const std::string_view key = entry.option->key;
+    if (entry.option->section == "scatter" && spec.scatter.spreads.empty())
+      refuse(entry, "has no use where nothing scatters",
+             "with a parameter in [scatter], slope = { normal = \"1 deg\" } say");
     const double set = key == "fixed_step"           ? spec.numerics.fixed_step
                        : key == "absolute_tolerance" ? spec.numerics.absolute_tolerance
                                                      : 0.0;

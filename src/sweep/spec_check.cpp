@@ -9,6 +9,7 @@
 #include "model/model.hpp"
 #include "support/printable.hpp"
 #include "sweep/options.hpp"
+#include "sweep/scatter.hpp"
 
 namespace leapmap {
 namespace {
@@ -25,8 +26,7 @@ void check_number(const Spec& spec, const Option& option, double value) {
 
 void check_text(const Spec& spec, const Option& option, const std::string& text) {
   if (!option.choices) return;
-  const auto choices = option.choices();
-  if (std::ranges::find(choices, text) == choices.end())
+  if (!is_choice(option, text))
     refuse(spec, option.key, fmt::format("= '{}' is unknown", text), allowed_values(option));
 }
 
@@ -101,6 +101,7 @@ void check_spec(const Spec& spec) {
   check_scene(spec.scene);
   Spec copy;  // as slots are of specs that may be changed; without the designs, which may be many
   copy.numerics = spec.numerics, copy.output = spec.output, copy.points = spec.points;
+  copy.scatter = spec.scatter;
   for (const Option& option : spec_options())
     std::visit(
         [&](const auto& slot) {
@@ -120,6 +121,7 @@ void check_spec(const Spec& spec) {
     refuse(spec, "fixed_step or absolute_tolerance", "is set, and exact takes no steps",
            "with method = \"gsl-...\"");
   check_gradients(spec);
+  check_scatter(spec);
   check_count(spec);
   check_values(spec, spec.axes);
   check_values(spec, spec.list.columns);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "leapmap/outcome.hpp"
 #include "model/model.hpp"
 #include "sweep/options.hpp"
 #include "sweep/spacing.hpp"
@@ -14,6 +15,22 @@
 
 namespace leapmap {
 namespace {
+
+// A number that TOML reads back as the same float: fmt's shortest form, which may look like an integer.
+std::string number(double value) {
+  std::string digits = fmt::format("{}", value);
+  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
+}
+
+std::string text_of(const Goal& goal) {
+  if (goal.field == "phase_sequence")
+    return fmt::format("{{ is = \"{}\" }}", phase_letters(static_cast<std::uint64_t>(goal.at_least)));
+  if (goal.at_least == goal.at_most) return fmt::format("{{ is = {} }}", number(goal.at_least));
+  std::vector<std::string> parts;
+  if (std::isfinite(goal.at_least)) parts.push_back("at_least = " + number(goal.at_least));
+  if (std::isfinite(goal.at_most)) parts.push_back("at_most = " + number(goal.at_most));
+  return fmt::format("{{ {} }}", fmt::join(parts, ", "));
+}
 
 /// spaced: axes by their bounds where those give the same bits.
 std::string text_of(const Spec& original, bool spaced) {
@@ -27,11 +44,6 @@ std::string text_of(const Spec& original, bool spaced) {
   };
   const auto line = [&](const Option& option, const std::string& value) {
     line_below(option.section, option.key, value);
-  };
-  // A number that TOML reads back as the same float: fmt's shortest form, which may look like an integer.
-  const auto number = [](double value) {
-    std::string digits = fmt::format("{}", value);
-    return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
   };
   const auto string = [](const std::string& value) {
     std::ostringstream quoted_text;
@@ -53,8 +65,8 @@ std::string text_of(const Spec& original, bool spaced) {
   };
   for (const Option& option : spec_options()) {
     if (option.key == "points") axes();  // after all numbers of the section
-    const auto is_axis = [&](const Axis& axis) { return axis.key == option.key; };
-    if (std::ranges::any_of(spec.axes, is_axis)) continue;
+    const bool parameter = std::holds_alternative<ParameterSlot>(option.slot);
+    if (parameter && std::ranges::find(spec.axes, option.key, &Axis::key) != spec.axes.end()) continue;
     std::visit(
         [&](const auto& slot) {
           using Slot = std::decay_t<decltype(slot)>;
@@ -68,7 +80,18 @@ std::string text_of(const Spec& original, bool spaced) {
             line(option, string(std::string(model_of(spec.scene).name)));
           } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
             line(option, number(slot(spec)));
+          } else if constexpr (std::is_same_v<Slot, SpreadSlot>) {
+            const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
+            if (spread == spec.scatter.spreads.end()) return;
+            line(option,
+                 fmt::format(
+                     "{{ {} = {} }}", spread->law == Spread::Law::normal ? "normal" : "uniform",
+                     spread->percent ? fmt::format("\"{} %\"", spread->width) : number(spread->width)));
+          } else if constexpr (std::is_same_v<Slot, GoalSlot>) {
+            const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
+            if (goal != spec.goals.end()) line(option, text_of(*goal));
           } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {
+            if (option.section == "scatter" && spec.scatter.spreads.empty()) return;
             line(option, fmt::format("{}", slot(spec)));
           } else if constexpr (std::is_same_v<Slot, TextSlot>) {
             if (!slot(spec).empty()) line(option, string(slot(spec)));

@@ -76,11 +76,10 @@ class Sweeping {
     const auto auditor = audit_ ? std::make_shared<Auditor>(spec_) : nullptr;
     const auto drawn = std::make_shared<std::vector<AuditSample>>();  // of the tile in hand
     return {
-        [this, encoder, drawn, auditor](const Tile& tile, std::size_t first,
-                                        std::span<const Outcome> outcomes, const Gradients& gradients) {
-          encoder->take(first, outcomes, gradients);
+        [this, encoder, drawn, auditor](const Tile& tile, std::size_t first, const Solved& solved) {
+          encoder->take(first, solved.outcomes, [&](const Field& field) { return solved.column(field); });
           if (auditor)
-            std::ranges::copy(audit_samples(spec_, tiling_, tile, first, outcomes, gradients),
+            std::ranges::copy(audit_samples(spec_, tiling_, tile, first, solved.outcomes, solved.gradients),
                               std::back_inserter(*drawn));
         },
         [this, encoder, drawn, auditor](std::size_t number, const Tile&) -> Prepared {
@@ -162,6 +161,11 @@ Report fill(const Spec& spec, const MapLayout& layout, const Tiling& tiling, con
 
 Report sweep(const Spec& spec, const std::string& path, const SweepOptions& asked) {
   check_spec(spec);
+  if (!spec.goals.empty() && spec.scatter.spreads.empty())
+    throw InputError(
+        fmt::format("{}: goal.{} has no use in a map of hoops as drawn; allowed: with a parameter in "
+                    "[scatter]",
+                    origin_of(spec), spec.goals.front().field));
   SweepOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
   if (path.empty())

@@ -97,28 +97,29 @@ TEST(Engine, ATileOfSeveralPiecesIsFilledSolvedAndAuditedAsAWhole) {
   std::vector<AuditSample> samples;
   std::size_t taken = 0, pieces = 0;
   run_sweep(spec, tiling, {}, [&] {
-    return TileWork{
-        [&](const Tile& tile, std::size_t first, std::span<const Outcome> outcomes, const Gradients&) {
-          EXPECT_EQ(first, taken);
-          std::vector<Design> designs(outcomes.size());
-          space.fill(tile, first, designs);
-          for (std::size_t i = 0; i < designs.size(); ++i) {
-            const Design expected = space.at(first + i);
-            EXPECT_EQ(designs[i].slope, expected.slope);
-            EXPECT_EQ(designs[i].mass_ratio, expected.mass_ratio);
-            if (outcomes[i].status == Status::jumped) {
-              EXPECT_EQ(outcomes[i].jump_distance, outcomes[i].jump_angle - expected.release_angle);
-            }
-          }
-          for (const AuditSample& sample : audit_samples(spec, tiling, tile, first, outcomes)) {
-            EXPECT_EQ(std::memcmp(&sample.outcome.jump_height, &outcomes[sample.number - first].jump_height,
-                                  sizeof(double)),
-                      0);
-            samples.push_back(sample);
-          }
-          taken += outcomes.size(), ++pieces;
-        },
-        [](std::size_t, const Tile&) { return Prepared{[] {}}; }};
+    return TileWork{[&](const Tile& tile, std::size_t first, const Solved& solved) {
+                      const std::span<const Outcome> outcomes = solved.outcomes;
+                      EXPECT_EQ(first, taken);
+                      std::vector<Design> designs(outcomes.size());
+                      space.fill(tile, first, designs);
+                      for (std::size_t i = 0; i < designs.size(); ++i) {
+                        const Design expected = space.at(first + i);
+                        EXPECT_EQ(designs[i].slope, expected.slope);
+                        EXPECT_EQ(designs[i].mass_ratio, expected.mass_ratio);
+                        if (outcomes[i].status == Status::jumped) {
+                          EXPECT_EQ(outcomes[i].jump_distance,
+                                    outcomes[i].jump_angle - expected.release_angle);
+                        }
+                      }
+                      for (const AuditSample& sample : audit_samples(spec, tiling, tile, first, outcomes)) {
+                        EXPECT_EQ(std::memcmp(&sample.outcome.jump_height,
+                                              &outcomes[sample.number - first].jump_height, sizeof(double)),
+                                  0);
+                        samples.push_back(sample);
+                      }
+                      taken += outcomes.size(), ++pieces;
+                    },
+                    [](std::size_t, const Tile&) { return Prepared{[] {}}; }};
   });
   EXPECT_EQ(taken, 41u * 71u);
   EXPECT_GT(pieces, 2u);
@@ -144,9 +145,7 @@ TEST(Engine, AStopKeepsWhatWasDoneInOrder) {
   options.threads = 2;
   options.stop_requested = [&] { return solved > 200; };
   const std::size_t done = run_sweep(spec, tiling, options, [&] {
-    return TileWork{[&](const Tile&, std::size_t, std::span<const Outcome> outcomes, const Gradients&) {
-                      solved += outcomes.size();
-                    },
+    return TileWork{[&](const Tile&, std::size_t, const Solved& some) { solved += some.outcomes.size(); },
                     [&](std::size_t, const Tile& tile) {
                       return Prepared{[&taken, count = tile.count] { taken += count; }};
                     }};

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "numerics/sobol_points.hpp"
+
+#include <gsl/gsl_qrng.h>
+
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <new>
+#include <random>
+
+namespace leapmap {
+
+SobolPoints::SobolPoints(std::size_t dimensions, std::size_t samples, std::uint64_t seed)
+    : samples_(samples), columns_(dimensions, std::vector<double>(samples)) {
+  assert(dimensions <= most_dimensions && samples % replicates == 0);
+  if (dimensions == 0) return;
+  constexpr int bits = 53;
+  const std::unique_ptr<gsl_qrng, void (*)(gsl_qrng*)> sequence(
+      gsl_qrng_alloc(gsl_qrng_sobol, static_cast<unsigned>(dimensions)), gsl_qrng_free);
+  if (!sequence) throw std::bad_alloc();
+  std::mt19937_64 random(seed);
+  std::vector<std::array<std::uint64_t, replicates>> shifts(dimensions);
+  for (auto& of_dimension : shifts)
+    for (std::uint64_t& shift : of_dimension) shift = random() >> (64 - bits);
+  std::array<double, most_dimensions> point{};  // GSL leaves out the sequence's first, which is zero
+  for (std::size_t i = 0; i < a_replicate(); ++i) {
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      const auto digits = static_cast<std::uint64_t>(std::ldexp(point[d], bits));
+      for (std::size_t r = 0; r < replicates; ++r)
+        columns_[d][r * a_replicate() + i] =
+            std::ldexp(static_cast<double>(digits ^ shifts[d][r]) + 0.5, -bits);
+    }
+    gsl_qrng_get(sequence.get(), point.data());
+  }
+}
+
+double error_of(double whole, std::span<const double> replicates, std::span<const std::size_t> counts) {
+  double sum = 0.0, squares = 0.0;
+  std::size_t told = 0;
+  for (const std::size_t count : counts) sum += static_cast<double>(count), told += count > 0;
+  if (2 * told < counts.size()) return std::numeric_limits<double>::quiet_NaN();
+  const double number = static_cast<double>(counts.size()), mean = sum / number;
+  for (std::size_t r = 0; r < counts.size(); ++r) {
+    if (counts[r] == 0) continue;
+    const double part = static_cast<double>(counts[r]) / mean * (replicates[r] - whole);
+    squares += part * part;
+  }
+  return std::sqrt(squares / (number * (number - 1.0)));
+}
+
+}  // namespace leapmap

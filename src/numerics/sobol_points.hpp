@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Points that fill a cube evenly: GSL's Sobol' sequence, moved by a random digital shift in each of 16
+/// replicates, so that each replicate is fair for itself and their spread measures the error of their mean.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace leapmap {
+
+class SobolPoints {
+ public:
+  static constexpr std::size_t replicates = 16;
+  static constexpr std::size_t most_dimensions = 40;  ///< of GSL's sequence
+
+  /// samples: a whole number of points for each replicate. The same seed, the same points.
+  SobolPoints(std::size_t dimensions, std::size_t samples, std::uint64_t seed);
+
+  std::size_t dimensions() const { return columns_.size(); }
+  std::size_t samples() const { return samples_; }
+  std::size_t a_replicate() const { return samples_ / replicates; }
+  /// The coordinates along one dimension, inside (0, 1), replicate after replicate.
+  std::span<const double> column(std::size_t dimension) const { return columns_[dimension]; }
+
+ private:
+  std::size_t samples_;
+  std::vector<std::vector<double>> columns_;
+};
+
+/// A number that was estimated, and its standard error; NaN: it cannot be told.
+struct Estimate {
+  double value, error;
+};
+
+/// The error of a statistic from its values in the replicates and how much each replicate counts (how many
+/// of its samples it is of): the spread of ratios about the whole's value. NaN with fewer than half of the
+/// replicates.
+double error_of(double whole, std::span<const double> replicates, std::span<const std::size_t> counts);
+
+}  // namespace leapmap

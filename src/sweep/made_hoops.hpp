@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Hoops as they are made after a drawing: each scattered parameter differs from what is drawn by its law,
+/// cut off where the parameter may not be.
+///
+/// The same random numbers serve every drawing, so that what is told of hoops as made is smooth over a map.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "leapmap/spec.hpp"
+#include "model/parameters.hpp"
+#include "numerics/sobol_points.hpp"
+
+namespace leapmap {
+
+/// A law cut off at both ends of what is allowed, in widths from the value drawn.
+struct CutLaw {
+  double from, to;
+  double left;  ///< the share of the law between them
+};
+
+/// One a thread. Needs points of at least as many dimensions as the scatter has spreads.
+class MadeHoops {
+ public:
+  MadeHoops(const Scatter& scatter, std::shared_ptr<const SobolPoints> points);
+
+  std::size_t samples() const { return points_->samples(); }
+  std::size_t a_replicate() const { return points_->a_replicate(); }
+  std::size_t spreads() const { return spreads_.size(); }
+
+  /// What is made after this drawing from now on. from_dimension[k]: of the points, for spread k; by default
+  /// k. Returns the share cut off.
+  double draw(const Design& drawn, std::span<const std::size_t> from_dimension = {});
+  /// Hoops first, first + 1, ...
+  void fill(std::size_t first, std::span<Design> made) const;
+
+  /// The law of spread k around this drawing.
+  CutLaw law(std::size_t k, const Design& drawn) const;
+
+ private:
+  struct Made {
+    const Parameter* parameter;
+    double Design::*member;
+    Spread::Law law;
+    double width;
+    bool percent;
+  };
+  /// Deviations along one dimension of the points, in widths, as the last drawing had them.
+  struct Column {
+    CutLaw law{};
+    std::vector<double> deviations;
+  };
+  double value_drawn(const Made& spread, const Design& drawn) const;
+  double width_of(const Made& spread, const Design& drawn) const;
+  const std::vector<double>& deviations(std::size_t spread, std::size_t dimension, const CutLaw& law);
+
+  std::shared_ptr<const SobolPoints> points_;
+  std::vector<Made> spreads_;
+  std::vector<std::vector<Column>> columns_;  // of each spread along each dimension
+  Design drawn_;
+  std::vector<const std::vector<double>*> now_;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/made_sample.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace leapmap {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Between the two values on either side, of values in any order, which it rearranges.
+double quantile(std::vector<double>& values, double share) {
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::ptrdiff_t>(place);
+  const auto at = values.begin() + below;
+  std::nth_element(values.begin(), at, values.end());
+  if (at + 1 == values.end()) return *at;
+  return *at + (place - static_cast<double>(below)) * (*std::min_element(at + 1, values.end()) - *at);
+}
+
+double mean(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double deviation(std::span<const double> values) {
+  if (values.size() < 2) return nan;
+  const double middle = mean(values);
+  double squares = 0.0;
+  for (const double value : values) squares += (value - middle) * (value - middle);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+}  // namespace
+
+bool GoalCheck::reached(const Outcome& outcome) const {
+  const auto* word = std::get_if<Word>(&field->source);
+  const double value = word ? static_cast<double>(outcome.*word->member) : stored_number(*field, outcome);
+  return value >= at_least && value <= at_most;
+}
+
+std::vector<GoalCheck> goal_checks(const std::vector<Goal>& goals) {
+  std::vector<GoalCheck> checks;
+  for (const Goal& goal : goals) checks.push_back({find_field(goal.field), goal.at_least, goal.at_most});
+  return checks;
+}
+
+std::size_t MadeShare::counted() const {
+  return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0});
+}
+
+Estimate MadeShare::share() const {
+  const auto all = static_cast<double>(samples_), each = all / SobolPoints::replicates;
+  const double whole = static_cast<double>(counted()) / all;
+  std::array<double, SobolPoints::replicates> parts;
+  std::ranges::transform(counts_, parts.begin(),
+                         [&](std::size_t n) { return static_cast<double>(n) / each; });
+  std::array<std::size_t, SobolPoints::replicates> alike;
+  alike.fill(1);
+  // Laplace's: where all of n are of one kind, the share of the other is 0 to within 1 / (n + 2).
+  return {whole, std::max(error_of(whole, parts, alike), 1.0 / (all + 2.0))};
+}
+
+void MadeSample::clear() {
+  values_.clear();
+  counts_.fill(0);
+}
+
+void MadeSample::add(double value, std::size_t replicate) {
+  assert(std::all_of(counts_.begin() + static_cast<std::ptrdiff_t>(replicate) + 1, counts_.end(),
+                     [](std::size_t count) { return count == 0; }));
+  values_.push_back(value);
+  ++counts_[replicate];
+}
+
+double MadeSample::of(Statistic statistic, std::span<const double> values) {
+  if (values.empty()) return nan;
+  if (statistic == Statistic::mean) return mean(values);
+  if (statistic == Statistic::sd) return deviation(values);
+  scratch_.assign(values.begin(), values.end());
+  return quantile(scratch_, statistic == Statistic::q05 ? 0.05 : statistic == Statistic::q50 ? 0.5 : 0.95);
+}
+
+double MadeSample::tell(Statistic statistic) { return of(statistic, values_); }
+
+Estimate MadeSample::tell_with_error(Statistic statistic) {
+  const double whole = tell(statistic);
+  std::array<double, SobolPoints::replicates> parts{};
+  std::array<std::size_t, SobolPoints::replicates> counts{};
+  std::size_t first = 0;
+  for (std::size_t r = 0; r < parts.size(); ++r) {
+    parts[r] = of(statistic, std::span(values_).subspan(first, counts_[r]));
+    counts[r] = parts[r] == parts[r] ? counts_[r] : 0;
+    first += counts_[r];
+  }
+  return {whole, std::isnan(whole) ? whole : error_of(whole, parts, counts)};
+}
+
+}  // namespace leapmap

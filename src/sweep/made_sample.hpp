@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What many hoops made after one drawing have in common: means, quantiles and shares, with errors that come
+/// from the spread of replicates.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "leapmap/outcome.hpp"
+#include "leapmap/spec.hpp"
+#include "model/fields.hpp"
+#include "numerics/sobol_points.hpp"
+
+namespace leapmap {
+
+/// A goal, its field looked up.
+struct GoalCheck {
+  const Field* field;
+  double at_least, at_most;
+
+  /// False where the field does not apply.
+  bool reached(const Outcome& outcome) const;
+};
+std::vector<GoalCheck> goal_checks(const std::vector<Goal>& goals);
+
+/// How many of equally many hoops of each replicate are of some kind.
+class MadeShare {
+ public:
+  explicit MadeShare(std::size_t samples) : samples_(samples) {}
+  void clear() { counts_.fill(0); }
+  void count(std::size_t replicate) { ++counts_[replicate]; }
+  std::size_t counted() const;
+  /// No better known than to a hoop in all, as where all are alike.
+  Estimate share() const;
+
+ private:
+  std::size_t samples_;
+  std::array<std::size_t, SobolPoints::replicates> counts_{};
+};
+
+/// The values of one quantity, replicate after replicate.
+class MadeSample {
+ public:
+  void clear();
+  void add(double value, std::size_t replicate);
+  std::span<const double> values() const { return values_; }
+
+  /// NaN of no values; of one value the standard deviation is NaN, too.
+  double tell(Statistic statistic);
+  Estimate tell_with_error(Statistic statistic);
+
+ private:
+  double of(Statistic statistic, std::span<const double> values);
+
+  std::vector<double> values_, scratch_;
+  std::array<std::size_t, SobolPoints::replicates> counts_{};
+};
+
+}  // namespace leapmap

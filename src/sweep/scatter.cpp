@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep/scatter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "leapmap/errors.hpp"
+#include "model/model.hpp"
+#include "sweep/options.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap {
+namespace {
+
+/// Hoops solved at once.
+constexpr std::size_t at_once = 1024;
+
+/// Quantities told of by default.
+constexpr double Outcome::*usual[]{&Outcome::jump_height, &Outcome::jump_time};
+
+std::vector<double Outcome::*> quantities_of(std::span<const Field* const> fields) {
+  std::vector<double Outcome::*> quantities;
+  for (const Field* field : fields) {
+    const auto of = std::get<OfMade>(field->source).of;
+    if (of && std::ranges::find(quantities, of) == quantities.end()) quantities.push_back(of);
+  }
+  return quantities;
+}
+
+[[noreturn]] void refuse(const Spec& spec, std::string_view section, std::string_view key,
+                         const std::string& what, const std::string& allowed) {
+  throw InputError(fmt::format("{}: {}.{} {}; allowed: {}", origin_of(spec), section, key, what, allowed));
+}
+
+/// The parameter's values over all designs of the spec.
+std::vector<double> values_of(const Spec& spec, const Option& parameter) {
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying)
+      if (axis.key == parameter.key) return axis.values;
+  return {value_of(parameter, spec.design)};
+}
+
+void check_spread(const Spec& spec, const Spread& spread) {
+  const Option* option = find_option("scatter", spread.parameter);
+  if (!option || !std::holds_alternative<SpreadSlot>(option->slot))
+    refuse(spec, "scatter", spread.parameter, "is no parameter of a design", "one of them");
+  if (std::ranges::count(spec.scatter.spreads, spread.parameter, &Spread::parameter) > 1)
+    refuse(spec, "scatter", spread.parameter, "is there twice", "once");
+  if (!has(spec.scene.friction, option->only_of))
+    refuse(spec, "scatter", spread.parameter, no_use(spec.scene), with_model(*option->only_of));
+  if (!in_range(*option, spread.width))
+    refuse(spec, "scatter", spread.parameter, fmt::format("is {} wide", spread.width), "a width in [0, inf)");
+  const Option& parameter = *find_option("design", spread.parameter);
+  const MadeHoops hoops({{spread}, SobolPoints::replicates, 0},
+                        std::make_shared<const SobolPoints>(1, SobolPoints::replicates, 0));
+  for (const double value : values_of(spec, parameter)) {
+    Design drawn;
+    drawn.*std::get<ParameterSlot>(parameter.slot).member = value;
+    // What is drawn at the end of a range, as L/R = 1, loses half.
+    constexpr double least_left = 0.499;
+    if (const double left = hoops.law(0, drawn).left; !(left >= least_left))
+      refuse(spec, "scatter", spread.parameter,
+             fmt::format("leaves the domain around {}: {:.3g} % of it lies where no hoop can be", value,
+                         100.0 * (1.0 - left)),
+             fmt::format("a smaller width; the parameter is {}", allowed_values(parameter)));
+  }
+}
+
+void check_goal(const Spec& spec, const Goal& goal) {
+  const Option* option = find_option("goal", goal.field);
+  if (!option) refuse(spec, "goal", goal.field, "is no field of a map", "one of them");
+  if (std::ranges::count(spec.goals, goal.field, &Goal::field) > 1)
+    refuse(spec, "goal", goal.field, "is there twice", "once");
+  if (!has(spec.scene.friction, option->only_of))
+    refuse(spec, "goal", goal.field, no_use(spec.scene), with_model(*option->only_of));
+  if (!(goal.at_least <= goal.at_most))
+    refuse(spec, "goal", goal.field,
+           fmt::format("is at least {} and at most {}", goal.at_least, goal.at_most),
+           "at_least not above at_most");
+}
+
+}  // namespace
+
+std::vector<const Field*> scatter_fields_of(const Spec& spec) {
+  std::vector<const Field*> fields;
+  if (spec.scatter.spreads.empty()) return fields;
+  const auto asked = [&](const Field& row) {
+    const auto& [statistic, of, error] = std::get<OfMade>(row.source);
+    if (!of) return statistic == Statistic::cut_off || !spec.goals.empty();
+    if (error) return false;
+    if (spec.output.fields.empty()) return std::ranges::find(usual, of) != std::end(usual);
+    return std::ranges::any_of(spec.output.fields, [&](const std::string& name) {
+      const auto* quantity = std::get_if<Quantity>(&find_field(name)->source);
+      return quantity && quantity->member == of;
+    });
+  };
+  for (const Field& row : scatter_fields())
+    if (asked(row) || std::ranges::find(spec.output.fields, row.name) != spec.output.fields.end())
+      fields.push_back(&row);
+  return fields;
+}
+
+void check_scatter(const Spec& spec) {
+  const Scatter& scatter = spec.scatter;
+  for (const std::string& name : spec.output.fields)
+    if (const Field* field = find_field(name); field && std::holds_alternative<OfMade>(field->source)) {
+      if (scatter.spreads.empty())
+        refuse(spec, "output", "fields", fmt::format("names {}, which is of hoops as made", name),
+               "with a parameter in [scatter]");
+      if (std::get<OfMade>(field->source).statistic == Statistic::yield && spec.goals.empty())
+        refuse(spec, "output", "fields", fmt::format("names {}", name), "with a field in [goal]");
+    }
+  for (const Goal& goal : spec.goals) check_goal(spec, goal);
+  if (scatter.spreads.empty()) return;
+  if (scatter.samples % static_cast<long>(SobolPoints::replicates) != 0)
+    refuse(spec, "scatter", "samples", fmt::format("= {}", scatter.samples),
+           fmt::format("{} times a whole number", SobolPoints::replicates));
+  for (const Spread& spread : scatter.spreads) check_spread(spec, spread);
+}
+
+std::shared_ptr<const SobolPoints> points_of(const Scatter& scatter, std::size_t a_spread) {
+  return std::make_shared<const SobolPoints>(a_spread * scatter.spreads.size(),
+                                             static_cast<std::size_t>(scatter.samples),
+                                             static_cast<std::uint64_t>(scatter.seed));
+}
+
+Spec spec_of_made(const Spec& spec, std::span<double Outcome::*const> quantities) {
+  Spec made;
+  made.scene = spec.scene, made.design = spec.design, made.numerics = spec.numerics;
+  made.output.fields = {"status"};
+  for (const Goal& goal : spec.goals) made.output.fields.push_back(goal.field);
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source);
+        quantity && std::ranges::find(quantities, quantity->member) != quantities.end())
+      made.output.fields.emplace_back(field.name);
+  return made;
+}
+
+MadeColumns::MadeColumns(std::vector<const Field*> fields)
+    : fields_(std::move(fields)), columns_(fields_.size()) {}
+
+void MadeColumns::begin(std::size_t designs) {
+  for (std::vector<double>& column : columns_)
+    column.assign(designs, std::numeric_limits<double>::quiet_NaN());
+}
+
+std::span<const double> MadeColumns::column(const Field& field) const {
+  const auto found = std::ranges::find(fields_, &field);
+  assert(found != fields_.end());
+  return columns_[static_cast<std::size_t>(found - fields_.begin())];
+}
+
+ScatterSolver::ScatterSolver(const Spec& spec, std::shared_ptr<const SobolPoints> points)
+    : goals_(goal_checks(spec.goals)),
+      hoops_(spec.scatter, std::move(points)),
+      reached_(hoops_.samples()),
+      failed_(hoops_.samples()),
+      made_(std::min(at_once, hoops_.samples())),
+      outcomes_(made_.size()) {
+  const std::vector<double Outcome::*> quantities = quantities_of(scatter_fields_of(spec));
+  for (const auto quantity : quantities) sampled_.push_back({quantity, {}});
+  solver_ = make_solver(spec_of_made(spec, quantities));
+}
+
+/// The hoops of one drawing.
+void ScatterSolver::make(const Design& drawn) {
+  reached_.clear(), failed_.clear();
+  for (Sampled& sampled : sampled_) sampled.values.clear();
+  cut_off_ = hoops_.draw(drawn);
+  for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
+    const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
+    hoops_.fill(first, std::span(made_).first(count));
+    solver_(std::span(made_).first(count), std::span(outcomes_).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      const Outcome& outcome = outcomes_[i];
+      const std::size_t replicate = (first + i) / hoops_.a_replicate();
+      if (outcome.status == Status::failed) failed_.count(replicate);
+      if (std::ranges::all_of(goals_, [&](const GoalCheck& goal) { return goal.reached(outcome); }))
+        reached_.count(replicate);
+      if (outcome.status != Status::jumped) continue;
+      for (Sampled& sampled : sampled_)
+        if (const double value = outcome.*sampled.quantity; value == value)
+          sampled.values.add(value, replicate);
+    }
+  }
+}
+
+double ScatterSolver::tell(const OfMade& what) {
+  if (what.statistic == Statistic::cut_off) return cut_off_;
+  if (what.statistic == Statistic::yield) {
+    const Estimate yield = reached_.share();
+    // Of hoops that the method gave up on it is not known what they reach.
+    return what.error ? std::hypot(yield.error, failed_.counted() > 0 ? failed_.share().value : 0.0)
+                      : yield.value;
+  }
+  MadeSample& values = std::ranges::find(sampled_, what.of, &Sampled::quantity)->values;
+  return what.error ? values.tell_with_error(what.statistic).error : values.tell(what.statistic);
+}
+
+void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns) {
+  columns.begin(designs.size());
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    make(designs[i]);
+    for (std::size_t f = 0; f < columns.fields().size(); ++f)
+      columns.put(f, i, tell(std::get<OfMade>(columns.fields()[f]->source)));
+  }
+}
+
+}  // namespace leapmap
