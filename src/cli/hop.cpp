@@ -9,6 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/hop_gradient.hpp"
+#include "cli/hop_scatter.hpp"
 #include "cli/motor.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
@@ -31,7 +32,7 @@ struct HopArguments {
   double trace_interval = 1e-3;
   double mass = 0.0;                          // 0: not given
   std::vector<std::string> overrides, flags;  // KEY=VALUE; flags hold whatever their place on the line
-  bool json = false, gradient = false;
+  bool json = false, gradient = false, scatter = false;
   Locking locking = Locking::required;
 };
 
@@ -170,11 +171,10 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
         graze.makes_lift_off() ? "making a " : "making no ");
 }
 
-std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
-
 /// The outcome under the map's names and units, so that a script finds the same words in both.
 std::string json_text(const Spec& spec, const Motion& motion, const Outcome& checked,
-                      const std::optional<Motor>& motor, bool gradient) {
+                      const std::optional<Motor>& motor, bool gradient,
+                      const std::optional<ScatterReport>& made) {
   const double second = time_unit(spec.scene);
   std::vector<std::string> design, outcome, candidates, grazes, phases;
   for (const Option* parameter : design_parameters(spec))
@@ -226,8 +226,9 @@ std::string json_text(const Spec& spec, const Motion& motion, const Outcome& che
       fmt::join(design, ", "), model_of(spec.scene).name, spec.scene.runway, spec.scene.hop_height,
       spec.scene.radius, spec.scene.gravity, spec.scene.rest_speed, resolved_method(spec.numerics),
       spec.numerics.tolerance, fmt::join(outcome, ",\n  "), motor_told,
-      gradient ? fmt::format("\"gradient\": {},\n  ", gradient_json(spec)) : "", fmt::join(candidates, ", "),
-      fmt::join(grazes, ", "), check, fmt::join(phases, ", "));
+      (gradient ? fmt::format("\"gradient\": {},\n  ", gradient_json(spec)) : "") +
+          (made ? fmt::format("\"scatter\": {},\n  ", scatter_json(spec, *made)) : ""),
+      fmt::join(candidates, ", "), fmt::join(grazes, ", "), check, fmt::join(phases, ", "));
 }
 
 int run(const HopArguments& arguments) {
@@ -261,11 +262,14 @@ int run(const HopArguments& arguments) {
   const std::optional<Motor> motor =
       driven && moves ? std::optional(motor_of(spec, motion, is_example ? papers_mass : arguments.mass))
                       : std::nullopt;
+  std::optional<ScatterReport> made;
+  if (arguments.scatter) made = scatter(spec);
   if (arguments.json) {
-    say("{}", json_text(spec, motion, check.outcome, motor, arguments.gradient));
+    say("{}", json_text(spec, motion, check.outcome, motor, arguments.gradient, made));
   } else {
     print_table(spec, motion, check.outcome, motor, is_example);
     if (arguments.gradient) print_gradient(spec);
+    if (made) print_scatter(spec, *made);
     if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
   }
   return motion.outcome.status == Status::failed ? 1 : 0;
@@ -292,6 +296,10 @@ void add_hop(CLI::App& app, int& status) {
       ->check(CLI::Range(1e-9, 1e9));
   command->add_flag("--gradient", arguments->gradient,
                     "tell the derivatives of every quantity by every parameter, too");
+  command->add_flag(
+      "--scatter", arguments->scatter,
+      "tell what becomes of the design as it is made, by the spec's [scatter] and [goal]: yield, "
+      "quantiles, which tolerance matters");
   command->add_flag("--json", arguments->json, "print JSON, under the map's names and units");
   command->footer(options_help());
   add_no_lock(*command, arguments->locking);

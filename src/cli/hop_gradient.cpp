@@ -83,8 +83,7 @@ std::string gradient_json(const Spec& spec) {
   for (const Row& row : table.rows) {
     std::vector<std::string> cells;
     for (std::size_t j = 0; j < row.by.size(); ++j)
-      cells.push_back(fmt::format("\"{}\": {}", table.parameters[j]->key,
-                                  std::isfinite(row.by[j]) ? fmt::format("{}", row.by[j]) : "null"));
+      cells.push_back(fmt::format("\"{}\": {}", table.parameters[j]->key, json_number(row.by[j])));
     rows.push_back(fmt::format("\"{}\": {{{}}}", row.quantity->name, fmt::join(cells, ", ")));
   }
   return fmt::format("{{{}}}", fmt::join(rows, ",\n    "));

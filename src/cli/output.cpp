@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/output.hpp"
 
+#include <cmath>
 #include <cstdio>
 
 #include "support/posix.hpp"
@@ -17,6 +18,8 @@ void write_out(const std::string& raw) {
 void flush_out() {
   if (std::fflush(stdout) != 0) fail_with_errno("standard output", "cannot be written");
 }
+
+std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
 void tell(const std::string& line) { std::fputs(("leapmap: " + printable(line) + "\n").c_str(), stderr); }
 

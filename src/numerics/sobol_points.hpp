@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "leapmap/estimate.hpp"
+
 namespace leapmap {
 
 class SobolPoints {
@@ -27,11 +29,6 @@ class SobolPoints {
  private:
   std::size_t samples_;
   std::vector<std::vector<double>> columns_;
-};
-
-/// A number that was estimated, and its standard error; NaN: it cannot be told.
-struct Estimate {
-  double value, error;
 };
 
 /// The error of a statistic from its values in the replicates and how much each replicate counts (how many

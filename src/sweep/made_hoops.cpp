@@ -26,11 +26,10 @@ double inside(const Range& range, double value) {
 MadeHoops::MadeHoops(const Scatter& scatter, std::shared_ptr<const SobolPoints> points)
     : points_(std::move(points)) {
   assert(points_->dimensions() >= scatter.spreads.size());
-  for (const Parameter& parameter : parameters()) {
-    const auto spread = std::ranges::find(scatter.spreads, parameter.name, &Spread::parameter);
-    const auto* member = std::get_if<double Design::*>(&parameter.member);
-    if (spread != scatter.spreads.end() && member)
-      spreads_.push_back({&parameter, *member, spread->law, spread->width, spread->percent});
+  for (const Spread& spread : scatter.spreads) {
+    const auto parameter = std::ranges::find(parameters(), spread.parameter, &Parameter::name);
+    spreads_.push_back({&*parameter, std::get<double Design::*>(parameter->member), spread.law, spread.width,
+                        spread.percent});
   }
   columns_.assign(spreads_.size(), std::vector<Column>(points_->dimensions()));
   now_.resize(spreads_.size());

@@ -227,6 +227,10 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
     });
   };
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
+  // The order of the lines does not count: hoops made are the same.
+  std::ranges::sort(spec.scatter.spreads, {}, [](const Spread& spread) {
+    return find_option("scatter", spread.parameter) - spec_options().data();
+  });
   if (!lenient) refuse_what_has_no_use(entries, spec);
   // Where mu_static varies, mu_kinetic follows it from design to design.
   const bool varies = std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() ||

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/hop_scatter.hpp"
+
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cli/output.hpp"
+#include "cli/spoken.hpp"
+#include "model/fields.hpp"
+#include "numerics/sobol_points.hpp"
+#include "sweep/options.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+/// Counts of values in bins of equal width.
+struct Histogram {
+  double from = 0.0, to = 0.0;
+  std::vector<std::size_t> counts;
+};
+
+Histogram histogram_of(const ScatterReport& report, double Outcome::*quantity, std::size_t bins) {
+  std::vector<double> values;
+  for (const Outcome& outcome : report.outcomes)
+    if (outcome.status == Status::jumped && std::isfinite(outcome.*quantity))
+      values.push_back(outcome.*quantity);
+  if (values.empty()) return {};
+  const auto [least, most] = std::ranges::minmax(values);
+  Histogram histogram{least, most, std::vector<std::size_t>(bins)};
+  const double width = (most - least) / static_cast<double>(bins);
+  for (const double value : values)
+    ++histogram
+          .counts[width > 0.0 ? std::min(bins - 1, static_cast<std::size_t>((value - least) / width)) : 0];
+  return histogram;
+}
+
+/// Half of the 95 % interval of a mean of replicates.
+double half_interval(const Estimate& estimate) {
+  return gsl_cdf_tdist_Pinv(0.975, SobolPoints::replicates - 1.0) * estimate.error;
+}
+
+std::string share_of(const Estimate& share) {
+  return fmt::format("{:.4f} +- {:.4f}", share.value, share.error);
+}
+
+std::string index_of(const Estimate& index) {
+  return std::isnan(index.value) ? "-" : fmt::format("{:.2f} +- {:.2f}", index.value, half_interval(index));
+}
+
+std::string law_of(const Spread& spread) {
+  const Option& option = *find_option("scatter", spread.parameter);
+  const bool angle = option.unit == "rad" && !spread.percent;
+  return fmt::format("{} {:.4g}{}", spread.law == Spread::Law::normal ? "normal" : "uniform",
+                     angle ? spread.width * 180.0 / std::numbers::pi : spread.width,
+                     spread.percent ? " %"
+                     : angle        ? " deg"
+                                    : "");
+}
+
+std::string goal_of(const Goal& goal) {
+  std::string text = goal.field;
+  if (goal.at_least == goal.at_most) return text + fmt::format(" is {:g}", goal.at_least);
+  if (std::isfinite(goal.at_least)) text += fmt::format(" at least {:g}", goal.at_least);
+  if (std::isfinite(goal.at_most)) text += fmt::format(" at most {:g}", goal.at_most);
+  return text;
+}
+
+void print_spreads(const Spec& spec, const ScatterReport& report) {
+  say("{:<16} {:<18} {:>9}", "scatter", "law", "cut off");
+  say("{}\n", report.shrink.empty() ? "" : "   for 99 % yield it has to shrink to");
+  for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
+    const Spread& spread = spec.scatter.spreads[k];
+    say("{:<16} {:<18} {:>8.2g} %", spread.parameter, law_of(spread), 100.0 * report.cut_off[k]);
+    if (!report.shrink.empty())
+      say("   {}", report.shrink[k] >= 1.0   ? "(good as it is)"
+                   : report.shrink[k] <= 0.0 ? "not enough even without it"
+                                             : fmt::format("{:.1f} % of that", 100.0 * report.shrink[k]));
+    say("\n");
+  }
+  if (!report.shrink.empty() && report.shrink_all < 1.0)
+    say("{}\n", report.shrink_all > 0.0
+                    ? fmt::format("All together have to shrink to {:.1f} %.", 100.0 * report.shrink_all)
+                    : "No tolerance is tight enough: the drawing itself misses a goal.");
+}
+
+void print_quantities(const ScatterReport& report) {
+  say("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "of those that jump", "mean", "deviation", "5 %",
+      "50 %", "95 %");
+  for (const MadeQuantity& told : report.quantities) {
+    const std::string_view unit = find_field(told.field)->unit;
+    say("{:<20}", unit == "1" ? told.field : fmt::format("{} [{}]", told.field, unit));
+    for (const Estimate* estimate : {&told.mean, &told.sd, &told.q05, &told.q50, &told.q95})
+      say(" {:>12.5g}", estimate->value);
+    say("\n{:<20}", "  error");
+    for (const Estimate* estimate : {&told.mean, &told.sd, &told.q05, &told.q50, &told.q95})
+      say(" {:>12.1e}", estimate->error);
+    say("\n");
+  }
+}
+
+void print_histogram(const Spec& spec, const ScatterReport& report) {
+  constexpr std::size_t bins = 20;
+  constexpr double widest = 50.0;
+  const Histogram histogram = histogram_of(report, &Outcome::jump_height, bins);
+  if (histogram.counts.empty()) return;
+  const auto goal = std::ranges::find(spec.goals, "jump_height", &Goal::field);
+  const double most = static_cast<double>(std::ranges::max(histogram.counts));
+  const double width = (histogram.to - histogram.from) / static_cast<double>(bins);
+  say("\njump_height\n");
+  for (std::size_t i = 0; i < bins; ++i) {
+    const double from = histogram.from + width * static_cast<double>(i), to = from + width;
+    const auto within = [&](double bound) { return bound >= from && bound < to; };
+    const bool marked = goal != spec.goals.end() && (within(goal->at_least) || within(goal->at_most));
+    say("{:>9.4f} {}{}\n", from, marked ? '>' : '|',
+        std::string(
+            static_cast<std::size_t>(std::ceil(widest * static_cast<double>(histogram.counts[i]) / most)),
+            '#'));
+    if (width == 0.0) break;
+  }
+  if (goal != spec.goals.end()) say("          > the goal\n");
+}
+
+void print_importance(const Spec& spec, const ScatterReport& report) {
+  say("\nSobol' indices, first order and total, +- half of a 95 % interval; -: nothing varies\n{:<16}", "");
+  for (const Importance& importance : report.importance) say(" {:>15} {:>15}", importance.of, "total");
+  say("\n");
+  for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
+    say("{:<16}", spec.scatter.spreads[k].parameter);
+    for (const Importance& importance : report.importance)
+      say(" {:>15} {:>15}", index_of(importance.first[k]), index_of(importance.total[k]));
+    say("\n");
+  }
+  for (const Importance& importance : report.importance)
+    if (importance.pairs < 1.0)
+      say("{}: among pairs of hoops that both jump, {:.1f} % of them.\n", importance.of,
+          100.0 * importance.pairs);
+}
+
+std::string json_of(const Estimate& estimate) {
+  return fmt::format("{{\"value\": {}, \"error\": {}}}", json_number(estimate.value),
+                     json_number(estimate.error));
+}
+
+std::string json_of(const std::vector<Estimate>& estimates, const std::vector<Spread>& spreads) {
+  std::vector<std::string> cells;
+  for (std::size_t k = 0; k < spreads.size(); ++k)
+    cells.push_back(fmt::format("\"{}\": {}", spreads[k].parameter, json_of(estimates[k])));
+  return fmt::format("{{{}}}", fmt::join(cells, ", "));
+}
+
+std::string json_of(const Histogram& histogram) {
+  return fmt::format("{{\"from\": {}, \"to\": {}, \"counts\": [{}]}}", json_number(histogram.from),
+                     json_number(histogram.to), fmt::join(histogram.counts, ", "));
+}
+
+}  // namespace
+
+void print_scatter(const Spec& spec, const ScatterReport& report) {
+  say("\nAs made: {} hoops in {} replicates, seed {}. Errors are standard errors.\n", grouped(report.samples),
+      SobolPoints::replicates, spec.scatter.seed);
+  print_spreads(spec, report);
+  say("\n");
+  if (!spec.goals.empty()) say("{:<34} {}\n", "yield: reaches every goal", share_of(report.yield));
+  for (std::size_t k = 0; k < spec.goals.size(); ++k)
+    say("  misses {:<25} {}\n", goal_of(spec.goals[k]), share_of(report.missed[k]));
+  say("{:<34} {}\n", "jumps", share_of(report.jumps));
+  print_quantities(report);
+  print_histogram(spec, report);
+  print_importance(spec, report);
+}
+
+std::string scatter_json(const Spec& spec, const ScatterReport& report) {
+  constexpr std::size_t bins = 60;
+  std::vector<std::string> spreads, goals, quantities, importance;
+  for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
+    const Spread& spread = spec.scatter.spreads[k];
+    spreads.push_back(fmt::format(
+        R"("{}": {{"law": "{}", "width": {}, "percent": {}, "cut_off": {}, "shrink": {}}})", spread.parameter,
+        spread.law == Spread::Law::normal ? "normal" : "uniform", json_number(spread.width), spread.percent,
+        json_number(report.cut_off[k]), report.shrink.empty() ? "null" : json_number(report.shrink[k])));
+  }
+  for (std::size_t k = 0; k < spec.goals.size(); ++k)
+    goals.push_back(fmt::format(R"("{}": {{"at_least": {}, "at_most": {}, "missed": {}}})",
+                                spec.goals[k].field, json_number(spec.goals[k].at_least),
+                                json_number(spec.goals[k].at_most), json_of(report.missed[k])));
+  for (const MadeQuantity& told : report.quantities)
+    quantities.push_back(fmt::format(
+        R"("{}": {{"mean": {}, "sd": {}, "q05": {}, "q50": {}, "q95": {}, "histogram": {}}})", told.field,
+        json_of(told.mean), json_of(told.sd), json_of(told.q05), json_of(told.q50), json_of(told.q95),
+        json_of(histogram_of(report, std::get<Quantity>(find_field(told.field)->source).member, bins))));
+  for (const Importance& of : report.importance)
+    importance.push_back(fmt::format(R"("{}": {{"pairs": {}, "first": {}, "total": {}}})", of.of,
+                                     json_number(of.pairs), json_of(of.first, spec.scatter.spreads),
+                                     json_of(of.total, spec.scatter.spreads)));
+  return fmt::format(
+      "{{\"samples\": {}, \"seed\": {}, \"yield\": {}, \"jumps\": {},\n    \"spreads\": {{{}}}, "
+      "\"shrink_all\": "
+      "{},\n    \"goals\": {{{}}},\n    \"quantities\": {{{}}},\n    \"importance\": {{{}}}}}",
+      report.samples, spec.scatter.seed, json_of(report.yield), json_of(report.jumps),
+      fmt::join(spreads, ", "), report.shrink.empty() ? "null" : json_number(report.shrink_all),
+      fmt::join(goals, ", "), fmt::join(quantities, ",\n    "), fmt::join(importance, ",\n    "));
+}
+
+}  // namespace leapmap::cli

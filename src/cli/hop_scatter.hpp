@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap hop --scatter: what becomes of one design as it is made.
+#pragma once
+
+#include <string>
+
+#include "leapmap/scatter.hpp"
+
+namespace leapmap::cli {
+
+/// Yield, goals, quantities, a histogram, what each tolerance brings and how far it has to shrink.
+void print_scatter(const Spec& spec, const ScatterReport& report);
+
+/// The same as JSON, histograms of height and time with it.
+std::string scatter_json(const Spec& spec, const ScatterReport& report);
+
+}  // namespace leapmap::cli
