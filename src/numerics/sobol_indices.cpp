@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "numerics/sobol_indices.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -72,7 +73,9 @@ std::vector<SobolIndex> sobol_indices(std::span<const std::vector<double>> outpu
   std::vector<SobolIndex> indices;
   for (std::size_t i = 2; i < outputs.size(); ++i) {
     const Correlation first = correlation(outputs[1], outputs[i]), same = correlation(outputs[0], outputs[i]);
-    indices.push_back({first.estimate, {1.0 - same.estimate.value, same.estimate.error}, first.pairs});
+    indices.push_back({first.estimate,
+                       {1.0 - same.estimate.value, same.estimate.error},
+                       std::min(first.pairs, same.pairs)});
   }
   return indices;
 }

@@ -20,7 +20,7 @@ namespace leapmap {
 /// Of one input. NaN: nothing varies, or too little is there.
 struct SobolIndex {
   Estimate first, total;
-  double pairs;  ///< the share of pairs that could be compared
+  double pairs;  ///< the least share of pairs that could be compared
 };
 
 /// The samples of n inputs, by the dimensions of points (2 n of them) that each input takes: A, B, and A with

@@ -38,6 +38,7 @@ SobolPoints::SobolPoints(std::size_t dimensions, std::size_t samples, std::uint6
 }
 
 double error_of(double whole, std::span<const double> replicates, std::span<const std::size_t> counts) {
+  assert(counts.size() == SobolPoints::replicates && replicates.size() == counts.size());
   double sum = 0.0, squares = 0.0;
   std::size_t told = 0;
   for (const std::size_t count : counts) sum += static_cast<double>(count), told += count > 0;
@@ -48,7 +49,8 @@ double error_of(double whole, std::span<const double> replicates, std::span<cons
     const double part = static_cast<double>(counts[r]) / mean * (replicates[r] - whole);
     squares += part * part;
   }
-  return std::sqrt(squares / (number * (number - 1.0)));
+  constexpr double student = 2.1314 / 1.9600;  // of 95 %, with 15 degrees of freedom
+  return student * std::sqrt(squares / (number * (number - 1.0)));
 }
 
 }  // namespace leapmap

@@ -32,8 +32,9 @@ class SobolPoints {
 };
 
 /// The error of a statistic from its values in the replicates and how much each replicate counts (how many
-/// of its samples it is of): the spread of ratios about the whole's value. NaN with fewer than half of the
-/// replicates.
+/// of its samples it is of): the spread of ratios about the whole's value, widened by Student's factor, so
+/// that 1.96 errors hold in 95 of 100 cases although there are few replicates. NaN with fewer than half of
+/// them.
 double error_of(double whole, std::span<const double> replicates, std::span<const std::size_t> counts);
 
 }  // namespace leapmap

@@ -149,6 +149,23 @@ Spec spec_of(const std::string& path_or_text, const std::optional<std::string>& 
   return spec;
 }
 
+py::dict scatter(const std::string& path_or_text, const std::optional<std::string>& origin,
+                 const std::vector<std::string>& overrides, int threads) {
+  const Spec spec = spec_of(path_or_text, origin, overrides);
+  Interrupts interrupts;
+  ScatterOptions options{.threads = threads_here(threads)};
+  options.stop_requested = [&] { return interrupts(); };
+  ScatterReport report;
+  try {
+    const py::gil_scoped_release unlocked;
+    report = leapmap::scatter(spec, options);
+  } catch (const Stopped&) {
+    interrupts.rethrow();
+    throw;
+  }
+  return dict_of(report, spec);
+}
+
 /// How far a sweep has come, for a thread of Python's to look at; and its order to stop.
 struct Watch {
   std::atomic<std::size_t> done = 0, total = 0;
@@ -223,6 +240,7 @@ PYBIND11_MODULE(_core, module) {
   });
   module.def("solve", &python::solve);
   module.def("gradient", &python::gradient);
+  module.def("scatter", &python::scatter);
   module.def("trace", &python::trace);
   module.def("sweep", &python::sweep);
   module.def("spec_file", [](const std::string& path_or_text, const std::optional<std::string>& origin,

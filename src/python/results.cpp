@@ -9,6 +9,7 @@
 
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
+#include "model/parameters.hpp"
 
 namespace py = pybind11;
 
@@ -83,6 +84,53 @@ py::dict Columns::arrays() const {
   py::dict arrays;
   for (const Column& column : columns_) arrays[py::str(std::string(column.field->name))] = column.array;
   return arrays;
+}
+
+namespace {
+
+py::tuple pair_of(const Estimate& estimate) { return py::make_tuple(estimate.value, estimate.error); }
+
+}  // namespace
+
+py::dict dict_of(const ScatterReport& report, const Spec& spec) {
+  const auto by_spread = [&](const auto& values, const auto& told) {
+    py::dict dict;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      dict[py::str(spec.scatter.spreads[k].parameter)] = told(values[k]);
+    return dict;
+  };
+  const auto number = [](double value) { return py::float_(value); };
+  py::dict told, missed, made;
+  told["samples"] = report.samples;
+  told["yield"] = pair_of(report.yield), told["jumps"] = pair_of(report.jumps);
+  for (std::size_t k = 0; k < spec.goals.size(); ++k)
+    missed[py::str(spec.goals[k].field)] = pair_of(report.missed[k]);
+  told["missed"] = missed;
+  for (const MadeQuantity& quantity : report.quantities) {
+    py::dict of;
+    of["mean"] = pair_of(quantity.mean), of["sd"] = pair_of(quantity.sd), of["q05"] = pair_of(quantity.q05);
+    of["q50"] = pair_of(quantity.q50), of["q95"] = pair_of(quantity.q95);
+    told[py::str(quantity.field)] = of;
+  }
+  py::dict first, total, pairs;
+  for (const Importance& importance : report.importance) {
+    const py::str of(importance.of);
+    first[of] = by_spread(importance.first, pair_of), total[of] = by_spread(importance.total, pair_of);
+    pairs[of] = importance.pairs;
+  }
+  told["first"] = first, told["total"] = total, told["pairs"] = pairs;
+  told["cut_off"] = by_spread(report.cut_off, number), told["shrink"] = by_spread(report.shrink, number);
+  told["shrink_all"] = report.shrink_all;
+  for (const Parameter& parameter : parameters())
+    if (const auto* member = std::get_if<double Design::*>(&parameter.member);
+        member && has(spec.scene.friction, parameter.only_of))
+      made[py::str(std::string(parameter.name))] = column(report.made, *member);
+  told["made"] = made;
+  Columns outcomes({"jump_height", "jump_time", "spurious_first_jump", "status"}, spec.scene,
+                   {static_cast<py::ssize_t>(report.samples)});
+  outcomes.take(0, report.outcomes);
+  told["outcomes"] = outcomes.arrays();
+  return told;
 }
 
 py::dict dict_of(const Motion& motion, const Scene& scene) {

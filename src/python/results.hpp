@@ -10,6 +10,7 @@
 
 #include "leapmap/motion.hpp"
 #include "leapmap/outcome.hpp"
+#include "leapmap/scatter.hpp"
 #include "leapmap/scene.hpp"
 #include "model/fields.hpp"
 
@@ -40,5 +41,8 @@ class Columns {
 };
 
 pybind11::dict dict_of(const Motion& motion, const Scene& scene);
+
+/// Estimates as pairs of value and error; what is of spreads and goals by their names.
+pybind11::dict dict_of(const ScatterReport& report, const Spec& spec);
 
 }  // namespace leapmap::python

@@ -19,7 +19,7 @@ with open(sys.argv[1], "w", encoding="utf-8") as file:
     file.write(f'''# Written by src/python/stubs.py from leapmap's tables of parameters and fields.
 import os
 from enum import IntEnum
-from typing import Any, Callable, Mapping, Optional, Sequence, Union
+from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 import numpy as np
 import xarray
 from numpy.typing import ArrayLike, NDArray
@@ -51,6 +51,12 @@ def gradient(*,{arguments(True)}
              of: str = ..., friction: str = ..., tolerance: float = ..., threads: int = ...) -> dict[str, NDArray[np.float64]]: ...
 def trace(*,{arguments(False)}
           interval: float = ..., friction: str = ..., method: str = ..., tolerance: float = ..., max_steps: int = ...) -> Motion: ...
+class Estimate(NamedTuple):
+    value: float
+    error: float
+
+def scatter(spec: Union[Path, Mapping[str, Mapping[str, Any]], None] = ..., *, scatter: Optional[Mapping[str, Any]] = ...,
+            goal: Optional[Mapping[str, Any]] = ..., threads: int = ..., **overrides: Any) -> dict[str, Any]: ...
 def sweep(spec: Union[Path, Mapping[str, Mapping[str, Any]]], file: Optional[Path] = ..., *, in_memory: bool = ...,
           resume: bool = ..., overwrite: bool = ..., threads: int = ...,
           progress: Optional[Callable[[int, int], Any]] = ..., **overrides: Any) -> xarray.Dataset: ...

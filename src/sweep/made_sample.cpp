@@ -22,6 +22,18 @@ double quantile(std::vector<double>& values, double share) {
   return *at + (place - static_cast<double>(below)) * (*std::min_element(at + 1, values.end()) - *at);
 }
 
+/// The share of values below a quantile; 0: it is none.
+double share_of(Statistic statistic) {
+  return statistic == Statistic::q05   ? 0.05
+         : statistic == Statistic::q50 ? 0.5
+         : statistic == Statistic::q95 ? 0.95
+                                       : 0.0;
+}
+
+/// To what a share is known at best. Laplace's: where all of n are of one kind, the share of the other is 0
+/// to within 1 / (n + 2).
+double resolution(double n) { return 1.0 / (n + 2.0); }
+
 double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -60,8 +72,7 @@ Estimate MadeShare::share() const {
                          [&](std::size_t n) { return static_cast<double>(n) / each; });
   std::array<std::size_t, SobolPoints::replicates> alike;
   alike.fill(1);
-  // Laplace's: where all of n are of one kind, the share of the other is 0 to within 1 / (n + 2).
-  return {whole, std::max(error_of(whole, parts, alike), 1.0 / (all + 2.0))};
+  return {whole, std::hypot(error_of(whole, parts, alike), resolution(all))};
 }
 
 void MadeSample::clear() {
@@ -81,13 +92,35 @@ double MadeSample::of(Statistic statistic, std::span<const double> values) {
   if (statistic == Statistic::mean) return mean(values);
   if (statistic == Statistic::sd) return deviation(values);
   scratch_.assign(values.begin(), values.end());
-  return quantile(scratch_, statistic == Statistic::q05 ? 0.05 : statistic == Statistic::q50 ? 0.5 : 0.95);
+  return quantile(scratch_, share_of(statistic));
 }
 
 double MadeSample::tell(Statistic statistic) { return of(statistic, values_); }
 
+/// How far quantiles lie away whose share differs by the error with which that share is known (Woodruff): of
+/// two sides the larger, as beside a gap, where hoops pass a cliff, one side is far.
+double MadeSample::error_of_quantile(double share, double whole) {
+  std::array<double, SobolPoints::replicates> parts{};
+  std::size_t first = 0;
+  for (std::size_t r = 0; r < parts.size(); ++r) {
+    const auto some = std::span(values_).subspan(first, counts_[r]);
+    const auto below = static_cast<double>(std::ranges::count_if(some, [&](double v) { return v <= whole; }));
+    parts[r] = counts_[r] > 0 ? below / static_cast<double>(counts_[r]) : 0.0;
+    first += counts_[r];
+  }
+  const double known =
+      std::hypot(error_of(share, parts, counts_), resolution(static_cast<double>(values_.size())));
+  if (std::isnan(known)) return known;
+  scratch_.assign(values_.begin(), values_.end());
+  const double low = quantile(scratch_, std::max(share - known, 0.0)),
+               high = quantile(scratch_, std::min(share + known, 1.0));
+  return std::max(whole - low, high - whole);
+}
+
 Estimate MadeSample::tell_with_error(Statistic statistic) {
   const double whole = tell(statistic);
+  if (const double share = share_of(statistic); share > 0.0 && !values_.empty())
+    return {whole, error_of_quantile(share, whole)};
   std::array<double, SobolPoints::replicates> parts{};
   std::array<std::size_t, SobolPoints::replicates> counts{};
   std::size_t first = 0;

@@ -53,6 +53,7 @@ class MadeSample {
 
  private:
   double of(Statistic statistic, std::span<const double> values);
+  double error_of_quantile(double share, double whole);
 
   std::vector<double> values_, scratch_;
   std::array<std::size_t, SobolPoints::replicates> counts_{};

@@ -29,7 +29,7 @@ void WithoutFile(benchmark::State& state) {
   const Tiling tiling(shape_of(spec));
   for (auto _ : state)
     run_sweep(spec, tiling, {}, [] {
-      return TileWork{[](const Tile&, std::size_t, std::span<const Outcome>, const Gradients&) {},
+      return TileWork{[](const Tile&, std::size_t, const Solved&) {},
                       [](std::size_t, const Tile&) { return Prepared{[] {}}; }};
     });
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(tiling.designs()));

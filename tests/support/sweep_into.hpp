@@ -13,8 +13,10 @@ inline void sweep_into(MapWriter& writer, const Spec& spec, const MapLayout& lay
                        const EngineOptions& options = {}) {
   run_sweep(spec, tiling, options, [&] {
     const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
-    return TileWork{[encoder](const Tile&, std::size_t first, std::span<const Outcome> outcomes,
-                              const Gradients& gradients) { encoder->take(first, outcomes, gradients); },
+    return TileWork{[encoder](const Tile&, std::size_t first, const Solved& solved) {
+                      encoder->take(first, solved.outcomes,
+                                    [&](const Field& field) { return solved.column(field); });
+                    },
                     [&writer, encoder](std::size_t number, const Tile&) {
                       const auto encoded = std::make_shared<EncodedTile>(encoder->encode(number));
                       return Prepared{[&writer, encoded] { writer.write(*encoded); }, encoded->bytes()};

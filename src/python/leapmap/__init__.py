@@ -10,11 +10,12 @@
 """
 from leapmap import _core
 from leapmap._results import Motion, Outcomes, Status
+from leapmap._scatter import Estimate, scatter
 from leapmap._solve import gradient, solve, trace
 from leapmap._sweep import load, sweep
 
-__all__ = ["solve", "gradient", "trace", "sweep", "load", "Outcomes", "Motion", "Status", "phase_letters", "instruction_set",
-           "instruction_sets", "use_instruction_set"]
+__all__ = ["solve", "gradient", "trace", "scatter", "sweep", "load", "Outcomes", "Motion", "Estimate", "Status", "phase_letters",
+           "instruction_set", "instruction_sets", "use_instruction_set"]
 __version__ = _core.program_version()
 
 
