@@ -52,6 +52,15 @@ HEIGHTS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 LOOKS = {
     "jump_height": Look("jump height", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "jump_time": Look("time from release to the jump", "s", "cividis_r", ink="black"),
+    "yield": Look("yield: share of the hoops made that reach every goal", "", "cividis", levels=(0.5, 0.9, 0.99)),
+    "jump_height_q05": Look("5 % quantile of the jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_height_q50": Look("median of the jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_height_q95": Look("95 % quantile of the jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_height_mean": Look("mean jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_height_sd": Look("standard deviation of the jump height, as made", "hoop diameters", "magma"),
+    "jump_time_q05": Look("5 % quantile of the jump's time, as made", "s", "cividis_r", ink="black"),
+    "jump_time_q50": Look("median of the jump's time, as made", "s", "cividis_r", ink="black"),
+    "jump_time_q95": Look("95 % quantile of the jump's time, as made", "s", "cividis_r", ink="black"),
     "agility": Look("agility: height over time from release to apex", "m/s", "plasma", log=True, star="black",
                     levels=(0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0)),
     "first_jump_height": Look("height of the first lift-off", "hoop diameters", exponent=0.6, levels=()),  # it has cliffs of its own
@@ -71,6 +80,11 @@ LOOKS = {
 # series-elastic power modulation", Science Robotics 1 (2016) eaag2048.
 JUMPERS = {"Salto": 1.75, "galago": 2.24}
 JUMPERS_SOURCE = "Haldane et al., Science Robotics 1 (2016) eaag2048"
+
+
+def is_of_made(name):
+    """Whether a quantity is of hoops as made, and so smooth across the cliffs of hoops as drawn."""
+    return name == "yield" or name.endswith(("_q05", "_q50", "_q95", "_mean", "_sd"))
 
 
 def quantity(m, name):
@@ -119,6 +133,11 @@ def shown(name, value):
 
 def titled(name, value):
     return f"{parameter(name)[1]} = {shown(name, value)}"
+
+
+def spread(name, law, width, percent):
+    """How a parameter of hoops as made differs from the drawing, in words."""
+    return f"{parameter(name)[0].split(' [')[0]} {'±' if law == 'uniform' else 'σ ='} " + (f"{width:g} %" if percent else shown(name, width))
 
 
 def words_of(m, fixed):

@@ -9,6 +9,7 @@
 """
 import math
 import re
+import tomllib
 from dataclasses import dataclass, field
 
 import h5py
@@ -77,6 +78,34 @@ class Map:
     def code(self, name, meaning):
         """Where the code `name` has this meaning; nowhere if it knows none such."""
         return self.fields[name] == self.meanings(name).get(meaning, 256)
+
+    def spec(self):
+        """The resolved spec that made it: {section: {key: value}}."""
+        try:
+            return tomllib.loads(self.attributes["spec"])
+        except tomllib.TOMLDecodeError:
+            raise NotAMap(f"{self.path}: is damaged: its spec is not TOML") from None
+
+    def scatter(self):
+        """How hoops of the map are made: {parameter: (law, width, whether that is in per cent)}; {}: they are as drawn."""
+        made = {}
+        for name, law in self.spec().get("scatter", {}).items():
+            if name in ("samples", "seed"):
+                continue
+            try:
+                (kind, width), = law.items()
+                percent = isinstance(width, str)
+                made[name] = (str(kind), float(width.removesuffix("%") if percent else width), percent)
+            except (AttributeError, TypeError, ValueError):
+                raise NotAMap(f"{self.path}: is damaged: its spec says scatter.{name} = {law}") from None
+        return made
+
+    def goals(self):
+        """What hoops of the map must do: {field: (at least, at most)}, None: no bound, or a phase_sequence's letters twice."""
+        goals = self.spec().get("goal", {})
+        if not all(isinstance(goal, dict) for goal in goals.values()):
+            raise NotAMap(f"{self.path}: is damaged: its spec says goal = {goals}")
+        return {field: (goal.get("at_least", goal.get("is")), goal.get("at_most", goal.get("is"))) for field, goal in goals.items()}
 
     def numbers(self):
         """The numbers of the resolved spec that made it, by key; what an axis varies is not among them."""

@@ -5,12 +5,15 @@ function hopPanel(map, solver) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
-  const now = { design: null, story: null, time: 0, playing: false, last: 0, frame: 0, timeAt: null };
+  const now = { design: null, story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null };
   const chosen = { radius: map.fixed.radius, mass: 0.0282 };  // m; kg, of hoop and point mass: the paper's 8.2 g and 20 g
   radius.value = 1000 * chosen.radius;
   mass.value = 1000 * chosen.mass;
 
-  const end = () => now.story?.motion.t.at(-1) ?? 0;
+  const GHOSTS = 20, ghosts = element("ghosts");
+  element("ghosts-label").hidden = map.scatter.length === 0;
+
+  const end = () => Math.max(now.story?.motion.t.at(-1) ?? 0, ...now.ghosts.map(({ story }) => story.motion.t.at(-1) ?? 0));
 
   function draw() {
     if (!now.story || now.story.motion.t.length === 0) {
@@ -18,7 +21,7 @@ function hopPanel(map, solver) {
       clock.textContent = "it does not set out";
       return;
     }
-    drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked);
+    drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts);
     now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.story.outcome, now.time, chosen.mass * now.design.gravity, now.design.radius);
     clock.textContent = `${now.time.toFixed(3)} s`;
     scrub.value = now.time;
@@ -117,11 +120,22 @@ function hopPanel(map, solver) {
     design.radius = chosen.radius;
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.story = solver.solve(design, map.slips, map.tolerance);
-    scrub.max = end();
+    haunt();
     now.time = 0;
     tell();
     draw();
   }
+
+  /** Makes hoops after the design shown, if they are asked for, and says how many of them jump. */
+  function haunt() {
+    now.ghosts = !ghosts.checked ? [] : madeAfter(now.design, map.scatter, solver.ranges, GHOSTS)
+      .map((design) => ({ design, story: solver.solve(design, map.slips, map.tolerance) }));
+    const outcomes = now.ghosts.map(({ story }) => story.outcome), statuses = map.codes.status?.meanings ?? [];
+    const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, map.goals, statuses)).length;
+    element("ghosts-told").textContent = outcomes.length === 0 ? "" : `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
+    scrub.max = end();
+  }
+  ghosts.addEventListener("change", () => { if (now.story) { haunt(); now.time = Math.min(now.time, end()); draw(); } });
 
   play.addEventListener("click", () => run(!now.playing));
   scrub.addEventListener("input", () => { run(false); now.time = Number(scrub.value); draw(); });

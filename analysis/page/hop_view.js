@@ -19,11 +19,30 @@ function valueAt(motion, name, time) {
   return motion[name][low] + (motion[name][high] - motion[name][low]) * part;
 }
 
+/** Hoops as made at a time, faint: motions beside the one drawn, each on its own slope, drawn along this one. */
+function drawGhosts(context, ghosts, time, turned, px, scale, R) {
+  context.globalAlpha = 0.3;
+  context.lineWidth = Math.max(1, 0.03 * R * scale);
+  for (const { design, story } of ghosts) {
+    if (story.motion.t.length === 0) continue;
+    const [x, y, phi] = ["x", "y", "phi"].map((name) => valueAt(story.motion, name, time)), L = design.offset_ratio * R;
+    context.strokeStyle = (PHASES[story.motion.phase[sampleAt(story.motion, time).low]] ?? PHASES[1])[1];
+    context.beginPath();
+    context.arc(...px(turned(x, y + R)), R * scale, 0, 2 * Math.PI);
+    context.stroke();
+    context.beginPath();
+    context.arc(...px(turned(x - L * Math.sin(phi), y + R - L * Math.cos(phi))), Math.max(2, 0.1 * R * scale), 0, 2 * Math.PI);
+    context.fillStyle = "#b2182b";
+    context.fill();
+  }
+  context.globalAlpha = 1;
+}
+
 /**
- * Draws the hoop at a time. design: {slope, offset_ratio, radius}; closeUp: follows the hoop. x goes down the slope and y away
+ * Draws the hoop at a time, with ghosts beside it. design: {slope, offset_ratio, radius}; closeUp: follows the hoop. x goes down the slope and y away
  * from it, on the screen turned by the slope; the point mass is at angle phi from the line to the plane, clockwise.
  */
-function drawHoop(canvas, design, motion, time, closeUp) {
+function drawHoop(canvas, design, motion, time, closeUp, ghosts = []) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
   canvas.width = Math.max(1, Math.round(box.width * ratio));
   canvas.height = Math.max(1, Math.round(box.height * ratio));
@@ -83,6 +102,7 @@ function drawHoop(canvas, design, motion, time, closeUp) {
     context.stroke();
   }
   context.globalAlpha = 1;
+  drawGhosts(context, ghosts, time, turned, px, scale, R);
   const phase = PHASES[motion.phase[low]] ?? PHASES[1];
   context.beginPath();
   context.arc(...px([cu, cv]), R * scale, 0, 2 * Math.PI);

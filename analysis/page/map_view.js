@@ -64,7 +64,8 @@ function mapView(canvas, map, onPoint, onPick) {
   /** What every pixel shows: within the curves of its cell, or its cell's. As crispPlane. */
   function pixelsOf(box) {
     const { values } = view.field;
-    if (chains) return crispPlane(values, offset, sx, sy, box, chains.map((chain) => chain.places));
+    // Of hoops as made values are smooth across the cliffs of hoops as drawn.
+    if (chains) return crispPlane(values, offset, sx, sy, box, view.field.made ? [] : chains.map((chain) => chain.places));
     const { x0, y0, w, h } = box, value = new Float64Array(w * h), design = new Int32Array(w * h);
     const columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5));
     for (let q = 0; q < h; ++q) {
@@ -89,7 +90,7 @@ function mapView(canvas, map, onPoint, onPick) {
         if (shown === shown) {
           const c = 3 * Math.round(255 * place(shown));
           r = table[c]; g = table[c + 1]; b = table[c + 2];
-          if (flags && flags.values[k] === 1 && (p + q) % period < line) { r *= 0.45; g *= 0.45; b *= 0.45; }
+          if (flags && !view.field.made && flags.values[k] === 1 && (p + q) % period < line) { r *= 0.45; g *= 0.45; b *= 0.45; }
         } else if (k >= 0 && status) {
           [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
         } else if (k >= 0) { r = g = b = 217; }

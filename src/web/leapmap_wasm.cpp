@@ -73,6 +73,13 @@ LEAPMAP_EXPORT const char* field_name(int i) {
              : nullptr;
 }
 
+/// Their ranges.
+LEAPMAP_EXPORT double parameter_least(int i) {
+  return leapmap::parameters()[static_cast<std::size_t>(i)].range.least;
+}
+LEAPMAP_EXPORT double parameter_most(int i) {
+  return leapmap::parameters()[static_cast<std::size_t>(i)].range.most;
+}
 /// Their values, which the page sets; at first leapmap's defaults.
 LEAPMAP_EXPORT double* parameter_values() { return page.parameters.data(); }
 

@@ -1,0 +1,39 @@
+// Hoops as made after a drawing, for a picture: plain random numbers, of which leapmap's own statistics need none.
+
+/** A generator of numbers inside (0, 1), the same for the same seed (mulberry32). */
+function randomNumbers(seed) {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) >>> 0;
+    let t = Math.imul(state ^ (state >>> 15), state | 1);
+    t ^= t + Math.imul(t ^ (t >>> 7), t | 61);
+    return (((t ^ (t >>> 14)) >>> 0) + 0.5) / 4294967296;
+  };
+}
+
+/** Designs that were made after one, by scatter: [{name, law, width, percent}]. ranges: {name: [least, most]}, in which they lie. */
+function madeAfter(design, scatter, ranges, count, seed = 1) {
+  const random = randomNumbers(seed), made = [];
+  const normal = () => Math.sqrt(-2 * Math.log(random())) * Math.cos(2 * Math.PI * random());
+  const drawn = (name) => (Number.isFinite(design[name]) ? design[name] : design.mu_static);
+  for (let i = 0; i < count; ++i) {
+    const hoop = { ...design };
+    for (const { name, law, width, percent } of scatter) {
+      const [least, most] = ranges[name], about = drawn(name), scale = percent ? 0.01 * width * Math.abs(about) : width;
+      for (let tries = 0; tries < 1000; ++tries) {
+        const value = about + scale * (law === "normal" ? normal() : 2 * random() - 1);
+        if (value >= least && value <= most) { hoop[name] = value; break; }
+      }
+    }
+    made.push(hoop);
+  }
+  return made;
+}
+
+/** Whether an outcome reaches every goal: [{field, least, most}]; statuses: their names in the order of their codes. */
+function reachesAll(outcome, goals, statuses) {
+  return goals.every(({ field, least, most }) => {
+    const text = typeof outcome[field] === "string", value = text && typeof least !== "string" ? statuses.indexOf(outcome[field]) : outcome[field];
+    return (least === null || value >= least) && (most === null || value <= most) && value === value;
+  });
+}

@@ -1,0 +1,107 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws what becomes of hoops as made, over two axes of a map of a sweep with [scatter] and [goal]: the yield, with isolines at 50, 90
+and 99 % and with cliffs, as leapmap boundaries finds them of hoops as drawn; beside it the jump's height as drawn and the 5 % quantile
+of its height as made, in the same colours. A cross where the yield is best, a triangle where the jump as drawn is highest. Needs yield;
+draws jump_height and jump_height_q05 if they are there.
+"""
+import numpy as np
+from matplotlib.colors import Normalize, PowerNorm
+
+import cliffs
+import looks
+import planes
+import style
+from read_map import NotAMap
+from style import plt
+
+YIELDS = (0.5, 0.9, 0.99)
+HEIGHTS = ("jump_height", "jump_height_q05")
+
+
+def goals_of(m):
+    """What a hoop of the map must do, in words."""
+    words = []
+    for field, (least, most) in m.goals().items():
+        name = looks.LOOKS[field].label if field in looks.LOOKS else field
+        if least == most:
+            words.append(f"{name} is {least}")
+        else:
+            words.append(name + (f" at least {least:g}" if least is not None else "") + (f" at most {most:g}" if most is not None else ""))
+    return words
+
+
+def scatter_of(m):
+    """How hoops of the map are made, in words."""
+    return [looks.spread(name, *law) for name, law in m.scatter().items()]
+
+
+def draw(axis, grid, plane, panel_curves, colours, norm, levels, form, curves):
+    """A quantity over the plane, smooth but across panel_curves; its isolines; and the curves."""
+    crisp = cliffs.Panel(grid, grid.panels[0], panel_curves)
+    field = crisp.field(plane)
+    axis.set_facecolor(looks.STATUSES["no_jump"][0])
+    drawn = axis.pcolormesh(crisp.edges(grid.x), crisp.edges(grid.y), field, cmap=colours, norm=norm, shading="flat", rasterized=True)
+    torn = np.where(crisp.torn, np.nan, field)
+    present = [v for v in levels if np.isfinite(torn).any() and np.nanmin(torn) < v < np.nanmax(torn)]
+    if present:
+        lines = axis.contour(crisp.centres(grid.x), crisp.centres(grid.y), np.ma.masked_invalid(torn), levels=present, colors="white", linewidths=1.0)
+        axis.clabel(lines, fmt=form, fontsize=7)
+    return drawn, cliffs.Panel(grid, grid.panels[0], curves).draw(axis)
+
+
+def best(grid, plane):
+    """Where a plane is highest, in the middle of all such places."""
+    rows, columns = np.nonzero(plane >= np.nanmax(plane))
+    middle = np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2)
+    return grid.values(grid.x)[columns[middle]], grid.values(grid.y)[rows[middle]]
+
+
+def chart(grid, curves):
+    m = grid.map
+    if "yield" not in m.fields:
+        raise NotAMap(f"{m.path}: has no yield; allowed: a map of a sweep with [scatter] and [goal]")
+    if len(grid.panels) > 1:
+        raise NotAMap(f"{m.path}: is over more than two axes; fix the others by --at {grid.others[0]}="
+                      f"{looks.shown(grid.others[0], m.dims[grid.others[0]][0])}, say")
+    shown = [name for name in HEIGHTS if name in m.fields]
+    figure, axes = plt.subplots(1, 1 + len(shown), squeeze=False, sharex=True, sharey=True, layout="constrained",
+                                figsize=(4.0 * (1 + len(shown)) + 0.6, 4.9))
+    axes = axes[0]
+    for scale, name in (("x", grid.x), ("y", grid.y)):
+        if looks.is_log(grid.values(name)):
+            style.log_scale(getattr(axes[0], f"{scale}axis"))
+    yields = grid.cut(m.fields["yield"])[0]
+    drawn, kinds = draw(axes[0], grid, yields, [], "cividis", Normalize(0, 1), YIELDS, lambda v: f"{100 * v:g} %", curves)
+    axes[0].set_title("yield: " + ",\n".join(goals_of(m)))
+    figure.colorbar(drawn, ax=axes[0], label="share of the hoops made that reach every goal", ticks=[0, 0.25, *YIELDS[:2], 1])
+    look = looks.LOOKS["jump_height"]
+    planes_of = {name: grid.cut(np.asarray(m.fields[name], float))[0] for name in shown}
+    if shown:
+        norm = PowerNorm(look.exponent, 0.0, np.nanmax(list(planes_of.values())))
+        for axis, name in zip(axes[1:], shown):
+            own = curves if name == "jump_height" else []
+            drawn, _ = draw(axis, grid, planes_of[name], own, look.colours, norm, looks.levels_of(look, planes_of[name]), lambda v: f"{v:g}", curves)
+            axis.set_title("jump height as drawn" if name == "jump_height" else "5 % quantile of the jump height\nof the hoops made that jump")
+        figure.colorbar(drawn, ax=list(axes[1:]), label=look.title)
+    marks = [("P", "#d62728", f"the best yield, {100 * np.nanmax(yields):.1f} %", best(grid, yields))]
+    if "jump_height" in shown:
+        marks.append(("^", "#ff7f0e", f"the highest jump as drawn, {np.nanmax(planes_of['jump_height']):.3g} diameters", best(grid, planes_of["jump_height"])))
+    handles = []
+    for symbol, colour, words, place in marks:
+        for axis in axes:
+            axis.plot(*place, symbol, color=colour, markersize=9, markeredgecolor="white", zorder=6)
+        handles.append(plt.Line2D([], [], marker=symbol, color="none", markerfacecolor=colour, markeredgecolor="white", markersize=9, label=words))
+    if place := grid.paper(grid.panels[0]):
+        for axis in axes:
+            style.draw_star(axis, place)
+        handles.append(style.star_handle())
+    words = ["hoops as made: " + ", ".join(scatter_of(m)), *grid.caption()]
+    figure.supxlabel(f"{planes.axis_label(grid.x)}\n{style.wrapped(words, figure)}", fontsize=9)
+    figure.supylabel(planes.axis_label(grid.y), fontsize=9)
+    style.legend_above(figure, handles + cliffs.handles(kinds))
+    return figure
+
+
+if __name__ == "__main__":
+    style.run(lambda: cliffs.run(__doc__, "maps/made_hoops.h5", "_yield", chart), NotAMap, OSError)
