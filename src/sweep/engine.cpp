@@ -82,6 +82,7 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
   const std::size_t piece =
       std::min(piece_of(spec), tiling.tile(0).count);  // no tile is larger than the first
   const auto points = points_of(spec.scatter);
+  const bool scattered = !spec.scatter.spreads.empty();
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
@@ -91,6 +92,11 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
         const std::size_t number = options.first_tile + i;
         const Tile tile = tiling.tile(number);
         for (std::size_t first = 0; first < tile.count; first += piece) {
+          // A tile of many hoops as made may take minutes, and is given up; any other is brought to its end.
+          if (scattered && options.stop_requested && options.stop_requested()) {
+            delivery.close(number);
+            return false;
+          }
           const std::size_t count = std::min(piece, tile.count - first);
           const std::span some(designs.data(), count);
           space.fill(tile, first, some);

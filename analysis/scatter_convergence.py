@@ -1,0 +1,70 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws how the error of a yield falls with the number of hoops made: leapmap's Sobol' points in 16 replicates against pseudo-random
+numbers, both against a yield of 2^20 hoops, for the design and the scatter of a spec. The root mean square over seeds; slopes fitted on
+both scales; and the error that leapmap states.
+
+Wants leapmap's Python module: PYTHONPATH=build/release/python.
+"""
+import numpy as np
+
+import style
+from read_map import NotAMap
+from style import plt
+
+MOST = 1 << 20
+COUNTS = [16 << k for k in range(1, 13)]
+
+
+def module():
+    try:
+        import leapmap
+    except ImportError as error:
+        raise NotAMap(f"leapmap's Python module is not there ({error}); allowed: with PYTHONPATH=build/release/python") from None
+    return leapmap
+
+
+def yields(leapmap, spec, samples, seed):
+    """The yield and its stated error, from a map of the one design."""
+    m = leapmap.sweep(spec, in_memory=True, samples=samples, seed=seed, audit=0, fields=["yield", "yield_error"])
+    return float(m["yield"].values.ravel()[0]), float(m["yield_error"].values.ravel()[0])
+
+
+def main():
+    p = style.parser(__doc__, "a spec of one design with [scatter] and [goal]", "_convergence")
+    p.add_argument("--seeds", type=int, default=32, help="of each number of hoops (default: %(default)s)")
+    arguments = p.parse_args()
+    leapmap = module()
+    try:
+        made = leapmap.scatter(arguments.source, samples=32)
+        truth, _ = yields(leapmap, arguments.source, MOST, 12345)
+    except (ValueError, OSError) as error:
+        raise NotAMap(str(error)) from None
+    if not 0 < truth < 1:
+        raise NotAMap(f"{arguments.source}: its yield is {truth:g}, and nothing converges; allowed: goals that some hoops reach")
+    spread = np.sqrt(truth * (1 - truth))
+    rng = np.random.default_rng(1)
+    sobol, stated, plain = [], [], []
+    for n in COUNTS:
+        told = np.array([yields(leapmap, arguments.source, n, seed) for seed in range(1, arguments.seeds + 1)])
+        sobol.append(np.sqrt(np.mean((told[:, 0] - truth) ** 2)))
+        stated.append(np.sqrt(np.mean(told[:, 1] ** 2)))
+        # Whether a hoop reaches every goal is one throw of a coin: pseudo-random numbers need no hoops for that.
+        plain.append(np.sqrt(np.mean((rng.binomial(n, truth, 1000) / n - truth) ** 2)))
+    figure, axis = plt.subplots(figsize=(6.0, 4.6), layout="constrained")
+    for errors, colour, mark, words in ((plain, "#b2182b", "o", "pseudo-random"), (sobol, "#1f4e79", "s", "Sobol' in 16 replicates")):
+        slope = np.polyfit(np.log(COUNTS), np.log(errors), 1)[0]
+        axis.loglog(COUNTS, errors, mark, color=colour, label=f"{words}: error falls as n$^{{{slope:.2f}}}$")
+        axis.loglog(COUNTS, np.exp(np.polyval(np.polyfit(np.log(COUNTS), np.log(errors), 1), np.log(COUNTS))), color=colour, linewidth=0.8)
+        print(f"{words}: slope {slope:.3f}, error {errors[5]:.2e} at {COUNTS[5]:,} hoops")
+    axis.loglog(COUNTS, stated, ":", color="#1f4e79", label="the error that leapmap states")
+    axis.set_xlabel("hoops made")
+    axis.set_ylabel("error of the yield")
+    axis.set_title(f"yield {truth:.4f}, {len(made['cut_off'])} tolerances, {arguments.seeds} seeds each; one hoop spreads by {spread:.2f}")
+    axis.legend(frameon=False)
+    axis.grid(alpha=0.3)
+    style.save(figure, arguments.output)
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError)
