@@ -71,8 +71,9 @@ def draw_tornado(axis, scatter, of, order):
     for estimates, height, colour, filled in ((totals, 0.7, COLOURS[of], False), (firsts, 0.7, COLOURS[of], True)):
         values = np.array([number(e, "value") for e in estimates])
         axis.barh(rows, np.clip(values, 0, None), height, color=colour if filled else "none", edgecolor=colour, alpha=0.75 if filled else 1.0)
-    axis.errorbar([number(e, "value") for e in totals], rows, xerr=[1.96 * number(e, "error") for e in totals], fmt="none", ecolor=style.EDGE, capsize=2,
-                  elinewidth=0.8)
+    for row, estimate in zip(rows, totals):
+        if np.isfinite(number(estimate, "error")):
+            axis.errorbar(number(estimate, "value"), row, xerr=1.96 * number(estimate, "error"), fmt="none", ecolor=style.EDGE, capsize=2, elinewidth=0.8)
     axis.set_xlim(0, 1.15)
     axis.set_yticks(rows, [looks.parameter(k)[0].split(" [")[0] for k in order])
     axis.set_xlabel("share of the variance")

@@ -24,20 +24,22 @@ def module():
     return leapmap
 
 
-def yields(leapmap, spec, samples, seed):
+def yields(leapmap, spec, goals, samples, seed):
     """The yield and its stated error, from a map of the one design."""
-    m = leapmap.sweep(spec, in_memory=True, samples=samples, seed=seed, audit=0, fields=["yield", "yield_error"])
+    m = leapmap.sweep(spec, in_memory=True, samples=samples, seed=seed, audit=0, fields=["yield", "yield_error"], **goals)
     return float(m["yield"].values.ravel()[0]), float(m["yield_error"].values.ravel()[0])
 
 
 def main():
     p = style.parser(__doc__, "a spec of one design with [scatter] and [goal]", "_convergence")
     p.add_argument("--seeds", type=int, default=32, help="of each number of hoops (default: %(default)s)")
+    p.add_argument("--at-least", type=float, metavar="HEIGHT", help="the goal of jump_height, in place of the spec's")
     arguments = p.parse_args()
+    goals = {} if arguments.at_least is None else {"goal.jump_height": {"at_least": arguments.at_least}}
     leapmap = module()
     try:
-        made = leapmap.scatter(arguments.source, samples=32)
-        truth, _ = yields(leapmap, arguments.source, MOST, 12345)
+        made = leapmap.scatter(arguments.source, samples=32, **goals)
+        truth, _ = yields(leapmap, arguments.source, goals, MOST, 12345)
     except (ValueError, OSError) as error:
         raise NotAMap(str(error)) from None
     if not 0 < truth < 1:
@@ -46,7 +48,7 @@ def main():
     rng = np.random.default_rng(1)
     sobol, stated, plain = [], [], []
     for n in COUNTS:
-        told = np.array([yields(leapmap, arguments.source, n, seed) for seed in range(1, arguments.seeds + 1)])
+        told = np.array([yields(leapmap, arguments.source, goals, n, seed) for seed in range(1, arguments.seeds + 1)])
         sobol.append(np.sqrt(np.mean((told[:, 0] - truth) ** 2)))
         stated.append(np.sqrt(np.mean(told[:, 1] ** 2)))
         # Whether a hoop reaches every goal is one throw of a coin: pseudo-random numbers need no hoops for that.

@@ -338,3 +338,59 @@ def test_cliffs_of_another_map_are_refused(with_cliffs, tmp_path):
     other = sweep(tmp_path, CHART)
     done = draw("design_chart.py", other, "--cliffs", with_cliffs / "map.cliffs.h5", "-o", tmp_path / "no")
     assert done.returncode == 2 and "not of the same designs" in done.stderr and done.stderr.count("\n") == 1
+
+
+MADE = """
+[design]
+slope = { from = "15 deg", to = "27 deg", count = 25 }
+mass_ratio = { from = 2, to = 6, count = 21 }
+[scatter]
+slope = { normal = "1 deg" }
+mass_ratio = { uniform = "5 %" }
+samples = 128
+[goal]
+jump_height = { at_least = 0.8 }
+[numerics]
+audit = 0
+"""
+
+
+def test_the_yield_chart_has_isolines_cliffs_and_where_to_sit(tmp_path):
+    path = sweep(tmp_path, MADE)
+    assert leapmap("boundaries", path, "-o", tmp_path / "map.cliffs.h5").returncode == 0
+    done = draw("yield_chart.py", path, "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    told = texts(tmp_path / "chart.svg")
+    for words in ("yield: jump height at least 0.8", "jump height as drawn", "50 %", "90 %", "99 %", "cliff: a lift-off passes the hop height", "the paper's hoop"):
+        assert words in told, words
+    with h5py.File(path) as f:
+        safe = np.where(f["yield"][()] >= 0.99, f["jump_height"][()], 0).max()
+    assert f"the highest as drawn with a yield of 99 %, {safe:.3g} diameters" in told
+    assert any("slope σ = 1°" in word and "mass ratio mₚ/m ± 5 %" in word for word in told)
+
+
+def test_the_yield_chart_wants_a_yield_over_two_axes(charts, tmp_path):
+    refused = draw("yield_chart.py", charts / "map.h5", "-o", tmp_path / "no")
+    assert refused.returncode == 2 and "has no yield" in refused.stderr and refused.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("friction", ["sticking", "coulomb"])
+def test_the_scatter_chart_shows_goals_quantiles_and_importance(friction, tmp_path):
+    (tmp_path / "one.toml").write_text(MADE[MADE.index("[scatter]"):])
+    told = leapmap("hop", tmp_path / "one.toml", "--scatter", "--json", "--friction", friction)
+    (tmp_path / "one.json").write_text(told.stdout)
+    done = draw("scatter_chart.py", tmp_path / "one.json")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "one_scatter.svg")
+    made = json.loads(told.stdout)["scatter"]
+    assert "goal: at least 0.8" in words and f"median {made['quantities']['jump_height']['q50']['value']:.4g}" in words
+    assert "of reaching every goal" in words and "of the height of those that jump" in words
+    assert any(f"{100 * made['yield']['value']:.1f}" in word and "reach every goal" in word for word in words)
+
+
+def test_the_scatter_chart_refuses_what_is_no_scatter(tmp_path):
+    (tmp_path / "hop.json").write_text(leapmap("hop", "--json").stdout)
+    (tmp_path / "text.json").write_text("{")
+    for name in ("hop.json", "text.json", "nowhere.json"):
+        done = draw("scatter_chart.py", tmp_path / name)
+        assert done.returncode == 2 and name in done.stderr and done.stderr.count("\n") == 1, done.stderr

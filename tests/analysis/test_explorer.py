@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The explorer's page in a real browser, Debian's chromium without a window: what it shows is the map's and leapmap's own."""
 import json
+import math
 import os
 import shlex
 import time
@@ -420,6 +421,44 @@ BROKEN = {
 # One reader serves all scripts: the explorer meets every kind, the others some.
 KINDS = [("explorer", kind) for kind in BROKEN] + [(script, kind) for script in ("design_chart.py", "status_chart.py", "cut_chart.py")
                                                    for kind in ("an axis with an infinity", "a field of texts", "a spec of bytes")]
+
+
+def test_of_hoops_as_made_the_yield_is_a_field_and_twenty_ghosts_jump_along(browser, tmp_path):
+    spec = """
+[design]
+slope = { from = "15 deg", to = "27 deg", count = 25 }
+mass_ratio = { from = 2, to = 6, count = 21 }
+[scatter]
+slope = { normal = "1 deg" }
+offset_ratio = { normal = 0.05 }
+samples = 128
+[goal]
+jump_height = { at_least = 0.8 }
+status = { is = "jumped" }
+"""
+    path = sweep(tmp_path, spec)
+    opened(browser, made(path))
+    fields = browser.execute_script("return window.explorer.map.fields.map(f => ({name: f.name, made: f.made, values: [...f.values]}))")
+    yields = next(f for f in fields if f["name"] == "yield")
+    with h5py.File(path) as f:
+        assert yields["made"] and np.allclose(np.reshape(yields["values"], (25, 21)), f["yield"][()], atol=1e-4)
+        where = tuple(int(i) for i in np.argwhere(np.abs(f["yield"][()] - 0.5) < 0.2)[0])
+        share = f["yield"][()][where]
+    point(browser, where, click=True)
+    before = pixels(browser, "scene")
+    browser.execute_script("const s = document.getElementById('scrub'); s.value = s.max / 2; s.dispatchEvent(new Event('input'))")
+    alone = pixels(browser, "scene")
+    browser.find_element("id", "ghosts").click()
+    assert pixels(browser, "scene") != alone != before
+    told = browser.find_element("id", "ghosts-told").text
+    jump, reach = int(told.split(" of ")[0].split()[-1]), int(told.split(", ")[1].split()[0])
+    assert jump == 20 and abs(reach / 20 - share) < 4 * math.sqrt(0.25 / 20), told
+    browser.find_element("id", "ghosts").click()
+    assert browser.find_element("id", "ghosts-told").text == "" and pixels(browser, "scene") == alone
+
+
+def test_a_map_of_hoops_as_drawn_has_no_ghosts(page):
+    assert not page.find_element("id", "ghosts-label").is_displayed()
 
 
 def test_pixels_beside_a_cliff_are_of_the_side_they_are_on(browser, tmp_path):

@@ -15,7 +15,7 @@
 #include "model/parameters.hpp"
 #include "support/designs.hpp"
 #include "support/temporary_folder.hpp"
-#include "sweep/solver.hpp"
+#include "sweep/solve_blocks.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap {
@@ -124,7 +124,13 @@ Plain plain_sampling(const Spec& spec, const Design& drawn, std::size_t hoops) {
       } while (!range.holds(design.*member));
   }
   std::vector<Outcome> outcomes(hoops);
-  solve_into(outcomes, made, spec.scene);
+  solve_blocks(hoops, spec.scene, {}, {"jump_height", "jump_time", "status"},
+               {[&](std::size_t first, std::span<Design> some) {
+                  std::ranges::copy(std::span(made).subspan(first, some.size()), some.begin());
+                },
+                [&](std::size_t first, std::span<const Outcome> some) {
+                  std::ranges::copy(some, outcomes.begin() + static_cast<std::ptrdiff_t>(first));
+                }});
   const auto goals = goal_checks(spec.goals);
   Plain plain{};
   for (const Outcome& outcome : outcomes) {
