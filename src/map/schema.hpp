@@ -11,7 +11,8 @@ inline constexpr std::string_view cliffs_filetype = "leapmap cliffs";
 inline constexpr std::string_view trace_filetype = "leapmap trace";
 inline constexpr int format_major = 1;  ///< readers refuse a newer one
 /// 1: f4; 2: compression, status_counts, the NeXus group; 3: Coulomb friction's fields; 4: a checksum of each
-/// chunk and of the file, the audit's state; 5: the referee; 6: labels of a list; 7: derivatives; 8: hoops as made.
+/// chunk and of the file, the audit's state; 5: the referee; 6: labels of a list; 7: derivatives; 8: hoops as
+/// made.
 inline constexpr int format_minor = 8;
 
 }  // namespace leapmap
