@@ -169,6 +169,23 @@ struct Lanes<Dual<T, N>> : Lanes<T> {
   static void store(const Dual<T, N>& dual, Dual<T, N>* to) requires(Lanes<T>::count == 1) { *to = dual; }
 };
 
+template <class T, std::size_t N>
+struct Abreast<Dual<T, N>> {
+  using Type = Dual<AbreastOf<T>, N>;
+};
+template <class T, std::size_t N>
+Dual<AbreastOf<T>, N> abreast(const Dual<T, N>& dual) {
+  Dual<AbreastOf<T>, N> wide(abreast(dual.value));
+  for (std::size_t k = 0; k < N; ++k) wide.by[k] = abreast(dual.by[k]);
+  return wide;
+}
+template <class T, std::size_t N>
+Dual<ScalarOf<T>, N> sum_of_lanes(const Dual<T, N>& duals) {
+  Dual<ScalarOf<T>, N> sum(sum_of_lanes(duals.value));
+  for (std::size_t k = 0; k < N; ++k) sum.by[k] = sum_of_lanes(duals.by[k]);
+  return sum;
+}
+
 template <class T>
 inline constexpr bool has_derivatives = false;
 template <class T, std::size_t N>

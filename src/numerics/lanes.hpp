@@ -117,6 +117,39 @@ xsimd::batch<S, A> smaller(const xsimd::batch<S, A>& a, const xsimd::batch<S, A>
   return xsimd::min(a, b);
 }
 
+/// As many of a number side by side as the machine has lanes of it.
+template <class S>
+struct Abreast {
+  using Type = S;
+};
+template <>
+struct Abreast<double> {
+  using Type = Batch;
+};
+template <class S>
+using AbreastOf = typename Abreast<S>::Type;
+
+/// The same number in every lane.
+template <class S>
+AbreastOf<S> abreast(const S& number) {
+  return AbreastOf<S>(number);
+}
+
+template <class T>
+ScalarOf<T> sum_of_lanes(const T& numbers) {
+  const LaneArray<T> lanes = lanes_of(numbers);
+  ScalarOf<T> sum = lanes[0];
+  for (std::size_t k = 1; k < lanes.size(); ++k) sum += lanes[k];
+  return sum;
+}
+template <class T>
+ScalarOf<T> largest_lane(const T& numbers) {
+  const LaneArray<T> lanes = lanes_of(numbers);
+  ScalarOf<T> most = lanes[0];
+  for (const ScalarOf<T>& lane : lanes) most = lane > most ? lane : most;
+  return most;
+}
+
 /// 1 / sqrt(x) for x > 0, to a few roundings.
 template <class T>
 T reciprocal_sqrt(const T& x) {

@@ -2,6 +2,7 @@
 #include "rolling/halved_time.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -11,63 +12,80 @@ namespace leapmap {
 
 template <class S>
 HalvedTime<S>::HalvedTime(const Roll<S>& roll, Number tolerance, const GaussRule<Number>& rule)
-    : roll_(roll), gauss_(rule), tolerance_(tolerance) {
+    : roll_(roll), tolerance_(tolerance) {
   using std::atan2, std::sqrt;
+  constexpr std::size_t lanes = Lanes<Plain>::count;
+  const std::size_t count = rule.node.size();
+  assert(count > 0 && count <= most_nodes);
+  rows_ = (count + lanes - 1) / lanes;
+  LaneArray<Plain> nodes, weights;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const std::size_t i = row * lanes + k;
+      nodes[k] = rule.node[std::min(i, count - 1)], weights[k] = i < count ? rule.weight[i] : Number(0);
+    }
+    nodes_[row] = Lanes<Plain>::load(nodes.data()), weights_[row] = Lanes<Plain>::load(weights.data());
+  }
   release_ = atan2(roll.release_trig.sin, roll.release_trig.cos);
   q0_ = sqrt(-(roll.push > S(0) ? parabola_at_release(roll).nearer : S(-1)));
-  two_q0_ = S(2) * q0_;
   const Hoop<S>& hoop = roll.hoop;
-  rho2_ = S(2) * hoop.rho, push2_ = S(2) * roll.push;
-  by_sine_ = rho2_ * sin_from_vertical(hoop, roll.release_trig);
-  by_versine_ = -rho2_ * cos_from_vertical(hoop, roll.release_trig);
+  const S rho2 = Number(2) * hoop.rho;
+  wide_release_ = abreast(release_), wide_q0_ = abreast(q0_), released_ = abreast(roll.released);
+  J_min_ = abreast(hoop.J_min), rho2_ = abreast(rho2), push2_ = abreast(S(Number(2) * roll.push));
+  by_sine_ = abreast(S(rho2 * sin_from_vertical(hoop, roll.release_trig)));
+  by_versine_ = abreast(S(-rho2 * cos_from_vertical(hoop, roll.release_trig)));
 }
 
 /// x past the release.
 template <class S>
-S HalvedTime<S>::slowness_past(const S& x) {
+auto HalvedTime<S>::slowness_past(const T& x) -> T {
   using std::abs;
-  const Trig<S> turned = trig(x), phi = trig(S(release_ + x));
+  const Trig<T> turned = trig(x), phi = trig(T(wide_release_ + x));
   // As vis_viva_past_release and contact_inertia have them.
-  const S E =
-      roll_.released + (push2_ * x + by_sine_ * x_minus_sin(x, turned) + by_versine_ * turned.versine);
-  const S J = roll_.hoop.J_min + rho2_ * phi.versine;
-  const Number at = value_of(x), rho = value_of(roll_.hoop.rho);
-  const Number terms =
-      value_of(roll_.released) + Number(2) * at * (abs(value_of(roll_.push)) + rho * std::min(at, Number(1)));
-  const Number in_J = rho * abs(value_of(phi.sin)) * (Number(4) + at) / value_of(J);
-  unsure_ = std::max(unsure_, E > S(0) ? Number(4) * epsilon * (terms / value_of(E) + in_J)
-                                       : std::numeric_limits<Number>::infinity());
+  const T E = released_ + (push2_ * x + by_sine_ * x_minus_sin(x, turned) + by_versine_ * turned.versine);
+  const T J = J_min_ + rho2_ * phi.versine;
+  const Plain at = value_of(x), rho2 = value_of(rho2_), energy = value_of(E);
+  const Plain terms =
+      value_of(released_) + at * (abs(value_of(push2_)) + rho2 * smaller(at, Plain(Number(1))));
+  const Plain in_J =
+      Plain(Number(0.5)) * rho2 * abs(value_of(phi.sin)) * (Plain(Number(4)) + at) / value_of(J);
+  const Plain unsure = Plain(Number(4) * epsilon) * (terms / energy + in_J);
+  unsure_ = larger(unsure_,
+                   select(energy > Plain(Number(0)), unsure, Plain(std::numeric_limits<Number>::infinity())));
   return slowness(J, E);
 }
 
 /// dt / dq, `past` = q - q0.
 template <class S>
-S HalvedTime<S>::stretched_slowness(const S& past) {
-  return Number(2) * ((q0_ + past) * slowness_past(S(past * (two_q0_ + past))));
+auto HalvedTime<S>::stretched_slowness(const T& past) -> T {
+  const T slow = (wide_q0_ + past) * slowness_past(T(past * (wide_q0_ + wide_q0_ + past)));
+  return slow + slow;
 }
 
 template <class S>
 template <class F>
 S HalvedTime<S>::rule(const F& f, const S& a, const S& b) {
-  S sum(0);
-  for (std::size_t i = 0; i < gauss_.node.size(); ++i)
-    sum += gauss_.weight[i] * f(S(a + (b - a) * gauss_.node[i]));
+  const T from = abreast(a), length = abreast(S(b - a));
+  T sum(Number(0));
+  for (std::size_t row = 0; row < rows_; ++row)
+    sum = sum + f(T(from + length * T(nodes_[row]))) * T(weights_[row]);
   --panels_left_;
-  return sum * (b - a);
+  return sum_of_lanes(sum) * (b - a);
 }
 
 template <class S>
 template <class F>
 void HalvedTime<S>::halve(const F& f, const S& a, const S& b, const S& whole, int depth) {
   const S middle = a + (b - a) * S(0.5L);
-  unsure_ = Number(0);
+  unsure_ = Plain(Number(0));
   const S left = rule(f, a, middle), right = rule(f, middle, b), sum = left + right;
+  const Number unsure = largest_lane(unsure_);
   const bool agree =
       largest_part(S(sum - whole)) <=
-      std::max(Number(0.1L) * tolerance_ * largest_part(S(total_ + sum)), unsure_ * largest_part(sum));
-  if (agree || depth == 0 || panels_left_ <= 0 || !(unsure_ < Number(1))) {
+      std::max(Number(0.1L) * tolerance_ * largest_part(S(total_ + sum)), unsure * largest_part(sum));
+  if (agree || depth == 0 || panels_left_ <= 0 || !(unsure < Number(1))) {
     total_ += agree ? sum : S(std::numeric_limits<Number>::quiet_NaN());
-    doubt_ += Number(1.5) * unsure_ * largest_part(sum);
+    doubt_ += Number(1.5) * unsure * largest_part(sum);
     return;
   }
   halve(f, a, middle, left, depth - 1);
@@ -94,8 +112,8 @@ S HalvedTime<S>::edge_after(const S& x, const S& end) const {
 template <class S>
 S HalvedTime<S>::until(const S& end) {
   const S near(1);
-  const auto stretched = [this](const S& past) { return stretched_slowness(past); };
-  const auto plain = [this](const S& x) { return slowness_past(x); };
+  const auto stretched = [this](const T& past) { return stretched_slowness(past); };
+  const auto plain = [this](const T& x) { return slowness_past(x); };
   const auto past = [&](const S& x) {
     using std::sqrt;
     return x > S(0) ? S(x / (q0_ + sqrt(q0_ * q0_ + x))) : S(0);

@@ -3,9 +3,12 @@
 /// has a needle, or that are a hair past an equilibrium or from a stall.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
+#include "numerics/dual.hpp"
 #include "numerics/quadrature.hpp"
 #include "physics/rolling_by_angle.hpp"
 
@@ -33,11 +36,13 @@ ReleaseParabola<T> parabola_at_release(const Roll<T>& roll) {
   return p;
 }
 
-/// S: a number, or a dual, whose time is then as well resolved in every derivative.
+/// S: a number, or a dual, whose time is then as well resolved in every derivative. The nodes of a rule lie
+/// side by side in lanes.
 template <class S>
 class HalvedTime {
  public:
   using Number = ScalarOf<S>;
+  using T = AbreastOf<S>;
 
   /// The rule is applied to each half.
   HalvedTime(const Roll<S>& roll, Number tolerance, const GaussRule<Number>& rule);
@@ -47,8 +52,10 @@ class HalvedTime {
   S until(const S& end);
 
  private:
-  S slowness_past(const S& x);
-  S stretched_slowness(const S& past);
+  using Plain = AbreastOf<Number>;
+
+  T slowness_past(const T& x);
+  T stretched_slowness(const T& past);
   S edge_after(const S& x, const S& end) const;
   template <class F>
   S rule(const F& f, const S& a, const S& b);
@@ -57,15 +64,18 @@ class HalvedTime {
 
   static constexpr Number epsilon = std::numeric_limits<Number>::epsilon();
   static constexpr int most_halvings = 60;
+  static constexpr std::size_t most_nodes = 32;
 
   const Roll<S>& roll_;
-  const GaussRule<Number>& gauss_;
   Number tolerance_;
-  S release_;                              // less whole turns, of which nothing depends
-  S q0_, two_q0_;                          // x = q (2 q0 + q) takes out E's zero before the release
-  S rho2_, push2_, by_sine_, by_versine_;  // of E and J, as functions of x
-  Number unsure_{
-      0};  // relative, of J / E in the panel at hand: roundings of E's terms, and of the angle in J
+  std::array<Plain, most_nodes / Lanes<Plain>::count> nodes_, weights_;  // those to spare weigh nothing
+  std::size_t rows_;                                                     // of lanes
+  S release_;  // less whole turns, of which nothing depends
+  S q0_;       // x = q (2 q0 + q) takes out E's zero before the release
+  // The same in all lanes; of E and J, as functions of x.
+  T wide_release_, wide_q0_, released_, rho2_, push2_, by_sine_, by_versine_, J_min_;
+  // Relative, of J / E in the panel at hand: roundings of E's terms, and of the angle in J.
+  Plain unsure_ = Plain(Number(0));
   S total_{0};
   Number doubt_{0};  // of the total, where it has derivatives: what roundings of E make of them
   long panels_left_ = 20'000;
