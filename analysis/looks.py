@@ -58,6 +58,8 @@ LOOKS = {
     "jump_height_q95": Look("95 % quantile of the jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "jump_height_mean": Look("mean jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "jump_height_sd": Look("standard deviation of the jump height, as made", "hoop diameters", "magma"),
+    "jump_time_mean": Look("mean of the jump's time, as made", "s", "cividis_r", ink="black"),
+    "jump_time_sd": Look("standard deviation of the jump's time, as made", "s", "magma"),
     "jump_time_q05": Look("5 % quantile of the jump's time, as made", "s", "cividis_r", ink="black"),
     "jump_time_q50": Look("median of the jump's time, as made", "s", "cividis_r", ink="black"),
     "jump_time_q95": Look("95 % quantile of the jump's time, as made", "s", "cividis_r", ink="black"),

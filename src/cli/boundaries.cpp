@@ -188,6 +188,7 @@ Spec spec_of_input(const BoundariesArguments& arguments) {
 
 int run(const BoundariesArguments& arguments) {
   const Spec spec = spec_of_input(arguments);
+  refuse_scatter(arguments.overrides, "cliffs are of hoops as drawn");
   refuse_csv(arguments);
   if (arguments.options.phases && !model_of(spec.scene).slips)
     throw InputError(

@@ -27,6 +27,9 @@ void add_no_lock(CLI::App& command, Locking& locking);
 /// --set KEY=VALUE, which adds to overrides; example: what --help adds of one.
 void add_set(CLI::App& command, std::vector<std::string>& overrides, const std::string& example = {});
 
+/// Throws InputError if one of the overrides is of a spec's [scatter] or [goal]; why: what is to be told.
+void refuse_scatter(const std::vector<std::string>& overrides, const std::string& why);
+
 /// The flag of a spec's key, which adds KEY=VALUE to overrides.
 void add_flag_of(CLI::App& command, const Option& option, std::vector<std::string>& overrides);
 

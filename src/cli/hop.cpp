@@ -246,6 +246,9 @@ int run(const HopArguments& arguments) {
   const bool driven = spec.design.drive_torque != 0.0, is_example = arguments.mass == 0.0;
   if (!driven && !is_example)
     throw InputError("--mass: has no use without a motor; allowed: with --drive-torque");
+  if (!arguments.scatter) refuse_scatter(arguments.overrides, "allowed: with --scatter");
+  std::optional<ScatterReport> made;
+  if (arguments.scatter) made = scatter(spec);
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval;
   if (!arguments.trace.empty() && !(interval > 0.0))
     throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
@@ -262,8 +265,6 @@ int run(const HopArguments& arguments) {
   const std::optional<Motor> motor =
       driven && moves ? std::optional(motor_of(spec, motion, is_example ? papers_mass : arguments.mass))
                       : std::nullopt;
-  std::optional<ScatterReport> made;
-  if (arguments.scatter) made = scatter(spec);
   if (arguments.json) {
     say("{}", json_text(spec, motion, check.outcome, motor, arguments.gradient, made));
   } else {

@@ -38,12 +38,17 @@ Histogram histogram_of(const ScatterReport& report, double Outcome::*quantity, s
 /// Half of the 95 % interval.
 double half_interval(const Estimate& estimate) { return 1.96 * estimate.error; }
 
-std::string share_of(const Estimate& share) {
-  return fmt::format("{:.4f} +- {:.4f}", share.value, share.error);
+/// With as many digits as the error leaves.
+std::string told(const Estimate& share) {
+  const int digits =
+      share.error > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(share.error))), 1, 12) : 4;
+  return fmt::format("{:.{}f} +- {:.{}f}", share.value, digits, share.error, digits);
 }
 
 std::string index_of(const Estimate& index) {
-  return std::isnan(index.value) ? "-" : fmt::format("{:.2f} +- {:.2f}", index.value, half_interval(index));
+  if (std::isnan(index.value)) return "-";
+  return std::isnan(index.error) ? fmt::format("{:.2f} +- ?", index.value)
+                                 : fmt::format("{:.2f} +- {:.2f}", index.value, half_interval(index));
 }
 
 std::string law_of(const Spread& spread) {
@@ -56,13 +61,8 @@ std::string law_of(const Spread& spread) {
                                     : "");
 }
 
-std::string goal_of(const Goal& goal) {
-  std::string text = goal.field;
-  if (goal.at_least == goal.at_most) return text + fmt::format(" is {:g}", goal.at_least);
-  if (std::isfinite(goal.at_least)) text += fmt::format(" at least {:g}", goal.at_least);
-  if (std::isfinite(goal.at_most)) text += fmt::format(" at most {:g}", goal.at_most);
-  return text;
-}
+/// For example "jump_height { at_least = 0.8 }".
+std::string goal_of(const Goal& goal) { return goal.field + " " + text_of(goal); }
 
 void print_spreads(const Spec& spec, const ScatterReport& report) {
   say("{:<16} {:<18} {:>9}", "scatter", "law", "cut off");
@@ -120,7 +120,9 @@ void print_histogram(const Spec& spec, const ScatterReport& report) {
 }
 
 void print_importance(const Spec& spec, const ScatterReport& report) {
-  say("\nSobol' indices, first order and total, +- half of a 95 % interval; -: nothing varies\n{:<16}", "");
+  say("\nSobol' indices, first order and total, +- half of a 95 % interval; -: nothing varies, or none "
+      "jumps\n{:<16}",
+      "");
   for (const Importance& importance : report.importance) say(" {:>15} {:>15}", importance.of, "total");
   say("\n");
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
@@ -130,7 +132,7 @@ void print_importance(const Spec& spec, const ScatterReport& report) {
     say("\n");
   }
   for (const Importance& importance : report.importance)
-    if (importance.pairs < 1.0)
+    if (importance.pairs < 1.0 && importance.pairs > 0.0)
       say("{}: among pairs of hoops that both jump, {:.1f} % of them.\n", importance.of,
           100.0 * importance.pairs);
 }
@@ -159,10 +161,13 @@ void print_scatter(const Spec& spec, const ScatterReport& report) {
       SobolPoints::replicates, spec.scatter.seed);
   print_spreads(spec, report);
   say("\n");
-  if (!spec.goals.empty()) say("{:<34} {}\n", "yield: reaches every goal", share_of(report.yield));
+  if (!spec.goals.empty()) say("{:<34} {}\n", "yield: reaches every goal", told(report.yield));
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
-    say("  misses {:<25} {}\n", goal_of(spec.goals[k]), share_of(report.missed[k]));
-  say("{:<34} {}\n", "jumps", share_of(report.jumps));
+    say("  misses {:<25} {}\n", goal_of(spec.goals[k]), told(report.missed[k]));
+  say("{:<34} {}\n", "jumps", told(report.jumps));
+  if (report.unsolved > 0.0)
+    say("The method gave up on {:.3g} % of the hoops: nothing is known of them, which the errors say.\n",
+        100.0 * report.unsolved);
   print_quantities(report);
   print_histogram(spec, report);
   print_importance(spec, report);
@@ -192,12 +197,14 @@ std::string scatter_json(const Spec& spec, const ScatterReport& report) {
                                      json_number(of.pairs), json_of(of.first, spec.scatter.spreads),
                                      json_of(of.total, spec.scatter.spreads)));
   return fmt::format(
-      "{{\"samples\": {}, \"seed\": {}, \"yield\": {}, \"jumps\": {},\n    \"spreads\": {{{}}}, "
+      "{{\"samples\": {}, \"seed\": {}, \"yield\": {}, \"jumps\": {}, \"unsolved\": {},\n    \"spreads\": "
+      "{{{}}}, "
       "\"shrink_all\": "
       "{},\n    \"goals\": {{{}}},\n    \"quantities\": {{{}}},\n    \"importance\": {{{}}}}}",
       report.samples, spec.scatter.seed, json_of(report.yield), json_of(report.jumps),
-      fmt::join(spreads, ", "), report.shrink.empty() ? "null" : json_number(report.shrink_all),
-      fmt::join(goals, ", "), fmt::join(quantities, ",\n    "), fmt::join(importance, ",\n    "));
+      json_number(report.unsolved), fmt::join(spreads, ", "),
+      report.shrink.empty() ? "null" : json_number(report.shrink_all), fmt::join(goals, ", "),
+      fmt::join(quantities, ",\n    "), fmt::join(importance, ",\n    "));
 }
 
 }  // namespace leapmap::cli

@@ -107,6 +107,12 @@ void leapmap::cli::add_set(CLI::App& command, std::vector<std::string>& override
       ->take_all();
 }
 
+void leapmap::cli::refuse_scatter(const std::vector<std::string>& overrides, const std::string& why) {
+  for (const std::string& set : overrides)
+    for (const std::string_view begin : {"scatter.", "goal.", "samples=", "seed="})
+      if (set.starts_with(begin)) throw InputError("--set " + set + ": has no use here; " + why);
+}
+
 void leapmap::cli::add_flag_of(CLI::App& command, const Option& option, std::vector<std::string>& overrides) {
   command.add_option_function<std::string>(
       flag_of(option),

@@ -68,7 +68,7 @@ int run(const SweepArguments& arguments) {
   const Spec spec = read_spec(arguments.spec, arguments.overrides);
   const std::string map = behind_links(arguments.map.empty() ? spec.output.file : arguments.map);
   if (arguments.dry_run) {
-    print_plan(arguments, spec, map, Tiling(shape_of(spec)));
+    print_plan(arguments, spec, map, tiling_of(spec));
     return 0;
   }
   if (arguments.retry_failed && !map.empty()) return retry_sweep(arguments, spec, map);

@@ -48,8 +48,14 @@ std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling&
       40.0 * axis_values + (spec.axes.empty() ? 72.0 * static_cast<double>(spec.list.count) : 0.0);
   const double structure = std::min(0.01 * file, most_structure);
   const double tile = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
-  const double sweep =
-      program + held + structure + threads * tile + std::min(file, static_cast<double>(most_waiting_bytes));
+  const double samples = static_cast<double>(spec.scatter.samples),
+               spreads = static_cast<double>(spec.scatter.spreads.size());
+  const double made =
+      spreads > 0.0
+          ? 8.0 * samples * (spreads + threads * (spreads + 2.0 * static_cast<double>(layout.fields.size())))
+          : 0.0;
+  const double sweep = made + program + held + structure + threads * tile +
+                       std::min(file, static_cast<double>(most_waiting_bytes));
   std::string line = fmt::format("at most {} for the sweep with its audit; {} for leapmap info",
                                  spoken_bytes(sweep), spoken_bytes(program + held + structure));
   if (spec.axes.size() >= 2)
@@ -90,8 +96,8 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   say("memory   {}\n", memory_line(spec, layout, tiling, threads));
   say("file     about {}{}\n", spoken_bytes(file_bytes(layout, tiling)),
       layout.compression > 0 ? " before compression" : "");
-  const double seconds =
-      seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already) / threads;
+  const double seconds = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already) /
+                         static_cast<double>(std::min(static_cast<std::size_t>(threads), tiling.size()));
   say("time     about {} on {} threads\n", spoken_duration(seconds), threads);
 }
 

@@ -42,6 +42,8 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
       grouped(report->retried), resolved_method(there.numerics), there.numerics.tolerance,
       grouped(report->retried - report->still_failed), grouped(report->still_failed));
   print_totals(report->statuses);
+  if (report->retried > 0 && !there.scatter.spreads.empty())
+    say("made     yields and quantiles of these designs are as they were: sweep anew for them\n");
   say("map      {}\n", map);
   return 0;
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,19 +34,20 @@ struct Importance {
 
 struct ScatterReport {
   std::size_t samples = 0;
-  Estimate yield{};                ///< share that reaches every goal; NaN without goals
-  Estimate jumps{};                ///< share that jumps
-  std::vector<Estimate> missed{};  ///< of each goal: the share that misses it
-  std::vector<double> cut_off{};   ///< of each spread: the share of its law that no hoop can have
-  std::vector<MadeQuantity> quantities{};
+  Estimate yield{};                        ///< share that reaches every goal; NaN without goals
+  Estimate jumps{};                        ///< share that jumps
+  std::vector<Estimate> missed{};          ///< of each goal: the share that misses it
+  std::vector<double> cut_off{};           ///< of each spread: the share of its law that no hoop can have
+  std::vector<MadeQuantity> quantities{};  ///< those that output.fields names; by default height and time
   std::vector<Importance> importance{};
+  double unsolved = 0.0;  ///< share that the method gave up on, of which nothing is known
   /// Of each spread: to what share of its width it has to shrink, the others staying as they are, for 99 %
-  /// yield. 1: it need not; 0: not even without it. Empty without goals.
+  /// yield. 1: it need not; 1e-6: to less than that; 0: not even without it. Empty without goals.
   std::vector<double> shrink{};
-  double shrink_all = 1.0;  ///< the same of all spreads together
+  double shrink_all = std::numeric_limits<double>::quiet_NaN();  ///< the same of all spreads together
   // The hoops, in the order of their replicates.
   std::vector<Design> made{};
-  std::vector<Outcome> outcomes{};  ///< status, heights and what goals and jump_time need
+  std::vector<Outcome> outcomes{};  ///< status, heights, and what goals and quantities need
 };
 
 struct ScatterOptions {

@@ -16,9 +16,10 @@ std::size_t product(const std::vector<std::size_t>& extents) {
 }
 
 /// Doubles the shortest side that can still grow until the tile is as large as it should be.
-std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape) {
-  constexpr std::size_t smallest = 64, largest = 16384, wanted_tiles = 64;
-  const std::size_t target = std::bit_floor(std::clamp(product(shape) / wanted_tiles, smallest, largest));
+std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, std::size_t most) {
+  constexpr std::size_t smallest = 64, wanted_tiles = 64;
+  const std::size_t target =
+      std::bit_floor(std::min(most, std::max(product(shape) / wanted_tiles, smallest)));
   std::vector<std::size_t> tile(shape.size(), 1);
   while (product(tile) < target) {
     std::size_t shortest = shape.size();
@@ -42,7 +43,8 @@ Tiling::Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_sha
   tiles_ = product(tiles_along_);
 }
 
-Tiling::Tiling(std::vector<std::size_t> shape) : Tiling(shape, balanced_tile(shape)) {}
+Tiling::Tiling(std::vector<std::size_t> shape, std::size_t most)
+    : Tiling(shape, balanced_tile(shape, most)) {}
 
 Tile Tiling::tile(std::size_t number) const {
   Tile tile;

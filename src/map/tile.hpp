@@ -20,9 +20,9 @@ class Tiling {
   /// tile_shape 0 along no dimension, and no longer than shape.
   Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_shape);
   /// Cuts a map into tiles of neighbours about equally long along each dimension: so many that work divides
-  /// evenly, so large that a tile's overhead does not matter. Depends on the shape only, never on the
-  /// machine.
-  explicit Tiling(std::vector<std::size_t> shape);
+  /// evenly, so large that a tile's overhead does not matter, but of no more than `most` designs. Depends on
+  /// these only, never on the machine.
+  explicit Tiling(std::vector<std::size_t> shape, std::size_t most = 16384);
 
   std::size_t size() const { return tiles_; }
   Tile tile(std::size_t number) const;

@@ -145,6 +145,8 @@ struct ScatterTable {
   ScatterTable() {
     add(Statistic::yield, nullptr, "yield", "share of the hoops made that reach every goal", true);
     add(Statistic::cut_off, nullptr, "cut_off", "share of the scatter that lies where no hoop can be", false);
+    add(Statistic::unsolved, nullptr, "unsolved", "share of the hoops made that the method gave up on",
+        false);
     for (const Field& field : fields) {
       if (!std::holds_alternative<Quantity>(field.source)) continue;
       add(Statistic::mean, &field, "mean", "mean", true);

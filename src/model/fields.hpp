@@ -47,7 +47,7 @@ struct Derivative {
 };
 
 /// What is told of the hoops made after a drawing, of those that jump where it is of a quantity.
-enum class Statistic : std::uint8_t { yield, cut_off, mean, sd, q05, q50, q95 };
+enum class Statistic : std::uint8_t { yield, cut_off, unsolved, mean, sd, q05, q50, q95 };
 
 /// One of these, or its standard error, stored as f8.
 struct OfMade {

@@ -173,10 +173,11 @@ template <class T, std::size_t N>
 struct Abreast<Dual<T, N>> {
   using Type = Dual<AbreastOf<T>, N>;
 };
-template <class T, std::size_t N>
-Dual<AbreastOf<T>, N> abreast(const Dual<T, N>& dual) {
-  Dual<AbreastOf<T>, N> wide(abreast(dual.value));
-  for (std::size_t k = 0; k < N; ++k) wide.by[k] = abreast(dual.by[k]);
+template <class D, class S, std::size_t N>
+D abreast(const Dual<S, N>& dual) {
+  using T = std::decay_t<decltype(D::value)>;
+  D wide(abreast<T>(dual.value));
+  for (std::size_t k = 0; k < N; ++k) wide.by[k] = abreast<T>(dual.by[k]);
   return wide;
 }
 template <class T, std::size_t N>

@@ -117,7 +117,8 @@ xsimd::batch<S, A> smaller(const xsimd::batch<S, A>& a, const xsimd::batch<S, A>
   return xsimd::min(a, b);
 }
 
-/// As many of a number side by side as the machine has lanes of it.
+/// As many of a number side by side as the machine has lanes of it. What depends on it takes the type as an
+/// argument of its template: names of different instruction sets must differ.
 template <class S>
 struct Abreast {
   using Type = S;
@@ -130,9 +131,9 @@ template <class S>
 using AbreastOf = typename Abreast<S>::Type;
 
 /// The same number in every lane.
-template <class S>
-AbreastOf<S> abreast(const S& number) {
-  return AbreastOf<S>(number);
+template <class T>
+T abreast(const ScalarOf<T>& number) {
+  return T(number);
 }
 
 template <class T>

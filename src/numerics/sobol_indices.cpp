@@ -12,17 +12,26 @@ namespace {
 
 /// Sums over pairs, from which their correlation follows.
 struct PairSums {
-  std::size_t count = 0;
-  double sum = 0.0, squares = 0.0, products = 0.0;  // of both; of both; of pairs
+  double count = 0.0, sum = 0.0, squares = 0.0, fourths = 0.0,
+         products = 0.0;  // products of pairs, all else of both
 
-  void add(double a, double b) { ++count, sum += a + b, squares += a * a + b * b, products += a * b; }
+  void add(double a, double b) {
+    count += 1.0, sum += a + b, squares += a * a + b * b, products += a * b;
+    fourths += a * a * a * a + b * b * b * b;
+  }
+  void add(const PairSums& other, double times) {
+    count += times * other.count, sum += times * other.sum, squares += times * other.squares;
+    fourths += times * other.fourths, products += times * other.products;
+  }
   /// 2 E[(a - m)(b - m)] over E[(a - m)^2 + (b - m)^2], m the mean of both.
   double correlation() const {
-    const double n = static_cast<double>(count), mean = sum / (2.0 * n);
-    const double variance = squares / (2.0 * n) - mean * mean;
-    return variance > 1e-14 * squares / n ? (products / n - mean * mean) / variance
-                                          : std::numeric_limits<double>::quiet_NaN();
+    const double mean = sum / (2.0 * count), variance = squares / (2.0 * count) - mean * mean;
+    return count > 0.0 && variance > 1e-14 * squares / count ? (products / count - mean * mean) / variance
+                                                             : std::numeric_limits<double>::quiet_NaN();
   }
+  /// To what the correlation is known at best: one part in as many values as bring the variance, which are
+  /// few where a few are far from all others.
+  double resolution() const { return 2.0 * fourths / (squares * squares); }
 };
 
 struct Correlation {
@@ -32,27 +41,28 @@ struct Correlation {
 
 Correlation correlation(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t each = a.size() / SobolPoints::replicates;
-  // Sums about a value between them lose no digits.
+  // Sums about the mean lose no digits.
   double middle = 0.0;
   std::size_t told = 0;
   for (const double value : a)
     if (value == value) middle += value, ++told;
   if (told > 0) middle /= static_cast<double>(told);
   PairSums whole;
-  std::array<double, SobolPoints::replicates> parts{};
-  std::array<std::size_t, SobolPoints::replicates> counts{};
+  std::array<PairSums, SobolPoints::replicates> parts;
   for (std::size_t r = 0; r < SobolPoints::replicates; ++r) {
-    PairSums part;
     for (std::size_t i = r * each; i < (r + 1) * each; ++i)
-      if (a[i] == a[i] && b[i] == b[i]) part.add(a[i] - middle, b[i] - middle);
-    whole.count += part.count, whole.sum += part.sum, whole.squares += part.squares,
-        whole.products += part.products;
-    parts[r] = part.correlation();
-    counts[r] = parts[r] == parts[r] ? part.count : 0;
+      if (a[i] == a[i] && b[i] == b[i]) parts[r].add(a[i] - middle, b[i] - middle);
+    whole.add(parts[r], 1.0);
   }
+  std::array<double, SobolPoints::replicates> without;
+  std::ranges::transform(parts, without.begin(), [&](const PairSums& part) {
+    PairSums others = whole;
+    others.add(part, -1.0);
+    return others.correlation();
+  });
   const double value = whole.correlation();
-  return {{value, value == value ? error_of(value, parts, counts) : value},
-          static_cast<double>(whole.count) / static_cast<double>(a.size())};
+  return {{value, value == value ? std::hypot(jackknife_error(without), whole.resolution()) : value},
+          whole.count / static_cast<double>(a.size())};
 }
 
 }  // namespace

@@ -12,12 +12,17 @@
 #include <random>
 
 namespace leapmap {
+namespace {
+
+constexpr double student = 2.1314 / 1.9600;  // of 95 %, with 15 degrees of freedom
+
+}  // namespace
 
 SobolPoints::SobolPoints(std::size_t dimensions, std::size_t samples, std::uint64_t seed)
     : samples_(samples), columns_(dimensions, std::vector<double>(samples)) {
   assert(dimensions <= most_dimensions && samples % replicates == 0);
   if (dimensions == 0) return;
-  constexpr int bits = 53;
+  constexpr int bits = 52;  // so that half a step more is a double, too
   const std::unique_ptr<gsl_qrng, void (*)(gsl_qrng*)> sequence(
       gsl_qrng_alloc(gsl_qrng_sobol, static_cast<unsigned>(dimensions)), gsl_qrng_free);
   if (!sequence) throw std::bad_alloc();
@@ -49,8 +54,16 @@ double error_of(double whole, std::span<const double> replicates, std::span<cons
     const double part = static_cast<double>(counts[r]) / mean * (replicates[r] - whole);
     squares += part * part;
   }
-  constexpr double student = 2.1314 / 1.9600;  // of 95 %, with 15 degrees of freedom
   return student * std::sqrt(squares / (number * (number - 1.0)));
+}
+
+double jackknife_error(std::span<const double> without) {
+  assert(without.size() == SobolPoints::replicates);
+  const double number = static_cast<double>(without.size());
+  double mean = 0.0, squares = 0.0;
+  for (const double value : without) mean += value / number;
+  for (const double value : without) squares += (value - mean) * (value - mean);
+  return student * std::sqrt(squares * (number - 1.0) / number);
 }
 
 }  // namespace leapmap

@@ -37,4 +37,8 @@ class SobolPoints {
 /// them.
 double error_of(double whole, std::span<const double> replicates, std::span<const std::size_t> counts);
 
+/// The same of any statistic of sums over all samples, from its values without one replicate after the other
+/// (the jackknife): for ratios, to which replicates contribute unequally. NaN if one of them is.
+double jackknife_error(std::span<const double> without);
+
 }  // namespace leapmap

@@ -10,8 +10,8 @@
 
 namespace leapmap {
 
-template <class S>
-HalvedTime<S>::HalvedTime(const Roll<S>& roll, Number tolerance, const GaussRule<Number>& rule)
+template <class S, class T>
+HalvedTime<S, T>::HalvedTime(const Roll<S>& roll, Number tolerance, const GaussRule<Number>& rule)
     : roll_(roll), tolerance_(tolerance) {
   using std::atan2, std::sqrt;
   constexpr std::size_t lanes = Lanes<Plain>::count;
@@ -30,15 +30,15 @@ HalvedTime<S>::HalvedTime(const Roll<S>& roll, Number tolerance, const GaussRule
   q0_ = sqrt(-(roll.push > S(0) ? parabola_at_release(roll).nearer : S(-1)));
   const Hoop<S>& hoop = roll.hoop;
   const S rho2 = Number(2) * hoop.rho;
-  wide_release_ = abreast(release_), wide_q0_ = abreast(q0_), released_ = abreast(roll.released);
-  J_min_ = abreast(hoop.J_min), rho2_ = abreast(rho2), push2_ = abreast(S(Number(2) * roll.push));
-  by_sine_ = abreast(S(rho2 * sin_from_vertical(hoop, roll.release_trig)));
-  by_versine_ = abreast(S(-rho2 * cos_from_vertical(hoop, roll.release_trig)));
+  wide_release_ = abreast<T>(release_), wide_q0_ = abreast<T>(q0_), released_ = abreast<T>(roll.released);
+  J_min_ = abreast<T>(hoop.J_min), rho2_ = abreast<T>(rho2), push2_ = abreast<T>(S(Number(2) * roll.push));
+  by_sine_ = abreast<T>(S(rho2 * sin_from_vertical(hoop, roll.release_trig)));
+  by_versine_ = abreast<T>(S(-rho2 * cos_from_vertical(hoop, roll.release_trig)));
 }
 
 /// x past the release.
-template <class S>
-auto HalvedTime<S>::slowness_past(const T& x) -> T {
+template <class S, class T>
+auto HalvedTime<S, T>::slowness_past(const T& x) -> T {
   using std::abs;
   const Trig<T> turned = trig(x), phi = trig(T(wide_release_ + x));
   // As vis_viva_past_release and contact_inertia have them.
@@ -56,16 +56,16 @@ auto HalvedTime<S>::slowness_past(const T& x) -> T {
 }
 
 /// dt / dq, `past` = q - q0.
-template <class S>
-auto HalvedTime<S>::stretched_slowness(const T& past) -> T {
+template <class S, class T>
+auto HalvedTime<S, T>::stretched_slowness(const T& past) -> T {
   const T slow = (wide_q0_ + past) * slowness_past(T(past * (wide_q0_ + wide_q0_ + past)));
   return slow + slow;
 }
 
-template <class S>
+template <class S, class T>
 template <class F>
-S HalvedTime<S>::rule(const F& f, const S& a, const S& b) {
-  const T from = abreast(a), length = abreast(S(b - a));
+S HalvedTime<S, T>::rule(const F& f, const S& a, const S& b) {
+  const T from = abreast<T>(a), length = abreast<T>(S(b - a));
   T sum(Number(0));
   for (std::size_t row = 0; row < rows_; ++row)
     sum = sum + f(T(from + length * T(nodes_[row]))) * T(weights_[row]);
@@ -73,9 +73,9 @@ S HalvedTime<S>::rule(const F& f, const S& a, const S& b) {
   return sum_of_lanes(sum) * (b - a);
 }
 
-template <class S>
+template <class S, class T>
 template <class F>
-void HalvedTime<S>::halve(const F& f, const S& a, const S& b, const S& whole, int depth) {
+void HalvedTime<S, T>::halve(const F& f, const S& a, const S& b, const S& whole, int depth) {
   const S middle = a + (b - a) * S(0.5L);
   unsure_ = Plain(Number(0));
   const S left = rule(f, a, middle), right = rule(f, middle, b), sum = left + right;
@@ -94,8 +94,8 @@ void HalvedTime<S>::halve(const F& f, const S& a, const S& b, const S& whole, in
 
 /// The next place after x where the integrand may be sharp: the needles at 2 pi k, among eighths of a turn,
 /// and the minima of E; at most the end.
-template <class S>
-S HalvedTime<S>::edge_after(const S& x, const S& end) const {
+template <class S, class T>
+S HalvedTime<S, T>::edge_after(const S& x, const S& end) const {
   constexpr Number pi = std::numbers::pi_v<Number>, eighth = pi / Number(4), turn = Number(2) * pi;
   const Number release = value_of(release_), from = value_of(x);
   const Number crest =
@@ -109,8 +109,8 @@ S HalvedTime<S>::edge_after(const S& x, const S& end) const {
   return std::min({end, S(next(0, eighth)), S(next(minimum, turn))});
 }
 
-template <class S>
-S HalvedTime<S>::until(const S& end) {
+template <class S, class T>
+S HalvedTime<S, T>::until(const S& end) {
   const S near(1);
   const auto stretched = [this](const T& past) { return stretched_slowness(past); };
   const auto plain = [this](const T& x) { return slowness_past(x); };

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "numerics/dual.hpp"
 #include "numerics/quadrature.hpp"
@@ -36,13 +38,12 @@ ReleaseParabola<T> parabola_at_release(const Roll<T>& roll) {
   return p;
 }
 
-/// S: a number, or a dual, whose time is then as well resolved in every derivative. The nodes of a rule lie
-/// side by side in lanes.
-template <class S>
+/// S: a number, or a dual, whose time is then as well resolved in every derivative. T: lanes of it, in which
+/// the nodes of a rule lie side by side.
+template <class S, class T = AbreastOf<S>>
 class HalvedTime {
  public:
   using Number = ScalarOf<S>;
-  using T = AbreastOf<S>;
 
   /// The rule is applied to each half.
   HalvedTime(const Roll<S>& roll, Number tolerance, const GaussRule<Number>& rule);
@@ -52,7 +53,7 @@ class HalvedTime {
   S until(const S& end);
 
  private:
-  using Plain = AbreastOf<Number>;
+  using Plain = std::decay_t<decltype(value_of(std::declval<T>()))>;
 
   T slowness_past(const T& x);
   T stretched_slowness(const T& past);

@@ -132,7 +132,7 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   const Spec spec = spec_of(map, path);
   const MapLayout layout = layout_of(spec);
   if (shape_of(spec) != map.shape()) throw BrokenFile(path + ": its spec is of other designs than it holds");
-  const Tiling tiling(map.shape());
+  const Tiling tiling = tiling_of(spec);
   report.whole = map.is_whole();
   report.tiles = tiles_of(map, tiling);
   report.designs = designs_in(map.status_counts());

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -17,6 +18,13 @@ std::vector<std::size_t> shape_of(const Spec& spec) {
   std::vector<std::size_t> shape;
   for (const Axis& axis : spec.axes) shape.push_back(axis.values.size());
   return shape;
+}
+
+Tiling tiling_of(const Spec& spec) {
+  if (spec.scatter.spreads.empty()) return Tiling(shape_of(spec));
+  constexpr std::size_t most_hoops = 1 << 20;  // of a tile: some tenths of a second, with friction seconds
+  return Tiling(shape_of(spec),
+                std::max<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1));
 }
 
 DesignSpace::DesignSpace(const Spec& spec) : spec_(spec) {

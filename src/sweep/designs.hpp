@@ -15,6 +15,9 @@ namespace leapmap {
 /// The length of each dimension of the spec's map: its axes, or one list.
 std::vector<std::size_t> shape_of(const Spec& spec);
 
+/// How the spec's map is cut into tiles: where many hoops are made after each design, into smaller ones.
+Tiling tiling_of(const Spec& spec);
+
 /// The designs of a tile, in its order.
 class DesignSpace {
  public:

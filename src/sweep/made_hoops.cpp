@@ -29,8 +29,11 @@ MadeHoops::MadeHoops(const Scatter& scatter, std::shared_ptr<const SobolPoints> 
   for (const Spread& spread : scatter.spreads) {
     const auto parameter = std::ranges::find(parameters(), spread.parameter, &Parameter::name);
     spreads_.push_back({&*parameter, std::get<double Design::*>(parameter->member), spread.law, spread.width,
-                        spread.percent});
+                        spread.percent, 0});
   }
+  for (Made& spread : spreads_)
+    spread.dimension = static_cast<std::size_t>(std::ranges::count_if(
+        spreads_, [&](const Made& other) { return other.parameter < spread.parameter; }));
   columns_.assign(spreads_.size(), std::vector<Column>(points_->dimensions()));
   now_.resize(spreads_.size());
 }
@@ -80,7 +83,8 @@ double MadeHoops::draw(const Design& drawn, std::span<const std::size_t> from_di
   for (std::size_t k = 0; k < spreads_.size(); ++k) {
     const CutLaw cut = law(k, drawn);
     left *= cut.left;
-    now_[k] = &deviations(k, from_dimension.empty() ? k : from_dimension[k], cut);
+    const std::size_t sample = from_dimension.empty() ? 0 : from_dimension[k] / spreads_.size();
+    now_[k] = &deviations(k, sample * spreads_.size() + spreads_[k].dimension, cut);
   }
   return 1.0 - left;
 }

@@ -31,8 +31,9 @@ class MadeHoops {
   std::size_t a_replicate() const { return points_->a_replicate(); }
   std::size_t spreads() const { return spreads_.size(); }
 
-  /// What is made after this drawing from now on. from_dimension[k]: of the points, for spread k; by default
-  /// k. Returns the share cut off.
+  /// What is made after this drawing from now on. Each spread takes a dimension of the points of its own, by
+  /// the order of parameters, whatever that of the spreads; from_dimension[k]: k, or k plus the number of
+  /// spreads for another sample of spread k. By default k. Returns the share cut off.
   double draw(const Design& drawn, std::span<const std::size_t> from_dimension = {});
   /// Hoops first, first + 1, ...
   void fill(std::size_t first, std::span<Design> made) const;
@@ -47,6 +48,7 @@ class MadeHoops {
     Spread::Law law;
     double width;
     bool percent;
+    std::size_t dimension;
   };
   /// Deviations along one dimension of the points, in widths, as the last drawing had them.
   struct Column {

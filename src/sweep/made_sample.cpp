@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace leapmap {
 namespace {
@@ -23,7 +24,7 @@ double quantile(std::vector<double>& values, double share) {
 }
 
 /// The share of values below a quantile; 0: it is none.
-double share_of(Statistic statistic) {
+double quantile_of(Statistic statistic) {
   return statistic == Statistic::q05   ? 0.05
          : statistic == Statistic::q50 ? 0.5
          : statistic == Statistic::q95 ? 0.95
@@ -87,19 +88,19 @@ void MadeSample::add(double value, std::size_t replicate) {
   ++counts_[replicate];
 }
 
-double MadeSample::of(Statistic statistic, std::span<const double> values) {
-  if (values.empty()) return nan;
-  if (statistic == Statistic::mean) return mean(values);
-  if (statistic == Statistic::sd) return deviation(values);
-  scratch_.assign(values.begin(), values.end());
-  return quantile(scratch_, share_of(statistic));
+double MadeSample::tell(Statistic statistic) {
+  if (values_.empty()) return nan;
+  if (statistic == Statistic::mean) return mean(values_);
+  if (statistic == Statistic::sd) return deviation(values_);
+  scratch_.assign(values_.begin(), values_.end());
+  return quantile(scratch_, quantile_of(statistic));
 }
-
-double MadeSample::tell(Statistic statistic) { return of(statistic, values_); }
 
 /// How far quantiles lie away whose share differs by the error with which that share is known (Woodruff): of
 /// two sides the larger, as beside a gap, where hoops pass a cliff, one side is far.
-double MadeSample::error_of_quantile(double share, double whole) {
+double MadeSample::error_of_quantile(double share) {
+  scratch_.assign(values_.begin(), values_.end());
+  const double whole = quantile(scratch_, share);
   std::array<double, SobolPoints::replicates> parts{};
   std::size_t first = 0;
   for (std::size_t r = 0; r < parts.size(); ++r) {
@@ -110,26 +111,94 @@ double MadeSample::error_of_quantile(double share, double whole) {
   }
   const double known =
       std::hypot(error_of(share, parts, counts_), resolution(static_cast<double>(values_.size())));
-  if (std::isnan(known)) return known;
-  scratch_.assign(values_.begin(), values_.end());
   const double low = quantile(scratch_, std::max(share - known, 0.0)),
                high = quantile(scratch_, std::min(share + known, 1.0));
   return std::max(whole - low, high - whole);
 }
 
-Estimate MadeSample::tell_with_error(Statistic statistic) {
-  const double whole = tell(statistic);
-  if (const double share = share_of(statistic); share > 0.0 && !values_.empty())
-    return {whole, error_of_quantile(share, whole)};
-  std::array<double, SobolPoints::replicates> parts{};
-  std::array<std::size_t, SobolPoints::replicates> counts{};
+double MadeSample::error_of_moments(Statistic statistic) {
+  struct Moments {
+    double count = 0.0, sum = 0.0, squares = 0.0;
+  };
+  std::array<Moments, SobolPoints::replicates> parts;
+  Moments whole;
+  const double middle = mean(values_);  // about which sums lose no digits
   std::size_t first = 0;
   for (std::size_t r = 0; r < parts.size(); ++r) {
-    parts[r] = of(statistic, std::span(values_).subspan(first, counts_[r]));
-    counts[r] = parts[r] == parts[r] ? counts_[r] : 0;
+    for (const double value : std::span(values_).subspan(first, counts_[r]))
+      parts[r].sum += value - middle, parts[r].squares += (value - middle) * (value - middle);
+    parts[r].count = static_cast<double>(counts_[r]);
+    whole.count += parts[r].count, whole.sum += parts[r].sum, whole.squares += parts[r].squares;
     first += counts_[r];
   }
-  return {whole, std::isnan(whole) ? whole : error_of(whole, parts, counts)};
+  std::array<double, SobolPoints::replicates> without;
+  std::ranges::transform(parts, without.begin(), [&](const Moments& part) {
+    const double count = whole.count - part.count, average = (whole.sum - part.sum) / count;
+    return statistic == Statistic::mean
+               ? average
+               : std::sqrt(((whole.squares - part.squares) - count * average * average) / (count - 1.0));
+  });
+  return jackknife_error(without);
+}
+
+double MadeSample::error(Statistic statistic) {
+  const auto told = std::ranges::count_if(counts_, [](std::size_t count) { return count > 0; });
+  if (2 * static_cast<std::size_t>(told) < counts_.size()) return nan;
+  const double share = quantile_of(statistic);
+  return share > 0.0 ? error_of_quantile(share) : error_of_moments(statistic);
+}
+
+MadeTally::MadeTally(const std::vector<Goal>& goals, std::vector<double Outcome::*> quantities,
+                     std::size_t samples)
+    : goals_(goal_checks(goals)),
+      quantities_(std::move(quantities)),
+      reached_(samples),
+      jumped_(samples),
+      failed_(samples),
+      missed_(goals.size(), MadeShare(samples)),
+      samples_(quantities_.size()) {}
+
+void MadeTally::clear() {
+  for (MadeShare* share : {&reached_, &jumped_, &failed_}) share->clear();
+  for (MadeShare& share : missed_) share.clear();
+  for (MadeSample& sample : samples_) sample.clear();
+}
+
+bool MadeTally::reaches_all(const Outcome& outcome) const {
+  return std::ranges::all_of(goals_, [&](const GoalCheck& goal) { return goal.reached(outcome); });
+}
+
+void MadeTally::add(const Outcome& outcome, std::size_t replicate) {
+  bool all = true;
+  for (std::size_t k = 0; k < goals_.size(); ++k) {
+    const bool reached = goals_[k].reached(outcome);
+    all = all && reached;
+    if (!reached) missed_[k].count(replicate);
+  }
+  if (all) reached_.count(replicate);
+  if (outcome.status == Status::failed) failed_.count(replicate);
+  if (outcome.status != Status::jumped) return;
+  jumped_.count(replicate);
+  for (std::size_t i = 0; i < quantities_.size(); ++i)
+    if (const double value = outcome.*quantities_[i]; value == value) samples_[i].add(value, replicate);
+}
+
+Estimate MadeTally::known(const Estimate& share) const {
+  return {share.value, failed_.counted() > 0 ? std::hypot(share.error, failed()) : share.error};
+}
+
+MadeSample& MadeTally::of(double Outcome::*quantity) {
+  const auto found = std::ranges::find(quantities_, quantity);
+  assert(found != quantities_.end());
+  return samples_[static_cast<std::size_t>(found - quantities_.begin())];
+}
+
+double MadeTally::tell(Statistic statistic, double Outcome::*quantity) {
+  return of(quantity).tell(statistic);
+}
+
+double MadeTally::error(Statistic statistic, double Outcome::*quantity) {
+  return failed_.counted() > 0 ? nan : of(quantity).error(statistic);
 }
 
 }  // namespace leapmap

@@ -49,14 +49,44 @@ class MadeSample {
 
   /// NaN of no values; of one value the standard deviation is NaN, too.
   double tell(Statistic statistic);
-  Estimate tell_with_error(Statistic statistic);
+  /// NaN errors with hoops that jump in fewer than half of the replicates.
+  double error(Statistic statistic);
 
  private:
-  double of(Statistic statistic, std::span<const double> values);
-  double error_of_quantile(double share, double whole);
+  double error_of_quantile(double share);
+  double error_of_moments(Statistic statistic);
 
   std::vector<double> values_, scratch_;
   std::array<std::size_t, SobolPoints::replicates> counts_{};
+};
+
+/// What hoops made after one drawing come to: which reach what they must, and the quantities of those that
+/// jump. Of hoops that the method gave up on nothing is known: errors of shares grow by their share, those of
+/// quantities are NaN.
+class MadeTally {
+ public:
+  MadeTally(const std::vector<Goal>& goals, std::vector<double Outcome::*> quantities, std::size_t samples);
+
+  void clear();
+  void add(const Outcome& outcome, std::size_t replicate);
+  bool reaches_all(const Outcome& outcome) const;
+
+  Estimate yield() const { return known(reached_.share()); }
+  Estimate jumps() const { return known(jumped_.share()); }
+  Estimate missed(std::size_t goal) const { return known(missed_[goal].share()); }
+  double failed() const { return failed_.share().value; }
+  double tell(Statistic statistic, double Outcome::*quantity);
+  double error(Statistic statistic, double Outcome::*quantity);
+
+ private:
+  Estimate known(const Estimate& share) const;
+  MadeSample& of(double Outcome::*quantity);
+
+  std::vector<GoalCheck> goals_;
+  std::vector<double Outcome::*> quantities_;
+  MadeShare reached_, jumped_, failed_;
+  std::vector<MadeShare> missed_;
+  std::vector<MadeSample> samples_;
 };
 
 }  // namespace leapmap

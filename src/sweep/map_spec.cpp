@@ -16,15 +16,8 @@ namespace {
 
 /// The values of an option: a number's alone, an axis's all.
 std::vector<double> numbers_of(Spec& spec, const Option& option) {
-  if (std::holds_alternative<SpreadSlot>(option.slot)) {
-    const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
-    if (spread == spec.scatter.spreads.end()) return {};
-    return {static_cast<double>(spread->law), spread->width, spread->percent ? 1.0 : 0.0};
-  }
-  if (std::holds_alternative<GoalSlot>(option.slot)) {
-    const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
-    return goal == spec.goals.end() ? std::vector<double>{} : std::vector{goal->at_least, goal->at_most};
-  }
+  if (std::holds_alternative<SpreadSlot>(option.slot) || std::holds_alternative<GoalSlot>(option.slot))
+    return {};
   const auto axis = std::ranges::find(spec.axes, option.key, &Axis::key);
   if (axis != spec.axes.end()) return axis->values;
   if (const auto* slot = std::get_if<ParameterSlot>(&option.slot)) {
@@ -39,6 +32,14 @@ std::vector<double> numbers_of(Spec& spec, const Option& option) {
 }
 
 std::vector<std::string> texts_of(Spec& spec, const Option& option) {
+  if (std::holds_alternative<SpreadSlot>(option.slot)) {
+    const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
+    return spread == spec.scatter.spreads.end() ? std::vector<std::string>{} : std::vector{text_of(*spread)};
+  }
+  if (std::holds_alternative<GoalSlot>(option.slot)) {
+    const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
+    return goal == spec.goals.end() ? std::vector<std::string>{} : std::vector{text_of(*goal)};
+  }
   if (std::holds_alternative<FrictionSlot>(option.slot)) return {std::string(model_of(spec.scene).name)};
   if (const auto* slot = std::get_if<TextSlot>(&option.slot)) return {(*slot)(spec)};
   if (const auto* slot = std::get_if<TextsSlot>(&option.slot)) return (*slot)(spec);

@@ -107,18 +107,18 @@ const std::array keys{
            {0.0, 1.0}},
     Option{"output", "file", TextSlot{[](Spec& s) -> std::string& { return s.output.file; }}, "",
            "the map to write; -o overrides it"},
-    Option{
-        "output",
-        "fields",
-        TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.fields; }},
-        "",
-        "datasets to store; default: all",
-        {},
-        field_names,
-        {},
-        is_of_made,
-        "with [scatter] yield, yield_error, cut_off and jump_height_mean, _sd, _q05, _q50, _q95 and the like "
-        "of any quantity, each also with _error"},
+    Option{"output",
+           "fields",
+           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.fields; }},
+           "",
+           "datasets to store; default: all",
+           {},
+           field_names,
+           {},
+           is_of_made,
+           "with [scatter] yield, yield_error, cut_off, unsolved and jump_height_mean, _sd, _q05, _q50, _q95 "
+           "and the like "
+           "of any quantity, each also with _error"},
     Option{"output",
            "gradients",
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients; }},
@@ -361,9 +361,11 @@ std::string options_help() {
           "cut off where it may not be. A parameter is any key marked *.\n";
     if (begins && goal)
       help +=
-          "  FIELD = { at_least = 0.8 }, { at_most = 0.6 } or { is = 0 }: what a hoop must do. A field is "
-          "any "
-          "of output.fields, in the map's unit.\n";
+          "  FIELD = { at_least = 0.8 }, { at_most = 0.6 }, both, or { is = ... }: what a hoop must do. A "
+          "field is any of "
+          "output.fields,\n  in the map's unit, an angle also as \"700 deg\"; a code by its number or name, "
+          "a "
+          "phase_sequence as \"RSF\".\n";
     if (spread || goal) continue;
     const bool axis = std::holds_alternative<ParameterSlot>(option.slot);
     const std::string unit =

@@ -87,7 +87,7 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
   if (!map.is_whole()) throw InputError(path + ": is not whole; allowed: a whole map, by sweep --resume");
   if (!stores(spec.output, "status"))
     throw InputError(path + ": holds no status; allowed: a map with that field");
-  const Tiling tiling(map.shape());
+  const Tiling tiling = tiling_of(spec);
   const MapLayout layout = layout_of(spec);
   check_layout(file, layout, tiling);
   if (!tiles_are_as_written(file, layout, tiling, tiling.size(), path))
@@ -157,7 +157,7 @@ std::optional<RetryReport> retry_with(const std::string& path, const Spec& spec,
     if (!original.is_named(path))
       throw IoError(path + ": another program has replaced or removed it meanwhile");
     report->durable = file->finish(path, true, [&](hid_t written) {
-      const Tiling tiling(shape_of(spec));
+      const Tiling tiling = tiling_of(spec);
       const MapLayout layout = layout_of(spec);
       check_layout(written, layout, tiling);
       if (!tiles_are_as_written(written, layout, tiling, tiling.size(), path))

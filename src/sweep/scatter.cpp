@@ -17,20 +17,8 @@
 namespace leapmap {
 namespace {
 
-/// Hoops solved at once.
-constexpr std::size_t at_once = 1024;
-
 /// Quantities told of by default.
 constexpr double Outcome::*usual[]{&Outcome::jump_height, &Outcome::jump_time};
-
-std::vector<double Outcome::*> quantities_of(std::span<const Field* const> fields) {
-  std::vector<double Outcome::*> quantities;
-  for (const Field* field : fields) {
-    const auto of = std::get<OfMade>(field->source).of;
-    if (of && std::ranges::find(quantities, of) == quantities.end()) quantities.push_back(of);
-  }
-  return quantities;
-}
 
 [[noreturn]] void refuse(const Spec& spec, std::string_view section, std::string_view key,
                          const std::string& what, const std::string& allowed) {
@@ -58,15 +46,20 @@ void check_spread(const Spec& spec, const Spread& spread) {
   const Option& parameter = *find_option("design", spread.parameter);
   const MadeHoops hoops({{spread}, SobolPoints::replicates, 0},
                         std::make_shared<const SobolPoints>(1, SobolPoints::replicates, 0));
-  for (const double value : values_of(spec, parameter)) {
-    Design drawn;
+  const std::vector<double> values = values_of(spec, parameter);
+  if (spread.percent && std::ranges::all_of(values, [](double value) { return value == 0.0; }))
+    refuse(spec, "scatter", spread.parameter,
+           fmt::format("is {} % of nothing: the value drawn is 0", spread.width),
+           "a width in the parameter's unit");
+  for (const double value : values) {
+    Design drawn = spec.design;
     drawn.*std::get<ParameterSlot>(parameter.slot).member = value;
     // What is drawn at the end of a range, as L/R = 1, loses half.
     constexpr double least_left = 0.499;
     if (const double left = hoops.law(0, drawn).left; !(left >= least_left))
       refuse(spec, "scatter", spread.parameter,
-             fmt::format("leaves the domain around {}: {:.3g} % of it lies where no hoop can be", value,
-                         100.0 * (1.0 - left)),
+             fmt::format("leaves the domain around {}{}: {:.3g} % of it lies where no hoop can be", value,
+                         option->unit == "rad" ? " rad" : "", 100.0 * (1.0 - left)),
              fmt::format("a smaller width; the parameter is {}", allowed_values(parameter)));
   }
 }
@@ -78,10 +71,23 @@ void check_goal(const Spec& spec, const Goal& goal) {
     refuse(spec, "goal", goal.field, "is there twice", "once");
   if (!has(spec.scene.friction, option->only_of))
     refuse(spec, "goal", goal.field, no_use(spec.scene), with_model(*option->only_of));
-  if (!(goal.at_least <= goal.at_most))
+  const bool some = std::isfinite(goal.at_least) || std::isfinite(goal.at_most);
+  if (!(some && goal.at_least <= goal.at_most))
     refuse(spec, "goal", goal.field,
            fmt::format("is at least {} and at most {}", goal.at_least, goal.at_most),
-           "at_least not above at_most");
+           "one bound or both, at_least not above at_most");
+  const Field& field = *find_field(goal.field);
+  const auto* code = std::get_if<Code>(&field.source);
+  const bool exactly = goal.at_least == goal.at_most && goal.at_least == std::floor(goal.at_least);
+  if (code && !code->names.empty() &&
+      !(exactly && goal.at_least >= 0.0 && goal.at_least < static_cast<double>(code->names.size())))
+    refuse(spec, "goal", goal.field,
+           fmt::format("is at least {} and at most {}", goal.at_least, goal.at_most),
+           fmt::format("{{ is = ... }} with one of {}", fmt::join(code->names, ", ")));
+  if (std::holds_alternative<Word>(field.source) &&
+      !(exactly && goal.at_least >= 1.0 && goal.at_least < 9e15))
+    refuse(spec, "goal", goal.field, "is no sequence of phases",
+           "{ is = \"RSF\" } and the like, up to 26 letters");
 }
 
 }  // namespace
@@ -91,7 +97,7 @@ std::vector<const Field*> scatter_fields_of(const Spec& spec) {
   if (spec.scatter.spreads.empty()) return fields;
   const auto asked = [&](const Field& row) {
     const auto& [statistic, of, error] = std::get<OfMade>(row.source);
-    if (!of) return statistic == Statistic::cut_off || !spec.goals.empty();
+    if (!of) return statistic != Statistic::yield || !spec.goals.empty();
     if (error) return false;
     if (spec.output.fields.empty()) return std::ranges::find(usual, of) != std::end(usual);
     return std::ranges::any_of(spec.output.fields, [&](const std::string& name) {
@@ -103,6 +109,15 @@ std::vector<const Field*> scatter_fields_of(const Spec& spec) {
     if (asked(row) || std::ranges::find(spec.output.fields, row.name) != spec.output.fields.end())
       fields.push_back(&row);
   return fields;
+}
+
+std::vector<double Outcome::*> quantities_of(std::span<const Field* const> fields) {
+  std::vector<double Outcome::*> quantities;
+  for (const Field* field : fields) {
+    const auto of = std::get<OfMade>(field->source).of;
+    if (of && std::ranges::find(quantities, of) == quantities.end()) quantities.push_back(of);
+  }
+  return quantities;
 }
 
 void check_scatter(const Spec& spec) {
@@ -156,56 +171,30 @@ std::span<const double> MadeColumns::column(const Field& field) const {
 }
 
 ScatterSolver::ScatterSolver(const Spec& spec, std::shared_ptr<const SobolPoints> points)
-    : goals_(goal_checks(spec.goals)),
-      hoops_(spec.scatter, std::move(points)),
-      reached_(hoops_.samples()),
-      failed_(hoops_.samples()),
-      made_(std::min(at_once, hoops_.samples())),
-      outcomes_(made_.size()) {
-  const std::vector<double Outcome::*> quantities = quantities_of(scatter_fields_of(spec));
-  for (const auto quantity : quantities) sampled_.push_back({quantity, {}});
-  solver_ = make_solver(spec_of_made(spec, quantities));
-}
-
-/// The hoops of one drawing.
-void ScatterSolver::make(const Design& drawn) {
-  reached_.clear(), failed_.clear();
-  for (Sampled& sampled : sampled_) sampled.values.clear();
-  cut_off_ = hoops_.draw(drawn);
-  for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
-    const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
-    hoops_.fill(first, std::span(made_).first(count));
-    solver_(std::span(made_).first(count), std::span(outcomes_).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      const Outcome& outcome = outcomes_[i];
-      const std::size_t replicate = (first + i) / hoops_.a_replicate();
-      if (outcome.status == Status::failed) failed_.count(replicate);
-      if (std::ranges::all_of(goals_, [&](const GoalCheck& goal) { return goal.reached(outcome); }))
-        reached_.count(replicate);
-      if (outcome.status != Status::jumped) continue;
-      for (Sampled& sampled : sampled_)
-        if (const double value = outcome.*sampled.quantity; value == value)
-          sampled.values.add(value, replicate);
-    }
-  }
-}
+    : hoops_(spec.scatter, std::move(points)),
+      solver_(make_solver(spec_of_made(spec, quantities_of(scatter_fields_of(spec))))),
+      tally_(spec.goals, quantities_of(scatter_fields_of(spec)), hoops_.samples()),
+      made_(std::min(made_at_once, hoops_.samples())),
+      outcomes_(made_.size()) {}
 
 double ScatterSolver::tell(const OfMade& what) {
   if (what.statistic == Statistic::cut_off) return cut_off_;
-  if (what.statistic == Statistic::yield) {
-    const Estimate yield = reached_.share();
-    // Of hoops that the method gave up on it is not known what they reach.
-    return what.error ? std::hypot(yield.error, failed_.counted() > 0 ? failed_.share().value : 0.0)
-                      : yield.value;
-  }
-  MadeSample& values = std::ranges::find(sampled_, what.of, &Sampled::quantity)->values;
-  return what.error ? values.tell_with_error(what.statistic).error : values.tell(what.statistic);
+  if (what.statistic == Statistic::unsolved) return tally_.failed();
+  if (what.statistic == Statistic::yield) return what.error ? tally_.yield().error : tally_.yield().value;
+  return what.error ? tally_.error(what.statistic, what.of) : tally_.tell(what.statistic, what.of);
 }
 
 void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns) {
   columns.begin(designs.size());
   for (std::size_t i = 0; i < designs.size(); ++i) {
-    make(designs[i]);
+    tally_.clear();
+    cut_off_ = hoops_.draw(designs[i]);
+    for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
+      const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
+      hoops_.fill(first, std::span(made_).first(count));
+      solver_(std::span(made_).first(count), std::span(outcomes_).first(count));
+      for (std::size_t k = 0; k < count; ++k) tally_.add(outcomes_[k], (first + k) / hoops_.a_replicate());
+    }
     for (std::size_t f = 0; f < columns.fields().size(); ++f)
       columns.put(f, i, tell(std::get<OfMade>(columns.fields()[f]->source)));
   }

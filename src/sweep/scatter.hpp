@@ -13,9 +13,15 @@
 
 namespace leapmap {
 
+/// Hoops solved at once.
+inline constexpr std::size_t made_at_once = 1024;
+
 /// The fields of hoops as made that the spec's map has: yield and its error, what is cut off, and of each
 /// quantity asked for its mean, standard deviation and quantiles. None without [scatter].
 std::vector<const Field*> scatter_fields_of(const Spec& spec);
+
+/// The quantities of which such fields are.
+std::vector<double Outcome::*> quantities_of(std::span<const Field* const> fields);
 
 /// Throws InputError if the spec's [scatter] or [goal] is not one that read_spec would let pass, or its
 /// scatter lies for the larger part where no hoop can be.
@@ -52,18 +58,11 @@ class ScatterSolver {
   void solve(std::span<const Design> designs, MadeColumns& columns);
 
  private:
-  struct Sampled {
-    double Outcome::*quantity;
-    MadeSample values;
-  };
-  void make(const Design& drawn);
   double tell(const OfMade& what);
 
-  std::vector<GoalCheck> goals_;
-  std::vector<Sampled> sampled_;
   MadeHoops hoops_;
   Solver solver_;
-  MadeShare reached_, failed_;
+  MadeTally tally_;
   double cut_off_ = 0.0;
   std::vector<Design> made_;
   std::vector<Outcome> outcomes_;

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "leapmap/errors.hpp"
@@ -19,110 +21,84 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double wanted_yield = 0.99;
-constexpr std::array<double Outcome::*, 2> told{&Outcome::jump_height, &Outcome::jump_time};
-constexpr std::array<const char*, 2> told_names{"jump_height", "jump_time"};
 
-/// Hoops made after one design, solved on all threads.
+/// Makes hoops after one design and solves them, on all threads.
 class Workshop {
  public:
-  Workshop(const Spec& spec, const ScatterOptions& options)
+  Workshop(const Spec& spec, std::span<double Outcome::*const> quantities, const ScatterOptions& options)
       : spec_(spec),
         options_(options),
         points_(points_of(spec.scatter, 2)),
-        solved_(spec_of_made(spec, told)),
-        goals_(goal_checks(spec.goals)) {}
+        solved_(spec_of_made(spec, quantities)) {}
 
-  /// designs: where the hoops are kept, unless nullptr.
-  std::vector<Outcome> make(const Scatter& scatter, std::span<const std::size_t> dimensions,
-                            std::vector<Design>* designs = nullptr) const {
-    constexpr std::size_t at_once = 1024;
-    const std::size_t samples = points_->samples();
-    std::vector<Outcome> outcomes(samples);
-    if (designs) designs->resize(samples);
-    parallel_for_each((samples + at_once - 1) / at_once, options_.threads, [&] {
+  std::size_t samples() const { return points_->samples(); }
+  std::size_t replicate(std::size_t hoop) const { return hoop / points_->a_replicate(); }
+
+  /// take(first, designs, outcomes) of each block of hoops, from any thread.
+  template <class Take>
+  void make(const Scatter& scatter, std::span<const std::size_t> dimensions, const Take& take) const {
+    parallel_for_each((samples() + made_at_once - 1) / made_at_once, options_.threads, [&] {
       MadeHoops hoops(scatter, points_);
       hoops.draw(spec_.design, dimensions);
       return [&, hoops = std::move(hoops), solve = make_solver(solved_),
-              made = std::vector<Design>(at_once)](std::size_t block) mutable {
+              made = std::vector<Design>(made_at_once),
+              outcomes = std::vector<Outcome>(made_at_once)](std::size_t block) mutable {
         if (options_.stop_requested && options_.stop_requested()) throw Stopped("scatter was asked to stop");
-        const std::size_t first = block * at_once;
-        const std::span some = std::span(made).first(std::min(at_once, samples - first));
-        hoops.fill(first, some);
-        solve(some, std::span(outcomes).subspan(first, some.size()));
-        if (designs) std::ranges::copy(some, designs->begin() + static_cast<std::ptrdiff_t>(first));
+        const std::size_t first = block * made_at_once, count = std::min(made_at_once, samples() - first);
+        hoops.fill(first, std::span(made).first(count));
+        solve(std::span(made).first(count), std::span(outcomes).first(count));
+        take(first, std::span<const Design>(made).first(count),
+             std::span<const Outcome>(outcomes).first(count));
         return true;
       };
     });
-    return outcomes;
   }
-
-  bool reached(const Outcome& outcome) const {
-    return std::ranges::all_of(goals_, [&](const GoalCheck& goal) { return goal.reached(outcome); });
-  }
-
-  /// The share of outcomes of which something is true.
-  template <class Is>
-  Estimate share(const std::vector<Outcome>& outcomes, const Is& is) const {
-    MadeShare share(outcomes.size());
-    for (std::size_t i = 0; i < outcomes.size(); ++i)
-      if (is(outcomes[i])) share.count(i / points_->a_replicate());
-    return share.share();
-  }
-
-  double yield(const Scatter& scatter) const {
-    return share(make(scatter, {}), [&](const Outcome& outcome) { return reached(outcome); }).value;
-  }
-
-  const std::vector<GoalCheck>& goals() const { return goals_; }
-  std::size_t a_replicate() const { return points_->a_replicate(); }
 
  private:
   const Spec& spec_;
   const ScatterOptions& options_;
   std::shared_ptr<const SobolPoints> points_;
   Spec solved_;
-  std::vector<GoalCheck> goals_;
 };
 
-MadeQuantity quantity(const std::vector<Outcome>& outcomes, std::size_t a_replicate, std::size_t which) {
-  MadeSample sample;
-  for (std::size_t i = 0; i < outcomes.size(); ++i)
-    if (const double value = outcomes[i].*told[which]; outcomes[i].status == Status::jumped && value == value)
-      sample.add(value, i / a_replicate);
-  const auto tell = [&](Statistic statistic) { return sample.tell_with_error(statistic); };
-  return {told_names[which],    tell(Statistic::mean), tell(Statistic::sd),
-          tell(Statistic::q05), tell(Statistic::q50),  tell(Statistic::q95)};
-}
+/// What importance is told of, by what it is of a hoop; NaN: it is not known, or does not apply.
+struct HoopValue {
+  std::string of;
+  std::function<double(const Outcome&)> value;
+};
 
-/// outputs: of each sample of pick_and_freeze, what value(outcome) is.
-template <class Value>
-Importance importance(std::string of, const std::vector<std::vector<Outcome>>& samples, const Value& value) {
-  std::vector<std::vector<double>> outputs;
-  for (const std::vector<Outcome>& outcomes : samples) {
-    outputs.emplace_back(outcomes.size());
-    std::ranges::transform(outcomes, outputs.back().begin(), value);
-  }
-  Importance told_of{.of = std::move(of), .first = {}, .total = {}};
-  for (const SobolIndex& index : sobol_indices(outputs)) {
-    told_of.first.push_back(index.first), told_of.total.push_back(index.total);
-    told_of.pairs = std::min(told_of.pairs, index.pairs);
-  }
-  return told_of;
-}
-
-/// The largest share of its width, to a thousandth, at which the yield is good: of spread k, or of all.
-double shrink(const Workshop& workshop, const Scatter& scatter, std::optional<std::size_t> k) {
+/// The share of its width, to a thousandth of that, at which the yield is good while a bit above it is not:
+/// of spread k, or of all.
+double shrink(const Workshop& workshop, const MadeTally& goals, const Scatter& scatter,
+              std::optional<std::size_t> k) {
+  constexpr double least = 1e-6;
   const auto good = [&](double width) {
     Scatter smaller = scatter;
     for (std::size_t i = 0; i < smaller.spreads.size(); ++i)
       if (!k || i == *k) smaller.spreads[i].width *= width;
-    return workshop.yield(smaller) >= wanted_yield;
+    std::atomic<std::size_t> reached{0};
+    workshop.make(smaller, {}, [&](std::size_t, std::span<const Design>, std::span<const Outcome> some) {
+      reached += static_cast<std::size_t>(
+          std::ranges::count_if(some, [&](const Outcome& outcome) { return goals.reaches_all(outcome); }));
+    });
+    return static_cast<double>(reached) >= wanted_yield * static_cast<double>(workshop.samples());
   };
-  if (good(1.0)) return 1.0;
   if (!good(0.0)) return 0.0;
   double low = 0.0, high = 1.0;
-  while (high - low > 1e-3) (good(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
-  return low;
+  while (high - low > 1e-3 * high && high > least) {
+    const double middle = 0.5 * (low + high);
+    (good(middle) ? low : high) = middle;
+  }
+  return std::max(low, least);
+}
+
+Importance importance(std::string of, std::span<const std::vector<double>> outputs) {
+  Importance told{.of = std::move(of), .first = {}, .total = {}};
+  for (const SobolIndex& index : sobol_indices(outputs)) {
+    told.first.push_back(index.first), told.total.push_back(index.total);
+    told.pairs = std::min(told.pairs, index.pairs);
+  }
+  return told;
 }
 
 }  // namespace
@@ -138,41 +114,72 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
         origin_of(spec)));
   ScatterOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
-  const Workshop workshop(spec, options);
-  const auto jumps = [](const Outcome& outcome) { return outcome.status == Status::jumped; };
-  const auto reached = [&](const Outcome& outcome) { return workshop.reached(outcome); };
-
+  const std::vector<double Outcome::*> quantities = quantities_of(scatter_fields_of(spec));
+  const Workshop workshop(spec, quantities, options);
+  MadeTally tally(spec.goals, quantities, workshop.samples());
   ScatterReport report;
-  std::vector<std::vector<Outcome>> samples;
-  for (const std::vector<std::size_t>& dimensions : pick_and_freeze(spec.scatter.spreads.size()))
-    samples.push_back(workshop.make(spec.scatter, dimensions, samples.empty() ? &report.made : nullptr));
-  const std::vector<Outcome>& outcomes = samples[0];
-  report.samples = outcomes.size();
-  report.jumps = workshop.share(outcomes, jumps);
-  for (const GoalCheck& goal : workshop.goals())
-    report.missed.push_back(workshop.share(outcomes, [&](const Outcome& o) { return !goal.reached(o); }));
-  for (std::size_t i = 0; i < told.size(); ++i)
-    report.quantities.push_back(quantity(outcomes, workshop.a_replicate(), i));
+  report.samples = workshop.samples();
+
+  const auto jumps = [](const Outcome& outcome) { return outcome.status == Status::jumped; };
+  const auto known = [](const Outcome& outcome, double value) {
+    return outcome.status == Status::failed ? nan : value;
+  };
+  std::vector<HoopValue> outputs;
+  if (!spec.goals.empty())
+    outputs.push_back(
+        {"yield", [&](const Outcome& o) { return known(o, tally.reaches_all(o) ? 1.0 : 0.0); }});
+  outputs.push_back({"jumps", [&](const Outcome& o) { return known(o, jumps(o) ? 1.0 : 0.0); }});
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source);
+        quantity && std::ranges::find(quantities, quantity->member) != quantities.end())
+      outputs.push_back({std::string(field.name), [&jumps, of = quantity->member](const Outcome& o) {
+                           return jumps(o) ? o.*of : nan;
+                         }});
+
+  // Of each output, of each sample.
+  const auto samples = pick_and_freeze(spec.scatter.spreads.size());
+  std::vector<std::vector<std::vector<double>>> values(
+      outputs.size(),
+      std::vector<std::vector<double>>(samples.size(), std::vector<double>(workshop.samples())));
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    if (s == 0) report.made.resize(workshop.samples()), report.outcomes.resize(workshop.samples());
+    workshop.make(spec.scatter, samples[s],
+                  [&](std::size_t first, std::span<const Design> made, std::span<const Outcome> outcomes) {
+                    const auto place = static_cast<std::ptrdiff_t>(first);
+                    for (std::size_t k = 0; k < outputs.size(); ++k)
+                      std::ranges::transform(outcomes, values[k][s].begin() + place, outputs[k].value);
+                    if (s != 0) return;
+                    std::ranges::copy(made, report.made.begin() + place);
+                    std::ranges::copy(outcomes, report.outcomes.begin() + place);
+                  });
+  }
+  for (std::size_t k = 0; k < outputs.size(); ++k)
+    report.importance.push_back(importance(outputs[k].of, values[k]));
+
+  for (std::size_t i = 0; i < report.outcomes.size(); ++i)
+    tally.add(report.outcomes[i], workshop.replicate(i));
+  report.jumps = tally.jumps();
+  report.unsolved = tally.failed();
+  for (std::size_t k = 0; k < spec.goals.size(); ++k) report.missed.push_back(tally.missed(k));
+  for (const Field& field : map_fields()) {
+    const auto* quantity = std::get_if<Quantity>(&field.source);
+    if (!quantity || std::ranges::find(quantities, quantity->member) == quantities.end()) continue;
+    const auto tell = [&](Statistic statistic) {
+      return Estimate{tally.tell(statistic, quantity->member), tally.error(statistic, quantity->member)};
+    };
+    report.quantities.push_back({std::string(field.name), tell(Statistic::mean), tell(Statistic::sd),
+                                 tell(Statistic::q05), tell(Statistic::q50), tell(Statistic::q95)});
+  }
   const MadeHoops hoops(spec.scatter, points_of({spec.scatter.spreads, SobolPoints::replicates, 0}));
   for (std::size_t k = 0; k < hoops.spreads(); ++k)
     report.cut_off.push_back(1.0 - hoops.law(k, spec.design).left);
+  if (spec.goals.empty()) return report;
 
-  if (!spec.goals.empty()) {
-    report.yield = workshop.share(outcomes, reached);
-    report.importance.push_back(
-        importance("yield", samples, [&](const Outcome& o) { return reached(o) ? 1.0 : 0.0; }));
-  }
-  report.importance.push_back(
-      importance("jumps", samples, [&](const Outcome& o) { return jumps(o) ? 1.0 : 0.0; }));
-  for (std::size_t i = 0; i < told.size(); ++i)
-    report.importance.push_back(
-        importance(told_names[i], samples, [&](const Outcome& o) { return jumps(o) ? o.*told[i] : nan; }));
-  if (!spec.goals.empty()) {
-    for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k)
-      report.shrink.push_back(shrink(workshop, spec.scatter, k));
-    report.shrink_all = shrink(workshop, spec.scatter, std::nullopt);
-  }
-  report.outcomes = std::move(samples[0]);
+  report.yield = tally.yield();
+  const bool good = report.yield.value >= wanted_yield;
+  for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k)
+    report.shrink.push_back(good ? 1.0 : shrink(workshop, tally, spec.scatter, k));
+  report.shrink_all = good ? 1.0 : shrink(workshop, tally, spec.scatter, std::nullopt);
   return report;
 }
 

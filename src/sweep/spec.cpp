@@ -79,7 +79,8 @@ struct Assign {
 [[noreturn]] void refuse_key(const std::string& place, std::string_view section, std::string_view key) {
   std::vector<std::string_view> keys;
   for (const Option& option : spec_options())
-    if (section.empty() || option.section == section) keys.push_back(option.key);
+    if ((section.empty() || option.section == section) && std::ranges::find(keys, option.key) == keys.end())
+      keys.push_back(option.key);
   throw InputError(fmt::format("{}: {}{}{}: unknown key; allowed: {}", place, section,
                                section.empty() ? "" : ".", key, fmt::join(keys, ", ")));
 }
@@ -92,7 +93,7 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
     const toml::table* table = node.as_table();
     const bool known = std::ranges::any_of(
         spec_options(), [&in = section](const Option& o) { return o.section == in.str(); });
-    if (const Option* option = find_option("", section.str()); option && !table)
+    if (const Option* option = find_option("", section.str()); option && !known)
       throw InputError(fmt::format("{}: {}: a key stands below its section; allowed: [{}] above it", place,
                                    section.str(), option->section));
     if (!known || !table)
@@ -227,10 +228,6 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
     });
   };
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
-  // The order of the lines does not count: hoops made are the same.
-  std::ranges::sort(spec.scatter.spreads, {}, [](const Spread& spread) {
-    return find_option("scatter", spread.parameter) - spec_options().data();
-  });
   if (!lenient) refuse_what_has_no_use(entries, spec);
   // Where mu_static varies, mu_kinetic follows it from design to design.
   const bool varies = std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() ||

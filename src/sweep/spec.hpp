@@ -21,6 +21,10 @@ void read_points_of(Spec& spec);
 /// machine's exp and log may differ in the last bits of a log axis.
 std::string readable_text(const Spec& spec);
 
+/// A spread and a goal as a spec writes them, without their key: { normal = "2 %" }, { is = "jumped" }.
+std::string text_of(const Spread& spread);
+std::string text_of(const Goal& goal);
+
 /// Whether output.fields names that field, or is left out.
 bool stores(const Output& output, std::string_view field);
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "leapmap/outcome.hpp"
+#include "model/fields.hpp"
 #include "model/model.hpp"
 #include "sweep/options.hpp"
 #include "sweep/spacing.hpp"
@@ -20,16 +21,6 @@ namespace {
 std::string number(double value) {
   std::string digits = fmt::format("{}", value);
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
-}
-
-std::string text_of(const Goal& goal) {
-  if (goal.field == "phase_sequence")
-    return fmt::format("{{ is = \"{}\" }}", phase_letters(static_cast<std::uint64_t>(goal.at_least)));
-  if (goal.at_least == goal.at_most) return fmt::format("{{ is = {} }}", number(goal.at_least));
-  std::vector<std::string> parts;
-  if (std::isfinite(goal.at_least)) parts.push_back("at_least = " + number(goal.at_least));
-  if (std::isfinite(goal.at_most)) parts.push_back("at_most = " + number(goal.at_most));
-  return fmt::format("{{ {} }}", fmt::join(parts, ", "));
 }
 
 /// spaced: axes by their bounds where those give the same bits.
@@ -82,14 +73,10 @@ std::string text_of(const Spec& original, bool spaced) {
             line(option, number(slot(spec)));
           } else if constexpr (std::is_same_v<Slot, SpreadSlot>) {
             const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
-            if (spread == spec.scatter.spreads.end()) return;
-            line(option,
-                 fmt::format(
-                     "{{ {} = {} }}", spread->law == Spread::Law::normal ? "normal" : "uniform",
-                     spread->percent ? fmt::format("\"{} %\"", spread->width) : number(spread->width)));
+            if (spread != spec.scatter.spreads.end()) line(option, leapmap::text_of(*spread));
           } else if constexpr (std::is_same_v<Slot, GoalSlot>) {
             const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
-            if (goal != spec.goals.end()) line(option, text_of(*goal));
+            if (goal != spec.goals.end()) line(option, leapmap::text_of(*goal));
           } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {
             if (option.section == "scatter" && spec.scatter.spreads.empty()) return;
             line(option, fmt::format("{}", slot(spec)));
@@ -107,6 +94,25 @@ std::string text_of(const Spec& original, bool spaced) {
 }
 
 }  // namespace
+
+std::string text_of(const Spread& spread) {
+  return fmt::format("{{ {} = {} }}", spread.law == Spread::Law::normal ? "normal" : "uniform",
+                     spread.percent ? fmt::format("\"{} %\"", spread.width) : number(spread.width));
+}
+
+std::string text_of(const Goal& goal) {
+  const Field& field = *find_field(goal.field);
+  if (std::holds_alternative<Word>(field.source))
+    return fmt::format("{{ is = \"{}\" }}", phase_letters(static_cast<std::uint64_t>(goal.at_least)));
+  const auto* code = std::get_if<Code>(&field.source);
+  if (code && !code->names.empty())
+    return fmt::format("{{ is = \"{}\" }}", code->names[static_cast<std::size_t>(goal.at_least)]);
+  if (goal.at_least == goal.at_most) return fmt::format("{{ is = {} }}", number(goal.at_least));
+  std::vector<std::string> parts;
+  if (std::isfinite(goal.at_least)) parts.push_back("at_least = " + number(goal.at_least));
+  if (std::isfinite(goal.at_most)) parts.push_back("at_most = " + number(goal.at_most));
+  return fmt::format("{{ {} }}", fmt::join(parts, ", "));
+}
 
 std::string resolved_text(const Spec& spec) { return text_of(spec, false); }
 

@@ -22,6 +22,7 @@ std::optional<double> to_percent(const toml::node& node) {
   if (!text || !text->get().ends_with('%')) return std::nullopt;
   std::string_view digits = text->get();
   digits.remove_suffix(1);
+  while (digits.starts_with(' ')) digits.remove_prefix(1);
   while (digits.ends_with(' ')) digits.remove_suffix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -54,6 +55,9 @@ double to_bound(const Entry& entry, const Field& field, const toml::node& node, 
              fmt::format("one of {}", fmt::join(code->names, ", ")));
     return static_cast<double>(name - code->names.begin());
   }
+  if (code && !code->names.empty() && part != "is")
+    refuse(entry, fmt::format("'{}' does not belong to this goal", part),
+           fmt::format("{{ is = ... }} with one of {}", fmt::join(code->names, ", ")));
   if (std::holds_alternative<Word>(field.source)) {
     const auto phases = text ? to_phases(text->get()) : std::nullopt;
     if (!phases || part != "is")
@@ -76,9 +80,13 @@ Spread to_spread(const Entry& entry) {
                 .law = law == "normal" ? Spread::Law::normal : Spread::Law::uniform};
   const auto percent = to_percent(node);
   spread.percent = percent.has_value();
+  if (!percent && node.is_string() && entry.option->unit != "rad")
+    refuse(entry, fmt::format("'{}' is no width", law),
+           fmt::format("{}, or as \"2 %\"", allowed_values(*entry.option)));
   spread.width = percent ? *percent : to_number(entry, node, law);
   if (!in_range(*entry.option, spread.width))
-    refuse(entry, fmt::format("'{}' is out of range", law), allowed_values(*entry.option));
+    refuse(entry, fmt::format("'{}' is out of range", law),
+           fmt::format("{}, or as \"2 %\"", allowed_values(*entry.option)));
   return spread;
 }
 

@@ -172,7 +172,7 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
     throw InputError(origin_of(spec) + ": output.file is not set; allowed: a file's name there or with -o");
   const std::string map = behind_links(path);
   const Locking locking = options.lock ? Locking::required : Locking::if_possible;
-  const Tiling tiling(shape_of(spec));
+  const Tiling tiling = tiling_of(spec);
   const MapLayout layout = layout_of(spec);
   refuse_own_input(spec, map);
   if (is_done(map, spec, options, locking)) return report_on(map, spec, locking);

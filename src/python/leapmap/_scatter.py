@@ -30,10 +30,11 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
 
     Returns a dict; an Estimate has a value and its standard error, told by 16 replicates of Sobol' points:
     yield, jumps: shares that reach every goal, and that jump. missed: {field of a goal: share that misses it}.
-    jump_height, jump_time: {"mean", "sd", "q05", "q50", "q95"} of those that jump.
+    jump_height, jump_time, or those that fields= names: {"mean", "sd", "q05", "q50", "q95"} of those that jump.
     first, total: Sobol' indices, {"yield", "jumps", "jump_height" or "jump_time": {parameter: Estimate}}; NaN where nothing
         varies. Those of height and time are of the variance among pairs of hoops that both jump, pairs[...] of all.
     cut_off: {parameter: share of its law that no hoop can have}.
+    unsolved: share that the method gave up on, of which nothing is known; errors tell it.
     shrink: {parameter: to what share of its width it has to shrink, the others staying, for 99 % yield}; 0: not even without
         it. shrink_all: the same of all together.
     made: {parameter: array}, outcomes: Outcomes, of the hoops made.
