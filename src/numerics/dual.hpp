@@ -216,6 +216,16 @@ T largest_part(const Dual<T, N>& dual) {
   return most;
 }
 
+/// A number, or a dual, times a number in each lane.
+template <class T>
+T scaled(const T& number, const T& by) {
+  return number * by;
+}
+template <class T, std::size_t N>
+Dual<T, N> scaled(const Dual<T, N>& dual, const T& by) {
+  return dual.through(dual.value * by, by);
+}
+
 /// A root x of f that was found in plain numbers, with its derivatives: f, there in duals, and its slope.
 template <class T, std::size_t N>
 Dual<T, N> with_derivatives(const T& root, const Dual<T, N>& f, const T& slope) {

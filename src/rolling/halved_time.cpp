@@ -36,14 +36,16 @@ HalvedTime<S, T>::HalvedTime(const Roll<S>& roll, Number tolerance, const GaussR
   by_versine_ = abreast<T>(S(-rho2 * cos_from_vertical(hoop, roll.release_trig)));
 }
 
-/// x past the release.
+/// x past the release. V: T, or Plain for the value alone.
 template <class S, class T>
-auto HalvedTime<S, T>::slowness_past(const T& x) -> T {
+template <class V>
+V HalvedTime<S, T>::slowness_past(const V& x) {
   using std::abs;
-  const Trig<T> turned = trig(x), phi = trig(T(wide_release_ + x));
+  const Trig<V> turned = trig(x), phi = trig(V(as<V>(wide_release_) + x));
   // As vis_viva_past_release and contact_inertia have them.
-  const T E = released_ + (push2_ * x + by_sine_ * x_minus_sin(x, turned) + by_versine_ * turned.versine);
-  const T J = J_min_ + rho2_ * phi.versine;
+  const V E = as<V>(released_) + (as<V>(push2_) * x + as<V>(by_sine_) * x_minus_sin(x, turned) +
+                                  as<V>(by_versine_) * turned.versine);
+  const V J = as<V>(J_min_) + as<V>(rho2_) * phi.versine;
   const Plain at = value_of(x), rho2 = value_of(rho2_), energy = value_of(E);
   const Plain terms =
       value_of(released_) + at * (abs(value_of(push2_)) + rho2 * smaller(at, Plain(Number(1))));
@@ -57,39 +59,43 @@ auto HalvedTime<S, T>::slowness_past(const T& x) -> T {
 
 /// dt / dq, `past` = q - q0.
 template <class S, class T>
-auto HalvedTime<S, T>::stretched_slowness(const T& past) -> T {
-  const T slow = (wide_q0_ + past) * slowness_past(T(past * (wide_q0_ + wide_q0_ + past)));
+template <class V>
+V HalvedTime<S, T>::stretched_slowness(const V& past) {
+  const V q0 = as<V>(wide_q0_), slow = (q0 + past) * slowness_past(V(past * (q0 + q0 + past)));
   return slow + slow;
 }
 
 template <class S, class T>
-template <class F>
-S HalvedTime<S, T>::rule(const F& f, const S& a, const S& b) {
-  const T from = abreast<T>(a), length = abreast<T>(S(b - a));
-  T sum(Number(0));
+template <class V, class F>
+auto HalvedTime<S, T>::rule(const F& f, const S& a, const S& b) {
+  const S span = b - a;
+  const V from = abreast<V>(part<V>(a)), length = abreast<V>(part<V>(span));
+  V sum(Number(0));
   for (std::size_t row = 0; row < rows_; ++row)
-    sum = sum + f(T(from + length * T(nodes_[row]))) * T(weights_[row]);
+    sum = sum + scaled(f(V(from + scaled(length, nodes_[row]))), weights_[row]);
   --panels_left_;
-  return sum_of_lanes(sum) * (b - a);
+  return sum_of_lanes(sum) * part<V>(span);
 }
 
+/// Whether halves agree is judged by values: their derivatives, of integrands with the same singularities,
+/// are then better than is asked for by as much.
 template <class S, class T>
 template <class F>
-void HalvedTime<S, T>::halve(const F& f, const S& a, const S& b, const S& whole, int depth) {
+void HalvedTime<S, T>::halve(const F& f, const S& a, const S& b, const Number& whole, int depth) {
   const S middle = a + (b - a) * S(0.5L);
   unsure_ = Plain(Number(0));
-  const S left = rule(f, a, middle), right = rule(f, middle, b), sum = left + right;
-  const Number unsure = largest_lane(unsure_);
+  const S left = rule<T>(f, a, middle), right = rule<T>(f, middle, b), sum = left + right;
+  const Number unsure = largest_lane(unsure_), taken = value_of(sum);
   const bool agree =
-      largest_part(S(sum - whole)) <=
-      std::max(Number(0.1L) * tolerance_ * largest_part(S(total_ + sum)), unsure * largest_part(sum));
+      std::abs(taken - whole) <=
+      std::max(Number(0.1L) * tolerance_ * std::abs(value_of(total_) + taken), unsure * std::abs(taken));
   if (agree || depth == 0 || panels_left_ <= 0 || !(unsure < Number(1))) {
     total_ += agree ? sum : S(std::numeric_limits<Number>::quiet_NaN());
     doubt_ += Number(1.5) * unsure * largest_part(sum);
     return;
   }
-  halve(f, a, middle, left, depth - 1);
-  halve(f, middle, b, right, depth - 1);
+  halve(f, a, middle, value_of(left), depth - 1);
+  halve(f, middle, b, value_of(right), depth - 1);
 }
 
 /// The next place after x where the integrand may be sharp: the needles at 2 pi k, among eighths of a turn,
@@ -112,8 +118,8 @@ S HalvedTime<S, T>::edge_after(const S& x, const S& end) const {
 template <class S, class T>
 S HalvedTime<S, T>::until(const S& end) {
   const S near(1);
-  const auto stretched = [this](const T& past) { return stretched_slowness(past); };
-  const auto plain = [this](const T& x) { return slowness_past(x); };
+  const auto stretched = [this](const auto& past) { return this->stretched_slowness(past); };
+  const auto plain = [this](const auto& x) { return this->slowness_past(x); };
   const auto past = [&](const S& x) {
     using std::sqrt;
     return x > S(0) ? S(x / (q0_ + sqrt(q0_ * q0_ + x))) : S(0);
@@ -123,9 +129,9 @@ S HalvedTime<S, T>::until(const S& end) {
     if (x < near) {
       to = std::min(to, near);
       const S from_q = past(x), to_q = past(to);
-      halve(stretched, from_q, to_q, rule(stretched, from_q, to_q), most_halvings);
+      halve(stretched, from_q, to_q, rule<Plain>(stretched, from_q, to_q), most_halvings);
     } else {
-      halve(plain, x, to, rule(plain, x, to), most_halvings);
+      halve(plain, x, to, rule<Plain>(plain, x, to), most_halvings);
     }
     x = to;
   }

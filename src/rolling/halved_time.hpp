@@ -55,13 +55,30 @@ class HalvedTime {
  private:
   using Plain = std::decay_t<decltype(value_of(std::declval<T>()))>;
 
-  T slowness_past(const T& x);
-  T stretched_slowness(const T& past);
+  /// A number of all lanes, or of one, with its derivatives or its value alone.
+  template <class V>
+  static decltype(auto) as(const T& wide) {
+    if constexpr (std::is_same_v<V, T>)
+      return (wide);
+    else
+      return value_of(wide);
+  }
+  template <class V>
+  static decltype(auto) part(const S& number) {
+    if constexpr (std::is_same_v<V, T>)
+      return (number);
+    else
+      return value_of(number);
+  }
+  template <class V>
+  V slowness_past(const V& x);
+  template <class V>
+  V stretched_slowness(const V& past);
   S edge_after(const S& x, const S& end) const;
+  template <class V, class F>
+  auto rule(const F& f, const S& a, const S& b);
   template <class F>
-  S rule(const F& f, const S& a, const S& b);
-  template <class F>
-  void halve(const F& f, const S& a, const S& b, const S& whole, int depth);
+  void halve(const F& f, const S& a, const S& b, const Number& whole, int depth);
 
   static constexpr Number epsilon = std::numeric_limits<Number>::epsilon();
   static constexpr int most_halvings = 60;

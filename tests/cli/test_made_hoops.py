@@ -36,10 +36,10 @@ def fields_of(path):
 def test_a_map_holds_what_becomes_of_hoops_as_made(tmp_path):
     fields = fields_of(sweep(tmp_path, MADE))
     summaries = [f"{q}_{s}" for q in ("jump_height", "jump_time") for s in ("mean", "sd", "q05", "q50", "q95")]
-    assert {"yield", "yield_error", "cut_off", "jump_height", "status", *summaries} <= fields.keys()
+    assert {"yield", "yield_error", "cut_off", "unsolved", "jump_height", "status", *summaries} <= fields.keys()
     assert not any(name.endswith("_error") and name != "yield_error" for name in fields), "other errors are for those who ask"
     assert fields["yield"].min() < 0.05 and fields["yield"].max() > 0.95 and (fields["yield_error"] > 0).all()
-    assert (fields["cut_off"] == 0).all()
+    assert (fields["cut_off"] == 0).all() and (fields["unsolved"] == 0).all()
     with np.errstate(invalid="ignore"):
         assert (fields["jump_height_q05"] <= fields["jump_height_q50"]).all() and (fields["jump_height_q50"] <= fields["jump_height_q95"]).all()
     assert (fields["yield"] * 256 == np.round(fields["yield"] * 256)).all()
@@ -96,7 +96,7 @@ def test_hop_tells_one_design_in_depth_as_the_map_has_it(tmp_path):
         for index in made["importance"][of]["total"].values():
             assert -0.3 < index["value"] < 1.3 and 0 <= index["error"] < 0.5
     table = leapmap("hop", tmp_path / "one.toml", "--scatter").stdout
-    for words in ("yield: reaches every goal", "misses jump_height at least 0.9", "Sobol' indices", "uniform 5 %", "5 %", "> the goal"):
+    for words in ("yield: reaches every goal", "misses jump_height { at_least = 0.9 }", "Sobol' indices", "uniform 5 %", "5 %", "> the goal"):
         assert words in table, words
 
 
@@ -123,6 +123,11 @@ BAD = {
     "no number": ('[scatter]\nslope = { normal = "much" }', ["scatter.slope", "much"]),
     "an unknown law": ("[scatter]\nslope = { cauchy = 1 }", ["scatter.slope", "cauchy", "normal"]),
     "two laws": ("[scatter]\nslope = { normal = 1, uniform = 1 }", ["scatter.slope", "normal"]),
+    "a percentage of nothing": ('[scatter]\nrelease_spin = { normal = "5 %" }', ["scatter.release_spin", "the value drawn is 0"]),
+    "degrees of a ratio": ('[scatter]\nmass_ratio = { normal = "2 deg" }', ["scatter.mass_ratio", "2 %"]),
+    "a code beyond its names": ("[scatter]\nslope = { normal = 0.1 }\n[goal]\nstatus = { is = 7 }", ["goal.status", "jumped"]),
+    "a code by its order": ('[scatter]\nslope = { normal = 0.1 }\n[goal]\nstatus = { at_least = "jumped" }', ["goal.status", "is"]),
+    "a goal above its section": ("jump_height = { at_least = 1 }", ["jump_height", "[goal] above it"]),
     "a bare number": ("[scatter]\nslope = 0.1", ["scatter.slope", "normal"]),
     "what does not scatter": ("[scatter]\nrunway = { normal = 1 }", ["runway", "unknown key", "mass_ratio"]),
     "samples of no sixteenth": ("[scatter]\nslope = { normal = 0.1 }\nsamples = 1000", ["samples", "1000", "16"]),
@@ -151,6 +156,13 @@ def test_a_bad_scatter_or_goal_ends_with_status_2_and_one_line(kind, tmp_path):
     for word in [*words, "allowed"]:
         assert word in done.stderr, done.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
+
+
+@pytest.mark.parametrize("arguments", [["hop", "--set", "goal.jump_height={at_least=1}"], ["hop", "--set", "scatter.slope={normal=0.1}"],
+                                       ["boundaries", str(TOP / "sweeps/smoke.toml"), "--set", "scatter.slope={normal=0.1}"]])
+def test_what_has_no_use_is_refused(arguments):
+    done = leapmap(*arguments)
+    assert done.returncode == 2 and "has no use here" in done.stderr and done.stderr.count("\n") == 1, done.stderr
 
 
 @pytest.mark.parametrize("spec, word", [("", "[scatter]"), (MADE, "axis")])
