@@ -11,6 +11,7 @@
 #include "model/model.hpp"
 #include "sweep/cliff.hpp"
 #include "sweep/options.hpp"
+#include "sweep/scatter.hpp"
 #include "sweep/solver.hpp"
 
 namespace leapmap::cli {
@@ -60,6 +61,16 @@ void print_outcome(const Outcome& outcome) {
   if (outcome.phase_sequence != 0) say("  {:<20} {}\n", "phases", phase_letters(outcome.phase_sequence));
 }
 
+/// As the map has it at its designs.
+void print_made(const Spec& spec, const Design& design) {
+  MadeColumns columns(scatter_fields_of(spec));
+  ScatterSolver(spec, points_of(spec.scatter)).solve({&design, 1}, columns);
+  say("as made, {} hoops\n", spec.scatter.samples);
+  for (const Field* field : columns.fields())
+    say("  {:<20} {:<14.8g} {}\n", field->name, columns.column(*field)[0],
+        field->unit == "1" ? "" : field->unit);
+}
+
 }  // namespace
 
 std::string told(const Discrete& outcome) {
@@ -81,6 +92,7 @@ void print_place(const Spec& original, const std::string& at) {
   Outcome outcome;
   make_solver(one)({&one.design, 1}, {&outcome, 1});
   print_outcome(outcome);
+  if (!original.scatter.spreads.empty()) print_made(original, one.design);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);
 
   say("\nNearest cliffs within the map (a band narrower than a thousandth of an axis may be passed over)\n");

@@ -178,6 +178,10 @@ def test_cliffs_and_info_of_such_a_map_are_of_hoops_as_drawn(tmp_path):
     assert done.returncode == 0, done.stderr
     told = leapmap("info", path)
     assert told.returncode == 0 and "yield_error" in told.stdout
+    with h5py.File(path) as f:
+        slope, ratio, share = (float(f[name][()].ravel()[k]) for name, k in (("slope", 7), ("mass_ratio", 4), ("yield", 7 * 11 + 4)))
+    place = leapmap("info", path, "--at", f"slope={slope!r},mass_ratio={ratio!r}")
+    assert place.returncode == 0 and f"yield                {share:<14.8g}" in place.stdout, place.stdout
     assert leapmap("check", path).returncode == 0
 
 
