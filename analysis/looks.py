@@ -142,6 +142,23 @@ def spread(name, law, width, percent):
     return f"{parameter(name)[0].split(' [')[0]} {'±' if law == 'uniform' else 'σ ='} " + (f"{width:g} %" if percent else shown(name, width))
 
 
+def made_words(m):
+    """How hoops of a map are made and what they must do, in words; [] of a map without [scatter]."""
+    scatter = [spread(name, *law) for name, law in m.scatter().items()]
+    return ["hoops as made: " + ", ".join(scatter), *(f"goal: {word}" for word in goal_words(m))] if scatter else []
+
+
+def goal_words(m):
+    words = []
+    for field, (least, most) in m.goals().items():
+        name = LOOKS[field].label if field in LOOKS else field
+        if least == most:
+            words.append(f"{name} is {least}")
+        else:
+            words.append(name + (f" at least {least:g}" if least is not None else "") + (f" at most {most:g}" if most is not None else ""))
+    return words
+
+
 def words_of(m, fixed):
     """What a picture's axes do not tell: the parameters of `fixed`, {name: value}, the model and the scene."""
     contact = ("mu_static", "mu_kinetic", "restitution")

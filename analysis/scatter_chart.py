@@ -95,12 +95,12 @@ def chart(told, design, scatter):
         draw_tornado(axis, scatter, name, order)
     words = [looks.titled(k, v) for k, v in design.items() if k in ("slope", "mass_ratio", "offset_ratio", "mu_static") and v is not None]
     words.append("slips by Coulomb's law" if told["scene"]["friction"] == "coulomb" else "never slips")
-    title = f"{scatter['samples']:,} hoops as made: " + (f"{share(scatter['yield'])} reach every goal, " if scatter["goals"] else "") + f"{share(scatter['jumps'])} jump"
+    title = f"{scatter['samples']:,} hoops as made: " + (f"{share(scatter['yield'])} reach every goal, " if scatter["goals"] else "") + f"{share(scatter['jumps'])} jump (± 95 %)"
     above.suptitle(title + "\n" + ", ".join(words), fontsize=10)
     tolerances = [looks.spread(k, s["law"], s["width"], s["percent"]) + (f" (to {100 * s['shrink']:.0f} % of it for 99 %)" if s["shrink"] and s["shrink"] < 1 else "") for k, s in scatter["spreads"].items()]
     if scatter["shrink_all"] is not None and 0 < scatter["shrink_all"] < 1:
         tolerances.append(f"for 99 % all shrink to {100 * scatter['shrink_all']:.0f} %")
-    figure.supxlabel(style.wrapped(tolerances, figure) + "\nbars: total Sobol' index, filled: the parameter by itself, whiskers: 95 % of the total",
+    figure.supxlabel(style.wrapped(tolerances, figure) + "\nbars: total Sobol' index, filled: the parameter by itself, whiskers: 95 % of the total; grey: misses a goal",
                      fontsize=8)
     return figure
 

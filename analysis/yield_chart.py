@@ -20,23 +20,6 @@ YIELDS = (0.5, 0.9, 0.99)
 HEIGHTS = ("jump_height", "jump_height_q05")
 
 
-def goals_of(m):
-    """What a hoop of the map must do, in words."""
-    words = []
-    for field, (least, most) in m.goals().items():
-        name = looks.LOOKS[field].label if field in looks.LOOKS else field
-        if least == most:
-            words.append(f"{name} is {least}")
-        else:
-            words.append(name + (f" at least {least:g}" if least is not None else "") + (f" at most {most:g}" if most is not None else ""))
-    return words
-
-
-def scatter_of(m):
-    """How hoops of the map are made, in words."""
-    return [looks.spread(name, *law) for name, law in m.scatter().items()]
-
-
 def draw(axis, grid, plane, panel_curves, colours, norm, levels, form, curves):
     """A quantity over the plane, smooth but across panel_curves; its isolines; and the curves."""
     crisp = cliffs.Panel(grid, grid.panels[0], panel_curves)
@@ -46,7 +29,7 @@ def draw(axis, grid, plane, panel_curves, colours, norm, levels, form, curves):
     torn = np.where(crisp.torn, np.nan, field)
     present = [v for v in levels if np.isfinite(torn).any() and np.nanmin(torn) < v < np.nanmax(torn)]
     if present:
-        lines = axis.contour(crisp.centres(grid.x), crisp.centres(grid.y), np.ma.masked_invalid(torn), levels=present, colors="white", linewidths=1.0)
+        lines = axis.contour(crisp.centres(grid.x), crisp.centres(grid.y), np.ma.masked_invalid(torn), levels=present, colors="white", linewidths=[2.0 if v == YIELDS[-1] else 1.0 for v in present])
         axis.clabel(lines, fmt=form, fontsize=7)
     return drawn, cliffs.Panel(grid, grid.panels[0], curves).draw(axis)
 
@@ -56,6 +39,10 @@ def best(grid, plane):
     rows, columns = np.nonzero(plane >= np.nanmax(plane))
     middle = np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2)
     return grid.values(grid.x)[columns[middle]], grid.values(grid.y)[rows[middle]]
+
+
+def at(grid, place):
+    return "at " + ", ".join(f"{looks.parameter(name)[1]} {value:.3g}{looks.parameter(name)[2]}" for name, value in zip((grid.x, grid.y), place))
 
 
 def chart(grid, curves):
@@ -74,8 +61,8 @@ def chart(grid, curves):
             style.log_scale(getattr(axes[0], f"{scale}axis"))
     yields = grid.cut(m.fields["yield"])[0]
     drawn, kinds = draw(axes[0], grid, yields, [], "cividis", Normalize(0, 1), YIELDS, lambda v: f"{100 * v:g} %", curves)
-    axes[0].set_title("yield: " + ",\n".join(goals_of(m)))
-    figure.colorbar(drawn, ax=axes[0], label="share of the hoops made that reach every goal", ticks=[0, 0.25, *YIELDS[:2], 1])
+    axes[0].set_title("yield: " + ",\n".join(looks.goal_words(m)))
+    figure.colorbar(drawn, ax=axes[0], pad=0.02, ticks=[0, 0.25, *YIELDS[:2], 1])
     look = looks.LOOKS["jump_height"]
     planes_of = {name: grid.cut(np.asarray(m.fields[name], float))[0] for name in shown}
     if shown:
@@ -86,13 +73,20 @@ def chart(grid, curves):
             axis.set_title("jump height as drawn" if name == "jump_height" else "5 % quantile of the jump height\nof the hoops made that jump")
         figure.colorbar(drawn, ax=list(axes[1:]), label=look.title)
     marks = []
-    if "jump_height" in shown and (yields >= YIELDS[-1]).any():
-        safe = np.where(yields >= YIELDS[-1], planes_of["jump_height"], np.nan)
-        marks.append(("P", "#d62728", f"the highest as drawn with a yield of 99 %, {np.nanmax(safe):.3g} diameters", best(grid, safe)))
+    # Two errors on the safe side.
+    surely = yields - (2 * grid.cut(m.fields["yield_error"])[0] if "yield_error" in m.fields else 0)
+    if "jump_height" in shown and (surely >= YIELDS[-1]).any():
+        safe = np.where(surely >= YIELDS[-1], planes_of["jump_height"], np.nan)
+        place = best(grid, safe)
+        marks.append(("P", "#d62728", f"the highest as drawn with a yield of 99 %: {np.nanmax(safe):.3g} diameters {at(grid, place)}", place))
     else:
-        marks.append(("P", "#d62728", f"the best yield, {100 * np.nanmax(yields):.1f} %", best(grid, yields)))
+        place = best(grid, yields)
+        marks.append(("P", "#d62728", f"the best yield, {100 * np.nanmax(yields):.1f} % {at(grid, place)}", place))
     if "jump_height" in shown:
-        marks.append(("^", "#ff7f0e", f"the highest jump as drawn, {np.nanmax(planes_of['jump_height']):.3g} diameters", best(grid, planes_of["jump_height"])))
+        highest = planes_of["jump_height"]
+        place = best(grid, highest)
+        share = yields[np.unravel_index(np.nanargmax(highest), highest.shape)]
+        marks.append(("^", "#ff7f0e", f"the highest as drawn: {np.nanmax(highest):.3g} diameters {at(grid, place)}, yield {100 * share:.0f} %", place))
     handles = []
     for symbol, colour, words, place in marks:
         for axis in axes:
@@ -102,10 +96,12 @@ def chart(grid, curves):
         for axis in axes:
             style.draw_star(axis, place)
         handles.append(style.star_handle())
-    words = ["hoops as made: " + ", ".join(scatter_of(m)), *grid.caption()]
+    words = [looks.made_words(m)[0], *grid.caption()]
     figure.supxlabel(f"{planes.axis_label(grid.x)}\n{style.wrapped(words, figure)}", fontsize=9)
     figure.supylabel(planes.axis_label(grid.y), fontsize=9)
     style.legend_above(figure, handles + cliffs.handles(kinds))
+    for _, _, words, _ in marks:
+        print(words)
     return figure
 
 

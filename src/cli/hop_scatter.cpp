@@ -66,14 +66,15 @@ std::string goal_of(const Goal& goal) { return goal.field + " " + text_of(goal);
 
 void print_spreads(const Spec& spec, const ScatterReport& report) {
   say("{:<16} {:<18} {:>9}", "scatter", "law", "cut off");
-  say("{}\n", report.shrink.empty() ? "" : "   for 99 % yield it has to shrink to");
+  say("{}\n", report.shrink.empty() ? "" : "   yield without it; for 99 % it has to shrink to");
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
     const Spread& spread = spec.scatter.spreads[k];
     say("{:<16} {:<18} {:>8.2g} %", spread.parameter, law_of(spread), 100.0 * report.cut_off[k]);
     if (!report.shrink.empty())
-      say("   {}", report.shrink[k] >= 1.0   ? "(good as it is)"
-                   : report.shrink[k] <= 0.0 ? "not enough even without it"
-                                             : fmt::format("{:.1f} % of that", 100.0 * report.shrink[k]));
+      say("   {:.4f}; {}", report.without[k],
+          report.shrink[k] >= 1.0   ? "good as it is"
+          : report.shrink[k] <= 0.0 ? "that is not enough"
+                                    : fmt::format("{:.1f} % of its width", 100.0 * report.shrink[k]));
     say("\n");
   }
   if (!report.shrink.empty() && report.shrink_all < 1.0)
@@ -119,16 +120,24 @@ void print_histogram(const Spec& spec, const ScatterReport& report) {
   if (goal != spec.goals.end()) say("          > the goal\n");
 }
 
+/// Whether anything varies there.
+bool tells(const Importance& importance) {
+  return std::ranges::any_of(importance.total,
+                             [](const Estimate& index) { return !std::isnan(index.value); });
+}
+
 void print_importance(const Spec& spec, const ScatterReport& report) {
   say("\nSobol' indices, first order and total, +- half of a 95 % interval; -: nothing varies, or none "
       "jumps\n{:<16}",
       "");
-  for (const Importance& importance : report.importance) say(" {:>15} {:>15}", importance.of, "total");
+  for (const Importance& importance : report.importance)
+    if (tells(importance)) say(" {:>15} {:>15}", importance.of, "in total");
   say("\n");
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
     say("{:<16}", spec.scatter.spreads[k].parameter);
     for (const Importance& importance : report.importance)
-      say(" {:>15} {:>15}", index_of(importance.first[k]), index_of(importance.total[k]));
+      if (tells(importance))
+        say(" {:>15} {:>15}", index_of(importance.first[k]), index_of(importance.total[k]));
     say("\n");
   }
   for (const Importance& importance : report.importance)
@@ -179,9 +188,11 @@ std::string scatter_json(const Spec& spec, const ScatterReport& report) {
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
     const Spread& spread = spec.scatter.spreads[k];
     spreads.push_back(fmt::format(
-        R"("{}": {{"law": "{}", "width": {}, "percent": {}, "cut_off": {}, "shrink": {}}})", spread.parameter,
-        spread.law == Spread::Law::normal ? "normal" : "uniform", json_number(spread.width), spread.percent,
-        json_number(report.cut_off[k]), report.shrink.empty() ? "null" : json_number(report.shrink[k])));
+        R"("{}": {{"law": "{}", "width": {}, "percent": {}, "cut_off": {}, "without": {}, "shrink": {}}})",
+        spread.parameter, spread.law == Spread::Law::normal ? "normal" : "uniform", json_number(spread.width),
+        spread.percent, json_number(report.cut_off[k]),
+        report.shrink.empty() ? "null" : json_number(report.without[k]),
+        report.shrink.empty() ? "null" : json_number(report.shrink[k])));
   }
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
     goals.push_back(fmt::format(R"("{}": {{"at_least": {}, "at_most": {}, "missed": {}}})",

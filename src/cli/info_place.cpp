@@ -2,6 +2,7 @@
 #include "cli/info_place.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cli/hop_gradient.hpp"
@@ -71,6 +72,24 @@ void print_made(const Spec& spec, const Design& design) {
         field->unit == "1" ? "" : field->unit);
 }
 
+/// The jump's height on this side of a cliff and beyond it: not every cliff costs any.
+std::string heights_beside(const Spec& spec, const Design& design, const NearCliff& cliff, std::size_t axis) {
+  constexpr double beside = 1e-9;
+  const auto member = std::get<ParameterSlot>(find_option("", spec.axes[axis].key)->slot).member;
+  const double way = cliff.at[axis] < design.*member ? -1.0 : 1.0,
+               step = way * beside * std::max(1.0, std::abs(cliff.at[axis]));
+  std::array<Design, 2> designs{design, design};
+  std::array<Outcome, 2> outcomes;
+  designs[0].*member = cliff.at[axis] - step, designs[1].*member = cliff.at[axis] + step;
+  Spec one = spec;
+  one.output = {};
+  make_solver(one)(designs, outcomes);
+  const auto height = [](const Outcome& o) {
+    return std::isnan(o.jump_height) ? "none" : fmt::format("{:.4g}", o.jump_height);
+  };
+  return height(outcomes[0]) + " to " + height(outcomes[1]);
+}
+
 }  // namespace
 
 std::string told(const Discrete& outcome) {
@@ -104,7 +123,8 @@ void print_place(const Spec& original, const std::string& at) {
   for (std::size_t k = 0; k < original.axes.size(); ++k)
     for (const NearCliff& cliff : cliffs.along[k]) {
       none = false;
-      say("  {:<34} {:<10} beyond: {}\n", place(k, cliff.at[k]), name_of(cliff.kind), told(cliff.beyond));
+      say("  {:<34} {:<10} height {}, beyond: {}\n", place(k, cliff.at[k]), name_of(cliff.kind),
+          heights_beside(original, one.design, cliff, k), told(cliff.beyond));
     }
   if (none) say("  none along any axis\n");
   if (cliffs.nearest.empty()) return;

@@ -44,6 +44,7 @@ struct ScatterReport {
   /// Of each spread: to what share of its width it has to shrink, the others staying as they are, for 99 %
   /// yield. 1: it need not; 1e-6: to less than that; 0: not even without it. Empty without goals.
   std::vector<double> shrink{};
+  std::vector<double> without{};  ///< of each spread: the yield if it did not scatter, the others staying
   double shrink_all = std::numeric_limits<double>::quiet_NaN();  ///< the same of all spreads together
   // The hoops, in the order of their replicates.
   std::vector<Design> made{};

@@ -120,6 +120,7 @@ py::dict dict_of(const ScatterReport& report, const Spec& spec) {
   }
   told["first"] = first, told["total"] = total, told["pairs"] = pairs;
   told["cut_off"] = by_spread(report.cut_off, number), told["shrink"] = by_spread(report.shrink, number);
+  told["without"] = by_spread(report.without, number);
   told["shrink_all"] = report.shrink_all, told["unsolved"] = report.unsolved;
   for (const Parameter& parameter : parameters())
     if (const auto* member = std::get_if<double Design::*>(&parameter.member);

@@ -69,12 +69,12 @@ template <class S, class T>
 template <class V, class F>
 auto HalvedTime<S, T>::rule(const F& f, const S& a, const S& b) {
   const S span = b - a;
-  const V from = abreast<V>(part<V>(a)), length = abreast<V>(part<V>(span));
+  const V from = abreast<V>(as<V>(a)), length = abreast<V>(as<V>(span));
   V sum(Number(0));
   for (std::size_t row = 0; row < rows_; ++row)
     sum = sum + scaled(f(V(from + scaled(length, nodes_[row]))), weights_[row]);
   --panels_left_;
-  return sum_of_lanes(sum) * part<V>(span);
+  return sum_of_lanes(sum) * as<V>(span);
 }
 
 /// Whether halves agree is judged by values: their derivatives, of integrands with the same singularities,

@@ -55,17 +55,10 @@ class HalvedTime {
  private:
   using Plain = std::decay_t<decltype(value_of(std::declval<T>()))>;
 
-  /// A number of all lanes, or of one, with its derivatives or its value alone.
-  template <class V>
-  static decltype(auto) as(const T& wide) {
-    if constexpr (std::is_same_v<V, T>)
-      return (wide);
-    else
-      return value_of(wide);
-  }
-  template <class V>
-  static decltype(auto) part(const S& number) {
-    if constexpr (std::is_same_v<V, T>)
+  /// A number, of all lanes or of one, with its derivatives if V has any.
+  template <class V, class X>
+  static decltype(auto) as(const X& number) {
+    if constexpr (has_derivatives<V> == has_derivatives<X>)
       return (number);
     else
       return value_of(number);

@@ -362,10 +362,9 @@ std::string options_help() {
     if (begins && goal)
       help +=
           "  FIELD = { at_least = 0.8 }, { at_most = 0.6 }, both, or { is = ... }: what a hoop must do. A "
-          "field is any of "
-          "output.fields,\n  in the map's unit, an angle also as \"700 deg\"; a code by its number or name, "
-          "a "
-          "phase_sequence as \"RSF\".\n";
+          "field is any that a\n  map has of a hoop as drawn, in its unit, an angle also as \"700 deg\"; a "
+          "code by "
+          "its number or name, a phase_sequence as\n  \"RSF\".\n";
     if (spread || goal) continue;
     const bool axis = std::holds_alternative<ParameterSlot>(option.slot);
     const std::string unit =

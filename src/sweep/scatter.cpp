@@ -96,9 +96,10 @@ std::vector<const Field*> scatter_fields_of(const Spec& spec) {
   std::vector<const Field*> fields;
   if (spec.scatter.spreads.empty()) return fields;
   const auto asked = [&](const Field& row) {
-    const auto& [statistic, of, error] = std::get<OfMade>(row.source);
-    if (!of) return statistic != Statistic::yield || !spec.goals.empty();
-    if (error) return false;
+    const OfMade& made = std::get<OfMade>(row.source);
+    const auto of = made.of;
+    if (!of) return made.statistic != Statistic::yield || !spec.goals.empty();
+    if (made.error) return false;
     if (spec.output.fields.empty()) return std::ranges::find(usual, of) != std::end(usual);
     return std::ranges::any_of(spec.output.fields, [&](const std::string& name) {
       const auto* quantity = std::get_if<Quantity>(&find_field(name)->source);

@@ -67,27 +67,30 @@ struct HoopValue {
   std::function<double(const Outcome&)> value;
 };
 
+/// The yield where spread k, or all, have a share of their width.
+double yield_at(const Workshop& workshop, const MadeTally& goals, const Scatter& scatter,
+                std::optional<std::size_t> k, double share) {
+  Scatter smaller = scatter;
+  for (std::size_t i = 0; i < smaller.spreads.size(); ++i)
+    if (!k || i == *k) smaller.spreads[i].width *= share;
+  std::atomic<std::size_t> reached{0};
+  workshop.make(smaller, {}, [&](std::size_t, std::span<const Design>, std::span<const Outcome> some) {
+    reached += static_cast<std::size_t>(
+        std::ranges::count_if(some, [&](const Outcome& outcome) { return goals.reaches_all(outcome); }));
+  });
+  return static_cast<double>(reached) / static_cast<double>(workshop.samples());
+}
+
 /// The share of its width, to a thousandth of that, at which the yield is good while a bit above it is not:
-/// of spread k, or of all.
+/// of spread k, or of all. without: the yield at none of it.
 double shrink(const Workshop& workshop, const MadeTally& goals, const Scatter& scatter,
-              std::optional<std::size_t> k) {
+              std::optional<std::size_t> k, double without) {
   constexpr double least = 1e-6;
-  const auto good = [&](double width) {
-    Scatter smaller = scatter;
-    for (std::size_t i = 0; i < smaller.spreads.size(); ++i)
-      if (!k || i == *k) smaller.spreads[i].width *= width;
-    std::atomic<std::size_t> reached{0};
-    workshop.make(smaller, {}, [&](std::size_t, std::span<const Design>, std::span<const Outcome> some) {
-      reached += static_cast<std::size_t>(
-          std::ranges::count_if(some, [&](const Outcome& outcome) { return goals.reaches_all(outcome); }));
-    });
-    return static_cast<double>(reached) >= wanted_yield * static_cast<double>(workshop.samples());
-  };
-  if (!good(0.0)) return 0.0;
+  if (without < wanted_yield) return 0.0;
   double low = 0.0, high = 1.0;
   while (high - low > 1e-3 * high && high > least) {
     const double middle = 0.5 * (low + high);
-    (good(middle) ? low : high) = middle;
+    (yield_at(workshop, goals, scatter, k, middle) >= wanted_yield ? low : high) = middle;
   }
   return std::max(low, least);
 }
@@ -110,7 +113,7 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
         fmt::format("{}: is of many designs; allowed: one design, whose hoops are made", origin_of(spec)));
   if (spec.scatter.spreads.empty())
     throw InputError(fmt::format(
-        "{}: nothing scatters; allowed: a parameter in [scatter], slope = {{ normal = \"1 deg\" }} say",
+        "{}: nothing scatters; allowed: a spec with [scatter], or --set 'scatter.slope={{normal=\"1 deg\"}}'",
         origin_of(spec)));
   ScatterOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
@@ -176,10 +179,17 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
   if (spec.goals.empty()) return report;
 
   report.yield = tally.yield();
+  Outcome drawn;
+  make_solver(spec_of_made(spec, quantities))({&spec.design, 1}, {&drawn, 1});
   const bool good = report.yield.value >= wanted_yield;
-  for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k)
-    report.shrink.push_back(good ? 1.0 : shrink(workshop, tally, spec.scatter, k));
-  report.shrink_all = good ? 1.0 : shrink(workshop, tally, spec.scatter, std::nullopt);
+  const auto shrunk = [&](std::optional<std::size_t> k, double without) {
+    return good ? 1.0 : shrink(workshop, tally, spec.scatter, k, without);
+  };
+  for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
+    report.without.push_back(yield_at(workshop, tally, spec.scatter, k, 0.0));
+    report.shrink.push_back(shrunk(k, report.without.back()));
+  }
+  report.shrink_all = shrunk(std::nullopt, tally.reaches_all(drawn) ? 1.0 : 0.0);
   return report;
 }
 

@@ -36,7 +36,7 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
     cut_off: {parameter: share of its law that no hoop can have}.
     unsolved: share that the method gave up on, of which nothing is known; errors tell it.
     shrink: {parameter: to what share of its width it has to shrink, the others staying, for 99 % yield}; 0: not even without
-        it. shrink_all: the same of all together.
+        it. without: {parameter: the yield if it did not scatter}. shrink_all: as shrink, of all together.
     made: {parameter: array}, outcomes: Outcomes, of the hoops made.
 
     Raises ValueError, naming the key, its value and what is allowed. Ctrl-C ends it."""

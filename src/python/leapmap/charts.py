@@ -10,8 +10,9 @@ import sys
 
 from leapmap._analysis import FOLDER
 
-CHARTS = {name: name + "_chart.py" for name in ("adequacy", "cut", "design", "experiment", "list", "precision", "stability", "status", "trace")}
-CHARTS |= {"explorer": "explorer", "phases": "phase_diagram.py"}
+CHARTS = {name: name + "_chart.py" for name in ("adequacy", "cut", "design", "experiment", "list", "precision", "scatter", "stability", "status", "trace",
+                                             "yield")}
+CHARTS |= {"explorer": "explorer", "phases": "phase_diagram.py", "scatter_convergence": "scatter_convergence.py"}
 
 
 def main():
