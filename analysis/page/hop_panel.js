@@ -130,8 +130,8 @@ function hopPanel(map, solver) {
   function haunt() {
     now.ghosts = !ghosts.checked ? [] : madeAfter(now.design, map.scatter, solver.ranges, GHOSTS)
       .map((design) => ({ design, story: solver.solve(design, map.slips, map.tolerance) }));
-    const outcomes = now.ghosts.map(({ story }) => story.outcome), statuses = map.codes.status?.meanings ?? [];
-    const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, map.goals, statuses)).length;
+    const outcomes = now.ghosts.map(({ story }) => story.outcome);
+    const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, map.goals, solver.codes)).length;
     element("ghosts-told").textContent = outcomes.length === 0 ? "" : `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
     scrub.max = end();
   }

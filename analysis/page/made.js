@@ -30,10 +30,11 @@ function madeAfter(design, scatter, ranges, count, seed = 1) {
   return made;
 }
 
-/** Whether an outcome reaches every goal: [{field, least, most}]; statuses: their names in the order of their codes. */
-function reachesAll(outcome, goals, statuses) {
+/** Whether an outcome reaches every goal: [{field, least, most}]; codes: {field: names in the order of its codes}. */
+function reachesAll(outcome, goals, codes) {
   return goals.every(({ field, least, most }) => {
-    const text = typeof outcome[field] === "string", value = text && typeof least !== "string" ? statuses.indexOf(outcome[field]) : outcome[field];
-    return (least === null || value >= least) && (most === null || value <= most) && value === value;
+    const number = (value) => (codes[field].includes(value) ? codes[field].indexOf(value) : value);
+    const value = number(outcome[field]);
+    return (least === null || value >= number(least)) && (most === null || value <= number(most));
   });
 }

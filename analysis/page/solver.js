@@ -29,8 +29,9 @@ async function loadSolver(text) {
     return Object.fromEntries(names.map((name, k) => [name, Float64Array.from({ length: n }, (_, i) => values[i * names.length + k])]));
   };
   const ranges = Object.fromEntries(parameters.map((name, i) => [name, [leapmap.parameter_least(i), leapmap.parameter_most(i)]]));
+  const codes = Object.fromEntries(fields.map((name, i) => [name, namesBy((code) => leapmap.code_name(i, code))]));
   return {
-    defaults, ranges,
+    defaults, ranges, codes,
     /**
      * One design in full: {outcome, motion, liftOffs}, in SI but for forces, in weights, and heights, in diameters. interval: of the
      * motion's samples [s]; 0: as fine as a picture needs.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 namespace leapmap {
 namespace {
@@ -148,15 +147,16 @@ double MadeSample::error(Statistic statistic) {
   return share > 0.0 ? error_of_quantile(share) : error_of_moments(statistic);
 }
 
-MadeTally::MadeTally(const std::vector<Goal>& goals, std::vector<double Outcome::*> quantities,
+MadeTally::MadeTally(const std::vector<Goal>& goals, const std::vector<const Field*>& quantities,
                      std::size_t samples)
     : goals_(goal_checks(goals)),
-      quantities_(std::move(quantities)),
       reached_(samples),
       jumped_(samples),
       failed_(samples),
       missed_(goals.size(), MadeShare(samples)),
-      samples_(quantities_.size()) {}
+      samples_(quantities.size()) {
+  for (const Field* field : quantities) quantities_.push_back(std::get<Quantity>(field->source).member);
+}
 
 void MadeTally::clear() {
   for (MadeShare* share : {&reached_, &jumped_, &failed_}) share->clear();

@@ -45,7 +45,6 @@ class MadeSample {
  public:
   void clear();
   void add(double value, std::size_t replicate);
-  std::span<const double> values() const { return values_; }
 
   /// NaN of no values; of one value the standard deviation is NaN, too.
   double tell(Statistic statistic);
@@ -65,7 +64,7 @@ class MadeSample {
 /// quantities are NaN.
 class MadeTally {
  public:
-  MadeTally(const std::vector<Goal>& goals, std::vector<double Outcome::*> quantities, std::size_t samples);
+  MadeTally(const std::vector<Goal>& goals, const std::vector<const Field*>& quantities, std::size_t samples);
 
   void clear();
   void add(const Outcome& outcome, std::size_t replicate);

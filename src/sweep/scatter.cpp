@@ -112,12 +112,14 @@ std::vector<const Field*> scatter_fields_of(const Spec& spec) {
   return fields;
 }
 
-std::vector<double Outcome::*> quantities_of(std::span<const Field* const> fields) {
-  std::vector<double Outcome::*> quantities;
-  for (const Field* field : fields) {
-    const auto of = std::get<OfMade>(field->source).of;
-    if (of && std::ranges::find(quantities, of) == quantities.end()) quantities.push_back(of);
-  }
+std::vector<const Field*> quantities_of_made(const Spec& spec) {
+  const std::vector<const Field*> made = scatter_fields_of(spec);
+  std::vector<const Field*> quantities;
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source))
+      if (std::ranges::any_of(
+              made, [&](const Field* row) { return std::get<OfMade>(row->source).of == quantity->member; }))
+        quantities.push_back(&field);
   return quantities;
 }
 
@@ -145,15 +147,12 @@ std::shared_ptr<const SobolPoints> points_of(const Scatter& scatter, std::size_t
                                              static_cast<std::uint64_t>(scatter.seed));
 }
 
-Spec spec_of_made(const Spec& spec, std::span<double Outcome::*const> quantities) {
+Spec spec_of_made(const Spec& spec, const std::vector<const Field*>& quantities) {
   Spec made;
   made.scene = spec.scene, made.design = spec.design, made.numerics = spec.numerics;
   made.output.fields = {"status"};
   for (const Goal& goal : spec.goals) made.output.fields.push_back(goal.field);
-  for (const Field& field : map_fields())
-    if (const auto* quantity = std::get_if<Quantity>(&field.source);
-        quantity && std::ranges::find(quantities, quantity->member) != quantities.end())
-      made.output.fields.emplace_back(field.name);
+  for (const Field* quantity : quantities) made.output.fields.emplace_back(quantity->name);
   return made;
 }
 
@@ -173,8 +172,8 @@ std::span<const double> MadeColumns::column(const Field& field) const {
 
 ScatterSolver::ScatterSolver(const Spec& spec, std::shared_ptr<const SobolPoints> points)
     : hoops_(spec.scatter, std::move(points)),
-      solver_(make_solver(spec_of_made(spec, quantities_of(scatter_fields_of(spec))))),
-      tally_(spec.goals, quantities_of(scatter_fields_of(spec)), hoops_.samples()),
+      solver_(make_solver(spec_of_made(spec, quantities_of_made(spec)))),
+      tally_(spec.goals, quantities_of_made(spec), hoops_.samples()),
       made_(std::min(made_at_once, hoops_.samples())),
       outcomes_(made_.size()) {}
 

@@ -20,8 +20,8 @@ inline constexpr std::size_t made_at_once = 1024;
 /// quantity asked for its mean, standard deviation and quantiles. None without [scatter].
 std::vector<const Field*> scatter_fields_of(const Spec& spec);
 
-/// The quantities of which such fields are.
-std::vector<double Outcome::*> quantities_of(std::span<const Field* const> fields);
+/// The quantities of which such fields are, in the order of map_fields.
+std::vector<const Field*> quantities_of_made(const Spec& spec);
 
 /// Throws InputError if the spec's [scatter] or [goal] is not one that read_spec would let pass, or its
 /// scatter lies for the larger part where no hoop can be.
@@ -31,7 +31,7 @@ void check_scatter(const Spec& spec);
 std::shared_ptr<const SobolPoints> points_of(const Scatter& scatter, std::size_t a_spread = 1);
 
 /// A spec whose solver computes what is looked at in hoops as made: goals, and these quantities.
-Spec spec_of_made(const Spec& spec, std::span<double Outcome::*const> quantities);
+Spec spec_of_made(const Spec& spec, const std::vector<const Field*>& quantities);
 
 /// Of a block of designs, a column for each field.
 class MadeColumns {

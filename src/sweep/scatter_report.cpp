@@ -25,11 +25,18 @@ constexpr double wanted_yield = 0.99;
 /// Makes hoops after one design and solves them, on all threads.
 class Workshop {
  public:
-  Workshop(const Spec& spec, std::span<double Outcome::*const> quantities, const ScatterOptions& options)
+  Workshop(const Spec& spec, const std::vector<const Field*>& quantities, const ScatterOptions& options)
       : spec_(spec),
         options_(options),
         points_(points_of(spec.scatter, 2)),
         solved_(spec_of_made(spec, quantities)) {}
+
+  /// The hoop as drawn.
+  Outcome drawn() const {
+    Outcome outcome;
+    make_solver(solved_)({&spec_.design, 1}, {&outcome, 1});
+    return outcome;
+  }
 
   std::size_t samples() const { return points_->samples(); }
   std::size_t replicate(std::size_t hoop) const { return hoop / points_->a_replicate(); }
@@ -117,7 +124,7 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
         origin_of(spec)));
   ScatterOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
-  const std::vector<double Outcome::*> quantities = quantities_of(scatter_fields_of(spec));
+  const std::vector<const Field*> quantities = quantities_of_made(spec);
   const Workshop workshop(spec, quantities, options);
   MadeTally tally(spec.goals, quantities, workshop.samples());
   ScatterReport report;
@@ -132,12 +139,9 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
     outputs.push_back(
         {"yield", [&](const Outcome& o) { return known(o, tally.reaches_all(o) ? 1.0 : 0.0); }});
   outputs.push_back({"jumps", [&](const Outcome& o) { return known(o, jumps(o) ? 1.0 : 0.0); }});
-  for (const Field& field : map_fields())
-    if (const auto* quantity = std::get_if<Quantity>(&field.source);
-        quantity && std::ranges::find(quantities, quantity->member) != quantities.end())
-      outputs.push_back({std::string(field.name), [&jumps, of = quantity->member](const Outcome& o) {
-                           return jumps(o) ? o.*of : nan;
-                         }});
+  for (const Field* field : quantities)
+    outputs.push_back({std::string(field->name), [&jumps, of = std::get<Quantity>(field->source).member](
+                                                     const Outcome& o) { return jumps(o) ? o.*of : nan; }});
 
   // Of each output, of each sample.
   const auto samples = pick_and_freeze(spec.scatter.spreads.size());
@@ -164,13 +168,12 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
   report.jumps = tally.jumps();
   report.unsolved = tally.failed();
   for (std::size_t k = 0; k < spec.goals.size(); ++k) report.missed.push_back(tally.missed(k));
-  for (const Field& field : map_fields()) {
-    const auto* quantity = std::get_if<Quantity>(&field.source);
-    if (!quantity || std::ranges::find(quantities, quantity->member) == quantities.end()) continue;
+  for (const Field* field : quantities) {
+    const auto of = std::get<Quantity>(field->source).member;
     const auto tell = [&](Statistic statistic) {
-      return Estimate{tally.tell(statistic, quantity->member), tally.error(statistic, quantity->member)};
+      return Estimate{tally.tell(statistic, of), tally.error(statistic, of)};
     };
-    report.quantities.push_back({std::string(field.name), tell(Statistic::mean), tell(Statistic::sd),
+    report.quantities.push_back({std::string(field->name), tell(Statistic::mean), tell(Statistic::sd),
                                  tell(Statistic::q05), tell(Statistic::q50), tell(Statistic::q95)});
   }
   const MadeHoops hoops(spec.scatter, points_of({spec.scatter.spreads, SobolPoints::replicates, 0}));
@@ -179,8 +182,6 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
   if (spec.goals.empty()) return report;
 
   report.yield = tally.yield();
-  Outcome drawn;
-  make_solver(spec_of_made(spec, quantities))({&spec.design, 1}, {&drawn, 1});
   const bool good = report.yield.value >= wanted_yield;
   const auto shrunk = [&](std::optional<std::size_t> k, double without) {
     return good ? 1.0 : shrink(workshop, tally, spec.scatter, k, without);
@@ -189,7 +190,7 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
     report.without.push_back(yield_at(workshop, tally, spec.scatter, k, 0.0));
     report.shrink.push_back(shrunk(k, report.without.back()));
   }
-  report.shrink_all = shrunk(std::nullopt, tally.reaches_all(drawn) ? 1.0 : 0.0);
+  report.shrink_all = shrunk(std::nullopt, tally.reaches_all(workshop.drawn()) ? 1.0 : 0.0);
   return report;
 }
 

@@ -73,6 +73,14 @@ LEAPMAP_EXPORT const char* field_name(int i) {
              : nullptr;
 }
 
+/// What a code of a field means; null: it is no code, or there is none so large.
+LEAPMAP_EXPORT const char* code_name(int field, int code) {
+  const auto* codes = std::get_if<leapmap::Code>(&map_fields()[static_cast<std::size_t>(field)].source);
+  return codes && static_cast<std::size_t>(code) < codes->names.size()
+             ? codes->names[static_cast<std::size_t>(code)].data()
+             : nullptr;
+}
+
 /// Their ranges.
 LEAPMAP_EXPORT double parameter_least(int i) {
   return leapmap::parameters()[static_cast<std::size_t>(i)].range.least;

@@ -435,6 +435,9 @@ samples = 128
 [goal]
 jump_height = { at_least = 0.8 }
 status = { is = "jumped" }
+spurious_first_jump = { is = 1 }
+[output]
+fields = ["jump_height"]
 """
     path = sweep(tmp_path, spec)
     opened(browser, made(path))
