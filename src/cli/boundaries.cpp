@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "cli/commands.hpp"
@@ -15,6 +13,7 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "cli/text_file.hpp"
 #include "leapmap/boundaries.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/schema.hpp"
@@ -143,25 +142,7 @@ void write_csv(const std::string& path, const Boundaries& found) {
     for (const std::size_t cliff : found.curves[k].cliffs) line(fmt::format("{}", k), cliff);
   for (std::size_t i = 0; i < found.cliffs.size(); ++i)
     if (!on_curve[i]) line("", i);
-  const std::string part = path + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code failed;
-  if (file) std::filesystem::rename(part, path, failed);
-  if (!file || failed) throw IoError(fmt::format("{}: cannot be written", path));
-}
-
-/// What is somebody's is not overwritten by a table.
-void refuse_csv(const BoundariesArguments& arguments) {
-  if (arguments.csv.empty()) return;
-  std::error_code ignored;
-  for (const std::string& other : {arguments.input, arguments.output})
-    if (arguments.csv == other || std::filesystem::equivalent(arguments.csv, other, ignored))
-      throw InputError(
-          fmt::format("--csv {}: is the file of something else here; allowed: another name", other));
-  if (hdf5::is_hdf5(arguments.csv, arguments.locking))
-    throw InputError(fmt::format("--csv {}: is an HDF5 file; allowed: another name", arguments.csv));
+  write_text(path, text);
 }
 
 void print_counts(const Boundaries& found) {
@@ -189,7 +170,7 @@ Spec spec_of_input(const BoundariesArguments& arguments) {
 int run(const BoundariesArguments& arguments) {
   const Spec spec = spec_of_input(arguments);
   refuse_scatter(arguments.overrides, "cliffs are of hoops as drawn");
-  refuse_csv(arguments);
+  refuse_text_over("--csv", arguments.csv, {arguments.input, arguments.output}, arguments.locking);
   if (arguments.options.phases && !model_of(spec.scene).slips)
     throw InputError(
         "--phases: has no use where the contact never slips; allowed: with friction = \"coulomb\"");

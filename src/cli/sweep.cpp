@@ -162,6 +162,14 @@ void add_sweep(CLI::App& app, int& status) {
                    "the map to write, in a folder made if need be; default: output.file of the spec")
       ->check(named_file());
   add_set(*command, arguments->overrides, ", for example --set tolerance=1e-12");
+  command
+      ->add_option_function<std::string>(
+          "--points",
+          [arguments](const std::string& file) { arguments->overrides.push_back("design.points=" + file); },
+          "solve the designs of this CSV file in place of axes, one a line, as leapmap design --csv writes "
+          "them")
+      ->check(named_file());
+
   for (const Option* option : hop_options())
     if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
   command->add_option("--threads", arguments->threads, "threads to use; default: all")

@@ -7,6 +7,8 @@
 #include "leapmap/design.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/estimate.hpp"
+#include "leapmap/find_designs.hpp"
+
 #include "leapmap/gradient.hpp"
 #include "leapmap/map.hpp"
 #include "leapmap/motion.hpp"

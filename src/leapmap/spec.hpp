@@ -37,6 +37,8 @@ struct Output {
 struct Axis {
   std::string key{};
   std::vector<double> values{};
+  bool free = false;  ///< values are two bounds, and all between is meant: of find_designs only
+  bool log = false;   ///< of a free one: equal ratios count as equal steps
 };
 
 /// Designs one by one: a column of values for each parameter named, all equally long.
@@ -81,6 +83,8 @@ struct Spec {
   PointList list{};
   Scatter scatter{};
   std::vector<Goal> goals{};  ///< all are to be reached; at most one of a field
+  // What find_designs looks for: one or two fields or parameters in all.
+  std::vector<std::string> maximize{}, minimize{};
 };
 
 /// Reads a spec from a TOML file; overrides are KEY=VALUE, applied in order, KEY with or without its section.

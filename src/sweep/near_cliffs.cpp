@@ -34,8 +34,9 @@ class Box {
       const auto [low, high] = std::ranges::minmax(axis.values);
       const auto spacing = spacing_of(axis.values);
       const bool log = spacing && spacing->log && low > 0.0;
-      sides_.push_back({std::get<ParameterSlot>(find_option("", axis.key)->slot).member, low, high, log});
-      const double value = design.*sides_.back().member;
+      members_.push_back(std::get<ParameterSlot>(find_option("", axis.key)->slot).member);
+      sides_.push_back({low, high, log});
+      const double value = design.*members_.back();
       if (!(value >= low && value <= high))
         throw InputError(
             fmt::format("{} = {} is outside the map; allowed: from {} to {}", axis.key, value, low, high));
@@ -44,15 +45,13 @@ class Box {
   }
 
   std::size_t dimensions() const { return sides_.size(); }
-  bool is_flat(std::size_t k) const { return !(sides_[k].high > sides_[k].low); }
+  bool is_flat(std::size_t k) const { return sides_[k].is_flat(); }
 
   /// The design so far from the centre in a direction.
   Design at(const Vector& direction, double distance) const {
     Design design = design_;
     for (std::size_t k = 0; k < sides_.size(); ++k)
-      if (direction[k] != 0.0)
-        design.*sides_[k].member =
-            std::clamp(sides_[k].value(centre_[k] + distance * direction[k]), sides_[k].low, sides_[k].high);
+      if (direction[k] != 0.0) design.*members_[k] = sides_[k].value(centre_[k] + distance * direction[k]);
     return design;
   }
   /// How far the box reaches in a direction.
@@ -74,23 +73,14 @@ class Box {
   }
   Vector place(const Design& design) const {
     Vector place;
-    for (const Side& side : sides_) place.push_back(design.*side.member);
+    for (const auto member : members_) place.push_back(design.*member);
     return place;
   }
 
  private:
-  struct Side {
-    double Design::*member;
-    double low, high;
-    bool log;
-    double coordinate(double value) const {
-      return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
-    }
-    double value(double coordinate) const {
-      return log ? low * std::pow(high / low, coordinate) : low + coordinate * (high - low);
-    }
-  };
   Design design_;
+  std::vector<double Design::*> members_;
+
   std::vector<Side> sides_;
   Vector centre_;
 };

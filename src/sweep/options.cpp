@@ -39,6 +39,12 @@ std::vector<std::string_view> field_names() {
   return names;
 }
 
+bool is_parameter(std::string_view name) {
+  return std::ranges::any_of(parameters(), [&](const Parameter& parameter) {
+    return parameter.name == name && std::holds_alternative<double Design::*>(parameter.member);
+  });
+}
+
 bool is_of_made(std::string_view name) {
   return std::ranges::find(scatter_fields(), name, &Field::name) != scatter_fields().end();
 }
@@ -176,6 +182,19 @@ Option spread_of(const Parameter& parameter) {
           parameter.only_of};
 }
 
+Option objective(std::string_view key, TextsSlot slot, std::string_view meaning) {
+  return {"goal",
+          key,
+          slot,
+          "",
+          meaning,
+          {},
+          field_names,
+          {},
+          [](std::string_view name) { return is_parameter(name) || is_of_made(name); },
+          "a free parameter; with [scatter] yield, jump_height_q05 and the like"};
+}
+
 /// [goal] has one for each field.
 Option goal_of(const Field& field) {
   return {"goal", field.name,   GoalSlot{}, field.unit, field.long_name, {-infinity, infinity, false, false},
@@ -215,6 +234,15 @@ std::vector<Option> all_options() {
         if (std::holds_alternative<double Design::*>(parameter.member)) all.push_back(spread_of(parameter));
     if (section == "goal")
       for (const Field& field : map_fields()) all.push_back(goal_of(field));
+    if (section == "goal") {
+      all.push_back(goal_of(*find_field("yield")));
+      all.push_back(objective(
+          "maximize", [](Spec& s) -> std::vector<std::string>& { return s.maximize; },
+          "leapmap design: what is to be as large as can be; with minimize one or two in all"));
+      all.push_back(objective(
+          "minimize", [](Spec& s) -> std::vector<std::string>& { return s.minimize; },
+          "leapmap design: what is to be as small as can be"));
+    }
     add_keys(false);
   }
   return all;

@@ -26,7 +26,7 @@ std::string default_of(const Option& option) {
         } else if constexpr (std::is_same_v<Slot, TextSlot>) {
           return fmt::format("\"{}\"", slot(spec));
         } else if constexpr (std::is_same_v<Slot, TextsSlot>) {
-          return option.key == "gradients" ? "[none]" : "[all]";
+          return option.key == "fields" || option.key == "gradients_by" ? "[all]" : "[none]";
         } else if constexpr (std::is_same_v<Slot, SpreadSlot> || std::is_same_v<Slot, GoalSlot>) {
           return "none";
         } else {
@@ -44,7 +44,8 @@ std::string options_help() {
       "  slope = { from = \"2 deg\", to = \"50 deg\", count = 241 }     mass_ratio = { from = 0.1, to = 20, "
       "count = 256, "
       "scale = \"log\" }\n"
-      "  offset_ratio = { values = [0.6, 0.8, 1.0] }\n";
+      "  offset_ratio = { values = [0.6, 0.8, 1.0] }\n"
+      "For leapmap design it is free between two bounds: slope = { from = \"2 deg\", to = \"50 deg\" }.\n";
   std::string_view section;
   for (const Option& option : spec_options()) {
     const bool spread = std::holds_alternative<SpreadSlot>(option.slot),
@@ -62,7 +63,9 @@ std::string options_help() {
           "  FIELD = { at_least = 0.8 }, { at_most = 0.6 }, both, or { is = ... }: what a hoop must do. A "
           "field is any that a\n  map has of a hoop as drawn, in its unit, an angle also as \"700 deg\"; a "
           "code by "
-          "its number or name, a phase_sequence as\n  \"RSF\".\n";
+          "its number or name, a phase_sequence as\n  \"RSF\". For leapmap design also yield, the share of "
+          "the "
+          "hoops made that reach all the others.\n";
     if (spread || goal) continue;
     const bool axis = std::holds_alternative<ParameterSlot>(option.slot);
     const std::string unit =

@@ -69,6 +69,8 @@ void check_goal(const Spec& spec, const Goal& goal) {
   if (!option) refuse(spec, "goal", goal.field, "is no field of a map", "one of them");
   if (std::ranges::count(spec.goals, goal.field, &Goal::field) > 1)
     refuse(spec, "goal", goal.field, "is there twice", "once");
+  if (std::holds_alternative<OfMade>(find_field(goal.field)->source))
+    refuse(spec, "goal", goal.field, "is of many hoops made, no goal of one", "with leapmap design");
   if (!has(spec.scene.friction, option->only_of))
     refuse(spec, "goal", goal.field, no_use(spec.scene), with_model(*option->only_of));
   const bool some = std::isfinite(goal.at_least) || std::isfinite(goal.at_most);

@@ -21,6 +21,17 @@ std::vector<double> values_of(const Spacing& spacing) {
   return values;
 }
 
+double Side::coordinate(double value) const {
+  return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
+
+double Side::value(double coordinate) const {
+  if (coordinate <= 0.0) return low;
+  if (coordinate >= 1.0) return high;
+  return std::clamp(log ? low * std::pow(high / low, coordinate) : low + coordinate * (high - low), low,
+                    high);
+}
+
 std::optional<Spacing> spacing_of(std::span<const double> values) {
   if (values.size() <= 3) return {};
   for (const bool log : {false, true}) {

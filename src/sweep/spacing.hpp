@@ -19,6 +19,17 @@ struct Spacing {
 /// log.
 std::vector<double> values_of(const Spacing& spacing);
 
+/// A side of a box of designs, in coordinates from 0 to 1 along it.
+struct Side {
+  double low, high;
+  bool log = false;  ///< of logarithms
+
+  bool is_flat() const { return !(high > low); }
+  double coordinate(double value) const;
+  /// Inside the bounds, and the bounds themselves to the last bit.
+  double value(double coordinate) const;
+};
+
 /// The spacing that on this machine gives these very values, to the last bit; nothing for three values or
 /// fewer, which are as soon written out.
 std::optional<Spacing> spacing_of(std::span<const double> values);

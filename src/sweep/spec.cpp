@@ -29,7 +29,7 @@ struct Assign {
 
   void operator()(const ParameterSlot& slot) const {
     if (const toml::table* table = entry.node->as_table()) {
-      spec.axes.push_back({std::string(entry.option->key), to_axis(entry, *table)});
+      spec.axes.push_back(to_axis(entry, *table));
     } else {
       spec.design.*slot.member = to_number(entry, *entry.node);
     }

@@ -40,6 +40,9 @@ void check_values(const Spec& spec, const std::vector<Axis>& axes) {
     if (!has(spec.scene.friction, option->only_of))
       refuse(spec, axis.key, no_use(spec.scene), with_model(*option->only_of));
     if (axis.values.empty()) refuse(spec, axis.key, "has no values", "one or more");
+    if (axis.free)
+      refuse(spec, axis.key, "is between bounds: 'count' is missing",
+             "{ from, to, count }, or leapmap design, which chooses between bounds");
     for (const double value : axis.values) check_number(spec, *option, value);
   }
 }
@@ -101,7 +104,7 @@ void check_spec(const Spec& spec) {
   check_scene(spec.scene);
   Spec copy;  // as slots are of specs that may be changed; without the designs, which may be many
   copy.numerics = spec.numerics, copy.output = spec.output, copy.points = spec.points;
-  copy.scatter = spec.scatter;
+  copy.scatter = spec.scatter, copy.maximize = spec.maximize, copy.minimize = spec.minimize;
   for (const Option& option : spec_options())
     std::visit(
         [&](const auto& slot) {
@@ -120,6 +123,10 @@ void check_spec(const Spec& spec) {
       (spec.numerics.fixed_step > 0.0 || spec.numerics.absolute_tolerance > 0.0))
     refuse(spec, "fixed_step or absolute_tolerance", "is set, and exact takes no steps",
            "with method = \"gsl-...\"");
+  for (const auto& [key, names] : {std::pair{"maximize", &spec.maximize}, {"minimize", &spec.minimize}})
+    if (!names->empty())
+      refuse(spec, key, fmt::format("'{}' has no use here", names->front()),
+             "with leapmap design, which looks for the best");
   check_gradients(spec);
   check_scatter(spec);
   check_count(spec);

@@ -87,18 +87,27 @@ std::size_t count_of_steps(const Entry& entry, const toml::table& table, double 
   return static_cast<std::size_t>(std::round(steps)) + 1;
 }
 
-/// { from, to, count, scale } or { from, to, step }.
+/// { from, to, count, scale }, { from, to, step } or, of a free axis, { from, to, scale }.
 Spacing to_spacing(const Entry& entry, const toml::table& table) {
   const bool steps = table.contains("step");
-  for (const std::string_view part : {"from", "to", "count"})
-    if (!table.contains(part) && !(steps && part == "count"))
-      refuse(entry, fmt::format("'{}' is missing", part), axis_forms);
+  for (const std::string_view part : {"from", "to"})
+    if (!table.contains(part)) refuse(entry, fmt::format("'{}' is missing", part), axis_forms);
   Spacing spacing{.from = to_number(entry, *table.get("from"), "from"),
                   .to = to_number(entry, *table.get("to"), "to"),
                   .count = 1};
   const double from = spacing.from, to = spacing.to;
   if (steps) {
     spacing.count = count_of_steps(entry, table, from, to);
+    return spacing;
+  }
+  const std::string scale = table["scale"].value_or(std::string(table.contains("scale") ? "?" : "linear"));
+  if (scale != "linear" && scale != "log") refuse(entry, "'scale' is unknown", "\"linear\" or \"log\"");
+  spacing.log = scale == "log";
+  if (spacing.log && !(from > 0.0 && to > 0.0))
+    refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
+  if (!table.contains("count")) {  // a free one: its bounds
+    if (!(from < to)) refuse(entry, "'from' is not below 'to'", "two bounds, the lesser one first");
+    spacing.count = 2;
     return spacing;
   }
   const auto count = to_whole(*table.get("count"));
@@ -108,18 +117,14 @@ Spacing to_spacing(const Entry& entry, const toml::table& table) {
   if (*count > 1 && from == to)
     refuse(entry, "'from' and 'to' are the same", "two different bounds, or count = 1");
   if (*count == 1 && from != to) refuse(entry, "'count' is 1", "2 or more, or 'from' equal to 'to'");
-  const std::string scale = table["scale"].value_or(std::string(table.contains("scale") ? "?" : "linear"));
-  if (scale != "linear" && scale != "log") refuse(entry, "'scale' is unknown", "\"linear\" or \"log\"");
-  spacing.log = scale == "log";
-  if (spacing.log && !(from > 0.0 && to > 0.0))
-    refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
+
   spacing.count = static_cast<std::size_t>(*count);
   return spacing;
 }
 
 }  // namespace
 
-std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
+Axis to_axis(const Entry& entry, const toml::table& table) {
   using Names = std::vector<std::string_view>;
   const Names names = table.contains("values") ? Names{"values"}
                       : table.contains("step") ? Names{"from", "to", "step"}
@@ -127,7 +132,16 @@ std::vector<double> to_axis(const Entry& entry, const toml::table& table) {
   for (const auto& [key, node] : table)
     if (std::ranges::find(names, key.str()) == names.end())
       refuse(entry, fmt::format("'{}' does not belong to this axis", key.str()), axis_forms);
-  return table.contains("values") ? to_list(entry, table) : values_of(to_spacing(entry, table));
+  Axis axis{std::string(entry.option->key), {}};
+  if (table.contains("values")) {
+    axis.values = to_list(entry, table);
+    return axis;
+  }
+  const Spacing spacing = to_spacing(entry, table);
+  axis.values = values_of(spacing);
+  axis.free = !table.contains("step") && !table.contains("count");
+  axis.log = axis.free && spacing.log;
+  return axis;
 }
 
 }  // namespace leapmap

@@ -34,8 +34,8 @@ double to_number(const Entry& entry, const toml::node& node, std::string_view pa
 /// A whole number, also one written as 1e6.
 std::optional<std::int64_t> to_whole(const toml::node& node);
 
-/// { values }, { from, to, count, scale } or { from, to, step }.
-std::vector<double> to_axis(const Entry& entry, const toml::table& table);
+/// { values }, { from, to, count, scale } or { from, to, step }; { from, to, scale }: a free one.
+Axis to_axis(const Entry& entry, const toml::table& table);
 
 /// { normal } or { uniform }: a width in the parameter's unit, or in per cent of its value.
 Spread to_spread(const Entry& entry);

@@ -43,6 +43,12 @@ std::string text_of(const Spec& original, bool spaced) {
   };
   const auto axes = [&] {  // in spec order, which is the order of the map's dimensions
     for (const Axis& axis : spec.axes) {
+      if (axis.free) {
+        line_below("design", axis.key,
+                   fmt::format("{{ from = {}, to = {}{} }}", number(axis.values.front()),
+                               number(axis.values.back()), axis.log ? ", scale = \"log\"" : ""));
+        continue;
+      }
       if (const auto spacing = spaced ? spacing_of(axis.values) : std::nullopt) {
         line_below("design", axis.key,
                    fmt::format("{{ from = {}, to = {}, count = {}{} }}", number(spacing->from),

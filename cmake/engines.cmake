@@ -1,0 +1,12 @@
+# leapmap design by pagmo and NLopt. Debian's libpagmo-dev is large, and optional: without them the search does without.
+find_package(pagmo CONFIG QUIET)
+find_package(NLopt CONFIG QUIET)
+if(pagmo_FOUND AND NLopt_FOUND)
+  set(LEAPMAP_ENGINES ON)
+  target_sources(leapmap PRIVATE src/design/engines_pagmo.cpp src/design/descend_nlopt.cpp)
+  target_link_libraries(leapmap PRIVATE Pagmo::pagmo NLopt::nlopt)
+else()
+  set(LEAPMAP_ENGINES OFF)
+  message(STATUS "libpagmo-dev or libnlopt-cxx-dev (Debian) is not there: leapmap design searches without CMA-ES, NSGA-II and SLSQP")
+  target_sources(leapmap PRIVATE src/design/engines_absent.cpp)
+endif()

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap design: the designs of a box that reach their goals best.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "cli/info_place.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/spoken.hpp"
+#include "cli/sweep.hpp"
+#include "cli/text_file.hpp"
+#include "design/question.hpp"
+#include "leapmap/find_designs.hpp"
+#include "leapmap/sweep.hpp"
+#include "model/model.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/parallel.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct DesignArguments {
+  std::string spec, output, csv;
+  std::vector<std::string> overrides;
+  FindOptions options;
+  bool json = false, quiet = false, overwrite = false;
+  Locking locking = Locking::required;
+};
+
+std::string with_unit(double value, std::string_view unit) {
+  if (unit == "rad") return fmt::format("{:.6g} deg", value * 180.0 / std::numbers::pi);
+  return unit == "1" || unit.empty() ? fmt::format("{:.6g}", value) : fmt::format("{:.6g} {}", value, unit);
+}
+
+std::string told_parameter(const FreeParameter& parameter, const Design& design) {
+  return fmt::format("{} {}", parameter.name,
+                     with_unit(design.*parameter.member, find_option("", parameter.name)->unit));
+}
+
+std::string told_parameters(const Question& question, const Design& design) {
+  std::vector<std::string> told;
+  for (const FreeParameter& parameter : question.free) told.push_back(told_parameter(parameter, design));
+  return fmt::format("{}", fmt::join(told, ", "));
+}
+
+/// Objectives that are fields, and the usual quantities.
+std::string told_fields(const Question& question, const FoundDesign& found) {
+  std::vector<std::string> told, names;
+  for (std::size_t k = 0; k < question.objectives.size(); ++k)
+    if (const Field* field = question.objectives[k].field) {
+      told.push_back(fmt::format("{} {}", field->name, with_unit(found.objectives[k], field->unit)));
+      names.emplace_back(field->name);
+    }
+  for (const Field& field : map_fields()) {
+    const bool asked =
+        field.name == "jump_height" || field.name == "jump_time" ||
+        std::ranges::find(question.one.goals, field.name, &Goal::field) != question.one.goals.end();
+    const double value = stored_number(field, found.outcome);
+    if (asked && !std::isnan(value) && std::ranges::find(names, field.name) == names.end())
+      told.push_back(fmt::format("{} {}", field.name, with_unit(value, field.unit)));
+  }
+  return fmt::format("{}", fmt::join(told, ", "));
+}
+
+void print_gradients(const Question& question, const FoundDesign& found) {
+  for (const FieldGradient& gradient : found.gradients) {
+    std::vector<std::string> parts;
+    for (const FreeParameter& parameter : question.free) {
+      const double by = gradient.by.*parameter.member;
+      const bool angle = find_option("", parameter.name)->unit == "rad";
+      if (!std::isnan(by))
+        parts.push_back(fmt::format("{:+.4g} {}{}", by * (angle ? std::numbers::pi / 180.0 : 1.0),
+                                    angle ? "a degree of " : "a unit of ", parameter.name));
+    }
+    if (!parts.empty()) say("     {} changes by {}\n", gradient.of, fmt::join(parts, ", "));
+  }
+}
+
+void print_design(const Question& question, const FoundDesign& found, std::size_t number) {
+  say("\n{:>3}  {}\n     {}\n", number, told_parameters(question, found.design),
+      told_fields(question, found));
+  if (!found.binds.empty()) say("     what binds: {}\n", fmt::join(found.binds, "; "));
+  if (!found.cliff.empty())
+    say("     nearest cliff: {:.2g} of the box away, {}; beyond: {}\n", found.cliff[0].distance,
+        name_of(found.cliff[0].kind), told(found.cliff[0].beyond));
+  print_gradients(question, found);
+  say("     {}\n", hop_command(question.one, found.design));
+}
+
+/// The ends of a front and the designs between them that turn the most.
+std::vector<std::size_t> called_out(const FoundDesigns& found) {
+  const std::size_t last = found.designs.size() - 1;
+  const auto at = [&](std::size_t i, std::size_t k) {
+    const double from = found.designs.front().objectives[k], to = found.designs.back().objectives[k];
+    return to == from ? 0.0 : (found.designs[i].objectives[k] - from) / (to - from);
+  };
+  std::size_t knee = 0;
+  double most = 0.0;
+  for (std::size_t i = 0; i <= last; ++i)
+    if (const double off = std::abs(at(i, 0) - at(i, 1)); off > most) most = off, knee = i;
+  std::vector<std::size_t> out{0};
+  if (knee != 0 && knee != last) out.push_back(knee);
+  if (last != 0) out.push_back(last);
+  return out;
+}
+
+void print_found(const Question& question, const FoundDesigns& found) {
+  say("{} designs solved in {}{}\n", grouped(found.evaluations), spoken_duration(found.seconds),
+      found.engines ? "" : "; this build is without pagmo and NLopt");
+  if (question.objectives.size() == 2 && found.reached) {
+    say("front: {} designs, none of which is better than another in both {} and {}; it dominates {:.2f} % of "
+        "the rectangle between its ends\n",
+        grouped(found.designs.size()), question.objectives[0].name, question.objectives[1].name,
+        100.0 * found.hypervolume);
+    for (const std::size_t i : called_out(found)) print_design(question, found.designs[i], i + 1);
+    return;
+  }
+  for (std::size_t i = 0; i < found.designs.size(); ++i) print_design(question, found.designs[i], i + 1);
+}
+
+/// The best that there is where no design does it.
+void print_miss(const Spec& spec, const Question& question, const FoundDesigns& found) {
+  say("No design of this box does it: none of {} looked at. The nearest miss:\n", grouped(found.evaluations));
+  const FoundDesign& nearest = found.designs[0];
+  say("     {}\n     {}\n", told_parameters(question, nearest.design), name_of(nearest.outcome.status));
+  for (std::size_t k = 0; k < spec.goals.size(); ++k)
+    say("     {} {}: {}\n", spec.goals[k].field, text_of(spec.goals[k]),
+        std::isnan(found.missed[k]) ? "it has none" : fmt::format("{:.10g}", found.missed[k]));
+  say("     {}\n", hop_command(question.one, nearest.design));
+}
+
+std::string json_of(const Question& question, const FoundDesign& found) {
+  std::vector<std::string> parameters, objectives, fields, gradients;
+  for (const FreeParameter& parameter : question.free)
+    parameters.push_back(
+        fmt::format("\"{}\": {}", parameter.name, json_number(found.design.*parameter.member)));
+  for (std::size_t k = 0; k < question.objectives.size(); ++k)
+    objectives.push_back(
+        fmt::format("\"{}\": {}", question.objectives[k].name, json_number(found.objectives[k])));
+  for (const Field& field : map_fields())
+    if (!std::holds_alternative<Word>(field.source) && has(question.one.scene.friction, field.only_of))
+      fields.push_back(
+          fmt::format("\"{}\": {}", field.name, json_number(stored_number(field, found.outcome))));
+  for (const FieldGradient& gradient : found.gradients) {
+    std::vector<std::string> by;
+    for (const FreeParameter& parameter : question.free)
+      by.push_back(fmt::format("\"{}\": {}", parameter.name, json_number(gradient.by.*parameter.member)));
+    gradients.push_back(fmt::format("\"{}\": {{{}}}", gradient.of, fmt::join(by, ", ")));
+  }
+  std::vector<std::string> binds;
+  for (const std::string& one : found.binds) binds.push_back(fmt::format("\"{}\"", one));
+  const std::string cliff =
+      found.cliff.empty() ? "null"
+                          : fmt::format("{{\"distance\": {}, \"kind\": \"{}\"}}",
+                                        json_number(found.cliff[0].distance), name_of(found.cliff[0].kind));
+  return fmt::format(
+      "    {{\"parameters\": {{{}}}, \"objectives\": {{{}}}, \"fields\": {{{}}},\n     \"gradients\": "
+      "{{{}}}, "
+      "\"binds\": [{}], \"cliff\": {}, \"hop\": \"{}\"}}",
+      fmt::join(parameters, ", "), fmt::join(objectives, ", "), fmt::join(fields, ", "),
+      fmt::join(gradients, ", "), fmt::join(binds, ", "), cliff, hop_command(question.one, found.design));
+}
+
+void print_json(const Question& question, const FoundDesigns& found) {
+  std::vector<std::string> designs;
+  for (const FoundDesign& one : found.designs) designs.push_back(json_of(question, one));
+  say("{{\"reached\": {}, \"evaluations\": {}, \"seconds\": {}, \"hypervolume\": {}, \"designs\": "
+      "[\n{}\n]}}\n",
+      found.reached, found.evaluations, json_number(found.seconds), json_number(found.hypervolume),
+      fmt::join(designs, ",\n"));
+}
+
+/// The columns that design.points takes.
+std::string csv_of(const Question& question, const FoundDesigns& found) {
+  std::vector<std::string> names;
+  for (const FreeParameter& parameter : question.free) names.push_back(parameter.name);
+  std::string text = fmt::format("{}\n", fmt::join(names, ","));
+  for (const FoundDesign& one : found.designs) {
+    std::vector<std::string> cells;
+    for (const FreeParameter& parameter : question.free)
+      cells.push_back(fmt::format("{}", one.design.*parameter.member));
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return text;
+}
+
+int run(const DesignArguments& arguments) {
+  const Spec spec = read_spec(arguments.spec, arguments.overrides);
+  const Question question = question_of(spec);
+  refuse_text_over("--csv", arguments.csv, {arguments.spec, arguments.output}, arguments.locking);
+  note_signals();
+  FindOptions options = arguments.options;
+  options.stop_requested = [] { return noted_signal() != 0; };
+  std::optional<Progress> progress;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    if (!progress) progress.emplace(total, 0, arguments.quiet || arguments.json);
+    progress->update(done);
+  };
+  FoundDesigns found;
+  try {
+    found = find_designs(spec, options);
+  } catch (const Stopped&) {
+    progress.reset();
+    tell("interrupted; nothing is written");
+    return 128 + noted_signal();
+  }
+  progress.reset();
+  if (arguments.json)
+    print_json(question, found);
+  else if (!found.reached)
+    print_miss(spec, question, found);
+  else if (!arguments.quiet)
+    print_found(question, found);
+  if (!found.reached) return 1;
+  if (!arguments.csv.empty()) write_text(arguments.csv, csv_of(question, found));
+  if (arguments.output.empty()) return 0;
+  SweepOptions how{.overwrite = arguments.overwrite,
+                   .threads = arguments.options.threads,
+                   .lock = arguments.locking == Locking::required};
+  sweep(list_of(spec, found), arguments.output, how);
+  if (!arguments.quiet && !arguments.json) say("\nlist     {}\n", arguments.output);
+  return 0;
+}
+
+}  // namespace
+
+void add_design(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("design", "find the designs that reach their goals best, or a Pareto front");
+  auto arguments = std::make_shared<DesignArguments>();
+  command->add_option("SPEC", arguments->spec, "a spec, TOML, whose axes { from, to } are free")->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "write the designs found to this map, a list, best first")
+      ->check(named_file());
+  command
+      ->add_option("--csv", arguments->csv,
+                   "write them to this file, too, as leapmap sweep --points reads it")
+      ->check(named_file());
+  add_set(*command, arguments->overrides, ", for example --set 'goal.jump_height={at_least=0.8}'");
+  for (const Option* option : hop_options())
+    if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
+  command->add_option("--seed", arguments->options.seed,
+                      "of all chance; the same seed, the same designs; default: 1");
+  command->add_option("--most", arguments->options.most, "designs told, one a basin; default: 8")
+      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--sample", arguments->options.sample,
+                   "designs of the first, dense sample; default: as many as take a second or two")
+      ->check(CLI::Range(16, 1 << 27));
+  command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
+      ->check(CLI::Range(1, most_threads));
+  command->add_flag("--json", arguments->json, "print JSON and nothing else");
+  command->add_flag("--overwrite", arguments->overwrite, "replace the map of -o if it is there");
+  command->add_flag("--quiet", arguments->quiet, "print nothing but errors, or that no design does it");
+  add_no_lock(*command, arguments->locking);
+  command->footer(
+      "A spec for it:\n"
+      "  [design]\n"
+      "  slope = { from = \"2 deg\", to = \"20 deg\" }\n"
+      "  mass_ratio = { from = 0.1, to = 20, scale = \"log\" }\n"
+      "  [goal]\n"
+      "  jump_height = { at_least = 1.0 }\n"
+      "  spurious_first_jump = { is = 0 }\n"
+      "  minimize = [\"mass_ratio\"]\n"
+      "Two objectives give a Pareto front. With [scatter] yield may be a goal or an objective: the share of "
+      "hoops "
+      "as made that\nreach all the other goals. Exit status 1: no design of the box does it; the nearest "
+      "miss is told, "
+      "and no file is written.\n"
+      "Examples:\n"
+      "  leapmap design sweeps/question.toml -o maps/best.h5\n"
+      "  leapmap design sweeps/front.toml -o maps/front.h5 --csv front.csv");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli

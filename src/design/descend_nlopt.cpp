@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <nlopt.hpp>
+
+#include "design/engines.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap {
+namespace {
+
+/// What SLSQP may ask: objective and goals, which are quantities or parameters, with derivatives.
+class Slope {
+ public:
+  explicit Slope(Judge& judge) : judge_(judge), spec_(judge.question().one) {
+    const Question& question = judge.question();
+    spec_.scatter = {};
+    const Objective& objective = question.objectives[0];
+    if (objective.field) ask(objective.name, std::get_if<Quantity>(&objective.field->source));
+    for (const Goal& goal : question.one.goals)
+      if (const auto* quantity = std::get_if<Quantity>(&find_field(goal.field)->source)) {
+        ask(goal.field, quantity);
+        const Goal tight = tightened(goal, question.one.numerics.tolerance);
+        if (std::isfinite(tight.at_least)) bounds_.push_back({quantity->member, tight.at_least, -1.0});
+        if (std::isfinite(tight.at_most)) bounds_.push_back({quantity->member, tight.at_most, 1.0});
+      }
+    spec_.output.fields = spec_.output.gradients;
+    spec_.output.fields.push_back("status");
+    for (const FreeParameter& parameter : question.free) spec_.output.gradients_by.push_back(parameter.name);
+    if (spec_.output.gradients.empty()) return;
+    solver_ = make_gradient_solver(spec_);
+    gradients_ = Gradients(gradients_of(spec_));
+  }
+
+  /// Goals as inequalities, each at most 0.
+  std::size_t bounds() const { return bounds_.size(); }
+  /// Best feasible place met so far.
+  Place best;
+
+  double objective(const std::vector<double>& at, std::vector<double>& slope) {
+    look(at);
+    const Objective& asked = judge_.question().objectives[0];
+    const double sign = asked.maximize ? -1.0 : 1.0;
+    if (asked.field) return value(std::get<Quantity>(asked.field->source).member, sign, slope);
+    const auto& free = judge_.question().free;
+    for (std::size_t k = 0; k < slope.size(); ++k)
+      slope[k] = free[k].member == asked.parameter ? sign * per_place(k) : 0.0;
+    return sign * design_.*asked.parameter;
+  }
+  double bound(std::size_t number, const std::vector<double>& at, std::vector<double>& slope) {
+    look(at);
+    const Bound& bound = bounds_[number];
+    return value(bound.of, bound.sign, slope) - bound.sign * bound.value;
+  }
+
+ private:
+  struct Bound {
+    double Outcome::*of;
+    double value, sign;
+  };
+  void ask(const std::string& name, const Quantity* quantity) {
+    auto& asked = spec_.output.gradients;
+    if (quantity && std::find(asked.begin(), asked.end(), name) == asked.end()) asked.push_back(name);
+  }
+  /// Solves the design there, if it is not the last one.
+  void look(const std::vector<double>& at) {
+    if (at == at_) return;
+    at_ = at;
+    for (const double coordinate : at)
+      if (!std::isfinite(coordinate)) throw nlopt::forced_stop();
+    design_ = judge_.question().at(at);
+    if (solver_) gradients_.begin(1), solver_({&design_, 1}, {&outcome_, 1}, gradients_);
+    Place here{at, judge_.judge(at)};
+    if (better(here.verdict, best.verdict)) best = std::move(here);
+  }
+  /// d parameter / d coordinate.
+  double per_place(std::size_t k) const {
+    const FreeParameter& parameter = judge_.question().free[k];
+    const Side& side = parameter.side;
+    return side.log ? design_.*parameter.member * std::log(side.high / side.low) : side.high - side.low;
+  }
+  double value(double Outcome::*of, double sign, std::vector<double>& slope) {
+    for (std::size_t k = 0; k < slope.size(); ++k)
+      slope[k] = sign * per_place(k) * gradients_.column(of, judge_.question().free[k].member)[0];
+    const double value = sign * outcome_.*of;
+    for (const double part : slope)
+      if (!std::isfinite(part)) throw nlopt::forced_stop();  // out of the branch, or on its edge
+    if (!std::isfinite(value)) throw nlopt::forced_stop();
+    return value;
+  }
+
+  Judge& judge_;
+  Spec spec_;
+  GradientSolver solver_;
+  Gradients gradients_;
+  std::vector<Bound> bounds_;
+  std::vector<double> at_;
+  Design design_;
+  Outcome outcome_;
+};
+
+struct OneBound {
+  Slope* slope;
+  std::size_t number;
+};
+
+}  // namespace
+
+void descend(Judge& judge, Place& place) {
+  const Question& question = judge.question();
+  const Field* field = question.objectives[0].field;
+  const bool smooth = (!field || std::holds_alternative<Quantity>(field->source)) && !judge.makes_hoops();
+  if (!smooth || !place.verdict.feasible() || resolved_method(question.one.numerics) != "exact") return;
+  Slope slope(judge);
+  slope.best = place;
+  nlopt::opt slsqp(nlopt::LD_SLSQP, static_cast<unsigned>(judge.dimensions()));
+  slsqp.set_lower_bounds(0.0);
+  slsqp.set_upper_bounds(1.0);
+  slsqp.set_min_objective([](const std::vector<double>& at, std::vector<double>& by,
+                             void* data) { return static_cast<Slope*>(data)->objective(at, by); },
+                          &slope);
+  std::vector<OneBound> bounds;
+  for (std::size_t k = 0; k < slope.bounds(); ++k) bounds.push_back({&slope, k});
+  for (OneBound& bound : bounds)
+    slsqp.add_inequality_constraint(
+        [](const std::vector<double>& at, std::vector<double>& by, void* data) {
+          const auto& one = *static_cast<OneBound*>(data);
+          return one.slope->bound(one.number, at, by);
+        },
+        &bound, 0.0);
+  slsqp.set_maxeval(200);
+  slsqp.set_xtol_rel(1e-14);
+  std::vector<double> at = place.at;
+  double cost = 0.0;
+  try {
+    slsqp.optimize(at, cost);
+  } catch (const nlopt::forced_stop&) {
+    // It left the branch: what it met before stands.
+  } catch (const nlopt::roundoff_limited&) {
+    // As near as numbers go.
+  } catch (const std::runtime_error&) {
+    // SLSQP's own trouble is no error of the search.
+  }
+  place = slope.best;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "design/climb.hpp"
+#include "design/engines.hpp"
+#include "design/front.hpp"
+#include "design/judge.hpp"
+#include "leapmap/errors.hpp"
+#include "leapmap/find_designs.hpp"
+#include "leapmap/gradient.hpp"
+
+#include "model/model.hpp"
+#include "numerics/sobol_points.hpp"
+#include "sweep/options.hpp"
+#include "sweep/parallel.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap {
+namespace {
+
+/// How much is done before the answer, for designs that take so long.
+struct Effort {
+  std::size_t sample;   ///< designs of the first sample, 16 times a whole number
+  std::size_t starts;   ///< places of it that are followed
+  std::size_t climbed;  ///< of these, the best that are followed to the end
+  std::size_t front;    ///< places kept of a front
+};
+
+Effort effort_of(const Judge& judge, const FindOptions& options) {
+  const Question& question = judge.question();
+  const bool slips = model_of(question.one.scene).slips;
+  Effort effort{slips ? std::size_t{1} << 18 : std::size_t{1} << 21, 64, 16, 2048};
+  if (judge.makes_hoops()) {
+    const auto hoops = static_cast<std::size_t>(question.one.scatter.samples);
+    effort = {std::clamp<std::size_t>(16 * effort.sample / hoops, 1024, effort.sample), 16, 6, 256};
+  }
+  if (options.sample > 0)
+    effort.sample =
+        (options.sample + SobolPoints::replicates - 1) / SobolPoints::replicates * SobolPoints::replicates;
+  effort.climbed = std::max(effort.climbed, options.most);
+  effort.starts = std::max(effort.starts, effort.climbed);
+  return effort;
+}
+
+/// Tells steps as they are done.
+class Steps {
+ public:
+  Steps(const FindOptions& options, std::size_t total) : options_(options), total_(total) {}
+  void done(std::size_t steps = 1) {
+    done_ = std::min(done_ + steps, total_);
+    if (options_.progress) options_.progress(done_, total_);
+  }
+
+ private:
+  const FindOptions& options_;
+  std::size_t done_ = 0, total_;
+};
+
+constexpr std::size_t sample_steps = 32;
+
+/// The best of a dense sample, best first: so many at most, of a front all that nothing dominates besides.
+std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps) {
+  const std::size_t dimensions = judge.dimensions();
+  constexpr std::size_t most = 1 << 15;
+  const SobolPoints points(dimensions, effort.sample, options.seed);
+  const bool front = judge.question().objectives.size() == 2;
+  std::vector<Place> best;
+  for (std::size_t part = 0; part < sample_steps; ++part) {
+    const std::size_t first = part * effort.sample / sample_steps,
+                      count = (part + 1) * effort.sample / sample_steps - first;
+    std::vector<double> places(count * dimensions);
+    for (std::size_t k = 0; k < dimensions; ++k)
+      for (std::size_t i = 0; i < count; ++i) places[i * dimensions + k] = points.column(k)[first + i];
+    std::vector<Verdict> verdicts(count);
+    judge.judge(places, verdicts);
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (front) std::erase_if(order, [&](std::size_t i) { return !verdicts[i].feasible() && !best.empty(); });
+    std::ranges::stable_sort(order,
+                             [&](std::size_t a, std::size_t b) { return better(verdicts[a], verdicts[b]); });
+    double least = HUGE_VAL;  // of the second objective, along the first
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+      const std::size_t i = order[rank];
+      const bool kept = front ? verdicts[i].cost[1] < least || rank == 0 : rank < most;
+      if (!kept) continue;
+      least = std::min(least, verdicts[i].cost[1]);
+      const auto begin = places.begin() + static_cast<std::ptrdiff_t>(i * dimensions);
+      best.push_back({{begin, begin + static_cast<std::ptrdiff_t>(dimensions)}, verdicts[i]});
+    }
+    steps.done();
+  }
+  std::ranges::stable_sort(best, [](const Place& a, const Place& b) { return better(a.verdict, b.verdict); });
+  if (best.size() > most) best.resize(most);
+  return best;
+}
+
+/// The best places that are not beside one another, or have different outcomes.
+std::vector<Place> starts_of(const std::vector<Place>& sample, std::size_t most) {
+  constexpr double beside = 0.04;
+  std::vector<Place> starts;
+  for (const Place& place : sample) {
+    if (starts.size() == most) break;
+    const bool is_new = std::ranges::none_of(starts, [&](const Place& start) {
+      return start.verdict.outcome == place.verdict.outcome && distance(start, place) < beside;
+    });
+    if (is_new) starts.push_back(place);
+  }
+  return starts;
+}
+
+/// One place of each basin, best first.
+void leave_one_a_basin(Judge& judge, std::vector<Place>& places, std::size_t most) {
+  std::ranges::stable_sort(places,
+                           [](const Place& a, const Place& b) { return better(a.verdict, b.verdict); });
+  std::vector<Place> left;
+  for (Place& place : places) {
+    if (left.size() == most) break;
+    if (!left.empty() && left[0].verdict.feasible() != place.verdict.feasible()) break;
+    if (std::ranges::none_of(left, [&](const Place& other) { return are_connected(judge, other, place); }))
+      left.push_back(std::move(place));
+  }
+  places = std::move(left);
+}
+
+std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps) {
+  std::vector<Place> places = starts_of(sampled(judge, effort, options, steps), effort.starts);
+  // Each start on a thread of its own: CMA-ES asks for one design at a time.
+  std::atomic<std::size_t> followed{0};
+  parallel_for_each(places.size(), judge.threads(), [&] {
+    return [&, own = std::shared_ptr<Judge>(judge.alone())](std::size_t i) {
+      const std::uint64_t seed = options.seed * 1000 + i;
+      evolve(*own, places[i], seed);
+      descend(*own, places[i]);
+      climb(*own, places[i],
+            {.most_rounds = 40,
+             .a_round = std::size_t{own->makes_hoops() ? 8u : 128u},
+             .seed = seed,
+             .widest = 0.03});
+      ++followed;
+      return true;
+    };
+  });
+  steps.done(followed);
+  leave_one_a_basin(judge, places, effort.climbed);
+  for (Place& place : places) {
+    climb(judge, place,
+          {.most_rounds = std::size_t{judge.makes_hoops() ? 40u : 400u},
+           .a_round = std::size_t{judge.makes_hoops() ? 64u : 512u},
+           .seed = options.seed,
+           .widest = 0.1});
+    slide(judge, place, options.seed);
+    settle(judge, place, options.seed);
+    steps.done();
+  }
+  leave_one_a_basin(judge, places, options.most);
+  return places;
+}
+
+/// The front; or, if no design is feasible, the nearest miss.
+std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps,
+                                double& hypervolume) {
+  std::vector<Place> places = sampled(judge, effort, options, steps);
+  if (!places.front().verdict.feasible()) {
+    Place& nearest = places.front();
+    climb(judge, nearest, {.seed = options.seed});
+    places.resize(1);
+    if (!nearest.verdict.feasible()) return places;
+  }
+  Front front;
+  front.add(std::move(places));
+  front.thin(effort.front);
+  steps.done(effort.starts / 4);
+  places = front.places();
+  evolve_front(judge, places, options.seed);
+  steps.done(effort.starts / 2);
+  front.add(std::move(places));
+  refine(judge, front, effort.front, options.seed);
+  hypervolume = front.hypervolume();
+  return front.places();
+}
+
+/// Bounds and goals that a place lies on, as near as a millionth.
+std::vector<std::string> binding(const Question& question, const Place& place, const FoundDesign& found) {
+  constexpr double on = 1e-6;
+  std::vector<std::string> binds;
+  for (std::size_t k = 0; k < question.free.size(); ++k) {
+    const FreeParameter& parameter = question.free[k];
+    if (place.at[k] < on) binds.push_back(fmt::format("{} from {:.6g}", parameter.name, parameter.side.low));
+    if (place.at[k] > 1.0 - on)
+      binds.push_back(fmt::format("{} to {:.6g}", parameter.name, parameter.side.high));
+  }
+  for (const Goal& goal : question.one.goals) {
+    const Field& field = *find_field(goal.field);
+    if (!std::holds_alternative<Quantity>(field.source)) continue;
+    const double value = stored_number(field, found.outcome);
+    const auto is_on = [&](double bound) {
+      return std::isfinite(bound) && std::abs(value - bound) <= on * (1.0 + std::abs(bound));
+    };
+    if (is_on(goal.at_least)) binds.push_back(fmt::format("{} at least {:.6g}", goal.field, goal.at_least));
+    if (is_on(goal.at_most)) binds.push_back(fmt::format("{} at most {:.6g}", goal.field, goal.at_most));
+  }
+  if (!found.cliff.empty() && found.cliff[0].distance < on)
+    binds.push_back(fmt::format("cliff ({})", name_of(found.cliff[0].kind)));
+  return binds;
+}
+
+/// The quantities that objectives and goals name, each once.
+std::vector<const Field*> quantities_of(const Question& question) {
+  std::vector<const Field*> fields;
+  const auto add = [&](const Field* field) {
+    if (field && std::holds_alternative<Quantity>(field->source) &&
+        std::ranges::find(fields, field) == fields.end())
+      fields.push_back(field);
+  };
+  for (const Objective& objective : question.objectives) add(objective.field);
+  for (const Goal& goal : question.one.goals) add(find_field(goal.field));
+  return fields;
+}
+
+/// What is told of each place. As the solver sees designs alone; one that misses a goal so is left out.
+void tell(const Judge& judge, const std::vector<Place>& places, const FindOptions& options,
+          FoundDesigns& found) {
+  const Question& question = judge.question();
+  const bool front = question.objectives.size() == 2,
+             differentiable_method = resolved_method(question.one.numerics) == "exact";
+  const std::vector<GoalCheck> goals = goal_checks(question.one.goals);
+  const Spec grid = question.grid();
+  Spec all = question.one;
+  all.scatter = {};
+  std::vector<FoundDesign> told(places.size());
+  std::vector<char> stays(places.size(), 1);
+  parallel_for_each(places.size(), judge.threads(), [&] {
+    return [&, solve = make_solver(all)](std::size_t i) {
+      if (options.stop_requested && options.stop_requested()) throw Stopped("the search was asked to stop");
+      FoundDesign& one = told[i];
+      one.design = question.at(places[i].at);
+      solve({&one.design, 1}, {&one.outcome, 1});
+      for (std::size_t k = 0; k < question.objectives.size(); ++k)
+        one.objectives.push_back(question.objectives[k].maximize ? -places[i].verdict.cost[k]
+                                                                 : places[i].verdict.cost[k]);
+      if (!front) one.cliff = near_cliffs(grid, one.design).nearest;
+      if (!front && differentiable_method)
+        for (const Field* field : quantities_of(question)) {
+          const SolveOptions how{.tolerance = question.one.numerics.tolerance, .threads = 1};
+          one.gradients.push_back(
+              {std::string(field->name),
+               gradient(one.design, std::get<Quantity>(field->source).member, question.one.scene, how)});
+        }
+
+      one.binds = binding(question, places[i], one);
+      stays[i] = !found.reached ||
+                 std::ranges::all_of(goals, [&](const GoalCheck& goal) { return goal.reached(one.outcome); });
+      return true;
+    };
+  });
+  for (std::size_t i = 0; i < told.size(); ++i)
+    if (stays[i]) found.designs.push_back(std::move(told[i]));
+}
+
+}  // namespace
+
+Spec list_of(const Spec& spec, const FoundDesigns& found) {
+  const Question question = question_of(spec);
+  Spec list = question.one;
+  list.output.file = spec.output.file, list.numerics.audit = 1.0;
+  list.list.count = found.designs.size();
+  for (const FreeParameter& parameter : question.free) {
+    Axis& column = list.list.columns.emplace_back(Axis{parameter.name, {}});
+    for (const FoundDesign& one : found.designs) column.values.push_back(one.design.*parameter.member);
+  }
+  return list;
+}
+
+FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Question question = question_of(spec);
+  FindOptions options = asked;
+  options.stop_requested = latched(asked.stop_requested);
+  Judge judge(question, options.threads, options.stop_requested);
+  const Effort effort = effort_of(judge, options);
+  Steps steps(options, sample_steps + effort.starts + effort.climbed);
+  FoundDesigns found;
+  found.engines = has_engines();
+  const std::vector<Place> places = question.objectives.size() == 2
+                                        ? front_places(judge, effort, options, steps, found.hypervolume)
+                                        : best_places(judge, effort, options, steps);
+  found.reached = places.front().verdict.feasible();
+  tell(judge, places, options, found);
+  if (!found.reached) {
+    found.designs.resize(1);
+    for (const Goal& goal : spec.goals)
+      found.missed.push_back(stored_number(*find_field(goal.field), found.designs[0].outcome));
+  }
+  found.evaluations = judge.evaluations();
+  found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return found;
+}
+
+}  // namespace leapmap

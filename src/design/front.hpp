@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Pareto fronts of two objectives: designs than which no other is better in both.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "design/climb.hpp"
+
+namespace leapmap {
+
+class Front {
+ public:
+  /// Keeps those that nothing here or among them dominates. Infeasible ones are left out.
+  void add(std::vector<Place> places);
+  /// Leaves out what adds least to the volume until there are no more than that; the ends stay.
+  void thin(std::size_t most);
+
+  /// In order of the first cost, least first; the second falls along them.
+  const std::vector<Place>& places() const { return places_; }
+  /// The share of the rectangle between the front's ends that it dominates; NaN of fewer than two places.
+  double hypervolume() const;
+
+ private:
+  std::vector<Place> places_;
+};
+
+/// Rounds of small steps from the front's places, along it and off it, in blocks on all threads.
+void refine(Judge& judge, Front& front, std::size_t most, std::uint64_t seed);
+
+}  // namespace leapmap

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "design/judge.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "leapmap/errors.hpp"
+#include "sweep/cliff.hpp"
+#include "sweep/parallel.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap {
+namespace {
+
+/// 0: in the range; else in (0, 1].
+double missed_by(double value, double at_least, double at_most) {
+  if (std::isnan(value)) return 1.0;
+  const double distance = std::max({at_least - value, value - at_most, 0.0});
+  if (distance == 0.0) return 0.0;
+  const double bound = std::abs(value < at_least ? at_least : at_most);
+  return distance / (distance + (bound > 0.0 ? bound : 1.0));
+}
+
+bool asks_of_made(const Question& question) {
+  return !question.made_goals.empty() || std::ranges::any_of(question.objectives, [](const Objective& asked) {
+    return asked.field && std::holds_alternative<OfMade>(asked.field->source);
+  });
+}
+
+/// Computes no more than goals and objectives of a hoop as drawn.
+Spec spec_of_drawn(const Question& question) {
+  Spec spec = question.one;
+  spec.scatter = {};
+  spec.output.fields = {"status"};
+  for (const Goal& goal : spec.goals) spec.output.fields.push_back(goal.field);
+  for (const Objective& objective : question.objectives)
+    if (objective.field) spec.output.fields.push_back(objective.name);
+  return spec;
+}
+
+/// The same of hoops as made.
+Spec spec_of_many(const Question& question) {
+  Spec spec = question.one;
+  spec.output.fields = {"yield"};
+  for (const Objective& objective : question.objectives)
+    if (objective.field && std::holds_alternative<OfMade>(objective.field->source))
+      spec.output.fields.push_back(objective.name);
+  return spec;
+}
+
+std::uint64_t number_of(const Discrete& outcome) {
+  const std::uint64_t codes = std::uint64_t{static_cast<std::uint8_t>(outcome.status)} |
+                              std::uint64_t{outcome.jumps_on} << 8 |
+                              std::uint64_t{outcome.spurious_first_jump} << 16;
+  return (codes + 1) * 0x9e3779b97f4a7c15u ^ outcome.phase_sequence;
+}
+
+}  // namespace
+
+Goal tightened(const Goal& goal, double tolerance) {
+  const Field& field = *find_field(goal.field);
+  const auto* quantity = std::get_if<Quantity>(&field.source);
+  if (!quantity || goal.at_least == goal.at_most) return goal;
+  const double hair = quantity->measure == Measure::time ? 4.0 * tolerance : 1e-12;
+  Goal tight = goal;
+  if (std::isfinite(goal.at_least)) tight.at_least += hair * std::abs(goal.at_least);
+  if (std::isfinite(goal.at_most)) tight.at_most -= hair * std::abs(goal.at_most);
+  return tight;
+}
+
+Bench::Bench(const Question& question, const std::shared_ptr<const SobolPoints>& points)
+    : question_(question), solver_(make_solver(spec_of_drawn(question))) {
+  std::vector<Goal> goals;
+  for (const Goal& goal : question.one.goals)
+    goals.push_back(tightened(goal, question.one.numerics.tolerance));
+  goals_ = goal_checks(goals);
+  if (!points) return;
+  const Spec many = spec_of_many(question);
+  scatter_.emplace(many, points);
+  columns_ = MadeColumns(scatter_fields_of(many));
+}
+
+void Bench::weigh(std::size_t objective, double value, Verdict& verdict) const {
+  if (std::isnan(value)) verdict.violation += 1.0;
+  verdict.cost[objective] = question_.objectives[objective].maximize ? -value : value;
+}
+
+Verdict Bench::verdict_of(const Outcome& outcome) const {
+  Verdict verdict{.violation = 0.0, .outcome = number_of(discrete(outcome, true))};
+  for (const GoalCheck& goal : goals_) {
+    if (goal.reached(outcome)) continue;
+    verdict.violation += std::holds_alternative<Quantity>(goal.field->source)
+                             ? missed_by(stored_number(*goal.field, outcome), goal.at_least, goal.at_most)
+                             : 1.0;
+  }
+  for (std::size_t k = 0; k < question_.objectives.size(); ++k)
+    if (const Field* field = question_.objectives[k].field;
+        field && !std::holds_alternative<OfMade>(field->source))
+      weigh(k, stored_number(*field, outcome), verdict);
+  return verdict;
+}
+
+void Bench::judge_made(const Design& design, Verdict& verdict) {
+  scatter_->solve({&design, 1}, columns_);
+  const auto value = [&](const Field& field) { return columns_.column(field)[0]; };
+  for (const Goal& goal : question_.made_goals)
+    verdict.violation += missed_by(value(*find_field(goal.field)), goal.at_least, goal.at_most);
+  for (std::size_t k = 0; k < question_.objectives.size(); ++k)
+    if (const Field* field = question_.objectives[k].field;
+        field && std::holds_alternative<OfMade>(field->source))
+      weigh(k, value(*field), verdict);
+}
+
+void Bench::judge(std::span<const Design> designs, std::span<Verdict> verdicts) {
+  outcomes_.resize(designs.size());
+  solver_(designs, outcomes_);
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    verdicts[i] = verdict_of(outcomes_[i]);
+    for (std::size_t k = 0; k < question_.objectives.size(); ++k)
+      if (const auto parameter = question_.objectives[k].parameter)
+        weigh(k, designs[i].*parameter, verdicts[i]);
+    if (!scatter_) continue;
+    // A drawing that misses a goal is not made: it is worse than any that is.
+    if (verdicts[i].feasible())
+      judge_made(designs[i], verdicts[i]);
+    else
+      verdicts[i].violation += static_cast<double>(question_.made_goals.size());
+  }
+}
+
+Judge::Judge(const Question& question, int threads, std::function<bool()> stop_requested)
+    : question_(question),
+      threads_(thread_count(threads)),
+      stop_requested_(std::move(stop_requested)),
+      points_(asks_of_made(question) ? points_of(question.one.scatter) : nullptr),
+      benches_(static_cast<std::size_t>(threads_)) {}
+
+std::unique_ptr<Judge> Judge::alone() const {
+  auto judge = std::make_unique<Judge>(question_, 1, stop_requested_);
+  judge->points_ = points_, judge->evaluations_ = evaluations_;
+  return judge;
+}
+
+void Judge::judge_block(Bench& bench, std::span<const double> places, std::span<Verdict> verdicts) const {
+  if (stop_requested_ && stop_requested_()) throw Stopped("the search was asked to stop");
+  std::vector<Design> designs(verdicts.size());
+  for (std::size_t i = 0; i < designs.size(); ++i)
+    designs[i] = question_.at(places.subspan(i * dimensions(), dimensions()));
+  bench.judge(designs, verdicts);
+  *evaluations_ += designs.size();
+}
+
+void Judge::judge(std::span<const double> places, std::span<Verdict> verdicts) {
+  assert(places.size() == verdicts.size() * dimensions());
+  const std::size_t block = makes_hoops() ? 4 : 256;
+  const std::size_t blocks = (verdicts.size() + block - 1) / block;
+  std::atomic<std::size_t> next_bench{0};
+  const auto work = [&] {
+    std::unique_ptr<Bench>& bench = benches_[next_bench++];
+    if (!bench) bench = std::make_unique<Bench>(question_, points_);
+    return [&](std::size_t number) {
+      const std::size_t first = number * block, count = std::min(block, verdicts.size() - first);
+      judge_block(*bench, places.subspan(first * dimensions(), count * dimensions()),
+                  verdicts.subspan(first, count));
+      return true;
+    };
+  };
+  if (blocks == 1)
+    work()(0);
+  else
+    parallel_for_each(blocks, threads_, work);
+}
+
+Verdict Judge::judge(std::span<const double> place) {
+  Verdict verdict;
+  judge(place, {&verdict, 1});
+  return verdict;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "design/question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "leapmap/errors.hpp"
+#include "model/model.hpp"
+#include "sweep/options.hpp"
+
+namespace leapmap {
+namespace {
+
+[[noreturn]] void refuse(const Spec& spec, std::string_view what, std::string_view allowed) {
+  throw InputError(fmt::format("{}: {}; allowed: {}", origin_of(spec), what, allowed));
+}
+
+bool is_of_made(const Field& field) { return std::holds_alternative<OfMade>(field.source); }
+
+std::vector<FreeParameter> free_parameters(const Spec& spec) {
+  std::vector<FreeParameter> free;
+  for (const Axis& axis : spec.axes) {
+    const auto [low, high] = std::ranges::minmax(axis.values);
+    const auto spacing = spacing_of(axis.values);
+    if (!axis.free && axis.values.size() > 2 && !spacing)
+      refuse(spec, fmt::format("design.{} is a list of values", axis.key),
+             "{ from, to }, between which it is free, or a number");
+    if (!(low < high))
+      refuse(spec, fmt::format("design.{} is nothing but {}", axis.key, low), "two bounds, or a number");
+    free.push_back({axis.key,
+                    std::get<ParameterSlot>(find_option("design", axis.key)->slot).member,
+                    {low, high, axis.free ? axis.log : spacing && spacing->log}});
+  }
+  return free;
+}
+
+Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free, const std::string& name,
+                       bool maximize) {
+  const std::string key = maximize ? "goal.maximize" : "goal.minimize";
+  if (const auto found = std::ranges::find(free, name, &FreeParameter::name); found != free.end())
+    return {name, maximize, nullptr, found->member};
+  const Field* field = find_field(name);
+  if (!field)
+    refuse(spec, fmt::format("{}: {} is fixed", key, name),
+           fmt::format("a field, or one of the free parameters, design.{} = {{ from, to }}", name));
+  if (!has(spec.scene.friction, field->only_of))
+    refuse(spec, fmt::format("{}: {} {}", key, name, no_use(spec.scene)), with_model(*field->only_of));
+  const auto* code = std::get_if<Code>(&field->source);
+  if (std::holds_alternative<Word>(field->source) || (code && !code->names.empty()))
+    refuse(spec, fmt::format("{}: {} is a code, and neither more nor less than another", key, name),
+           "a quantity; a code may be a goal, { is = ... }");
+  if (is_of_made(*field) && spec.scatter.spreads.empty())
+    refuse(spec, fmt::format("{}: {} is of hoops as made", key, name), "with a parameter in [scatter]");
+  return {name, maximize, field, nullptr};
+}
+
+bool is_of_jumps(const Field& field) {
+  const auto* quantity = std::get_if<Quantity>(&field.source);
+  return quantity && field.name.starts_with("first_") == false && field.name != "slip_distance";
+}
+
+/// Where a field's values can lie at all.
+Range possible(const Field& field, const Scene& scene) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (field.name == "jump_height") return {scene.hop_height, infinity};
+  if (field.name == "dip") return {-infinity, 0.0};
+  if (field.name == "yield") return {0.0, 1.0};
+  const auto* quantity = std::get_if<Quantity>(&field.source);
+  const bool positive = (quantity && quantity->measure != Measure::other) ||
+                        std::holds_alternative<Code>(field.source) || field.name == "slip_distance";
+  return {positive ? 0.0 : -infinity, infinity};
+}
+
+/// Goals that no design whatever can reach.
+void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objectives) {
+  for (const Goal& goal : spec.goals) {
+    const Range range = possible(*find_field(goal.field), spec.scene);
+    if (goal.at_least > range.most || goal.at_most < range.least)
+      refuse(spec, fmt::format("goal.{} {} cannot be", goal.field, text_of(goal)),
+             fmt::format("what overlaps from {} to {}", range.least, range.most));
+  }
+  const auto status = std::ranges::find(spec.goals, "status", &Goal::field);
+  if (status == spec.goals.end() || status->at_least == static_cast<double>(Status::jumped)) return;
+  const auto contradicts = [&](const std::string& key, const Field* field) {
+    if (field && is_of_jumps(*field))
+      refuse(spec,
+             fmt::format("goal.status {} contradicts {}, which is of hoops that jump", text_of(*status), key),
+             "goals that one hoop can reach");
+  };
+  for (const Goal& goal : spec.goals) contradicts("goal." + goal.field, find_field(goal.field));
+  for (const Objective& objective : objectives) contradicts(objective.name, objective.field);
+}
+
+}  // namespace
+
+Design Question::at(std::span<const double> place) const {
+  assert(place.size() == free.size());
+  Design design = one.design;
+  for (std::size_t k = 0; k < free.size(); ++k) design.*free[k].member = free[k].side.value(place[k]);
+  return design;
+}
+
+Spec Question::grid() const {
+  Spec spec = one;
+  spec.goals.clear(), spec.scatter = {};
+  constexpr std::size_t told = 4;  // fewer values do not tell that they are logarithmic
+  for (const FreeParameter& parameter : free)
+    spec.axes.push_back(
+        {parameter.name, values_of({parameter.side.low, parameter.side.high, told, parameter.side.log})});
+  return spec;
+}
+
+Question question_of(const Spec& spec) {
+  if (spec.axes.empty())
+    refuse(
+        spec,
+        spec.points.empty() && spec.list.columns.empty() ? "no parameter is free" : "design.points is a list",
+        "one or more, design.slope = { from = \"2 deg\", to = \"50 deg\" } say");
+  Question question{.one = spec, .free = {}, .made_goals = {}, .objectives = {}};
+  question.one.axes.clear(), question.one.maximize.clear(), question.one.minimize.clear();
+  question.one.output = {};
+  std::erase_if(question.one.goals, [&](const Goal& goal) {
+    const Field* field = find_field(goal.field);
+    if (!field || !is_of_made(*field)) return false;
+    if (spec.scatter.spreads.empty())
+      refuse(spec, fmt::format("goal.{} is of hoops as made", goal.field), "with a parameter in [scatter]");
+    question.made_goals.push_back(goal);
+    return true;
+  });
+  {
+    Spec checked = question.one;  // at the bounds of what is free
+    for (Axis axis : spec.axes) {
+      axis.free = false;
+      checked.axes.push_back(std::move(axis));
+    }
+    check_spec(checked);
+  }
+  question.free = free_parameters(spec);
+  for (const std::string& name : spec.maximize)
+    question.objectives.push_back(objective_of(spec, question.free, name, true));
+  for (const std::string& name : spec.minimize) {
+    if (std::ranges::find(spec.maximize, name) != spec.maximize.end())
+      refuse(spec, fmt::format("goal: {} is to be both as large and as small as can be", name),
+             "one of them");
+    question.objectives.push_back(objective_of(spec, question.free, name, false));
+  }
+  if (question.objectives.empty() || question.objectives.size() > 2)
+    refuse(spec,
+           fmt::format("goal.maximize and goal.minimize name {} quantities", question.objectives.size()),
+           "one, or two for a Pareto front; maximize = [\"jump_height\"] say");
+  const auto of_yield = [&](const auto& asked) { return asked.field && asked.field->name == "yield"; };
+  if ((std::ranges::any_of(question.objectives, of_yield) || !question.made_goals.empty()) &&
+      question.one.goals.empty())
+    refuse(spec, "yield is the share of hoops that reach every goal, and there is none",
+           "with another field in [goal]");
+  refuse_contradictions(spec, question.objectives);
+  return question;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What find_designs is asked: which parameters are free, what a hoop must do, and what is best.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/fields.hpp"
+#include "sweep/made_sample.hpp"
+#include "sweep/spacing.hpp"
+#include "sweep/spec.hpp"
+
+namespace leapmap {
+
+struct FreeParameter {
+  std::string name;
+  double Design::*member;
+  Side side;
+};
+
+/// What is to be as large or as small as can be: a free parameter, or a field.
+struct Objective {
+  std::string name;
+  bool maximize;
+  const Field* field;         ///< nullptr: a parameter
+  double Design::*parameter;  ///< nullptr: a field
+};
+
+struct Question {
+  Spec one;                         ///< of one design: [scene], numerics, [scatter] and the goals of a hoop
+  std::vector<FreeParameter> free;  ///< in the order of the spec
+  std::vector<Goal> made_goals;     ///< of yield: what many hoops made must come to
+  std::vector<Objective> objectives;
+
+  std::size_t dimensions() const { return free.size(); }
+  /// The design at a place of the box: coordinates from 0 to 1 along each free parameter.
+  Design at(std::span<const double> place) const;
+  /// The same box as a coarse grid, for what asks for one.
+  Spec grid() const;
+};
+
+/// Throws InputError for a spec that asks nothing: without a free parameter or without an objective, with
+/// more than two, with goals that contradict themselves or each other; and as check_spec does.
+Question question_of(const Spec& spec);
+
+}  // namespace leapmap
