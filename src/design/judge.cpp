@@ -142,27 +142,18 @@ std::unique_ptr<Judge> Judge::alone() const {
   return judge;
 }
 
-void Judge::judge_block(Bench& bench, std::span<const double> places, std::span<Verdict> verdicts) const {
-  if (stop_requested_ && stop_requested_()) throw Stopped("the search was asked to stop");
-  std::vector<Design> designs(verdicts.size());
-  for (std::size_t i = 0; i < designs.size(); ++i)
-    designs[i] = question_.at(places.subspan(i * dimensions(), dimensions()));
-  bench.judge(designs, verdicts);
-  *evaluations_ += designs.size();
-}
-
-void Judge::judge(std::span<const double> places, std::span<Verdict> verdicts) {
-  assert(places.size() == verdicts.size() * dimensions());
+void Judge::judge_designs(std::span<const Design> designs, std::span<Verdict> verdicts) {
   const std::size_t block = makes_hoops() ? 4 : 256;
-  const std::size_t blocks = (verdicts.size() + block - 1) / block;
+  const std::size_t blocks = (designs.size() + block - 1) / block;
   std::atomic<std::size_t> next_bench{0};
   const auto work = [&] {
     std::unique_ptr<Bench>& bench = benches_[next_bench++];
     if (!bench) bench = std::make_unique<Bench>(question_, points_);
     return [&](std::size_t number) {
-      const std::size_t first = number * block, count = std::min(block, verdicts.size() - first);
-      judge_block(*bench, places.subspan(first * dimensions(), count * dimensions()),
-                  verdicts.subspan(first, count));
+      if (stop_requested_ && stop_requested_()) throw Stopped("the search was asked to stop");
+      const std::size_t first = number * block, count = std::min(block, designs.size() - first);
+      bench->judge(designs.subspan(first, count), verdicts.subspan(first, count));
+      *evaluations_ += count;
       return true;
     };
   };
@@ -170,6 +161,14 @@ void Judge::judge(std::span<const double> places, std::span<Verdict> verdicts) {
     work()(0);
   else
     parallel_for_each(blocks, threads_, work);
+}
+
+void Judge::judge(std::span<const double> places, std::span<Verdict> verdicts) {
+  assert(places.size() == verdicts.size() * dimensions());
+  designs_.resize(verdicts.size());
+  for (std::size_t i = 0; i < designs_.size(); ++i)
+    designs_[i] = question_.at(places.subspan(i * dimensions(), dimensions()));
+  judge_designs(designs_, verdicts);
 }
 
 Verdict Judge::judge(std::span<const double> place) {

@@ -67,6 +67,8 @@ class Judge {
   /// for the last digits of times.
   void judge(std::span<const double> places, std::span<Verdict> verdicts);
   Verdict judge(std::span<const double> place);
+  /// The same of designs, whatever box they are in.
+  void judge_designs(std::span<const Design> designs, std::span<Verdict> verdicts);
 
   const Question& question() const { return question_; }
   std::size_t dimensions() const { return question_.dimensions(); }
@@ -79,14 +81,13 @@ class Judge {
   std::size_t evaluations() const { return *evaluations_; }
 
  private:
-  void judge_block(Bench& bench, std::span<const double> places, std::span<Verdict> verdicts) const;
-
   const Question& question_;
   int threads_;
   std::function<bool()> stop_requested_;
   std::shared_ptr<const SobolPoints> points_;  // none if no goal and no objective is of hoops as made
   std::shared_ptr<std::atomic<std::size_t>> evaluations_ = std::make_shared<std::atomic<std::size_t>>(0);
   std::vector<std::unique_ptr<Bench>> benches_;  // one a thread, made when first needed
+  std::vector<Design> designs_;                  // of the places in hand
 };
 
 }  // namespace leapmap

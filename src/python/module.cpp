@@ -7,15 +7,14 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
-#include <chrono>
 #include <optional>
-#include <thread>
 
 #include "leapmap/leapmap.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "python/arguments.hpp"
+#include "python/calls.hpp"
 #include "python/results.hpp"
 #include "sweep/options.hpp"
 #include "sweep/solve_blocks.hpp"
@@ -26,33 +25,6 @@ namespace py = pybind11;
 namespace leapmap::python {
 namespace {
 
-/// Whether Python wants a call to end: asked of the thread that made it, now and then, the lock taken for it.
-class Interrupts {
- public:
-  bool operator()() {
-    if (stopped_ || std::this_thread::get_id() != caller_) return stopped_;
-    const auto now = Clock::now();
-    if (now - asked_ < between) return false;
-    asked_ = now;
-    const py::gil_scoped_acquire lock;
-    if (PyErr_CheckSignals() != 0) caught_.emplace(), stopped_ = true;
-    return stopped_;
-  }
-
-  /// What Python raised meanwhile is raised now.
-  void rethrow() const {
-    if (caught_) throw py::error_already_set(*caught_);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds between{20};
-  std::thread::id caller_ = std::this_thread::get_id();
-  Clock::time_point asked_ = Clock::now();
-  std::optional<py::error_already_set> caught_;  // looked at with the lock only
-  std::atomic<bool> stopped_ = false;
-};
-
 Scene scene_of(const std::string& friction) {
   std::vector<std::string_view> names;
   for (const Model& model : models()) {
@@ -61,10 +33,6 @@ Scene scene_of(const std::string& friction) {
   }
   throw InputError(fmt::format("friction = '{}' is no model; allowed: {}", friction, fmt::join(names, ", ")));
 }
-
-/// OpenMP's threads are not there in a process that was forked of one that had them: one does all there.
-bool forked = false;
-int threads_here(int threads) { return forked ? 1 : threads; }
 
 py::dict solve(const py::dict& given, const std::string& friction, const std::vector<std::string>& fields,
                const std::string& method, double tolerance, long max_steps, int threads) {
@@ -138,15 +106,6 @@ py::dict trace(const py::dict& given, const std::string& friction, double interv
         {.interval = interval, .method = method, .tolerance = tolerance, .max_steps = max_steps});
   }
   return dict_of(motion, designs.scene());
-}
-
-/// The spec of a file, or of a text if `origin` is given.
-Spec spec_of(const std::string& path_or_text, const std::optional<std::string>& origin,
-             const std::vector<std::string>& overrides) {
-  if (!origin) return read_spec(path_or_text, overrides);
-  Spec spec = parse_spec(path_or_text, *origin, overrides);
-  read_points_of(spec);
-  return spec;
 }
 
 py::dict scatter(const std::string& path_or_text, const std::optional<std::string>& origin,
@@ -241,6 +200,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("solve", &python::solve);
   module.def("gradient", &python::gradient);
   module.def("scatter", &python::scatter);
+  python::add_design(module);
   module.def("trace", &python::trace);
   module.def("sweep", &python::sweep);
   module.def("spec_file", [](const std::string& path_or_text, const std::optional<std::string>& origin,
@@ -254,7 +214,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("number", [](const std::string& name, const std::string& text) {
     return parse_number(*find_option({}, name), text);
   });
-  module.def("after_fork_in_child", [] { python::forked = true; });
+  module.def("after_fork_in_child", [] { python::forked() = true; });
   py::class_<python::Watch>(module, "Watch")
       .def(py::init<>())
       .def_property_readonly("done", [](const python::Watch& watch) { return watch.done.load(); })

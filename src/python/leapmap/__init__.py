@@ -9,12 +9,14 @@
 `solve` and `trace` say which parameters there are and what they mean: help(leapmap.solve).
 """
 from leapmap import _core
+from leapmap._design import DesignProblem, Found, design
 from leapmap._results import Motion, Outcomes, Status
 from leapmap._scatter import Estimate, scatter
 from leapmap._solve import gradient, solve, trace
 from leapmap._sweep import load, sweep
 
-__all__ = ["solve", "gradient", "trace", "scatter", "sweep", "load", "Outcomes", "Motion", "Estimate", "Status", "phase_letters",
+__all__ = ["solve", "gradient", "trace", "scatter", "design", "sweep", "load", "DesignProblem",
+           "Found", "Outcomes", "Motion", "Estimate", "Status", "phase_letters",
            "instruction_set", "instruction_sets", "use_instruction_set"]
 __version__ = _core.program_version()
 

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+
+#include "design/judge.hpp"
+#include "leapmap/errors.hpp"
+#include "leapmap/find_designs.hpp"
+#include "python/calls.hpp"
+#include "python/results.hpp"
+
+namespace leapmap::python {
+namespace {
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A column of numbers, one for each design found.
+template <class Value>
+py::array_t<double> column_of(const FoundDesigns& found, const Value& value) {
+  py::array_t<double> column(static_cast<py::ssize_t>(found.designs.size()));
+  std::transform(found.designs.begin(), found.designs.end(), column.mutable_data(), value);
+  return column;
+}
+
+py::dict dict_of(const FoundDesigns& found, const Spec& spec) {
+  const Question question = question_of(spec);
+  py::dict told, parameters, objectives, gradients, missed;
+  for (const FreeParameter& parameter : question.free)
+    parameters[py::str(parameter.name)] =
+        column_of(found, [&](const FoundDesign& one) { return one.design.*parameter.member; });
+  for (std::size_t k = 0; k < question.objectives.size(); ++k)
+    objectives[py::str(question.objectives[k].name)] =
+        column_of(found, [&](const FoundDesign& one) { return one.objectives[k]; });
+  for (std::size_t k = 0; !found.designs.empty() && k < found.designs[0].gradients.size(); ++k) {
+    py::dict by;
+    for (const FreeParameter& parameter : question.free)
+      by[py::str(parameter.name)] =
+          column_of(found, [&](const FoundDesign& one) { return one.gradients[k].by.*parameter.member; });
+    gradients[py::str(found.designs[0].gradients[k].of)] = by;
+  }
+  for (std::size_t k = 0; k < found.missed.size(); ++k)
+    missed[py::str(spec.goals[k].field)] = found.missed[k];
+  py::list binds;
+  std::vector<Outcome> outcomes;
+  for (const FoundDesign& one : found.designs)
+    binds.append(py::cast(one.binds)), outcomes.push_back(one.outcome);
+  Columns columns({}, spec.scene, {static_cast<py::ssize_t>(outcomes.size())});
+  columns.take(0, outcomes);
+  told["reached"] = found.reached, told["parameters"] = parameters, told["objectives"] = objectives;
+  told["outcomes"] = columns.arrays(), told["gradients"] = gradients, told["binds"] = binds;
+  told["cliff_distance"] = column_of(found, [](const FoundDesign& one) {
+    return one.cliff.empty() ? std::numeric_limits<double>::quiet_NaN() : one.cliff[0].distance;
+  });
+  told["missed"] = missed, told["hypervolume"] = found.hypervolume;
+  told["evaluations"] = found.evaluations, told["seconds"] = found.seconds, told["engines"] = found.engines;
+  return told;
+}
+
+py::dict design(const std::string& path_or_text, const std::optional<std::string>& origin,
+                const std::vector<std::string>& overrides, std::uint64_t seed, std::size_t most,
+                std::size_t sample, int threads) {
+  const Spec spec = spec_of(path_or_text, origin, overrides);
+  Interrupts interrupts;
+  FindOptions options{.seed = seed, .most = most, .sample = sample, .threads = threads_here(threads)};
+  options.stop_requested = [&] { return interrupts(); };
+  FoundDesigns found;
+  try {
+    const py::gil_scoped_release unlocked;
+    found = find_designs(spec, options);
+  } catch (const Stopped&) {
+    interrupts.rethrow();
+    throw;
+  }
+  return dict_of(found, spec);
+}
+
+/// A question for optimizers of others.
+class Problem {
+ public:
+  Problem(const std::string& path_or_text, const std::optional<std::string>& origin,
+          const std::vector<std::string>& overrides, int threads)
+      : question_(question_of(spec_of(path_or_text, origin, overrides))),
+        judge_(question_, threads_here(threads), {}) {}
+
+  py::list free() const {
+    py::list rows;
+    for (const FreeParameter& parameter : question_.free)
+      rows.append(
+          py::make_tuple(parameter.name, parameter.side.low, parameter.side.high, parameter.side.log));
+    return rows;
+  }
+  std::vector<std::string> objectives() const {
+    std::vector<std::string> names;
+    for (const Objective& objective : question_.objectives) names.push_back(objective.name);
+    return names;
+  }
+  std::size_t evaluations() const { return judge_.evaluations(); }
+
+  /// Of designs, a row of parameters each: costs, less is better, and violations, 0 where every goal is
+  /// reached.
+  py::tuple judge(const Numbers& places) {
+    const auto count = static_cast<std::size_t>(places.ndim() == 2 ? places.shape(0) : 0),
+               dimensions = question_.dimensions();
+    if (places.ndim() != 2 || static_cast<std::size_t>(places.shape(1)) != dimensions)
+      throw InputError("a design is a row with a number for each free parameter");
+    const double* given = places.data();
+    std::vector<Design> designs(count, question_.one.design);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < dimensions; ++k) {
+        const FreeParameter& parameter = question_.free[k];
+        const double value = given[i * dimensions + k];
+        if (!(value >= parameter.side.low && value <= parameter.side.high))
+          throw InputError(parameter.name + " is outside its bounds; allowed: what get_bounds tells");
+        designs[i].*parameter.member = value;
+      }
+    std::vector<Verdict> verdicts(count);
+    {
+      const py::gil_scoped_release unlocked;
+      judge_.judge_designs(designs, verdicts);
+    }
+    const std::size_t objectives = question_.objectives.size();
+    py::array_t<double> costs({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(objectives)});
+    py::array_t<double> violations(static_cast<py::ssize_t>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      std::copy_n(verdicts[i].cost.begin(), objectives, costs.mutable_data() + i * objectives);
+      violations.mutable_data()[i] = verdicts[i].violation;
+    }
+    return py::make_tuple(costs, violations);
+  }
+
+ private:
+  Question question_;
+  Judge judge_;
+};
+
+}  // namespace
+
+void add_design(py::module_& module) {
+  module.def("design", &design);
+  py::class_<Problem>(module, "Problem")
+      .def(py::init<const std::string&, const std::optional<std::string>&, const std::vector<std::string>&,
+                    int>())
+      .def("free", &Problem::free)
+      .def("objectives", &Problem::objectives)
+      .def("evaluations", &Problem::evaluations)
+      .def("judge", &Problem::judge);
+}
+
+}  // namespace leapmap::python
