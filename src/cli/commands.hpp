@@ -17,6 +17,7 @@ void add_precision(CLI::App& app, int& status);
 void add_stability(CLI::App& app, int& status);
 void add_boundaries(CLI::App& app, int& status);
 void add_design(CLI::App& app, int& status);
+void add_fit(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 
 /// Refuses an empty file name.

@@ -8,6 +8,7 @@
 #include "leapmap/errors.hpp"
 #include "leapmap/estimate.hpp"
 #include "leapmap/find_designs.hpp"
+#include "leapmap/fit.hpp"
 
 #include "leapmap/gradient.hpp"
 #include "leapmap/map.hpp"

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap fit: the release, friction and torque that explain a measured motion.
+#include "leapmap/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/spoken.hpp"
+#include "cli/text_file.hpp"
+#include "model/fields.hpp"
+#include "model/model.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/parallel.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct FitArguments {
+  std::string data, spec, csv, model = "both";
+  std::vector<std::string> overrides;
+  MeasurementOptions reading;
+  FitOptions options;
+  bool json = false;
+  Locking locking = Locking::required;
+};
+
+bool is_found(const ModelFit& fit) { return std::isfinite(fit.information); }
+
+/// What hop needs of it.
+Spec spec_of(const ModelFit& fit) {
+  Spec spec;
+  spec.scene = fit.scene;
+  return spec;
+}
+
+/// With two digits of its error.
+std::string told(const FittedParameter& parameter) {
+  const bool angle = find_option("", parameter.name)->unit == "rad";
+  const double unit = angle ? 180.0 / std::numbers::pi : 1.0;
+  const std::string_view name = angle ? " deg" : "";
+  if (!parameter.identified)
+    return fmt::format("{:>12.6g} not told by the data: from {:.4g} to {:.4g}{} all fit as well",
+                       parameter.value * unit, parameter.low * unit, parameter.high * unit, name);
+  const double error = parameter.error * unit;
+  const int digits = error > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
+  return fmt::format("{:>12.{}f} +- {:.{}f}{}{}", parameter.value * unit, digits, error, digits, name,
+                     parameter.at_bound ? "; at its bound" : "");
+}
+
+void print_correlations(const ModelFit& fit) {
+  const std::size_t count = fit.parameters.size();
+  if (count < 2) return;
+  say("  correlations{:>4}", "");
+  for (const FittedParameter& parameter : fit.parameters) say(" {:>14}", parameter.name);
+  say("\n");
+  for (std::size_t i = 0; i < count; ++i) {
+    say("    {:<14}", fit.parameters[i].name);
+    for (std::size_t j = 0; j < count; ++j) say(" {:>14.3f}", fit.correlations[i * count + j]);
+    say("\n");
+  }
+}
+
+void print_events(const Measurements& measured, const ModelFit& fit) {
+  for (std::size_t i = 0; i < measured.events.size(); ++i) {
+    const MeasuredEvent& event = measured.events[i];
+    const std::string_view unit = find_field(event.field)->unit;
+    say("    {:<16} measured {:.6g} +- {:.2g}{}{}, model {:.6g}, {:+.2f} errors off\n", event.field,
+        event.value, event.error, unit == "1" ? "" : " ", unit == "1" ? "" : unit, fit.model[i],
+        fit.residuals[i]);
+  }
+}
+
+void print_fit(const Measurements& measured, const ModelFit& fit) {
+  say("\nfriction \"{}\": ", model_of(fit.scene).name);
+  if (!is_found(fit)) {
+    say("no hoop of the box does anything like it\n");
+    return;
+  }
+  say("{} numbers, {} free parameters, {} starts, {} evaluations\n", fit.residuals.size(),
+      fit.parameters.size(), fit.starts, grouped(fit.evaluations));
+  for (const FittedParameter& parameter : fit.parameters)
+    say("  {:<16} {}\n", parameter.name, told(parameter));
+  print_correlations(fit);
+  const bool film = measured.events.empty();
+  if (!film || !std::isnan(measured.film.error))
+    say("  chi-square {:.4g} for {} degrees of freedom\n", fit.chi_square, fit.degrees);
+  if (film)
+    say("  residuals {:.3g} {} rms{}\n", fit.error, measured.film.phi.empty() ? "m" : "rad",
+        std::isnan(measured.film.error) ? ", from which the errors above are told" : "");
+  print_events(measured, fit);
+  say("  jump: {}, height {:.4g}, at {:.4g} s\n  {}\n", name_of(fit.outcome.status), fit.outcome.jump_height,
+      fit.outcome.jump_time, hop_command(spec_of(fit), fit.design));
+}
+
+/// Which model the data prefer, by Akaike's weights.
+void print_preference(const FitReport& report) {
+  if (report.models.size() < 2 || !is_found(report.models[0])) return;
+  const double less = report.models[1].information - report.models[0].information;
+  say("\nThe data {} \"{}\": Akaike's information is {:.4g} less.\n",
+      less > 10.0  ? "clearly prefer"
+      : less > 2.0 ? "prefer"
+                   : "hardly tell the models apart, and have a little more for",
+      model_of(report.models[0].scene).name, less);
+}
+
+std::string json_of(const std::vector<double>& numbers) {
+  std::vector<std::string> told;
+  for (const double number : numbers) told.push_back(json_number(number));
+  return fmt::format("[{}]", fmt::join(told, ", "));
+}
+
+std::string json_of(const ModelFit& fit) {
+  std::vector<std::string> parameters;
+  for (const FittedParameter& parameter : fit.parameters)
+    parameters.push_back(fmt::format(
+        R"("{}": {{"value": {}, "error": {}, "low": {}, "high": {}, "identified": {}, "at_bound": {}}})",
+        parameter.name, json_number(parameter.value), json_number(parameter.error),
+        json_number(parameter.low), json_number(parameter.high), parameter.identified, parameter.at_bound));
+  return fmt::format(
+      "  {{\"friction\": \"{}\", \"found\": {}, \"parameters\": {{{}}},\n   \"correlations\": {}, "
+      "\"chi_square\": {}, "
+      "\"degrees\": {}, \"error\": {}, \"information\": {},\n   \"model\": {},\n   \"residuals\": {},\n   "
+      "\"hop\": \"{}\"}}",
+      model_of(fit.scene).name, is_found(fit), fmt::join(parameters, ", "), json_of(fit.correlations),
+      json_number(fit.chi_square), fit.degrees, json_number(fit.error), json_number(fit.information),
+      json_of(fit.model), json_of(fit.residuals), is_found(fit) ? hop_command(spec_of(fit), fit.design) : "");
+}
+
+/// A line of each number measured: what it is, what each model has in its place.
+std::string csv_of(const Measurements& measured, const FitReport& report) {
+  std::string text = "t,quantity,measured";
+  for (const ModelFit& fit : report.models)
+    if (is_found(fit)) text += fmt::format(",model_{0},residual_{0}", model_of(fit.scene).name);
+  text += "\n";
+  const bool markers = !measured.film.markers[0].empty();
+  constexpr std::array<std::string_view, 4> names{"x_P", "y_P", "x_O", "y_O"};
+  const std::size_t a_line = markers ? 4 : 1;
+  const std::size_t numbers = measured.events.size() + measured.film.t.size() * a_line;
+  for (std::size_t i = 0; i < numbers; ++i) {
+    if (!measured.events.empty())
+      text += fmt::format(",{},{}", measured.events[i].field, measured.events[i].value);
+    else if (markers)
+      text +=
+          fmt::format("{},{},{}", measured.film.t[i / 4], names[i % 4], measured.film.markers[i % 4][i / 4]);
+    else
+      text += fmt::format("{},phi,{}", measured.film.t[i], measured.film.phi[i]);
+    for (const ModelFit& fit : report.models)
+      if (is_found(fit)) text += fmt::format(",{},{}", fit.model[i], fit.residuals[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+int run(const FitArguments& arguments) {
+  const Spec spec = read_spec(arguments.spec, arguments.overrides);
+  refuse_text_over("--csv", arguments.csv, {arguments.data, arguments.spec}, arguments.locking);
+  const Measurements measured = read_measurements(arguments.data, spec, arguments.reading);
+  FitOptions options = arguments.options;
+  if (arguments.model != "both")
+    options.models = {std::ranges::find(models(), arguments.model, &Model::name)->friction};
+  note_signals();
+  options.stop_requested = [] { return noted_signal() != 0; };
+  FitReport report;
+  try {
+    report = fit(measured, spec, options);
+  } catch (const Stopped&) {
+    tell("interrupted; nothing is written");
+    return 128 + noted_signal();
+  }
+  if (arguments.json) {
+    std::vector<std::string> told;
+    for (const ModelFit& one : report.models) told.push_back(json_of(one));
+    say("{{\"seconds\": {}, \"models\": [\n{}\n]}}\n", json_number(report.seconds), fmt::join(told, ",\n"));
+  } else {
+    say("{} in {}\n", arguments.data, spoken_duration(report.seconds));
+    for (const ModelFit& one : report.models) print_fit(measured, one);
+    print_preference(report);
+  }
+  if (!is_found(report.models[0])) return 1;
+  if (!arguments.csv.empty()) write_text(arguments.csv, csv_of(measured, report));
+  return 0;
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("fit", "find the release, friction and torque that explain a measured motion");
+  auto arguments = std::make_shared<FitArguments>();
+  command
+      ->add_option("DATA", arguments->data,
+                   "measurements, CSV: columns t, phi; or t, x_P, y_P, x_O, y_O; or event, value, error")
+      ->required();
+  command->add_option("SPEC", arguments->spec,
+                      "a spec, TOML: the hoop, and free parameters { from, to }; default: the paper's hoop, "
+                      "its release and friction free");
+  std::vector<std::string> names{"both"};
+  for (const Model& model : models()) names.emplace_back(model.name);
+  command
+      ->add_option("--model", arguments->model,
+                   "fit this model only; default: both, and tell which one the data prefer")
+      ->check(CLI::IsMember(names));
+  command
+      ->add_option("--error", arguments->reading.error,
+                   "standard error of a film's angles [rad] or positions [m]; default: told by the residuals")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--scale", arguments->reading.scale, "metres a unit of marker positions, for pixels")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--y-down", arguments->reading.y_down,
+                    "marker positions y count towards the plane, as rows of a picture do");
+  command->add_flag("--allow-gaps", arguments->reading.allow_gaps, "let films pass that have lines missing");
+  command
+      ->add_option("--csv", arguments->csv,
+                   "write measured numbers, models and residuals to this file, for fit_chart.py")
+      ->check(named_file());
+  add_set(*command, arguments->overrides, ", for example --set radius=0.05 --set 'slope={from=0.3,to=0.5}'");
+  command->add_option("--seed", arguments->options.seed, "of the coarse map; default: 1");
+  command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
+      ->check(CLI::Range(1, most_threads));
+  command->add_flag("--json", arguments->json, "print JSON and nothing else");
+  command->footer(
+      "phi: 0 where the mass touches the plane, growing downhill; x along the plane downhill, y away from "
+      "it; P is the mass, O the "
+      "hoop's centre.\nEvents are quantities of a map: jump_time, apex_time, flight_time, jump_height (in "
+      "hoop diameters), ...\n"
+      "Examples:\n"
+      "  leapmap fit sweeps/paper_events.csv\n"
+      "  leapmap fit film.csv hoop.toml --set 'mass_ratio={from=1,to=4}' --csv fit.csv\n"
+      "Exit status 1: no hoop of the box does anything like it.");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "leapmap/fit.hpp"
+
+#include "leapmap/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "design/explained.hpp"
+#include "design/least_squares.hpp"
+#include "model/model.hpp"
+#include "model/parameters.hpp"
+#include "numerics/sobol_points.hpp"
+#include "sweep/options.hpp"
+#include "sweep/parallel.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double sum_of_squares(std::span<const double> residuals) {
+  return std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), 0.0);
+}
+
+/// The best places of a coarse map of the box that are not beside one another, best first.
+std::vector<std::vector<double>> coarse_starts(const Explained& explained, const FitOptions& options) {
+  constexpr double beside = 0.1;
+  constexpr std::size_t a_block = 256;
+  // Events are solved in lanes, and tell less than a film does.
+  const std::size_t samples = explained.is_film() ? 4096 : 1 << 16, most = explained.is_film() ? 8 : 24;
+  const std::size_t dimensions = explained.free().size();
+  const SobolPoints points(dimensions, samples, options.seed);
+  std::vector<std::vector<double>> places(samples, std::vector<double>(dimensions));
+  std::vector<double> sums(samples, HUGE_VAL);
+  parallel_for_each(samples / a_block, options.threads, [&] {
+    return [&](std::size_t block) {
+      if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
+      for (std::size_t i = block * a_block; i < (block + 1) * a_block; ++i)
+        for (std::size_t k = 0; k < dimensions; ++k)
+          places[i][k] = explained.problem().bounds[k].value(points.column(k)[i]);
+      explained.coarse_sums(std::span(places).subspan(block * a_block, a_block),
+                            std::span(sums).subspan(block * a_block, a_block));
+      return true;
+    };
+  });
+  std::vector<std::size_t> order(samples);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return sums[i]; });
+  std::vector<std::vector<double>> starts;
+  for (const std::size_t i : order) {
+    if (starts.size() == most || !std::isfinite(sums[i])) break;
+    const bool is_new = std::ranges::none_of(starts, [&](const std::vector<double>& start) {
+      for (std::size_t k = 0; k < explained.free().size(); ++k) {
+        const Side& side = explained.problem().bounds[k];
+        if (std::abs(start[k] - places[i][k]) > beside * (side.high - side.low)) return false;
+      }
+      return true;
+    });
+    if (is_new) starts.push_back(places[i]);
+  }
+  return starts;
+}
+
+/// The best of fits from several starts, side by side.
+LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<std::vector<double>>& starts,
+                         const FitOptions& options, std::size_t& evaluations) {
+  std::vector<LeastSquaresFit> fits(starts.size());
+  parallel_for_each(starts.size(), options.threads, [&] {
+    return [&](std::size_t i) {
+      if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
+      fits[i] = minimize(problem, starts[i]);
+      return true;
+    };
+  });
+  for (const LeastSquaresFit& fit : fits) evaluations += fit.evaluations;
+  return *std::ranges::min_element(fits, {}, &LeastSquaresFit::sum);
+}
+
+/// The least sum of squares with one parameter held, the others refitted from a place.
+LeastSquaresFit with_one_held(const LeastSquares& problem, std::vector<double> at, std::size_t held,
+                              double value) {
+  LeastSquares rest{.bounds = problem.bounds, .residuals = problem.residuals, .evaluate = {}};
+  rest.bounds.erase(rest.bounds.begin() + static_cast<std::ptrdiff_t>(held));
+  const std::size_t columns = problem.bounds.size();
+  rest.evaluate = [&](std::span<const double> others, std::span<double> residuals,
+                      std::span<double> jacobian) {
+    std::vector<double> all(others.begin(), others.end());
+    all.insert(all.begin() + static_cast<std::ptrdiff_t>(held), value);
+    std::vector<double> whole(jacobian.empty() ? 0 : residuals.size() * columns);
+    if (!problem.evaluate(all, residuals, whole)) return false;
+    for (std::size_t i = 0, to = 0; i < whole.size(); ++i)
+      if (i % columns != held) jacobian[to++] = whole[i];
+    return true;
+  };
+  at.erase(at.begin() + static_cast<std::ptrdiff_t>(held));
+  if (!at.empty()) return minimize(rest, at);
+  LeastSquaresFit alone{.at = {}, .residuals = std::vector<double>(problem.residuals), .jacobian = {}};
+  if (rest.evaluate({}, alone.residuals, {})) alone.sum = sum_of_squares(alone.residuals);
+  return alone;
+}
+
+/// The ends of where the sum of squares stays within `allowed` of its least, by steps from the best outwards.
+std::pair<double, double> profile(const LeastSquares& problem, const LeastSquaresFit& best, std::size_t k,
+                                  double allowed) {
+  constexpr int steps = 12;
+  const Side& side = problem.bounds[k];
+  std::array<double, 2> ends{best.at[k], best.at[k]};
+  for (const int way : {-1, 1}) {
+    std::vector<double> at = best.at;
+    const double bound = way < 0 ? side.low : side.high;
+    double& end = ends[way < 0 ? 0 : 1];
+    for (int step = 1; step <= steps; ++step) {
+      const double value = best.at[k] + (bound - best.at[k]) * step / steps;
+      const LeastSquaresFit fit = with_one_held(problem, at, k, value);
+      if (!(fit.sum <= best.sum + allowed)) break;
+      end = value;
+      at = fit.at;
+      at.insert(at.begin() + static_cast<std::ptrdiff_t>(k), value);
+    }
+  }
+  return {ends[0], ends[1]};
+}
+
+/// Standard errors, correlations, and what the data do not tell.
+void tell_uncertainty(const Explained& explained, const LeastSquaresFit& best, double variance,
+                      ModelFit& told) {
+  const LeastSquares& problem = explained.problem();
+  const auto rows = static_cast<Eigen::Index>(problem.residuals),
+             columns = static_cast<Eigen::Index>(problem.bounds.size());
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  RowMajor J = Eigen::Map<const RowMajor>(best.jacobian.data(), rows, columns);
+  Eigen::VectorXd width(columns);
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const Side& side = problem.bounds[static_cast<std::size_t>(k)];
+    width[k] = side.high - side.low;
+    J.col(k) *= width[k];
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  // A direction that the data say nothing of counts as known to a thousand boxes.
+  const double least = std::sqrt(variance) * 1e-3;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(columns, columns);
+  for (Eigen::Index i = 0; i < svd.matrixV().cols(); ++i) {
+    const double known = std::max(svd.singularValues()[i], least);
+    covariance += svd.matrixV().col(i) * svd.matrixV().col(i).transpose() * (variance / (known * known));
+  }
+  for (std::size_t k = 0; k < told.parameters.size(); ++k) {
+    FittedParameter& parameter = told.parameters[k];
+    const Side& side = problem.bounds[k];
+    const auto i = static_cast<Eigen::Index>(k);
+    const double share = std::sqrt(covariance(i, i));
+    constexpr double as_good_as_known =
+        0.29;  // of a box: the deviation of a number that may be anywhere in it
+    constexpr double on = 1e-5;
+    parameter.identified = share < as_good_as_known;
+    parameter.error = parameter.identified ? share * width[i] : nan;
+    const double at = (parameter.value - side.low) / (side.high - side.low);
+    parameter.at_bound = at < on || at > 1.0 - on;
+    parameter.low = parameter.value - parameter.error, parameter.high = parameter.value + parameter.error;
+    if (!parameter.identified || parameter.at_bound)
+      std::tie(parameter.low, parameter.high) = profile(problem, best, k, variance);
+    for (std::size_t j = 0; j < told.parameters.size(); ++j) {
+      const auto l = static_cast<Eigen::Index>(j);
+      told.correlations.push_back(covariance(i, l) / std::sqrt(covariance(i, i) * covariance(l, l)));
+    }
+  }
+}
+
+ModelFit fit_model(const Measurements& measured, const Spec& spec, Friction friction,
+                   const FitOptions& options) {
+  const Explained explained(measured, spec, friction);
+  const LeastSquares& problem = explained.problem();
+  if (problem.residuals < problem.bounds.size())
+    throw InputError(fmt::format("{}: {} numbers for {} free parameters; allowed: as many numbers or more",
+                                 measured.origin, problem.residuals, problem.bounds.size()));
+  ModelFit told{.scene = explained.scene()};
+  const auto starts = coarse_starts(explained, options);
+  told.starts = starts.size();
+  if (starts.empty()) {
+    told.chi_square = told.information = HUGE_VAL;
+    return told;
+  }
+  std::vector<std::vector<double>> whole;
+  for (const auto& start : starts) whole.push_back(explained.with_origin(start));
+  const LeastSquaresFit best = best_fit(problem, whole, options, told.evaluations);
+  if (best.residuals.empty()) {
+    told.chi_square = told.information = HUGE_VAL;
+    return told;
+  }
+  told.design = explained.design_at(best.at);
+  told.outcome = solve(told.design, told.scene);
+  const auto numbers = static_cast<double>(problem.residuals),
+             free = static_cast<double>(problem.bounds.size());
+  told.degrees = problem.residuals - problem.bounds.size();
+  // Where nobody says how good the numbers are, the residuals do.
+  const bool known = explained.errors_known();
+  const double variance = known ? 1.0 : best.sum / std::max(static_cast<double>(told.degrees), 1.0);
+  told.chi_square = known ? best.sum : static_cast<double>(told.degrees);
+  told.error = std::sqrt(best.sum / numbers) * explained.unit_error();
+  told.information = 2.0 * free + (known ? best.sum : numbers * std::log(best.sum / numbers));
+  for (std::size_t k = 0; k < explained.free().size(); ++k)
+    told.parameters.push_back({.name = explained.free()[k].name, .value = best.at[k]});
+  tell_uncertainty(explained, best, variance, told);
+  told.model = explained.model_at(best.residuals);
+  for (const double residual : best.residuals) told.residuals.push_back(residual / std::sqrt(variance));
+  return told;
+}
+
+}  // namespace
+
+FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& asked) {
+  const auto begin = std::chrono::steady_clock::now();
+  FitOptions options = asked;
+  options.stop_requested = latched(asked.stop_requested);
+  FitReport report;
+  for (const Friction friction : options.models)
+    report.models.push_back(fit_model(measured, spec, friction, options));
+  std::ranges::stable_sort(report.models, {}, &ModelFit::information);
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Reading measurements, and telling wrong ones before they are fitted.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "leapmap/fit.hpp"
+#include "model/fields.hpp"
+#include "physics/parameters.hpp"
+#include "support/csv.hpp"
+#include "trajectory/units.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr std::string_view forms =
+    "columns t, phi; or t, x_P, y_P, x_O, y_O; or event, value, error (times in s, angles in rad, lengths in "
+    "m)";
+constexpr std::array<std::string_view, 4> marker_names{"x_P", "y_P", "x_O", "y_O"};
+
+double to_number(const std::string& cell, const std::string& place, std::string_view column) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
+    throw InputError(fmt::format("{}: {} = '{}' is no number; allowed: a finite number in every line", place,
+                                 column, cell));
+  return value;
+}
+
+MeasuredEvent event_of(const std::vector<std::string>& cells, const std::array<std::size_t, 3>& columns,
+                       const std::string& place) {
+  const std::string& name = cells[columns[0]];
+  const Field* field = find_field(name);
+  const auto* quantity = field ? std::get_if<Quantity>(&field->source) : nullptr;
+  if (!quantity) {
+    std::vector<std::string_view> names;
+    for (const Field& each : map_fields())
+      if (std::holds_alternative<Quantity>(each.source)) names.push_back(each.name);
+    throw InputError(fmt::format("{}: event '{}' is no quantity of a map; allowed: {}", place, name,
+                                 fmt::join(names, ", ")));
+  }
+  MeasuredEvent event{name, to_number(cells[columns[1]], place, "value"),
+                      to_number(cells[columns[2]], place, "error")};
+  if (!(event.error > 0.0))
+    throw InputError(
+        fmt::format("{}: error = {} of {}; allowed: a standard error above 0", place, event.error, name));
+  constexpr double longest = 60.0, highest = 50.0;
+  if (quantity->measure == Measure::time && !(event.value >= 0.0 && event.value <= longest))
+    throw InputError(fmt::format("{}: {} = {} looks like another unit; allowed: seconds, from 0 to {}", place,
+                                 name, event.value, longest));
+  if (quantity->measure == Measure::height && !(std::abs(event.value) <= highest))
+    throw InputError(fmt::format("{}: {} = {} looks like another unit; allowed: hoop diameters, up to {}",
+                                 place, name, event.value, highest));
+  return event;
+}
+
+void check_times(const Measurements& measured, const std::vector<std::string>& places, double second,
+                 bool allow_gaps) {
+  const std::vector<double>& t = measured.film.t;
+  if (t.size() < 3)
+    throw InputError(fmt::format("{}: {} lines; allowed: three or more", measured.origin, t.size()));
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    if (!(t[i] > t[i - 1]))
+      throw InputError(
+          fmt::format("{}: t = {} after {}; allowed: times that ascend", places[i], t[i], t[i - 1]));
+    steps.push_back(t[i] - t[i - 1]);
+  }
+  if (t.front() < 0.0)
+    throw InputError(
+        fmt::format("{}: t = {}; allowed: times since release, from 0 on", places[0], t.front()));
+  constexpr double longest = 300.0;  // in sqrt(R/g): a hoop that rolls so long has left any picture
+  if (t.back() > longest * second)
+    throw InputError(fmt::format(
+        "{}: t = {} looks like another unit: that is {:.3g} s for a hoop that needs {:.2g} s for a jump; "
+        "allowed: seconds since release",
+        places.back(), t.back(), t.back(), 5.0 * second));
+  std::vector<double> sorted = steps;
+  std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
+  const double usual = sorted[sorted.size() / 2];
+  constexpr double gap = 5.0;
+  for (std::size_t i = 0; i < steps.size() && !allow_gaps; ++i)
+    if (steps[i] > gap * usual)
+      throw InputError(
+          fmt::format("{}: {:.6g} s after the line before, {:.3g} times the usual: the data have a gap; "
+                      "allowed: even times, or --allow-gaps",
+                      places[i + 1], steps[i], steps[i] / usual));
+}
+
+void check_angles(const Measurements& measured, const std::vector<std::string>& places, double second) {
+  const Film& film = measured.film;
+  constexpr double fastest = 12.0;  // sqrt(g/R): a spin that no hoop has on the way to a jump
+  for (std::size_t i = 1; i < film.t.size(); ++i)
+    if (const double spin = std::abs(film.phi[i] - film.phi[i - 1]) / (film.t[i] - film.t[i - 1]);
+        spin > fastest / second)
+      throw InputError(
+          fmt::format("{}: phi changes by {:.4g} in {:.4g} s, which no hoop does: it looks like degrees, or "
+                      "like an angle cut off at a "
+                      "turn; allowed: radians that go on over turns",
+                      places[i], film.phi[i] - film.phi[i - 1], film.t[i] - film.t[i - 1]));
+}
+
+void check_markers(const Measurements& measured, double length) {
+  const auto& [x_P, y_P, x_O, y_O] = measured.film.markers;
+  std::vector<double> apart;
+  for (std::size_t i = 0; i < x_P.size(); ++i) apart.push_back(std::hypot(x_P[i] - x_O[i], y_P[i] - y_O[i]));
+  std::ranges::nth_element(apart, apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2));
+  const double median = apart[apart.size() / 2];
+  constexpr double off = 1.5;
+  if (!(median < off * length && median > length / off))
+    throw InputError(
+        fmt::format("{}: the markers are {:.4g} apart, and L of the hoop is {:.4g} m: another unit? allowed: "
+                    "metres, or --scale {:.4g} "
+                    "(metres a unit); or the radius of the hoop that was filmed, --set radius=...",
+                    measured.origin, median, length, length / median));
+}
+
+/// Where in the header each of these columns stands; nothing if one is missing.
+template <std::size_t N>
+std::optional<std::array<std::size_t, N>> columns_of(const std::vector<std::string>& header,
+                                                     const std::array<std::string_view, N>& names) {
+  std::array<std::size_t, N> columns{};
+  for (std::size_t k = 0; k < N; ++k) {
+    const auto found = std::ranges::find(header, names[k]);
+    if (found == header.end()) return {};
+    columns[k] = static_cast<std::size_t>(found - header.begin());
+  }
+  return columns;
+}
+
+}  // namespace
+
+Measurements read_measurements(const std::string& path, const Spec& spec, const MeasurementOptions& options) {
+  CsvFile file(path, fmt::format("measurements as a CSV file, {}", forms));
+  Measurements measured{.origin = path};
+  measured.film.error = options.error;
+  const auto events = columns_of<3>(file.header(), {"event", "value", "error"});
+  const auto angle = columns_of<2>(file.header(), {"t", "phi"});
+  const auto markers = columns_of<4>(file.header(), marker_names);
+  const auto time = columns_of<1>(file.header(), {"t"});
+  const std::size_t known = events ? 3 : angle ? 2 : markers && time ? 5 : 0;
+  if (known == 0 || known != file.header().size())
+    throw InputError(fmt::format("{}: columns {}; allowed: {}", file.place().empty() ? path : file.place(),
+                                 fmt::join(file.header(), ", "), forms));
+  std::vector<std::string> cells, places;
+  while (file.next(cells)) {
+    const std::string& place = file.place();
+    places.push_back(place);
+    if (events) {
+      measured.events.push_back(event_of(cells, *events, place));
+      continue;
+    }
+    measured.film.t.push_back(to_number(cells[(*time)[0]], place, "t"));
+    if (angle) measured.film.phi.push_back(to_number(cells[(*angle)[1]], place, "phi"));
+    for (std::size_t k = 0; markers && k < marker_names.size(); ++k) {
+      const bool flipped = options.y_down && marker_names[k].front() == 'y';
+      measured.film.markers[k].push_back((flipped ? -1.0 : 1.0) * options.scale *
+                                         to_number(cells[(*markers)[k]], place, marker_names[k]));
+    }
+  }
+  if (places.empty()) throw InputError(path + ": no line but the header; allowed: one or more");
+  if (events) return measured;
+  const double second = time_unit(spec.scene);
+  check_times(measured, places, second, options.allow_gaps);
+  if (angle) check_angles(measured, places, second);
+  if (markers) check_markers(measured, spec.design.offset_ratio * spec.scene.radius);
+  return measured;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "design/motion_at.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "coulomb/contact_phases.hpp"
+#include "model/model.hpp"
+#include "physics/landing.hpp"
+#include "physics/sliding.hpp"
+#include "physics/stick.hpp"
+#include "trajectory/units.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t by_mu_static = 7, by_mu_kinetic = 8, by_restitution = 9;
+
+template <class S>
+S parameter(const Design& design, double value, std::size_t number) {
+  if constexpr (has_derivatives<S>) {
+    // One parameter where it follows the other.
+    return S::parameter(value, number == by_mu_kinetic && kinetic_follows(design) ? by_mu_static : number);
+  } else {
+    return value;
+  }
+}
+
+/// What moves in contact: angle, spin, travel, slip.
+template <class S>
+using Moving = std::array<S, 4>;
+
+template <class S>
+Moving<S> stepped(const Moving<S>& from, const Moving<S>& rate, double by) {
+  Moving<S> to;
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i] + rate[i] * by;
+  return to;
+}
+
+/// Gragg's midpoint steps over a span, so many.
+template <class S, class Rate>
+Moving<S> midpoint_steps(const Moving<S>& from, double span, int count, const Rate& rate) {
+  const double h = span / count;
+  Moving<S> before = from, at = stepped(from, rate(from), h);
+  for (int k = 1; k < count; ++k) {
+    const Moving<S> next = stepped(before, rate(at), 2.0 * h);
+    before = at, at = next;
+  }
+  const Moving<S> last = stepped(before, rate(at), h);
+  for (std::size_t i = 0; i < at.size(); ++i) at[i] = (at[i] + last[i]) * 0.5;
+  return at;
+}
+
+/// Over a span of time by extrapolation, in halves where that does not agree with itself.
+template <class S, class Rate>
+Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, int depth = 0) {
+  constexpr std::array counts{2, 4, 6, 8, 10};
+  constexpr double longest = 0.3, allowed = 1e-11;
+  constexpr int most_halvings = 30;
+  const auto halved = [&] {
+    return integrated(integrated(from, 0.5 * span, rate, depth + 1), 0.5 * span, rate, depth + 1);
+  };
+  if (span > longest && depth < most_halvings) return halved();
+  std::array<Moving<S>, counts.size()> before, row;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    row[0] = midpoint_steps(from, span, counts[k], rate);
+    for (std::size_t j = 1; j <= k; ++j) {  // Neville, in squares of the step
+      const double ratio = static_cast<double>(counts[k]) / counts[k - j];
+      for (std::size_t i = 0; i < row[j].size(); ++i)
+        row[j][i] = row[j - 1][i] + (row[j - 1][i] - before[j - 1][i]) * (1.0 / (ratio * ratio - 1.0));
+    }
+    double error = 0.0;
+    for (std::size_t i = 0; i < row[k].size() && k > 0; ++i)
+      error =
+          std::max(error, largest_part(S(row[k][i] - before[k - 1][i])) / (1.0 + largest_part(row[k][i])));
+    if (k > 0 && error <= allowed) return row[k];
+    before = row;
+  }
+  return depth < most_halvings ? halved() : row.back();
+}
+
+/// One design, phase after phase.
+template <class S>
+class Walk {
+ public:
+  Walk(const Design& design, const Scene& scene)
+      : hoop_(derive(parameter<S>(design, design.slope, 0), parameter<S>(design, design.mass_ratio, 1),
+                     parameter<S>(design, design.offset_ratio, 2),
+                     parameter<S>(design, design.inertia_factor, 3),
+                     parameter<S>(design, design.drive_torque, 6))),
+        contact_{parameter<S>(design, design.mu_static, by_mu_static),
+                 parameter<S>(design, kinetic_follows(design) ? design.mu_static : design.mu_kinetic,
+                              by_mu_kinetic),
+                 parameter<S>(design, design.restitution, by_restitution), S(scene.rest_speed)} {
+    if (contact_.mu_static < contact_.mu_kinetic) contact_.mu_static = contact_.mu_kinetic;
+    at_ = {parameter<S>(design, design.release_angle, 4), parameter<S>(design, design.release_spin, 5),
+           S(0.0), S(0.0)};
+  }
+
+  /// Goes through a phase from one time to another; take(time) is called at those between.
+  void contact(Phase phase, int direction, double from, double to, std::span<const double> times,
+               std::vector<MotionAt<S>>& taken) {
+    const auto rate = rate_of(phase, direction);
+    double time = from;
+    for (const double sample : times) {
+      at_ = integrated(at_, sample - time, rate), time = sample;
+      taken.push_back({at_[0], at_[2], S(0.0)});
+    }
+    if (std::isfinite(to)) at_ = integrated(at_, to - time, rate);
+  }
+  /// Ends a phase of contact where the next one begins.
+  void end_contact(Phase phase, int direction, Phase next) {
+    const S later = lateness(phase, direction, next);
+    at_ = moved(at_, rate_of(phase, direction)(at_), later);
+    if (phase == Phase::sliding && next != Phase::flight) at_[3] = S(0.0);
+    late_ = later, normal_ = S(0.0);
+  }
+  /// Begins the next one: as if it had begun in time.
+  void begin_contact(Phase phase, int direction) {
+    at_ = moved(at_, rate_of(phase, direction)(at_), -late_);
+    late_ = S(0.0);
+  }
+  /// A flight, and its landing after flight_time; infinite: it never lands.
+  void fly(double from, double flight_time, std::span<const double> times, std::vector<MotionAt<S>>& taken) {
+    const Trig<S> phi = trig(at_[0]);
+    for (const double sample : times) {
+      const S t = S(sample - from) - late_;
+      taken.push_back({at_[0] + at_[1] * t, at_[2] + travel_in_flight(hoop_, phi, at_[1], at_[3], t).value,
+                       height_above_plane(hoop_, phi, at_[1], t, normal_).value});
+    }
+    if (!std::isfinite(flight_time)) return;
+    S flown(flight_time);
+    if constexpr (has_derivatives<S>) {
+      const auto end = height_above_plane(hoop_, phi, at_[1], flown, normal_);
+      flown = with_derivatives(flight_time, end.value, end.rate.value);
+    }
+    const Sample<S> travel = travel_in_flight(hoop_, phi, at_[1], at_[3], flown);
+    const S climb = height_above_plane(hoop_, phi, at_[1], flown, normal_).rate;
+    at_[2] = at_[2] + travel.value;
+    at_[0] = at_[0] + at_[1] * flown;
+    const Landing<S> landing = land(hoop_, trig(at_[0]), {travel.rate - at_[1], climb, at_[1]},
+                                    contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
+    at_[1] = landing.after.spin, at_[3] = landing.after.slip, normal_ = landing.after.normal;
+    late_ = late_ + flown - S(flight_time);
+  }
+
+ private:
+  auto rate_of(Phase phase, int direction) const {
+    return
+        [this, rolls = phase == Phase::rolling,
+         friction = contact_.mu_kinetic * static_cast<double>(direction)](const Moving<S>& at) -> Moving<S> {
+          const Trig<S> phi = trig(at[0]);
+          if (rolls) return {at[1], angular_acceleration(hoop_, phi, at[1]), at[1], S(0.0)};
+          const auto motion = sliding_motion(hoop_, phi, S(at[1] * at[1]), friction);
+          return {at[1], motion.angular, at[3] + at[1], motion.slip};
+        };
+  }
+  static Moving<S> moved(const Moving<S>& from, const Moving<S>& rate, const S& by) {
+    Moving<S> to;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i] + rate[i] * by;
+    return to;
+  }
+  /// How much later than its plain time a phase ends: no more than derivatives.
+  S lateness(Phase phase, int direction, Phase next) const {
+    if constexpr (has_derivatives<S>) {
+      const Trig<S> phi = trig(at_[0]);
+      const S spin = at_[1];
+      S zero(0.0);
+      double rate = 1.0;
+      if (phase == Phase::sliding) {
+        const auto motion =
+            sliding_motion(hoop_, phi, S(spin * spin), contact_.mu_kinetic * static_cast<double>(direction));
+        zero = next == Phase::flight ? free_normal_force(hoop_, phi, S(spin * spin)) : at_[3];
+        rate = next == Phase::flight
+                   ? spin.value * free_normal_force_rate(hoop_, phi, S(spin * spin), motion.angular).value
+                   : motion.slip.value;
+      } else if (next == Phase::flight) {
+        const S acceleration = angular_acceleration(hoop_, phi, spin);
+        zero = normal_force(hoop_, phi, spin, acceleration);
+        rate = normal_force_rate(hoop_, phi, spin, acceleration).value;
+      } else {
+        const auto guards =
+            stick_guards(hoop_, phi, S(spin * spin * contact_inertia(hoop_, phi)), contact_.mu_static);
+        const Sample<S>& guard =
+            abs(guards.downhill.value) < abs(guards.uphill.value) ? guards.downhill : guards.uphill;
+        zero = guard.value, rate = guard.rate.value * spin.value;
+      }
+      return with_derivatives(0.0, zero, rate);
+    } else {
+      return 0.0;
+    }
+  }
+
+  Hoop<S> hoop_;
+  Contact<S> contact_;
+  Moving<S> at_;
+  S normal_{0.0};
+  S late_{0.0};
+};
+
+}  // namespace
+
+template <class S>
+std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std::span<const double> times) {
+  constexpr double tolerance = 1e-12;
+  const Motion motion = model_of(scene).tell_exactly(design, scene, tolerance, 0.0);
+  std::vector<MotionAt<S>> taken;
+  if (motion.phases.empty() || motion.outcome.status == Status::failed) return taken;
+  const double second = time_unit(scene);
+  std::vector<double> scaled;
+  for (const double time : times) scaled.push_back(time / second);
+  const std::span<const double> all = scaled;
+  Walk<S> walk(design, scene);
+  std::size_t next = 0, flight = 0;
+  // Lift-offs that were flown: without slip a spurious one is rolled over.
+  const std::size_t flights =
+      static_cast<std::size_t>(std::count_if(motion.phases.begin(), motion.phases.end(),
+                                             [](const PhaseStart& p) { return p.phase == Phase::flight; }));
+  const std::size_t rolled_over = motion.candidates.size() - std::min(flights, motion.candidates.size());
+  for (std::size_t k = 0; k < motion.phases.size(); ++k) {
+    const PhaseStart& phase = motion.phases[k];
+    const bool last = k + 1 == motion.phases.size();
+    const double from = phase.t / second, to = last ? HUGE_VAL : motion.phases[k + 1].t / second;
+    std::size_t end = next;
+    while (end < all.size() && (last || all[end] < to)) ++end;
+    const std::span<const double> here = all.subspan(next, end - next);
+    next = end;
+    if (phase.phase == Phase::flight) {
+      walk.fly(from, last ? HUGE_VAL : motion.candidates[rolled_over + flight++].flight_time / second, here,
+               taken);
+      if (!last && motion.phases[k + 1].phase != Phase::flight)
+        walk.begin_contact(motion.phases[k + 1].phase, motion.phases[k + 1].direction);
+      continue;
+    }
+    walk.contact(phase.phase, phase.direction, from, to, here, taken);
+    if (last) break;
+    const PhaseStart& then = motion.phases[k + 1];
+    walk.end_contact(phase.phase, phase.direction, then.phase);
+    if (then.phase != Phase::flight) walk.begin_contact(then.phase, then.direction);
+  }
+  for (const MotionAt<S>& at : taken)
+    if (!std::isfinite(value_of(at.phi)) || !std::isfinite(value_of(at.x)) || !std::isfinite(value_of(at.y)))
+      return {};
+  return taken;
+}
+
+template std::vector<MotionAt<double>> motion_at(const Design&, const Scene&, std::span<const double>);
+template std::vector<MotionAt<DesignDual>> motion_at(const Design&, const Scene&, std::span<const double>);
+
+}  // namespace leapmap

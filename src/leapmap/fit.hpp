@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// From measurements to a hoop: which release, friction or torque explains a motion that was seen?
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "leapmap/design.hpp"
+#include "leapmap/errors.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/spec.hpp"
+
+namespace leapmap {
+
+/// One event that was measured: a quantity of a map, in its unit, with its standard error.
+struct MeasuredEvent {
+  std::string field{};
+  double value = 0.0, error = 0.0;
+};
+
+/// A motion over time: the angle, or two markers, P on the mass and O at the hoop's centre, whose coordinates
+/// are along the plane, downhill, and away from it.
+struct Film {
+  std::vector<double> t{};                       ///< since release [s], ascending
+  std::vector<double> phi{};                     ///< [rad]; empty: markers
+  std::array<std::vector<double>, 4> markers{};  ///< x_P, y_P, x_O, y_O [m], from any origin; empty: phi
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< of each number; NaN: told by the residuals
+};
+
+/// Events, or a film.
+struct Measurements {
+  std::string origin{};  ///< the file, for messages
+  std::vector<MeasuredEvent> events{};
+  Film film{};
+};
+
+struct MeasurementOptions {
+  double scale = 1.0;   ///< metres a unit of marker positions, for pixels
+  bool y_down = false;  ///< y counts towards the plane, as rows of a picture do
+  bool allow_gaps = false;
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< of a film's numbers, in their unit as used
+};
+
+/// Reads a CSV file: columns t and phi; or t, x_P, y_P, x_O, y_O; or event, value, error. Throws InputError,
+/// naming line and column, for what is no number, for times that do not ascend, for gaps, and for numbers
+/// whose size tells of another unit; scene: of the hoop that was filmed.
+Measurements read_measurements(const std::string& path, const Spec& spec,
+                               const MeasurementOptions& options = {});
+
+struct FittedParameter {
+  std::string name{};
+  double value = 0.0;
+  double error = 0.0;            ///< standard error; NaN: the data do not tell it
+  double low = 0.0, high = 0.0;  ///< where chi-square stays within one of its least, others refitted; of
+                                 ///< those that are not identified, from bound to bound if nothing limits it
+  bool at_bound = false;
+  bool identified = true;
+};
+
+/// One model, fitted.
+struct ModelFit {
+  Scene scene{};
+  Design design{};
+  Outcome outcome{};  ///< of that design
+  std::vector<FittedParameter> parameters{};
+  std::vector<double> correlations{};  ///< a row of each parameter
+  double chi_square = 0.0;             ///< over the errors; those of a film may be told by the residuals
+  std::size_t degrees = 0;             ///< of freedom
+  double error = 0.0;                  ///< of a film: rms of residuals, [rad] or [m]
+  double information = 0.0;            ///< Akaike's, corrected for few data; less is better
+  std::vector<double> model{}, residuals{};  ///< of every number measured; residuals over their errors
+  std::size_t starts = 0, evaluations = 0;
+};
+
+struct FitReport {
+  std::vector<ModelFit> models{};  ///< best first, by information
+  double seconds = 0.0;
+};
+
+struct FitOptions {
+  std::vector<Friction> models{Friction::sticking, Friction::coulomb};
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::function<bool()> stop_requested{};
+};
+
+/// Fits free parameters to measurements by least squares: a coarse map of the box first, then GSL's trust
+/// region from its best places, derivatives exact. Free are the spec's axes { from, to }; without any,
+/// release_angle and release_spin, about where the film begins, and mu_static where the contact slips. Throws
+/// InputError for more free parameters than numbers, and as check_spec does.
+FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& options = {});
+
+}  // namespace leapmap
