@@ -35,19 +35,25 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
   constexpr double beside = 0.1;
   constexpr std::size_t a_block = 256;
   // Events are solved in lanes, and tell less than a film does.
-  const std::size_t samples = explained.is_film() ? 4096 : 1 << 16, most = explained.is_film() ? 8 : 24;
+  const bool film = explained.is_film();
+  const std::size_t samples = options.coarse > 0 ? options.coarse
+                              : film             ? 4096
+                                                 : 1 << 16,
+                    most = options.starts > 0 ? options.starts
+                           : film             ? 8
+                                              : 24;
   const std::size_t dimensions = explained.free().size();
   const SobolPoints points(dimensions, samples, options.seed);
   std::vector<std::vector<double>> places(samples, std::vector<double>(dimensions));
   std::vector<double> sums(samples, HUGE_VAL);
-  parallel_for_each(samples / a_block, options.threads, [&] {
+  parallel_for_each((samples + a_block - 1) / a_block, options.threads, [&] {
     return [&](std::size_t block) {
       if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
-      for (std::size_t i = block * a_block; i < (block + 1) * a_block; ++i)
+      const std::size_t first = block * a_block, count = std::min(a_block, samples - first);
+      for (std::size_t i = first; i < first + count; ++i)
         for (std::size_t k = 0; k < dimensions; ++k)
           places[i][k] = explained.problem().bounds[k].value(points.column(k)[i]);
-      explained.coarse_sums(std::span(places).subspan(block * a_block, a_block),
-                            std::span(sums).subspan(block * a_block, a_block));
+      explained.coarse_sums(std::span(places).subspan(first, count), std::span(sums).subspan(first, count));
       return true;
     };
   });

@@ -84,8 +84,11 @@ struct FitReport {
 
 struct FitOptions {
   std::vector<Friction> models{Friction::sticking, Friction::coulomb};
-  std::uint64_t seed = 1;
-  int threads = 0;
+    std::uint64_t seed = 1;
+  std::size_t coarse = 0;  ///< designs of the coarse map, 16 times a whole number; 0: 4,096 of a film, 65,536 of events
+  std::size_t starts = 0;  ///< its places that are followed; 0: 8 of a film, 24 of events
+  int threads = 0;         ///< 0: as many as OpenMP offers
+  /// Asked now and then, from any thread; true: fit throws Stopped.
   std::function<bool()> stop_requested{};
 };
 

@@ -33,7 +33,7 @@ std::string refusal(const std::string& text, const std::vector<std::string>& ove
   folder.write("good.csv", "slope\n0.1\n");
   folder.write("mu.csv", "slope,mu_static\n0.1,0.4\n");
   try {
-    read_spec(folder.write("spec.toml", text), overrides);
+    check_spec(read_spec(folder.write("spec.toml", text), overrides));  // as a sweep does
   } catch (const InputError& error) {
     return error.what();
   }

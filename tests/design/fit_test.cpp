@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Motions at given times, least squares, and fits to films whose truth is known.
+#include "leapmap/fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "design/least_squares.hpp"
+#include "design/motion_at.hpp"
+#include "leapmap/leapmap.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace leapmap {
+namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int seeds = 2, random_designs = 4;  // with sanitizers a film takes twenty times as long
+#else
+constexpr int seeds = 100, random_designs = 60;
+#endif
+
+Scene scene_of(Friction friction) { return {.friction = friction}; }
+
+/// Designs that jump after hops, slips and turns, by chance.
+Design random_design(std::mt19937_64& random, Friction friction) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  Design design{.slope = between(0.1, 0.6),
+                .mass_ratio = between(0.5, 6.0),
+                .offset_ratio = between(0.6, 1.0),
+                .inertia_factor = between(0.6, 1.0),
+                .release_angle = between(2.5, 5.0),
+                .release_spin = between(-0.2, 0.5),
+                .drive_torque = between(0.0, 0.1)};
+  if (friction == Friction::coulomb)
+    design.mu_static = between(0.2, 1.0), design.restitution = between(0.0, 0.3);
+  return design;
+}
+
+std::vector<double> even_times(double end, int count) {
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i) times.push_back(end * (i + 0.5) / count);
+  return times;
+}
+
+class Motions : public ::testing::TestWithParam<Friction> {};
+
+TEST_P(Motions, AtGivenTimesAreThoseOfATrace) {
+  std::mt19937_64 random(3);
+  int compared = 0;
+  for (int i = 0; i < random_designs; ++i) {
+    const Design design = random_design(random, GetParam());
+    const Motion traced = trace(design, scene_of(GetParam()), {.interval = 5e-3, .tolerance = 1e-12});
+    if (traced.outcome.status != Status::jumped) continue;
+    std::vector<double> times;
+    std::vector<MotionPoint> points;
+    for (const MotionPoint& point : traced.points)
+      if ((times.empty() || point.t > times.back()) && point.t < traced.end)
+        times.push_back(point.t), points.push_back(point);
+    const auto motion = motion_at<double>(design, scene_of(GetParam()), times);
+    ASSERT_EQ(motion.size(), points.size());
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+      // Both follow the time to 1e-11, and a spin of up to ten takes the angle along.
+      ASSERT_NEAR(motion[k].phi, points[k].phi, 1e-8) << "design " << i << " at " << times[k];
+      ASSERT_NEAR(motion[k].x * 0.041, points[k].x, 1e-9);
+      ASSERT_NEAR(motion[k].y * 0.041, points[k].y, 1e-9);
+    }
+    ++compared;
+  }
+  EXPECT_GE(compared, random_designs / 3);
+}
+
+TEST_P(Motions, HaveTheDerivativesThatDifferencesShow) {
+  std::mt19937_64 random(4);
+  int compared = 0, rough = 0;
+  const Scene scene = scene_of(GetParam());
+  const std::size_t parameters = GetParam() == Friction::coulomb ? 8 : 7;
+  for (int i = 0; i < random_designs; ++i) {
+    const Design design = random_design(random, GetParam());
+    const Motion traced = trace(design, scene, {.interval = 0.0});
+    if (traced.outcome.status != Status::jumped) continue;
+    const auto times = even_times(traced.outcome.jump_time + 0.9 * traced.outcome.flight_time, 23);
+    const auto motion = motion_at<DesignDual>(design, scene, times);
+    ASSERT_EQ(motion.size(), times.size());
+    for (std::size_t k = 0; k < parameters; ++k) {
+      constexpr double step = 1e-6;
+      Design more = design, less = design;
+      more.*differentiable[k] += step, less.*differentiable[k] -= step;
+      const auto after = motion_at<double>(more, scene, times),
+                 before = motion_at<double>(less, scene, times);
+      ASSERT_EQ(after.size(), times.size());
+      for (std::size_t n = 0; n < times.size(); ++n)
+        for (const auto& [dual, high, low] : {std::tuple{motion[n].phi, after[n].phi, before[n].phi},
+                                              {motion[n].x, after[n].x, before[n].x},
+                                              {motion[n].y, after[n].y, before[n].y}}) {
+          ++compared;
+          const double difference = (high - low) / (2.0 * step);
+          // Rounding 1e-11 over 2e-6, and a third derivative times 1e-12; where a step passes a cliff nothing
+          // holds.
+          rough += !(std::abs(dual.by[k] - difference) <= 3e-5 * (1.0 + std::abs(difference)));
+        }
+    }
+  }
+  EXPECT_GT(compared, random_designs * 50);
+  EXPECT_LT(rough, compared / 50) << "of " << compared << ": beside kinks in time, and cliffs";
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, Motions, ::testing::Values(Friction::sticking, Friction::coulomb),
+                         [](const auto& model) {
+                           return model.param == Friction::sticking ? "sticking" : "coulomb";
+                         });
+
+TEST(LeastSquaresFits, FindTheCertifiedValuesOfMisra1a) {
+  // NIST StRD, Misra1a: y = b1 (1 - exp(-b2 x)); b1 = 2.3894212918e2, b2 = 5.5015643181e-4,
+  // sum 1.2455138894e-1.
+  const std::vector<double> y{10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02,
+                              44.82, 50.76, 55.05, 61.01, 66.40, 75.47, 81.78},
+      x{77.6, 114.9, 141.1, 190.8, 239.9, 289.0, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760.0};
+  LeastSquares problem{.bounds = {{1.0, 1000.0}, {1e-5, 1e-2}}, .residuals = y.size(), .evaluate = {}};
+  problem.evaluate = [&](std::span<const double> b, std::span<double> r, std::span<double> jacobian) {
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      const double decay = std::exp(-b[1] * x[i]);
+      r[i] = b[0] * (1.0 - decay) - y[i];
+      if (!jacobian.empty()) jacobian[2 * i] = 1.0 - decay, jacobian[2 * i + 1] = b[0] * x[i] * decay;
+    }
+    return true;
+  };
+  const LeastSquaresFit fit = minimize(problem, std::vector{500.0, 1e-4});  // NIST's first start
+  EXPECT_NEAR(fit.at[0], 2.3894212918e2, 1e-7 * 238.9);
+  EXPECT_NEAR(fit.at[1], 5.5015643181e-4, 1e-7 * 5.5e-4);
+  EXPECT_NEAR(fit.sum, 1.2455138894e-1, 1e-9);
+}
+
+TEST(LeastSquaresFits, StayWithinTheirBounds) {
+  LeastSquares problem{.bounds = {{0.0, 1.0}}, .residuals = 1, .evaluate = {}};
+  problem.evaluate = [](std::span<const double> at, std::span<double> r, std::span<double> jacobian) {
+    EXPECT_GE(at[0], 0.0);
+    EXPECT_LE(at[0], 1.0);
+    r[0] = at[0] - 3.0;
+    if (!jacobian.empty()) jacobian[0] = 1.0;
+    return true;
+  };
+  EXPECT_NEAR(minimize(problem, std::vector{0.2}).at[0], 1.0, 1e-6)
+      << "the bound is reached as a square root";
+}
+
+/// A film at a thousand frames a second, its markers 0.3 mm off.
+Measurements film_of(const Design& truth, const Scene& scene, double error, int seed) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+  std::normal_distribution<double> off(0.0, error);
+  Measurements measured{.origin = "film"};
+  const Motion motion = trace(truth, scene, {.interval = 1e-3});
+  for (const MotionPoint& point : motion.points) {
+    if (!measured.film.t.empty() && point.t <= measured.film.t.back()) continue;
+    measured.film.t.push_back(point.t);
+    const double x = point.x + 0.11, y = point.y + scene.radius - 0.02, L = truth.offset_ratio * scene.radius;
+    const std::array markers{x - L * std::sin(point.phi), y - L * std::cos(point.phi), x, y};
+    for (std::size_t k = 0; k < 4; ++k) measured.film.markers[k].push_back(markers[k] + off(random));
+  }
+  return measured;
+}
+
+TEST(Fits, FindTheTruthOfAFilmWithinThreeErrorsIn95Of100Seeds) {
+  const Design truth{.release_angle = degrees(190), .release_spin = 0.05, .mu_static = 0.4};
+  const Scene scene = scene_of(Friction::coulomb);
+  int within = 0;
+  double squares = 0.0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const FitReport report = fit(film_of(truth, scene, 3e-4, seed), {},
+                                 {.models = {Friction::coulomb}, .coarse = 512, .starts = 2});
+    const ModelFit& found = report.models[0];
+    ASSERT_EQ(found.parameters.size(), 3u);
+    bool all = true;
+    for (const FittedParameter& parameter : found.parameters) {
+      const double wanted = parameter.name == "release_angle"  ? truth.release_angle
+                            : parameter.name == "release_spin" ? truth.release_spin
+                                                               : truth.mu_static;
+      const double off = (parameter.value - wanted) / parameter.error;
+      all = all && parameter.identified && std::abs(off) <= 3.0;
+      squares += off * off;
+    }
+    within += all;
+    EXPECT_NEAR(found.error, 3e-4, 2e-5) << "the residuals tell the noise, of some 3,000 numbers to 1.3 %";
+  }
+  EXPECT_GE(within, seeds * 95 / 100);
+  // The mean of 3 * seeds squares of unit deviates, correlated three by three: its deviation is at most
+  // sqrt(2 / seeds).
+  EXPECT_NEAR(squares / (3.0 * seeds), 1.0, 4.0 * std::sqrt(2.0 / seeds))
+      << "errors are neither boasted nor modest";
+}
+
+TEST(Fits, TellWhichModelTheDataPrefer) {
+  for (const Friction friction : {Friction::sticking, Friction::coulomb}) {
+    const Design truth{.release_angle = degrees(195), .release_spin = 0.1, .mu_static = 0.5};
+    Design made = truth;
+    if (friction == Friction::sticking) made.mu_static = Design{}.mu_static;
+    const FitReport report =
+        fit(film_of(made, scene_of(friction), 3e-4, 1), {}, {.coarse = 512, .starts = 2});
+    ASSERT_EQ(report.models.size(), 2u);
+    EXPECT_EQ(report.models[0].scene.friction, friction);
+    EXPECT_GT(report.models[1].information - report.models[0].information, 100.0)
+        << "thousands of numbers leave no doubt";
+  }
+}
+
+TEST(Fits, SayWhatTheDataDoNotTell) {
+  // One event for one parameter that it does not depend on: the height of a hoop without a motor, by radius.
+  const Design truth{};
+  const Outcome outcome = solve(truth);
+  Measurements measured{.origin = "events"};
+  measured.events = {{"jump_height", outcome.jump_height, 0.01}, {"flight_time", outcome.flight_time, 0.001}};
+  const Spec spec =
+      parse_spec("[design]\nrelease_angle = { from = 3.0, to = 3.3 }\nrelease_spin = { from = 0, to = 0.2 }");
+  const FitReport report = fit(measured, spec, {.models = {Friction::sticking}});
+  const ModelFit& found = report.models[0];
+  EXPECT_LT(found.chi_square, 1e-6);
+  // Height and flight time both know only the energy: two parameters, one number.
+  EXPECT_TRUE(
+      std::ranges::any_of(found.parameters, [](const FittedParameter& one) { return !one.identified; }));
+  for (const FittedParameter& parameter : found.parameters)
+    if (!parameter.identified) {
+      EXPECT_TRUE(std::isnan(parameter.error));
+      EXPECT_LT(parameter.low, parameter.high) << "a profile in place of an error";
+    }
+}
+
+TEST(Fits, OfEventsHaveTheErrorsThatTheirGradientTells) {
+  const Design truth{};
+  const Outcome outcome = solve(truth);
+  Measurements measured{.origin = "events"};
+  measured.events = {{"jump_time", outcome.jump_time, 0.001}};
+  const Spec spec = parse_spec("[design]\nslope = { from = 0.39, to = 0.41 }");
+  const FitReport report = fit(measured, spec, {.models = {Friction::sticking}});
+  ASSERT_EQ(report.models[0].parameters.size(), 1u);
+  const FittedParameter& slope = report.models[0].parameters[0];
+  EXPECT_NEAR(slope.value, truth.slope, 1e-9);
+  EXPECT_NEAR(slope.error, 0.001 / std::abs(gradient(truth, &Outcome::jump_time).slope), 1e-9);
+}
+
+struct BadData {
+  const char* name;
+  std::string text;
+  std::vector<const char*> told;
+};
+void PrintTo(const BadData& data, std::ostream* out) { *out << data.name; }
+class BadMeasurements : public ::testing::TestWithParam<BadData> {};
+
+std::string refusal_of(const std::string& text) {
+  const testing::TemporaryFolder folder;
+  folder.write("data.csv", text);
+  try {
+    read_measurements(folder / "data.csv", {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "(accepted)";
+}
+
+TEST_P(BadMeasurements, AreRefusedWithOneLineThatSaysWhere) {
+  const std::string line = refusal_of(GetParam().text);
+  EXPECT_NE(line, "(accepted)");
+  EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  EXPECT_NE(line.find("allowed"), std::string::npos) << line;
+  for (const char* word : GetParam().told)
+    EXPECT_NE(line.find(word), std::string::npos) << line << " lacks " << word;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, BadMeasurements,
+    ::testing::Values(
+        BadData{"no_lines", "t,phi\n", {"no line"}},
+        BadData{"unknown_columns", "time,angle\n0,1\n", {"data.csv:1", "time, angle", "t, phi"}},
+        BadData{"a_column_missing", "t,x_P,y_P,x_O\n0,1,1,1\n", {"data.csv:1", "x_P, y_P, x_O, y_O"}},
+        BadData{"a_column_too_many", "t,phi,spin\n0,1,1\n", {"data.csv:1"}},
+        BadData{"nan", "t,phi\n0,3.1\n0.001,nan\n0.002,3.1\n", {"data.csv:3", "phi", "nan"}},
+        BadData{"an_empty_cell", "t,phi\n0,3.1\n0.001,\n0.002,3.1\n", {"data.csv:3", "phi"}},
+        BadData{"unsorted_times", "t,phi\n0,3.1\n0.002,3.1\n0.001,3.1\n", {"data.csv:4", "ascend"}},
+        BadData{"the_same_time_twice", "t,phi\n0,3.1\n0.001,3.1\n0.001,3.1\n", {"data.csv:4", "ascend"}},
+        BadData{"a_gap",
+                "t,phi\n0,3.1\n0.001,3.1\n0.002,3.1\n0.003,3.1\n0.020,3.1\n",
+                {"data.csv:6", "gap", "--allow-gaps"}},
+        BadData{
+            "milliseconds", "t,phi\n0,3.1\n500,3.2\n1000,3.3\n", {"data.csv:4", "another unit", "seconds"}},
+        BadData{"degrees", "t,phi\n0,180\n0.001,181\n0.002,182\n", {"data.csv:3", "degrees"}},
+        BadData{"an_angle_cut_at_a_turn", "t,phi\n0,6.2\n0.001,6.25\n0.002,0.02\n", {"data.csv:4", "turn"}},
+        BadData{"millimetres",
+                "t,x_P,y_P,x_O,y_O\n0,0,41,0,0\n0.001,0,41,0,0\n0.002,0,41,0,0\n",
+                {"another unit", "--scale 0.001"}},
+        BadData{"two_lines", "t,phi\n0,3.1\n0.001,3.1\n", {"three or more"}},
+        BadData{
+            "an_unknown_event", "event,value,error\njump,1,0.1\n", {"data.csv:2", "'jump'", "jump_height"}},
+        BadData{"no_error", "event,value,error\njump_height,1,0\n", {"data.csv:2", "error", "above 0"}},
+        BadData{
+            "an_event_in_milliseconds", "event,value,error\njump_time,330,1\n", {"data.csv:2", "seconds"}},
+        BadData{"a_height_in_millimetres",
+                "event,value,error\njump_height,82,1\n",
+                {"data.csv:2", "hoop diameters"}}));
+
+TEST(Measurements, TakeAFilmAsItIs) {
+  EXPECT_EQ(refusal_of("t,phi\n0,3.1\n0.001,3.1\n0.002,3.2\n"), "(accepted)");
+  EXPECT_EQ(refusal_of("t,x_P,y_P,x_O,y_O\n0,0,.041,0,0\n0.001,0,.041,0,0\n0.002,0,.041,0,0\n"),
+            "(accepted)");
+  EXPECT_EQ(refusal_of("event,value,error\njump_height,1,0.1\n"), "(accepted)");
+}
+
+TEST(Fits, RefuseMoreFreeParametersThanNumbers) {
+  Measurements measured{.origin = "events"};
+  measured.events = {{"jump_height", 1.0, 0.01}};
+  EXPECT_THROW(fit(measured, {}, {}), InputError);
+}
+
+}  // namespace
+}  // namespace leapmap
