@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -38,14 +39,25 @@ std::vector<double> angles_of(const Film& film) {
   return angles;
 }
 
-/// Angle and spin at the release, by a parabola through a film's first lines.
-std::pair<double, double> begin_of(const Film& film) {
+/// Angle and spin [rad/s] at the release, by the cubic that fits a film's beginning best: so long that noise
+/// of a frame counts little, so short that it holds.
+std::pair<double, double> begin_of(const Film& film, double second) {
+  constexpr double long_enough = 1.5;  // in sqrt(R/g)
   const std::vector<double> angles = angles_of(film);
-  const std::size_t some = std::min<std::size_t>(angles.size(), 15), middle = some / 2, last = some - 1;
-  const double a = film.t[0], b = film.t[middle], c = film.t[last];
-  const double first = (angles[middle] - angles[0]) / (b - a),
-               second = ((angles[last] - angles[middle]) / (c - b) - first) / (c - a);
-  return {angles[0] + first * (0.0 - a) + second * a * b, first - second * (a + b)};
+  std::size_t some = 0;
+  while (some < film.t.size() && film.t[some] <= film.t[0] + long_enough * second) ++some;
+  some = std::clamp<std::size_t>(some, 3, film.t.size());
+  const auto rows = static_cast<Eigen::Index>(some);
+  const Eigen::Index columns = std::min<Eigen::Index>(4, rows);
+  Eigen::MatrixXd powers(rows, columns);
+  Eigen::VectorXd measured(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double t = film.t[static_cast<std::size_t>(i)] / second;
+    for (Eigen::Index k = 0; k < columns; ++k) powers(i, k) = std::pow(t, static_cast<double>(k));
+    measured[i] = angles[static_cast<std::size_t>(i)];
+  }
+  const Eigen::VectorXd cubic = powers.colPivHouseholderQr().solve(measured);
+  return {cubic[0], cubic[1] / second};
 }
 
 }  // namespace
@@ -107,8 +119,8 @@ void Explained::free_by_default() {
   if (measured_.film.t.empty()) {
     free_ = {free_parameter("release_angle", 0.5 * pi, 1.95 * pi), free_parameter("release_spin", -1.0, 3.0)};
   } else {
-    const auto [angle, spin] = begin_of(measured_.film);
     const double second = time_unit(spec_.scene);
+    const auto [angle, spin] = begin_of(measured_.film, second);
     free_ = {free_parameter("release_angle", angle - 0.3, angle + 0.3),
              free_parameter("release_spin", spin * second - 0.5, spin * second + 0.5)};
   }

@@ -30,12 +30,41 @@ double sum_of_squares(std::span<const double> residuals) {
   return std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), 0.0);
 }
 
-/// The best places of a coarse map of the box that are not beside one another, best first.
-std::vector<std::vector<double>> coarse_starts(const Explained& explained, const FitOptions& options) {
-  constexpr double beside = 0.1;
+/// A place of the free parameters, and what it leaves unexplained.
+struct CoarsePlace {
+  std::vector<double> at;
+  double sum;
+};
+
+/// Adds a map of a part of the box about a place, as large as `share` of it.
+void map_coarsely(const Explained& explained, const FitOptions& options, const SobolPoints& points,
+                  std::span<const double> centre, double share, std::vector<CoarsePlace>& places) {
   constexpr std::size_t a_block = 256;
-  // Events are solved in lanes, and tell less than a film does.
-  const bool film = explained.is_film();
+  const std::size_t samples = points.samples(), dimensions = explained.free().size();
+  std::vector<std::vector<double>> found(samples, std::vector<double>(dimensions));
+  std::vector<double> sums(samples);
+  parallel_for_each((samples + a_block - 1) / a_block, options.threads, [&] {
+    return [&](std::size_t block) {
+      if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
+      const std::size_t first = block * a_block, count = std::min(a_block, samples - first);
+      for (std::size_t i = first; i < first + count; ++i)
+        for (std::size_t k = 0; k < dimensions; ++k) {
+          const Side& side = explained.problem().bounds[k];
+          found[i][k] = side.value(side.coordinate(centre[k]) + share * (points.column(k)[i] - 0.5));
+        }
+      explained.coarse_sums(std::span(found).subspan(first, count), std::span(sums).subspan(first, count));
+      return true;
+    };
+  });
+  for (std::size_t i = 0; i < samples; ++i)
+    if (std::isfinite(sums[i])) places.push_back({found[i], sums[i]});
+  std::ranges::stable_sort(places, {}, &CoarsePlace::sum);
+}
+
+/// The best places of a coarse map of the box, and of finer ones about its best, that are not beside one
+/// another; best first.
+std::vector<std::vector<double>> coarse_starts(const Explained& explained, const FitOptions& options) {
+  const bool film = explained.is_film();  // events are solved in lanes, and tell less
   const std::size_t samples = options.coarse > 0 ? options.coarse
                               : film             ? 4096
                                                  : 1 << 16,
@@ -43,35 +72,34 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
                            : film             ? 8
                                               : 24;
   const std::size_t dimensions = explained.free().size();
-  const SobolPoints points(dimensions, samples, options.seed);
-  std::vector<std::vector<double>> places(samples, std::vector<double>(dimensions));
-  std::vector<double> sums(samples, HUGE_VAL);
-  parallel_for_each((samples + a_block - 1) / a_block, options.threads, [&] {
-    return [&](std::size_t block) {
-      if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
-      const std::size_t first = block * a_block, count = std::min(a_block, samples - first);
-      for (std::size_t i = first; i < first + count; ++i)
-        for (std::size_t k = 0; k < dimensions; ++k)
-          places[i][k] = explained.problem().bounds[k].value(points.column(k)[i]);
-      explained.coarse_sums(std::span(places).subspan(first, count), std::span(sums).subspan(first, count));
-      return true;
-    };
-  });
-  std::vector<std::size_t> order(samples);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return sums[i]; });
-  std::vector<std::vector<double>> starts;
-  for (const std::size_t i : order) {
-    if (starts.size() == most || !std::isfinite(sums[i])) break;
-    const bool is_new = std::ranges::none_of(starts, [&](const std::vector<double>& start) {
-      for (std::size_t k = 0; k < explained.free().size(); ++k) {
-        const Side& side = explained.problem().bounds[k];
-        if (std::abs(start[k] - places[i][k]) > beside * (side.high - side.low)) return false;
-      }
-      return true;
-    });
-    if (is_new) starts.push_back(places[i]);
+  std::vector<double> middle;
+  for (std::size_t k = 0; k < dimensions; ++k) middle.push_back(explained.problem().bounds[k].value(0.5));
+  std::vector<CoarsePlace> places;
+  map_coarsely(explained, options, SobolPoints(dimensions, samples, options.seed), middle, 1.0, places);
+  // A film's sum of squares has narrow valleys, with steps where a phase appears: closer maps see into them.
+  const SobolPoints fewer(dimensions, std::max(samples / 4, SobolPoints::replicates), options.seed + 1);
+  double finest = 1.0;
+  for (const double share : {0.2, 0.05, 0.0125}) {
+    if (places.empty()) return {};
+    const std::vector<double> best = places[0].at;
+    map_coarsely(explained, options, fewer, best, finest = share, places);
   }
+  std::vector<std::vector<double>> starts;
+  const auto add = [&](double beside, std::size_t up_to) {
+    for (const CoarsePlace& place : places) {
+      if (starts.size() == up_to) break;
+      const bool is_new = std::ranges::none_of(starts, [&](const std::vector<double>& start) {
+        for (std::size_t k = 0; k < dimensions; ++k) {
+          const Side& side = explained.problem().bounds[k];
+          if (std::abs(start[k] - place.at[k]) > beside * (side.high - side.low)) return false;
+        }
+        return true;
+      });
+      if (is_new) starts.push_back(place.at);
+    }
+  };
+  add(0.1 * finest, (most + 1) / 2);  // beside the best
+  add(0.1, most);                     // and elsewhere
   return starts;
 }
 

@@ -171,7 +171,7 @@ TEST(Fits, FindTheTruthOfAFilmWithinThreeErrorsIn95Of100Seeds) {
   double squares = 0.0;
   for (int seed = 0; seed < seeds; ++seed) {
     const FitReport report = fit(film_of(truth, scene, 3e-4, seed), {},
-                                 {.models = {Friction::coulomb}, .coarse = 512, .starts = 2});
+                                 {.models = {Friction::coulomb}, .coarse = 128, .starts = 2});
     const ModelFit& found = report.models[0];
     ASSERT_EQ(found.parameters.size(), 3u);
     bool all = true;
@@ -199,7 +199,7 @@ TEST(Fits, TellWhichModelTheDataPrefer) {
     Design made = truth;
     if (friction == Friction::sticking) made.mu_static = Design{}.mu_static;
     const FitReport report =
-        fit(film_of(made, scene_of(friction), 3e-4, 1), {}, {.coarse = 512, .starts = 2});
+        fit(film_of(made, scene_of(friction), 3e-4, 1), {}, {.coarse = 128, .starts = 2});
     ASSERT_EQ(report.models.size(), 2u);
     EXPECT_EQ(report.models[0].scene.friction, friction);
     EXPECT_GT(report.models[1].information - report.models[0].information, 100.0)
