@@ -102,10 +102,18 @@ class Map:
 
     def goals(self):
         """What hoops of the map must do: {field: (at least, at most)}, None: no bound, or a phase_sequence's letters twice."""
-        goals = self.spec().get("goal", {})
+        goals = {field: goal for field, goal in self.spec().get("goal", {}).items() if field not in ("maximize", "minimize")}
         if not all(isinstance(goal, dict) for goal in goals.values()):
             raise NotAMap(f"{self.path}: is damaged: its spec says goal = {goals}")
         return {field: (goal.get("at_least", goal.get("is")), goal.get("at_most", goal.get("is"))) for field, goal in goals.items()}
+
+    def objectives(self):
+        """What the designs of a list were found for: [(field or parameter, whether it is to be large)]."""
+        goal = self.spec().get("goal", {})
+        named = {key: goal.get(key, []) for key in ("maximize", "minimize")}
+        if not all(isinstance(names, list) for names in named.values()):
+            raise NotAMap(f"{self.path}: is damaged: its spec says goal = {goal}")
+        return [(str(name), key == "maximize") for key, names in named.items() for name in names]
 
     def numbers(self):
         """The numbers of the resolved spec that made it, by key; what an axis varies is not among them."""

@@ -23,7 +23,7 @@ function listView(canvas, map, onPoint, onPick) {
     background.width = canvas.width;
     background.height = canvas.height;
     const context = background.getContext("2d"), column = map.columns[view.x], { values, log } = view.field, { font, ratio } = frame;
-    const shown = column.values.map((v) => inShownUnit(column, v));
+    const shown = column.values.map((v) => (v === null ? NaN : column.quantity ? v : inShownUnit(column, v)));
     const sx = scale(shown, column.log, frame.left, frame.right), sy = scale([...values], log, frame.bottom - 1.5 * font, frame.top);
     context.fillStyle = "#ffffff";
     context.fillRect(0, 0, canvas.width, canvas.height);

@@ -42,7 +42,7 @@ function option(select, value, text) {
 
 const withUnit = (text, unit) => (unit === "°" ? `${text}°` : unit ? `${text} ${unit}` : text);
 /** A design's parameters that vary over the map: their rows, each with the value. */
-const parametersAt = (map, index) => (map.columns ? map.columns.filter((c) => c.name !== "design").map((c) => [c, c.values[index[0]]]) : map.axes.map((axis, k) => [axis, axis.values[index[k]]]));
+const parametersAt = (map, index) => (map.columns ? map.columns.filter((c) => c.name !== "design" && !c.quantity).map((c) => [c, c.values[index[0]]]) : map.axes.map((axis, k) => [axis, axis.values[index[k]]]));
 const designAt = (map, index) => ({ ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value])) });
 const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : "") +
   parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1).map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");
@@ -93,10 +93,16 @@ function start(map, solver) {
   const order = choices.map(liked).sort((a, b) => a.reduce((sum, v, i) => sum || v - b[i], 0));
   view.view.x = order[0][3];
   if (!map.columns) view.view.y = order[1][3];
+  // A front stands as it was asked for: the first objective up, the second to the right.
+  if (map.columns && map.objectives.length === 2) {
+    const right = map.columns.findIndex((c) => c.name === map.objectives[1]), up = map.fields.find((f) => f.name === map.objectives[0]);
+    if (right >= 0 && up) Object.assign(view.view, { x: right, field: up });
+  }
 
   const fieldSelect = element("field"), selects = map.columns ? { x: element("x-axis") } : { x: element("x-axis"), y: element("y-axis") };
   element("y-axis").parentElement.hidden = Boolean(map.columns);
   map.fields.forEach((f, k) => option(fieldSelect, k, withUnit(f.label, f.unit ? `[${f.unit}]` : "")));
+  fieldSelect.value = map.fields.indexOf(view.view.field);
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
   fieldSelect.addEventListener("change", () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); told(view.view.index); });
   for (const [key, select] of Object.entries(selects))

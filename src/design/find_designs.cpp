@@ -269,6 +269,7 @@ Spec list_of(const Spec& spec, const FoundDesigns& found) {
   const Question question = question_of(spec);
   Spec list = question.one;
   list.output.file = spec.output.file, list.numerics.audit = 1.0;
+    list.maximize = spec.maximize, list.minimize = spec.minimize;
   list.list.count = found.designs.size();
   for (const FreeParameter& parameter : question.free) {
     Axis& column = list.list.columns.emplace_back(Axis{parameter.name, {}});

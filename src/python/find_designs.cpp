@@ -2,11 +2,16 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "design/judge.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/find_designs.hpp"
+#include "model/model.hpp"
+#include "model/parameters.hpp"
+
 #include "python/calls.hpp"
 #include "python/results.hpp"
 
@@ -96,6 +101,22 @@ class Problem {
     return names;
   }
   std::size_t evaluations() const { return judge_.evaluations(); }
+  /// What is not free, as leapmap.solve takes it.
+  py::dict fixed() const {
+    py::dict numbers;
+    const Scene& scene = question_.one.scene;
+    numbers["friction"] = std::string(model_of(scene).name);
+    for (const Parameter& parameter : parameters()) {
+      const auto* of_design = std::get_if<double Design::*>(&parameter.member);
+      const bool is_free =
+          std::ranges::find(question_.free, parameter.name, &FreeParameter::name) != question_.free.end();
+      const double value =
+          of_design ? question_.one.design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
+      if (!is_free && !std::isnan(value) && has(scene.friction, parameter.only_of))
+        numbers[py::str(std::string(parameter.name))] = value;
+    }
+    return numbers;
+  }
 
   /// Of designs, a row of parameters each: costs, less is better, and violations, 0 where every goal is
   /// reached.
@@ -144,6 +165,7 @@ void add_design(py::module_& module) {
       .def("free", &Problem::free)
       .def("objectives", &Problem::objectives)
       .def("evaluations", &Problem::evaluations)
+      .def("fixed", &Problem::fixed)
       .def("judge", &Problem::judge);
 }
 

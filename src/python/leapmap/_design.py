@@ -62,8 +62,9 @@ class DesignProblem:
         scipy.optimize.differential_evolution(problem.cost, problem.bounds)
         pygmo.problem(problem)
 
-    Decision vectors hold the free parameters, in their own units, in the order of names. Costs are the objectives, less is better
-    (those to maximize with their sign turned); of a design that misses a goal 1e30 and more, the more it misses."""
+    Decision vectors hold the free parameters, in their own units, in the order of names; fixed holds the others, as solve takes
+    them. Costs are the objectives, less is better (those to maximize with their sign turned); of a design that misses a goal 1e30
+    and more, the more it misses."""
 
     def __init__(self, spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, threads=0, **overrides):
         self._asked = (*_question(spec, goal, maximize, minimize, scatter, overrides), int(threads))
@@ -74,6 +75,8 @@ class DesignProblem:
         self.names = [row[0] for row in self._core.free()]
         self.bounds = [row[1:3] for row in self._core.free()]
         self.objectives = self._core.objectives()
+        self.fixed = self._core.fixed()
+
 
     def __getstate__(self):  # pygmo copies problems, and sends them to other processes
         return self._asked

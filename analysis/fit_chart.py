@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws a fit, from what leapmap fit DATA.csv --csv FIT.csv writes: what was measured and what each model has in its place, over
+time, and below it the residuals over their errors. Of events a bar each.
+"""
+import csv
+
+import numpy as np
+
+import style
+from read_map import NotAMap
+from style import plt
+
+COLOURS = {"sticking": "#d95f02", "coulomb": "#1f4e79"}
+WORDS = {"sticking": "never slips", "coulomb": "slips"}
+SHOWN = {"phi": "φ [rad]", "x_P": "x of the mass [m]", "y_P": "y of the mass [m]", "x_O": "x of the centre [m]", "y_O": "y of the centre [m]"}
+
+
+def read(path):
+    """Columns by name: texts of the quantity, numbers of the rest."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    models = [n.removeprefix("model_") for n in (rows[0] if rows else {}) if n.startswith("model_")]
+    if not rows or not {"t", "quantity", "measured"} <= rows[0].keys() or not models:
+        raise NotAMap(f"{path}: is not what leapmap fit --csv writes")
+    numbers = lambda name: np.array([float(row[name]) if row[name] else np.nan for row in rows])
+    try:
+        return np.array([row["quantity"] for row in rows]), models, {n: numbers(n) for n in rows[0] if n != "quantity"}
+    except (TypeError, ValueError):
+        raise NotAMap(f"{path}: is not what leapmap fit --csv writes") from None
+
+
+def film(quantities, models, of):
+    names = list(dict.fromkeys(quantities))
+    figure, axes = plt.subplots(2 * len(names), 1, sharex=True, figsize=(7.2, 2.6 * len(names) + 1.4), layout="constrained",
+                                gridspec_kw={"height_ratios": [2, 1] * len(names)}, squeeze=False)
+    for k, name in enumerate(names):
+        here = quantities == name
+        above, below = axes[2 * k, 0], axes[2 * k + 1, 0]
+        above.plot(of["t"][here], of["measured"][here], ".", markersize=2, color="#606060", label="measured")
+        for model in reversed(models):
+            residuals = of[f"residual_{model}"][here]
+            above.plot(of["t"][here], of[f"model_{model}"][here], linewidth=1.2, color=COLOURS.get(model), label=f"{WORDS.get(model, model)}")
+            below.plot(of["t"][here], residuals, ".", markersize=2, color=COLOURS.get(model))
+        best = of[f"residual_{models[0]}"][here]
+        below.set_ylim(*(1.3 * max(4.0, np.nanmax(np.abs(best))) * np.array([-1, 1])))
+        below.axhline(0, color=style.EDGE, linewidth=0.6)
+        above.set_ylabel(SHOWN.get(name, name))
+        below.set_ylabel("residual\n[errors]")
+    axes[-1, 0].set_xlabel("time since release [s]")
+    axes[0, 0].legend()
+    return figure
+
+
+def events(quantities, models, of):
+    figure, axis = plt.subplots(figsize=(6.4, 1.2 + 0.6 * len(quantities)), layout="constrained")
+    places = np.arange(len(quantities))
+    for k, model in enumerate(models):
+        axis.barh(places + 0.36 * (k - 0.5 * (len(models) - 1)), of[f"residual_{model}"], 0.32, color=COLOURS.get(model), label=f"{WORDS.get(model, model)}")
+    axis.axvline(0, color=style.EDGE, linewidth=0.8)
+    axis.axvspan(-1, 1, color="#e8e8e8", zorder=0)
+    axis.set_yticks(places, [f"{q} {v:g}" for q, v in zip(quantities, of["measured"])])
+    axis.invert_yaxis()
+    axis.set_xlabel("model less measured, in standard errors; grey: one")
+    axis.legend()
+    return figure
+
+
+def main():
+    p = style.parser(__doc__, "what leapmap fit --csv wrote", "_fit")
+    arguments = p.parse_args()
+    quantities, models, of = read(arguments.source)
+    style.save((events if np.isnan(of["t"]).all() else film)(quantities, models, of), arguments.output)
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError)

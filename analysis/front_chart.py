@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the Pareto front of a question of two objectives, which leapmap design looks for: the front in colour, by what is of the design's
+lift-offs the jump; as a cloud some of the designs that it dominates; three designs called out, with the hoop in its jump. Where
+neighbours of the front are far apart in the box, or another lift-off is the jump, there is a gap. Needs the Python module leapmap.
+"""
+import textwrap
+
+import numpy as np
+
+import looks
+import planes
+import style
+from read_map import NotAMap
+from style import plt
+
+try:
+    import leapmap
+except ImportError:
+    leapmap = None
+
+CLOUD, SHOWN = 200_000, 15_000
+NUMBERS = ("#b2182b", "#2166ac", "#1b7837")
+
+
+def shown(name, values):
+    """As charts show it: angles in degrees."""
+    return looks.as_shown(name, np.asarray(values)) if name in looks.PARAMETERS else np.asarray(values)
+
+
+def label(name):
+    return planes.axis_label(name) if name in looks.PARAMETERS else planes.field_label(name).replace("\n", " ") if name in looks.LOOKS else name.replace("_", " ")
+
+
+def called_out(x, y):
+    """The front's ends, and the design between them that is farthest off the line that joins them."""
+    u, v = (x - x[0]) / ((x[-1] - x[0]) or 1), (y - y[0]) / ((y[-1] - y[0]) or 1)
+    return sorted({0, int(np.argmax(np.abs(u - v))), len(x) - 1})
+
+
+def pieces(problem, found):
+    """The front cut where it has a gap: slices."""
+    low, high = np.array(problem.bounds).T
+    places = (np.stack([found.parameters[n] for n in problem.names], axis=1) - low) / (high - low)
+    far = np.abs(np.diff(places, axis=0)).max(axis=1) > 0.05
+    other = np.diff(found.outcomes.candidates.astype(int)) != 0
+    ends = [0, *(np.flatnonzero(far | other) + 1), len(places)]
+    return [slice(a, b) for a, b in zip(ends, ends[1:])]
+
+
+def draw_hoop(axis, design, fixed, colour):
+    """The hoop at some moments of its jump, on its slope."""
+    motion = leapmap.trace(**fixed, **design, interval=2e-3)
+    slope, size, radius = design.get("slope", fixed.get("slope", 0.4)), design.get("offset_ratio", fixed.get("offset_ratio", 1.0)), 0.041
+    t, start, end = np.asarray(motion.t), float(motion.outcome.jump_time), np.asarray(motion.t)[-1]
+    down, up = np.array([np.cos(slope), -np.sin(slope)]), np.array([np.sin(slope), np.cos(slope)])
+    x0 = np.interp(start, t, motion.x)
+    for moment in np.linspace(start, end, 6):
+        x, y, phi = (np.interp(moment, t, np.asarray(v)) for v in (motion.x, motion.y, motion.phi))
+        centre = (x - x0) / radius * down + (1 + y / radius) * up
+        mass = centre + size * (-np.sin(phi) * down - np.cos(phi) * up)
+        axis.add_patch(plt.Circle(centre, 1.0, fill=False, color=colour, linewidth=1.0, alpha=0.35 + 0.65 * (moment - start) / (end - start)))
+        axis.plot(*mass, "o", color=colour, markersize=4)
+    reach = (np.interp(end, t, motion.x) - x0) / radius + 1.5
+    axis.plot(*np.stack([-1.5 * down, reach * down]).T, color=style.EDGE, linewidth=1.0)
+    axis.set_aspect("equal")
+    axis.axis("off")
+
+
+def chart(path, seed):
+    problem = leapmap.DesignProblem(path)
+    if len(problem.objectives) != 2:
+        raise NotAMap(f"{path}: has {len(problem.objectives)} objectives; a front is of two")
+    found = leapmap.design(path, seed=seed)
+    if not found.reached:
+        raise NotAMap(f"{path}: no design of this box reaches the goals; leapmap design tells the nearest miss")
+    first, second = problem.objectives
+    x, y = shown(second, found.objectives[second]), shown(first, found.objectives[first])
+    low, high = np.array(problem.bounds).T
+    costs, violations = problem.judge(low + (high - low) * np.random.default_rng(1).random((CLOUD, len(low))))
+    signs = np.array([np.sign(np.nanmedian(costs[:, k])) * np.sign(np.nanmedian(found.objectives[n])) for k, n in enumerate(problem.objectives)])
+    cloud = (costs * np.where(signs == 0, 1, signs))[violations == 0][:SHOWN]
+
+    spec = problem.fixed
+    figure = plt.figure(figsize=(9.6, 5.6), layout="constrained")
+    grid = figure.add_gridspec(3, 2, width_ratios=(2.1, 1))
+    axis = figure.add_subplot(grid[:, 0])
+    axis.plot(shown(second, cloud[:, 1]), shown(first, cloud[:, 0]), ",", color="#b8b8b8", rasterized=True)
+    for piece in pieces(problem, found):
+        number = int(found.outcomes.candidates[piece.start])
+        axis.plot(x[piece], y[piece], ".-", markersize=2, linewidth=1.4, color=plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3))
+    for number in sorted({int(c) for c in found.outcomes.candidates}):
+        axis.plot([], [], color=plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3), label=f"lift-off {number} is the jump")
+    axis.plot([], [], "o", markersize=3, color="#b8b8b8", label="designs by chance")
+    for k, i in enumerate(called_out(x, y)):
+        axis.annotate(str(k + 1), (x[i], y[i]), xytext=(7, 5), textcoords="offset points", color=NUMBERS[k], weight="bold", fontsize=11)
+        axis.plot(x[i], y[i], "o", color=NUMBERS[k], markersize=6, markeredgecolor="white")
+        design = {n: float(found.parameters[n][i]) for n in problem.names}
+        beside = figure.add_subplot(grid[k, 1])
+        if found.outcomes.jump_height[i] > 0:
+            draw_hoop(beside, design, spec, NUMBERS[k])
+        words = ", ".join(f"{planes.axis_label(n)} {shown(n, v):.4g}" for n, v in design.items())
+        beside.set_title(textwrap.fill(f"{k + 1}: {words}; {label(first)} {y[i]:.4g}, {label(second)} {x[i]:.4g}", 52), fontsize=7.5, color=NUMBERS[k])
+    axis.set_xlabel(label(second))
+    axis.set_ylabel(label(first))
+    axis.margins(0.04)
+    axis.legend(loc="best")
+    axis.set_title(f"{len(found):,} designs, none of which is better than another in both; gaps are cliffs")
+    return figure
+
+
+def main():
+    p = style.parser(__doc__, "a spec of two objectives, for example sweeps/questions/height_against_time.toml", "_front")
+    p.add_argument("--seed", type=int, default=1)
+    arguments = p.parse_args()
+    if leapmap is None:
+        raise NotAMap("front_chart: needs the Python module leapmap; export PYTHONPATH=build/release/python")
+    try:
+        figure = chart(arguments.source, arguments.seed)
+    except ValueError as error:
+        raise NotAMap(str(error)) from None
+    style.save(figure, arguments.output)
+
+
+if __name__ == "__main__":
+    style.run(main, NotAMap, OSError)
