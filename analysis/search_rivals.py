@@ -4,7 +4,8 @@
 
 A grid goes through the same box with as many designs as --grid says (with friction as --slipping, of hoops as made --made); the goals are
 looked at with numpy. scipy's differential evolution and dual annealing ask one design at a time, through leapmap.DesignProblem. "short"
-is by how much each misses the best of all. Exit status 1: something found a better design than leapmap design.
+is by how much each misses the best of all. Of two objectives the front is held against what nothing dominates among --random designs:
+the volume that each dominates, from the worst corner of both. Exit status 1: something found a better design or front.
 """
 import argparse
 import sys
@@ -78,8 +79,7 @@ def scipys(path, method, seed):
 def rivals(path, arguments):
     spec = tomllib.loads(path.read_text())
     problem = leapmap.DesignProblem(path)
-    logs = [spec["design"].get(name, spec.get("scene", {}).get(name))["scale"] == "log"
-            if "scale" in spec["design"].get(name, spec.get("scene", {}).get(name)) else False for name in problem.names]
+    logs = logs_of(path, problem)
     sign = -1 if "maximize" in spec["goal"] else 1
 
     def design():
@@ -95,20 +95,70 @@ def rivals(path, arguments):
     }
 
 
+def front_of(costs):
+    """Of rows of two costs those that none dominates, in order of the first."""
+    costs = costs[np.lexsort((costs[:, 1], costs[:, 0]))]
+    least = np.minimum.accumulate(np.concatenate(([np.inf], costs[:-1, 1])))
+    return costs[costs[:, 1] < least]
+
+
+def volume(front, corner):
+    """What a front dominates, up to a corner."""
+    right = np.append(front[1:, 0], corner[0])
+    return float(((right - front[:, 0]) * (corner[1] - front[:, 1])).sum())
+
+
+def random_front(problem, logs, count):
+    random, best = np.random.default_rng(1), np.empty((0, 2))
+    low, high = np.array(problem.bounds).T
+    for first in range(0, int(count), BLOCK):
+        share = random.random((min(BLOCK, int(count) - first), len(low)))
+        places = np.where(logs, np.exp(np.log(np.where(logs, low, 1)) + share * np.log(np.where(logs, high / np.where(logs, low, 1), 1))), low + share * (high - low))
+        costs, violations = problem.judge(np.clip(places, low, high))
+        best = front_of(np.concatenate((best, costs[violations == 0])))
+    return best, int(count)
+
+
+def fronts(path, arguments):
+    """Both fronts' volumes, over the box from their best to their worst corner."""
+    problem = leapmap.DesignProblem(path)
+
+    def design():
+        found = leapmap.design(path, seed=arguments.seed)
+        signs = [-1 if name in tomllib.loads(path.read_text())["goal"].get("maximize", []) else 1 for name in problem.objectives]
+        return np.stack([sign * found.objectives[name] for sign, name in zip(signs, problem.objectives)], axis=1), found.evaluations
+
+    found = {"leapmap design": timed(design), "random": timed(lambda: random_front(problem, logs_of(path, problem), arguments.random))}
+    every = np.concatenate([front for front, _, _ in found.values()])
+    corner, span = every.max(axis=0), np.ptp(every, axis=0).prod()
+    return {by: (volume(front_of(front), corner) / span, len(front), solved, seconds) for by, (front, solved, seconds) in found.items()}
+
+
+def logs_of(path, problem):
+    spec = tomllib.loads(path.read_text())
+    axes = [spec["design"].get(name) or spec["scene"][name] for name in problem.names]
+    return np.array([axis.get("scale") == "log" for axis in axes])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("questions", nargs="*", type=Path, help="specs of one objective (default: those of sweeps/questions)")
+    parser.add_argument("questions", nargs="*", type=Path, help="specs (default: those of sweeps/questions)")
     parser.add_argument("--grid", type=float, default=1e8, metavar="DESIGNS")
     parser.add_argument("--slipping", type=float, default=1e6, metavar="DESIGNS")
     parser.add_argument("--made", type=float, default=2e4, metavar="DESIGNS")
+    parser.add_argument("--random", type=float, default=1e7, metavar="DESIGNS")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     folder = Path(__file__).resolve().parent.parent / "sweeps" / "questions"
-    print("| question | by | found | short | designs | seconds |\n|---|---|---|---|---|---|")
+    print("| question | by | found | short; of a front: volume | designs | seconds |\n|---|---|---|---|---|---|")
     beaten = False
     for path in arguments.questions or sorted(folder.glob("*.toml")):
         goal = tomllib.loads(path.read_text())["goal"]
-        if len(goal.get("maximize", [])) + len(goal.get("minimize", [])) != 1:
+        if len(goal.get("maximize", [])) + len(goal.get("minimize", [])) == 2:
+            found = fronts(path, arguments)
+            for by, (share, size, solved, seconds) in found.items():
+                print(f"| {path.stem} | {by} | {size:,} on the front | {100 * share:.4f} % | {solved:,} | {seconds:.1f} |", flush=True)
+            beaten |= found["leapmap design"][0] < found["random"][0]
             continue
         objective, sign, found = rivals(path, arguments)
         best = min(cost for cost, _, _ in found.values())

@@ -161,7 +161,7 @@ std::string csv_of(const Measurements& measured, const FitReport& report) {
 int run(const FitArguments& arguments) {
   const Spec spec = read_spec(arguments.spec, arguments.overrides);
   refuse_text_over("--csv", arguments.csv, {arguments.data, arguments.spec}, arguments.locking);
-  const Measurements measured = read_measurements(arguments.data, spec, arguments.reading);
+  const Measurements measured = read_measurements(arguments.data, arguments.reading);
   FitOptions options = arguments.options;
   if (arguments.model != "both")
     options.models = {std::ranges::find(models(), arguments.model, &Model::name)->friction};

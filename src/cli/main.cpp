@@ -42,7 +42,8 @@ int run(int argc, char** argv) {
       "  leapmap info maps/slope_mass_ratio.h5             what is in it\n"
       "  leapmap boundaries sweeps/slope_mass_ratio.toml   where its outcomes jump, to rounding\n"
       "  leapmap design sweeps/question.toml               the hoop that does what you need, best\n"
-      "  leapmap fit film.csv                              release and friction that explain a measured motion\n"
+      "  leapmap fit film.csv                              release and friction that explain a measured "
+      "motion\n"
       "  leapmap check maps/slope_mass_ratio.h5            whether it is what was written, and right\n"
       "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 "
       "interrupted.");
@@ -62,7 +63,7 @@ int run(int argc, char** argv) {
   leapmap::cli::add_hop(app, status);
   leapmap::cli::add_info(app, status);
   leapmap::cli::add_boundaries(app, status);
-    leapmap::cli::add_design(app, status);
+  leapmap::cli::add_design(app, status);
   leapmap::cli::add_fit(app, status);
   leapmap::cli::add_check(app, status);
   leapmap::cli::add_precision(app, status);

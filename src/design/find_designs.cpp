@@ -64,12 +64,13 @@ class Steps {
 
 constexpr std::size_t sample_steps = 32;
 
-/// The best of a dense sample, best first: so many at most, of a front all that nothing dominates besides.
-std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps) {
+/// The best of a dense sample, best first: so many at most. fronts: take those that nothing of the same
+/// outcome dominates.
+std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps,
+                           Fronts* fronts = nullptr) {
   const std::size_t dimensions = judge.dimensions();
-  constexpr std::size_t most = 1 << 15;
+  const std::size_t most = fronts ? 1 : std::size_t{1} << 15;
   const SobolPoints points(dimensions, effort.sample, options.seed);
-  const bool front = judge.question().objectives.size() == 2;
   std::vector<Place> best;
   for (std::size_t part = 0; part < sample_steps; ++part) {
     const std::size_t first = part * effort.sample / sample_steps,
@@ -79,19 +80,23 @@ std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions
       for (std::size_t i = 0; i < count; ++i) places[i * dimensions + k] = points.column(k)[first + i];
     std::vector<Verdict> verdicts(count);
     judge.judge(places, verdicts);
+    const auto place = [&](std::size_t i) -> Place {
+      const auto begin = places.begin() + static_cast<std::ptrdiff_t>(i * dimensions);
+      return {{begin, begin + static_cast<std::ptrdiff_t>(dimensions)}, verdicts[i]};
+    };
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    if (front) std::erase_if(order, [&](std::size_t i) { return !verdicts[i].feasible() && !best.empty(); });
-    std::ranges::stable_sort(order,
-                             [&](std::size_t a, std::size_t b) { return better(verdicts[a], verdicts[b]); });
-    double least = HUGE_VAL;  // of the second objective, along the first
-    for (std::size_t rank = 0; rank < order.size(); ++rank) {
-      const std::size_t i = order[rank];
-      const bool kept = front ? verdicts[i].cost[1] < least || rank == 0 : rank < most;
-      if (!kept) continue;
-      least = std::min(least, verdicts[i].cost[1]);
-      const auto begin = places.begin() + static_cast<std::ptrdiff_t>(i * dimensions);
-      best.push_back({{begin, begin + static_cast<std::ptrdiff_t>(dimensions)}, verdicts[i]});
+    std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(std::min(most, count)),
+                              [&](std::size_t a, std::size_t b) {
+                                if (better(verdicts[a], verdicts[b])) return true;
+                                return !better(verdicts[b], verdicts[a]) && a < b;
+                              });
+    for (std::size_t rank = 0; rank < std::min(most, count); ++rank) best.push_back(place(order[rank]));
+    if (fronts) {
+      std::vector<Place> feasible;
+      for (std::size_t i = 0; i < count; ++i)
+        if (verdicts[i].feasible()) feasible.push_back(place(i));
+      fronts->add(std::move(feasible));
     }
     steps.done();
   }
@@ -165,22 +170,22 @@ std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOpt
 /// The front; or, if no design is feasible, the nearest miss.
 std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps,
                                 double& hypervolume) {
-  std::vector<Place> places = sampled(judge, effort, options, steps);
-  if (!places.front().verdict.feasible()) {
-    Place& nearest = places.front();
-    climb(judge, nearest, {.seed = options.seed});
-    places.resize(1);
-    if (!nearest.verdict.feasible()) return places;
+  Fronts fronts;
+  std::vector<Place> best = sampled(judge, effort, options, steps, &fronts);
+  if (!best.front().verdict.feasible()) {
+    climb(judge, best.front(), {.seed = options.seed});
+    if (!best.front().verdict.feasible()) return best;
+    fronts.add(best);
   }
-  Front front;
-  front.add(std::move(places));
-  front.thin(effort.front);
+  fronts.thin(effort.front);
   steps.done(effort.starts / 4);
-  places = front.places();
+  std::vector<Place> places = fronts.of_all().places();
   evolve_front(judge, places, options.seed);
   steps.done(effort.starts / 2);
-  front.add(std::move(places));
-  refine(judge, front, effort.front, options.seed);
+  fronts.add(std::move(places));
+  refine(judge, fronts, effort.front, options.seed);
+  Front front = fronts.of_all();
+  front.thin(effort.front);
   hypervolume = front.hypervolume();
   return front.places();
 }
@@ -269,7 +274,7 @@ Spec list_of(const Spec& spec, const FoundDesigns& found) {
   const Question question = question_of(spec);
   Spec list = question.one;
   list.output.file = spec.output.file, list.numerics.audit = 1.0;
-    list.maximize = spec.maximize, list.minimize = spec.minimize;
+  list.maximize = spec.maximize, list.minimize = spec.minimize;
   list.list.count = found.designs.size();
   for (const FreeParameter& parameter : question.free) {
     Axis& column = list.list.columns.emplace_back(Axis{parameter.name, {}});

@@ -253,6 +253,7 @@ FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& 
   const auto begin = std::chrono::steady_clock::now();
   FitOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
+  check_measurements(measured, spec);
   FitReport report;
   for (const Friction friction : options.models)
     report.models.push_back(fit_model(measured, spec, friction, options));

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "design/climb.hpp"
@@ -26,7 +27,22 @@ class Front {
   std::vector<Place> places_;
 };
 
-/// Rounds of small steps from the front's places, along it and off it, in blocks on all threads.
-void refine(Judge& judge, Front& front, std::size_t most, std::uint64_t seed);
+/// Fronts of designs by their discrete outcome, each for itself: beyond a cliff there may be a thin band
+/// whose first samples are dominated, and whose best designs are not.
+class Fronts {
+ public:
+  void add(std::vector<Place> places);
+  void thin(std::size_t most);
+  /// Leaves those that are part of the front of all, and those that come nearest to it, so many.
+  void leave_nearest(std::size_t most);
+  Front of_all() const;
+  const std::map<std::uint64_t, Front>& by_outcome() const { return fronts_; }
+
+ private:
+  std::map<std::uint64_t, Front> fronts_;
+};
+
+/// Rounds of small steps from the fronts' places, along them and off them, in blocks on all threads.
+void refine(Judge& judge, Fronts& fronts, std::size_t most, std::uint64_t seed);
 
 }  // namespace leapmap

@@ -31,9 +31,15 @@ double to_number(const std::string& cell, const std::string& place, std::string_
   return value;
 }
 
-MeasuredEvent event_of(const std::vector<std::string>& cells, const std::array<std::size_t, 3>& columns,
-                       const std::string& place) {
-  const std::string& name = cells[columns[0]];
+/// Where a number came from.
+std::string place_of(const Measurements& measured, std::size_t row) {
+  return measured.lines.empty() ? fmt::format("{}: row {}", measured.origin, row + 1)
+                                : fmt::format("{}:{}", measured.origin, measured.lines[row]);
+}
+
+void check_event(const Measurements& measured, std::size_t row) {
+  const auto& [name, value, error] = measured.events[row];
+  const std::string place = place_of(measured, row);
   const Field* field = find_field(name);
   const auto* quantity = field ? std::get_if<Quantity>(&field->source) : nullptr;
   if (!quantity) {
@@ -43,65 +49,70 @@ MeasuredEvent event_of(const std::vector<std::string>& cells, const std::array<s
     throw InputError(fmt::format("{}: event '{}' is no quantity of a map; allowed: {}", place, name,
                                  fmt::join(names, ", ")));
   }
-  MeasuredEvent event{name, to_number(cells[columns[1]], place, "value"),
-                      to_number(cells[columns[2]], place, "error")};
-  if (!(event.error > 0.0))
+  if (!(error > 0.0 && std::isfinite(error)))
     throw InputError(
-        fmt::format("{}: error = {} of {}; allowed: a standard error above 0", place, event.error, name));
+        fmt::format("{}: error = {} of {}; allowed: a standard error above 0", place, error, name));
   constexpr double longest = 60.0, highest = 50.0;
-  if (quantity->measure == Measure::time && !(event.value >= 0.0 && event.value <= longest))
+  if (!std::isfinite(value))
+    throw InputError(fmt::format("{}: {} = {}; allowed: a finite number", place, name, value));
+  if (quantity->measure == Measure::time && !(value >= 0.0 && value <= longest))
     throw InputError(fmt::format("{}: {} = {} looks like another unit; allowed: seconds, from 0 to {}", place,
-                                 name, event.value, longest));
-  if (quantity->measure == Measure::height && !(std::abs(event.value) <= highest))
+                                 name, value, longest));
+  if (quantity->measure == Measure::height && !(std::abs(value) <= highest))
     throw InputError(fmt::format("{}: {} = {} looks like another unit; allowed: hoop diameters, up to {}",
-                                 place, name, event.value, highest));
-  return event;
+                                 place, name, value, highest));
 }
 
-void check_times(const Measurements& measured, const std::vector<std::string>& places, double second,
-                 bool allow_gaps) {
+void check_times(const Measurements& measured, double second) {
   const std::vector<double>& t = measured.film.t;
   if (t.size() < 3)
     throw InputError(fmt::format("{}: {} lines; allowed: three or more", measured.origin, t.size()));
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) {
     if (!(t[i] > t[i - 1]))
-      throw InputError(
-          fmt::format("{}: t = {} after {}; allowed: times that ascend", places[i], t[i], t[i - 1]));
+      throw InputError(fmt::format("{}: t = {} after {}; allowed: times that ascend", place_of(measured, i),
+                                   t[i], t[i - 1]));
     steps.push_back(t[i] - t[i - 1]);
   }
   if (t.front() < 0.0)
     throw InputError(
-        fmt::format("{}: t = {}; allowed: times since release, from 0 on", places[0], t.front()));
+        fmt::format("{}: t = {}; allowed: times since release, from 0 on", place_of(measured, 0), t.front()));
   constexpr double longest = 300.0;  // in sqrt(R/g): a hoop that rolls so long has left any picture
   if (t.back() > longest * second)
-    throw InputError(fmt::format(
-        "{}: t = {} looks like another unit: that is {:.3g} s for a hoop that needs {:.2g} s for a jump; "
-        "allowed: seconds since release",
-        places.back(), t.back(), t.back(), 5.0 * second));
+    throw InputError(
+        fmt::format("{}: t = {} looks like another unit: {:.3g} s for a hoop that needs some {:.2g} s to its "
+                    "jump; allowed: seconds since release",
+                    place_of(measured, t.size() - 1), t.back(), t.back(), 8.0 * second));
   std::vector<double> sorted = steps;
   std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
   const double usual = sorted[sorted.size() / 2];
   constexpr double gap = 5.0;
-  for (std::size_t i = 0; i < steps.size() && !allow_gaps; ++i)
+  for (std::size_t i = 0; i < steps.size() && !measured.film.allow_gaps; ++i)
     if (steps[i] > gap * usual)
       throw InputError(
           fmt::format("{}: {:.6g} s after the line before, {:.3g} times the usual: the data have a gap; "
-                      "allowed: even times, or --allow-gaps",
-                      places[i + 1], steps[i], steps[i] / usual));
+                      "allowed: even times, or "
+                      "--allow-gaps",
+                      place_of(measured, i + 1), steps[i], steps[i] / usual));
 }
 
-void check_angles(const Measurements& measured, const std::vector<std::string>& places, double second) {
+void check_angles(const Measurements& measured, double second) {
   const Film& film = measured.film;
   constexpr double fastest = 12.0;  // sqrt(g/R): a spin that no hoop has on the way to a jump
   for (std::size_t i = 1; i < film.t.size(); ++i)
-    if (const double spin = std::abs(film.phi[i] - film.phi[i - 1]) / (film.t[i] - film.t[i - 1]);
-        spin > fastest / second)
+    if (const double turned = film.phi[i] - film.phi[i - 1], passed = film.t[i] - film.t[i - 1];
+        std::abs(turned) > std::max(fastest / second * passed, 0.5))
       throw InputError(
           fmt::format("{}: phi changes by {:.4g} in {:.4g} s, which no hoop does: it looks like degrees, or "
-                      "like an angle cut off at a "
-                      "turn; allowed: radians that go on over turns",
-                      places[i], film.phi[i] - film.phi[i - 1], film.t[i] - film.t[i - 1]));
+                      "like an angle cut "
+                      "off at a turn; allowed: radians that go on over turns",
+                      place_of(measured, i), turned, passed));
+  // Degrees of a slow hoop change slowly, too.
+  const auto [low, high] = std::ranges::minmax(film.phi);
+  if (high - low > 2.0 * std::numbers::pi * 4.0 * (1.0 + (film.t.back() - film.t.front()) / second / 8.0))
+    throw InputError(
+        fmt::format("{}: phi goes from {:.4g} to {:.4g} in {:.4g} s: it looks like degrees; allowed: radians",
+                    measured.origin, low, high, film.t.back() - film.t.front()));
 }
 
 void check_markers(const Measurements& measured, double length) {
@@ -114,9 +125,36 @@ void check_markers(const Measurements& measured, double length) {
   if (!(median < off * length && median > length / off))
     throw InputError(
         fmt::format("{}: the markers are {:.4g} apart, and L of the hoop is {:.4g} m: another unit? allowed: "
-                    "metres, or --scale {:.4g} "
-                    "(metres a unit); or the radius of the hoop that was filmed, --set radius=...",
+                    "metres, or --scale "
+                    "{:.4g} (metres a unit); or the radius of the hoop that was filmed, --set radius=...",
                     measured.origin, median, length, length / median));
+}
+
+void check_film(const Measurements& measured, const Spec& spec) {
+  const Film& film = measured.film;
+  const double second = time_unit(spec.scene);
+  for (const auto* column :
+       {&film.t, &film.phi, &film.markers[0], &film.markers[1], &film.markers[2], &film.markers[3]}) {
+    if (!column->empty() && column->size() != film.t.size())
+      throw InputError(fmt::format("{}: a column of {} numbers beside {} times; allowed: as many",
+                                   measured.origin, column->size(), film.t.size()));
+    for (std::size_t i = 0; i < column->size(); ++i)
+      if (!std::isfinite((*column)[i]))
+        throw InputError(
+            fmt::format("{}: {} is no number; allowed: finite ones", place_of(measured, i), (*column)[i]));
+  }
+  const bool markers =
+      std::ranges::none_of(film.markers, [](const std::vector<double>& column) { return column.empty(); });
+  if (film.phi.empty() == !markers)
+    throw InputError(fmt::format("{}: has {}; allowed: {}", measured.origin,
+                                 markers ? "both phi and markers" : "neither phi nor all four markers",
+                                 forms));
+  if (!std::isnan(film.error) && !(film.error > 0.0 && std::isfinite(film.error)))
+    throw InputError(
+        fmt::format("{}: error = {}; allowed: a standard error above 0", measured.origin, film.error));
+  check_times(measured, second);
+  markers ? check_markers(measured, spec.design.offset_ratio * spec.scene.radius)
+          : check_angles(measured, second);
 }
 
 /// Where in the header each of these columns stands; nothing if one is missing.
@@ -134,10 +172,19 @@ std::optional<std::array<std::size_t, N>> columns_of(const std::vector<std::stri
 
 }  // namespace
 
-Measurements read_measurements(const std::string& path, const Spec& spec, const MeasurementOptions& options) {
+void check_measurements(const Measurements& measured, const Spec& spec) {
+  if (measured.events.empty() == measured.film.t.empty())
+    throw InputError(fmt::format("{}: {}; allowed: {}", measured.origin,
+                                 measured.events.empty() ? "nothing was measured" : "has events and a film",
+                                 forms));
+  for (std::size_t i = 0; i < measured.events.size(); ++i) check_event(measured, i);
+  if (!measured.film.t.empty()) check_film(measured, spec);
+}
+
+Measurements read_measurements(const std::string& path, const MeasurementOptions& options) {
   CsvFile file(path, fmt::format("measurements as a CSV file, {}", forms));
   Measurements measured{.origin = path};
-  measured.film.error = options.error;
+  measured.film.error = options.error, measured.film.allow_gaps = options.allow_gaps;
   const auto events = columns_of<3>(file.header(), {"event", "value", "error"});
   const auto angle = columns_of<2>(file.header(), {"t", "phi"});
   const auto markers = columns_of<4>(file.header(), marker_names);
@@ -146,28 +193,27 @@ Measurements read_measurements(const std::string& path, const Spec& spec, const 
   if (known == 0 || known != file.header().size())
     throw InputError(fmt::format("{}: columns {}; allowed: {}", file.place().empty() ? path : file.place(),
                                  fmt::join(file.header(), ", "), forms));
-  std::vector<std::string> cells, places;
+  std::vector<std::string> cells;
   while (file.next(cells)) {
     const std::string& place = file.place();
-    places.push_back(place);
+    measured.lines.push_back(file.line());
+    const auto number = [&](std::size_t column, std::string_view name) {
+      return to_number(cells[column], place, name);
+    };
     if (events) {
-      measured.events.push_back(event_of(cells, *events, place));
+      measured.events.push_back(
+          {cells[(*events)[0]], number((*events)[1], "value"), number((*events)[2], "error")});
       continue;
     }
-    measured.film.t.push_back(to_number(cells[(*time)[0]], place, "t"));
-    if (angle) measured.film.phi.push_back(to_number(cells[(*angle)[1]], place, "phi"));
+    measured.film.t.push_back(number((*time)[0], "t"));
+    if (angle) measured.film.phi.push_back(number((*angle)[1], "phi"));
     for (std::size_t k = 0; markers && k < marker_names.size(); ++k) {
       const bool flipped = options.y_down && marker_names[k].front() == 'y';
       measured.film.markers[k].push_back((flipped ? -1.0 : 1.0) * options.scale *
-                                         to_number(cells[(*markers)[k]], place, marker_names[k]));
+                                         number((*markers)[k], marker_names[k]));
     }
   }
-  if (places.empty()) throw InputError(path + ": no line but the header; allowed: one or more");
-  if (events) return measured;
-  const double second = time_unit(spec.scene);
-  check_times(measured, places, second, options.allow_gaps);
-  if (angle) check_angles(measured, places, second);
-  if (markers) check_markers(measured, spec.design.offset_ratio * spec.scene.radius);
+  if (measured.lines.empty()) throw InputError(path + ": no line but the header; allowed: one or more");
   return measured;
 }
 

@@ -30,6 +30,7 @@ struct Film {
   std::vector<double> phi{};                     ///< [rad]; empty: markers
   std::array<std::vector<double>, 4> markers{};  ///< x_P, y_P, x_O, y_O [m], from any origin; empty: phi
   double error = std::numeric_limits<double>::quiet_NaN();  ///< of each number; NaN: told by the residuals
+  bool allow_gaps = false;  ///< let pass times that leave out five steps or more
 };
 
 /// Events, or a film.
@@ -37,6 +38,7 @@ struct Measurements {
   std::string origin{};  ///< the file, for messages
   std::vector<MeasuredEvent> events{};
   Film film{};
+  std::vector<long> lines{};  ///< of the file, for messages; empty: they are counted from 1
 };
 
 struct MeasurementOptions {
@@ -47,10 +49,12 @@ struct MeasurementOptions {
 };
 
 /// Reads a CSV file: columns t and phi; or t, x_P, y_P, x_O, y_O; or event, value, error. Throws InputError,
-/// naming line and column, for what is no number, for times that do not ascend, for gaps, and for numbers
-/// whose size tells of another unit; scene: of the hoop that was filmed.
-Measurements read_measurements(const std::string& path, const Spec& spec,
-                               const MeasurementOptions& options = {});
+/// naming line and column, for what is no number.
+Measurements read_measurements(const std::string& path, const MeasurementOptions& options = {});
+
+/// Throws InputError, naming the line, for numbers that are none, times that do not ascend, gaps, and numbers
+/// whose size tells of another unit; spec: of the hoop that was filmed.
+void check_measurements(const Measurements& measured, const Spec& spec);
 
 struct FittedParameter {
   std::string name{};
@@ -84,8 +88,9 @@ struct FitReport {
 
 struct FitOptions {
   std::vector<Friction> models{Friction::sticking, Friction::coulomb};
-    std::uint64_t seed = 1;
-  std::size_t coarse = 0;  ///< designs of the coarse map, 16 times a whole number; 0: 4,096 of a film, 65,536 of events
+  std::uint64_t seed = 1;
+  std::size_t coarse =
+      0;  ///< designs of the coarse map, 16 times a whole number; 0: 4,096 of a film, 65,536 of events
   std::size_t starts = 0;  ///< its places that are followed; 0: 8 of a film, 24 of events
   int threads = 0;         ///< 0: as many as OpenMP offers
   /// Asked now and then, from any thread; true: fit throws Stopped.
@@ -95,7 +100,7 @@ struct FitOptions {
 /// Fits free parameters to measurements by least squares: a coarse map of the box first, then GSL's trust
 /// region from its best places, derivatives exact. Free are the spec's axes { from, to }; without any,
 /// release_angle and release_spin, about where the film begins, and mu_static where the contact slips. Throws
-/// InputError for more free parameters than numbers, and as check_spec does.
+/// InputError for more free parameters than numbers, and as check_measurements and check_spec do.
 FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& options = {});
 
 }  // namespace leapmap

@@ -22,6 +22,7 @@ class CsvFile {
   bool next(std::vector<std::string>& cells);
   /// "file:line" of what was read last.
   const std::string& place() const { return place_; }
+  long line() const { return number_; }  ///< its number
 
  private:
   bool next_cells(std::vector<std::string>& cells);

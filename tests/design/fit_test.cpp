@@ -253,7 +253,7 @@ std::string refusal_of(const std::string& text) {
   const testing::TemporaryFolder folder;
   folder.write("data.csv", text);
   try {
-    read_measurements(folder / "data.csv", {});
+    check_measurements(read_measurements(folder / "data.csv"), {});
   } catch (const InputError& error) {
     return error.what();
   }

@@ -3,12 +3,14 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
 #include "design/judge.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/find_designs.hpp"
+#include "leapmap/fit.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 
@@ -155,9 +157,85 @@ class Problem {
   Judge judge_;
 };
 
+/// t, phi; t and markers; or events as [(name, value, error)].
+Measurements measurements_of(const py::dict& given, double error, bool allow_gaps) {
+  Measurements measured{.origin = "measurements"};
+  measured.film.error = error, measured.film.allow_gaps = allow_gaps;
+  for (const auto& [key, value] : given) {
+    const auto name = py::cast<std::string>(key);
+    constexpr std::array<std::string_view, 4> markers{"x_P", "y_P", "x_O", "y_O"};
+    const auto marker = std::find(markers.begin(), markers.end(), name);
+    if (name == "t" || name == "phi" || marker != markers.end()) {
+      auto& column = name == "t" ? measured.film.t
+                     : name == "phi"
+                         ? measured.film.phi
+                         : measured.film.markers[static_cast<std::size_t>(marker - markers.begin())];
+      const Numbers numbers = py::cast<Numbers>(value);
+      column.assign(numbers.data(), numbers.data() + numbers.size());
+    } else {
+      const auto [measured_value, its_error] = py::cast<std::pair<double, double>>(value);
+      measured.events.push_back({name, measured_value, its_error});
+    }
+  }
+  return measured;
+}
+
+py::dict dict_of(const ModelFit& fit) {
+  py::dict told, parameters;
+  for (const FittedParameter& parameter : fit.parameters) {
+    py::dict of;
+    of["value"] = parameter.value, of["error"] = parameter.error, of["low"] = parameter.low,
+    of["high"] = parameter.high;
+    of["identified"] = parameter.identified, of["at_bound"] = parameter.at_bound;
+    parameters[py::str(parameter.name)] = of;
+  }
+  const auto count = static_cast<py::ssize_t>(fit.parameters.size());
+  py::array_t<double> correlations({count, count});
+  std::copy(fit.correlations.begin(), fit.correlations.end(), correlations.mutable_data());
+  told["friction"] = std::string(model_of(fit.scene).name), told["found"] = std::isfinite(fit.information);
+  told["parameters"] = parameters, told["correlations"] = correlations, told["chi_square"] = fit.chi_square;
+  told["degrees"] = fit.degrees, told["error"] = fit.error, told["information"] = fit.information;
+  told["model"] = py::array_t<double>(static_cast<py::ssize_t>(fit.model.size()), fit.model.data());
+  told["residuals"] =
+      py::array_t<double>(static_cast<py::ssize_t>(fit.residuals.size()), fit.residuals.data());
+  return told;
+}
+
+py::list fit(const py::object& data, const std::string& path_or_text,
+             const std::optional<std::string>& origin, const std::vector<std::string>& overrides,
+             const std::vector<std::string>& names, double error, bool allow_gaps, std::uint64_t seed,
+             int threads) {
+  const Spec spec = spec_of(path_or_text, origin, overrides);
+  const Measurements measured =
+      py::isinstance<py::dict>(data)
+          ? measurements_of(py::cast<py::dict>(data), error, allow_gaps)
+          : read_measurements(py::cast<std::string>(data), {.allow_gaps = allow_gaps, .error = error});
+  Interrupts interrupts;
+  FitOptions options{.models = {}, .seed = seed, .threads = threads_here(threads)};
+  for (const std::string& name : names) {
+    const auto model = std::ranges::find(models(), name, &Model::name);
+    if (model == models().end())
+      throw InputError("model = '" + name + "' is unknown; allowed: sticking, coulomb, both");
+    options.models.push_back(model->friction);
+  }
+  options.stop_requested = [&] { return interrupts(); };
+  FitReport report;
+  try {
+    const py::gil_scoped_release unlocked;
+    report = leapmap::fit(measured, spec, options);
+  } catch (const Stopped&) {
+    interrupts.rethrow();
+    throw;
+  }
+  py::list told;
+  for (const ModelFit& one : report.models) told.append(dict_of(one));
+  return told;
+}
+
 }  // namespace
 
 void add_design(py::module_& module) {
+  module.def("fit", &fit);
   module.def("design", &design);
   py::class_<Problem>(module, "Problem")
       .def(py::init<const std::string&, const std::optional<std::string>&, const std::vector<std::string>&,

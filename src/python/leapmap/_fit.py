@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From measurements to a hoop: what leapmap fit does."""
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from leapmap import _core
+from leapmap._design import _question
+
+
+@dataclass(frozen=True)
+class FittedParameter:
+    """value, and its standard error. identified: False: the data do not tell it, and the error is NaN. low, high: where chi-square stays
+    within one of its least, the others refitted. at_bound: whether it is at the end of its range."""
+    value: float
+    error: float
+    low: float
+    high: float
+    identified: bool
+    at_bound: bool
+
+
+@dataclass(frozen=True)
+class Fit:
+    """One model, fitted. friction: its name. found: False: no hoop of the box does anything like it.
+
+    parameters: {name: FittedParameter}, correlations: array, in their order. chi_square over degrees of freedom. error: of a film the rms
+    of its residuals. information: Akaike's; less is better. model, residuals: of every number measured, in the order of the data (of
+    markers line by line), residuals over their errors."""
+    friction: str
+    found: bool
+    parameters: dict
+    correlations: np.ndarray
+    chi_square: float
+    degrees: int
+    error: float
+    information: float
+    model: np.ndarray
+    residuals: np.ndarray
+
+
+def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, threads=0, **overrides):
+    """The release, friction and torque that explain a measured motion, by least squares. As `leapmap fit`.
+
+        leapmap.fit("film.csv")
+        leapmap.fit({"t": t, "phi": phi}, mass_ratio=3.0, error=2e-3)
+        leapmap.fit({"apex_time": (0.129, 0.001), "flight_time": (0.198, 0.001), "jump_height": (1.0, 0.05)},
+                    release_angle={"from": "150 deg", "to": "330 deg"}, friction="coulomb")
+
+    data: a CSV file's path, or {"t": ..., "phi": ...}, {"t", "x_P", "y_P", "x_O", "y_O"}: arrays, in s, rad and m; or
+        {field: (value, standard error)} of events. phi: 0 where the mass touches the plane; x along the plane, downhill, y away from
+        it; P is the mass, O the hoop's centre.
+    spec: a TOML file's path or a dictionary: the hoop, and free parameters {"from", "to"}. Without one release_angle, release_spin
+        and mu_static are free.
+    model: "sticking", "coulomb" or both. error: of a film's numbers; default: told by the residuals.
+    seed: of the coarse map. threads: 0 for all cores. overrides: keys of the spec.
+
+    Returns a list of Fit, the model that the data prefer first. Raises ValueError, naming line, number and what is allowed."""
+    models = ["sticking", "coulomb"] if model == "both" else [model]
+    if isinstance(data, Mapping):
+        events = {key: (float(value[0]), float(value[1])) for key, value in data.items() if np.ndim(value) == 1 and len(value) == 2 and "t" not in data}
+        data = events or {key: np.asarray(value, float) for key, value in data.items()}
+    else:
+        data = os.fspath(data)
+    text, origin, changes = _question(spec, None, (), (), None, overrides)
+    told = _core.fit(data, text, origin, changes, models, float("nan") if error is None else float(error), bool(allow_gaps), int(seed), int(threads))
+    return [Fit(**one | {"parameters": {name: FittedParameter(**of) for name, of in one["parameters"].items()}}) for one in told]
