@@ -68,6 +68,7 @@ int run(const SweepArguments& arguments) {
   const Spec spec = read_spec(arguments.spec, arguments.overrides);
   const std::string map = behind_links(arguments.map.empty() ? spec.output.file : arguments.map);
   if (arguments.dry_run) {
+    check_spec(spec);
     print_plan(arguments, spec, map, tiling_of(spec));
     return 0;
   }

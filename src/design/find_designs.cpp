@@ -274,6 +274,7 @@ Spec list_of(const Spec& spec, const FoundDesigns& found) {
   const Question question = question_of(spec);
   Spec list = question.one;
   list.output.file = spec.output.file, list.numerics.audit = 1.0;
+  if (list.scatter.spreads.empty()) list.goals.clear();  // as in any map of hoops as drawn
   list.maximize = spec.maximize, list.minimize = spec.minimize;
   list.list.count = found.designs.size();
   for (const FreeParameter& parameter : question.free) {

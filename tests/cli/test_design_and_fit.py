@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""leapmap design and leapmap fit, as they are typed."""
+import csv
+import json
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+import pytest
+from support.program import PROGRAM, TOP, leapmap
+
+BOX = """
+[design]
+slope = { from = "5 deg", to = "30 deg" }
+mass_ratio = { from = 0.5, to = 10, scale = "log" }
+[goal]
+jump_height = { at_least = 0.9 }
+minimize = ["mass_ratio"]
+"""
+FEWER = ("--sample", "20000")
+
+
+def asked(tmp_path, spec, *arguments):
+    (tmp_path / "q.toml").write_text(spec)
+    return leapmap("design", tmp_path / "q.toml", *FEWER, *arguments)
+
+
+def test_the_answer_reaches_its_goals_by_its_own_hop_command(tmp_path):
+    told = json.loads(asked(tmp_path, BOX, "--json").stdout)
+    assert told["reached"] and told["designs"]
+    for design in told["designs"]:
+        words = design["hop"].split()
+        hop = json.loads(subprocess.run([PROGRAM, *words[1:], "--json"], capture_output=True, text=True, check=True).stdout)
+        assert hop["jump_height"] >= 0.9, "never a hair short"
+        assert hop["design"]["mass_ratio"] == design["parameters"]["mass_ratio"] == design["objectives"]["mass_ratio"]
+    assert any("jump_height at least 0.9" in bind for bind in told["designs"][0]["binds"])
+
+
+def test_people_are_told_what_binds_how_far_the_cliff_is_and_what_to_type(tmp_path):
+    done = asked(tmp_path, BOX)
+    assert done.returncode == 0
+    for words in ("what binds: jump_height at least 0.9", "nearest cliff:", "a degree of slope", "leapmap hop --slope", "designs solved in"):
+        assert words in done.stdout, done.stdout
+
+
+def test_the_list_is_a_map_that_sweeps_and_charts_take(tmp_path):
+    assert asked(tmp_path, BOX, "-o", tmp_path / "best.h5", "--csv", tmp_path / "best.csv").returncode == 0
+    with h5py.File(tmp_path / "best.h5") as found:
+        assert (found["jump_height"][()] >= 0.9).all() and (np.diff(found["mass_ratio"][()]) >= 0).all(), "best first"
+        ratios = found["mass_ratio"][()]
+        assert "minimize" in found.attrs["spec"]
+    (tmp_path / "list.toml").write_text("")
+    assert leapmap("sweep", tmp_path / "list.toml", "--points", tmp_path / "best.csv", "-o", tmp_path / "again.h5").returncode == 0
+    with h5py.File(tmp_path / "again.h5") as again:
+        assert (again["mass_ratio"][()] == ratios).all()
+    assert leapmap("check", tmp_path / "best.h5").returncode == 0
+    chart = subprocess.run(["/usr/bin/python3", TOP / "analysis/list_chart.py", tmp_path / "best.h5", "-o", tmp_path / "best"], capture_output=True, text=True)
+    assert chart.returncode == 0, chart.stderr
+    assert asked(tmp_path, BOX, "-o", tmp_path / "best.h5").returncode == 2, "what is there stays"
+    assert asked(tmp_path, BOX, "-o", tmp_path / "best.h5", "--overwrite").returncode == 0
+
+
+def test_no_design_that_does_it_is_an_answer_with_the_nearest_miss(tmp_path):
+    done = asked(tmp_path, BOX.replace("0.9", "2.5"), "-o", tmp_path / "none.h5")
+    assert done.returncode == 1 and not (tmp_path / "none.h5").exists()
+    assert "No design of this box does it" in done.stdout and "nearest miss" in done.stdout and "leapmap hop" in done.stdout
+    told = json.loads(asked(tmp_path, BOX.replace("0.9", "2.5"), "--json").stdout)
+    assert not told["reached"] and len(told["designs"]) == 1
+
+
+def test_two_objectives_give_a_front(tmp_path):
+    done = asked(tmp_path, BOX.replace('minimize = ["mass_ratio"]', 'maximize = ["jump_height"]\nminimize = ["mass_ratio"]'), "-o", tmp_path / "front.h5")
+    assert done.returncode == 0 and "front:" in done.stdout and "rectangle" in done.stdout
+    with h5py.File(tmp_path / "front.h5") as front:
+        assert len(front["jump_height"]) > 50
+        assert (np.diff(front["jump_height"][()]) < 0).all() and (np.diff(front["mass_ratio"][()]) < 0).all()
+
+
+def test_the_same_seed_says_the_same_and_another_one_nearly(tmp_path):
+    one, two, other = (asked(tmp_path, BOX, "--json", "--seed", seed, "--threads", threads).stdout for seed, threads in (("3", "1"), ("3", "2"), ("4", "2")))
+    strip = lambda text: [(d["parameters"], d["objectives"]) for d in json.loads(text)["designs"]]
+    assert strip(one) == strip(two)
+    assert strip(one)[0][1]["mass_ratio"] == pytest.approx(strip(other)[0][1]["mass_ratio"], rel=1e-9)
+
+
+@pytest.mark.parametrize("command", [["sweep"], ["sweep", "--dry-run"], ["boundaries"], ["hop"], ["hop", "--scatter"]])
+def test_other_commands_refuse_a_question(tmp_path, command):
+    (tmp_path / "q.toml").write_text(BOX)
+    done = leapmap(command[0], tmp_path / "q.toml", *command[1:], *(["-o", tmp_path / "m.h5"] if command[0] in ("sweep", "boundaries") else []))
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "allowed" in done.stderr, done.stderr
+    assert not (tmp_path / "m.h5").exists()
+
+
+def test_bad_questions_are_refused_before_anything_is_looked_for(tmp_path):
+    for change, word in ((BOX.replace("mass_ratio\"]", "mass\"]"), "mass"), (BOX.replace('minimize = ["mass_ratio"]', ""), "maximize"), ("[goal]\nmaximize = [\"jump_height\"]", "free")):
+        done = asked(tmp_path, change)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr and done.stdout == "", done.stderr
+    (tmp_path / "q.toml").write_text(BOX)
+    assert leapmap("design", tmp_path / "q.toml", "--csv", tmp_path / "q.toml").returncode == 2
+    assert (tmp_path / "q.toml").read_text() == BOX
+
+
+def test_ctrl_c_ends_a_search_and_writes_nothing(tmp_path):
+    (tmp_path / "q.toml").write_text(BOX)
+    running = subprocess.Popen([PROGRAM, "design", tmp_path / "q.toml", "--sample", "100000000", "-o", tmp_path / "m.h5"], stderr=subprocess.PIPE)
+    time.sleep(0.7)
+    running.send_signal(signal.SIGINT)
+    assert running.wait(timeout=20) == 130 and not (tmp_path / "m.h5").exists()
+
+
+def film(path, error=0.0, **design):
+    told = leapmap("hop", "--trace", path.with_suffix(".h5"), *(w for k, v in design.items() for w in (f"--{k.replace('_', '-')}", str(v))))
+    assert told.returncode == 0, told.stderr
+    with h5py.File(path.with_suffix(".h5")) as trace:
+        t, first = np.unique(trace["t"][()], return_index=True)
+        phi = trace["phi"][()][first] + error * np.random.default_rng(1).standard_normal(len(t))
+    path.write_text("t,phi\n" + "".join(f"{a!r},{b!r}\n" for a, b in zip(t.tolist(), phi.tolist())))
+    return path
+
+
+def test_a_film_of_angles_tells_its_release_and_its_friction(tmp_path):
+    path = film(tmp_path / "film.csv", 1e-3, friction="coulomb", mu_static=0.45, release_angle="192deg", release_spin=0.1)
+    told = json.loads(leapmap("fit", path, "--json", "--csv", tmp_path / "fit.csv").stdout)
+    best = told["models"][0]
+    assert best["friction"] == "coulomb"
+    for name, truth in (("release_angle", np.radians(192)), ("release_spin", 0.1), ("mu_static", 0.45)):
+        parameter = best["parameters"][name]
+        assert abs(parameter["value"] - truth) < 4 * parameter["error"] < 0.05, (name, parameter)
+    assert best["error"] == pytest.approx(1e-3, rel=0.15)
+    rows = list(csv.DictReader((tmp_path / "fit.csv").open()))
+    assert len(rows) == len(best["residuals"]) and {"t", "quantity", "measured", "model_coulomb", "residual_sticking"} <= rows[0].keys()
+    chart = subprocess.run(["/usr/bin/python3", TOP / "analysis/fit_chart.py", tmp_path / "fit.csv", "-o", tmp_path / "fit"], capture_output=True, text=True)
+    assert chart.returncode == 0 and (tmp_path / "fit.png").stat().st_size > 10_000, chart.stderr
+
+
+def test_people_are_told_estimates_errors_correlations_and_which_model_the_data_prefer(tmp_path):
+    done = leapmap("fit", film(tmp_path / "film.csv", 1e-3))
+    assert done.returncode == 0
+    for words in ("release_angle", "+-", "correlations", "residuals", 'clearly prefer "sticking"', "leapmap hop --slope"):
+        assert words in done.stdout, done.stdout
+
+
+def test_the_papers_events_are_fitted_by_both_models():
+    done = leapmap("fit", TOP / "sweeps/paper_events.csv", "--json")
+    models = {model["friction"]: model for model in json.loads(done.stdout)["models"]}
+    assert models["sticking"]["degrees"] == 2 and 8 < models["sticking"]["chi_square"] < 9.5
+    assert models["coulomb"]["chi_square"] < models["sticking"]["chi_square"]
+    assert not models["coulomb"]["parameters"]["mu_static"]["identified"], "four numbers do not tell three parameters of a ridge"
+
+
+def test_wrong_measurements_are_one_line_and_exit_2(tmp_path):
+    for text, word in (("t,phi\n0,1\n0.002,1\n0.001,1\n", "ascend"), ("t,phi\n0,nan\n1,2\n2,2\n", "nan"), ("t,phi\n0,100\n0.001,101\n0.002,102\n", "degrees")):
+        (tmp_path / "bad.csv").write_text(text)
+        done = leapmap("fit", tmp_path / "bad.csv")
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr and "bad.csv" in done.stderr, done.stderr
+    assert leapmap("fit", tmp_path / "none.csv").returncode == 2
+
+
+def test_markers_in_pixels_that_count_downwards_are_read_with_their_scale(tmp_path):
+    path = film(tmp_path / "film.csv", friction="coulomb", mu_static=0.45, release_angle="192deg")
+    with h5py.File(path.with_suffix(".h5")) as trace:
+        t, first = np.unique(trace["t"][()], return_index=True)
+        phi, x, y = (trace[n][()][first] for n in ("phi", "x", "y"))
+    metre, radius = 5000.0, 0.041  # pixels
+    columns = [x - radius * np.sin(phi), y - radius * np.cos(phi), x, y]
+    pixels = [100 + metre * c if k % 2 == 0 else 900 - metre * c for k, c in enumerate(columns)]
+    (tmp_path / "pixels.csv").write_text("t,x_P,y_P,x_O,y_O\n" + "".join(",".join(map(repr, map(float, row))) + "\n" for row in zip(t, *pixels)))
+    refused = leapmap("fit", tmp_path / "pixels.csv")
+    assert refused.returncode == 2 and "--scale 0.0002" in refused.stderr
+    told = json.loads(leapmap("fit", tmp_path / "pixels.csv", "--scale", "0.0002", "--y-down", "--model", "coulomb", "--json").stdout)
+    assert told["models"][0]["parameters"]["mu_static"]["value"] == pytest.approx(0.45, abs=1e-6)
