@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The charts, drawn from small maps and read back from their SVG: what they must contain, not merely that they exist."""
 import json
+import os
+import re
 import xml.etree.ElementTree as ElementTree
 
 import h5py
@@ -394,3 +396,44 @@ def test_the_scatter_chart_refuses_what_is_no_scatter(tmp_path):
     for name in ("hop.json", "text.json", "nowhere.json"):
         done = draw("scatter_chart.py", tmp_path / name)
         assert done.returncode == 2 and name in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+QUESTION = """
+[design]
+slope = { from = "5 deg", to = "20 deg" }
+mass_ratio = { from = 0.1, to = 10, scale = "log" }
+[goal]
+maximize = ["jump_height"]
+minimize = ["mass_ratio"]
+"""
+
+
+def test_a_front_has_its_gaps_its_cloud_and_three_designs_called_out(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
+    (tmp_path / "q.toml").write_text(QUESTION)
+    done = draw("front_chart.py", tmp_path / "q.toml", "-o", tmp_path / "front")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "front.svg")
+    for word in ("mass ratio mₚ/m", "jump height [hoop diameters]", "designs by chance", "1", "2", "3"):
+        assert word in words, word
+    svg = (tmp_path / "front.svg").read_text()
+    lines = [len(d.split("L")) for d in re.findall(r'<path d="(M[^"]*)"[^>]*style="fill: none; stroke: #[0-9a-f]{6}; stroke-width: 1.4', svg)]
+    assert sum(n > 20 for n in lines) >= 2, "the front is cut at its cliffs"
+    (tmp_path / "one.toml").write_text(QUESTION.replace('minimize = ["mass_ratio"]', ""))
+    refused = draw("front_chart.py", tmp_path / "one.toml", "-o", tmp_path / "x")
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "two" in refused.stderr
+    (tmp_path / "bad.toml").write_text(QUESTION.replace("jump_height", "jump_hight"))
+    refused = draw("front_chart.py", tmp_path / "bad.toml", "-o", tmp_path / "x")
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "jump_hight" in refused.stderr
+
+
+def test_a_fit_of_events_is_a_bar_each(tmp_path):
+    assert leapmap("fit", TOP / "sweeps/paper_events.csv", "--csv", tmp_path / "fit.csv").returncode == 0
+    done = draw("fit_chart.py", tmp_path / "fit.csv", "-o", tmp_path / "fit")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "fit.svg")
+    for word in ("apex_time 0.129", "jump_height 1", "never slips", "slips"):
+        assert word in words, word
+    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
+    refused = draw("fit_chart.py", tmp_path / "other.csv", "-o", tmp_path / "x")
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "other.csv" in refused.stderr

@@ -536,6 +536,25 @@ def test_a_list_of_designs_is_a_dot_each_that_can_be_pointed_at_and_clicked(brow
     assert readout(browser)["index"] == "0"
 
 
+def test_a_front_stands_as_it_was_asked_for_and_each_of_its_designs_jumps(browser, tmp_path):
+    (tmp_path / "q.toml").write_text('[design]\nslope = { from = "5 deg", to = "20 deg" }\nmass_ratio = { from = 0.5, to = 10, scale = "log" }\n'
+                                     '[goal]\nmaximize = ["jump_height"]\nminimize = ["jump_time"]\n')
+    path = tmp_path / "front.h5"
+    assert leapmap("design", tmp_path / "q.toml", "--sample", "20000", "-o", path).returncode == 0
+    opened(browser, made(path))
+    with h5py.File(path) as m:
+        heights, times = m["jump_height"][()], m["jump_time"][()]
+    chosen = lambda name: Select(browser.find_element("id", name)).first_selected_option.text
+    assert chosen("x-axis").startswith("time from release to the jump") and chosen("field").startswith("jump height")
+    places = browser.execute_script("return window.explorer.map.axes[0].values.map((_, i) => window.explorer.view.placeOf([i]))")
+    x, y = np.array(places).T
+    assert np.corrcoef(x, times)[0, 1] > 0.9999 and np.corrcoef(-y, heights)[0, 1] > 0.9999, "the second objective to the right, the first up"
+    for number in (0, len(heights) // 2, len(heights) - 1):
+        point(browser, [number], click=True)
+        assert float(readout(browser)["value"]) == pytest.approx(heights[number], abs=1e-4)
+        agrees(numbers(browser), told_by_leapmap(browser))
+
+
 @pytest.mark.parametrize("friction", ["", '[scene]\nfriction = "coulomb"\nmu_static = 0.9\n'])
 def test_driven_hoops_and_those_that_turn_round_move_as_leapmap_tells(browser, tmp_path, friction):
     path = sweep(tmp_path, friction + '[design]\nslope = { values = ["-10 deg", "15 deg"] }\ndrive_torque = { values = [0.0, 0.75] }\n'
