@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -18,8 +19,12 @@
 #include "design/question.hpp"
 #include "leapmap/find_designs.hpp"
 #include "leapmap/sweep.hpp"
+#include "map/hdf5_driver.hpp"
+#include "map/reader.hpp"
 #include "model/model.hpp"
+#include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
+#include "sweep/map_spec.hpp"
 #include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
@@ -114,10 +119,12 @@ void print_found(const Question& question, const FoundDesigns& found) {
   say("{} designs solved in {}{}\n", grouped(found.evaluations), spoken_duration(found.seconds),
       found.engines ? "" : "; this build is without pagmo and NLopt");
   if (question.objectives.size() == 2 && found.reached) {
-    say("front: {} designs, none of which is better than another in both {} and {}; it dominates {:.2f} % of "
-        "the rectangle between its ends\n",
-        grouped(found.designs.size()), question.objectives[0].name, question.objectives[1].name,
-        100.0 * found.hypervolume);
+    say("front: {} designs, none of which is better than another in both {} and {}",
+        grouped(found.designs.size()), question.objectives[0].name, question.objectives[1].name);
+    say("{}\n", std::isnan(found.hypervolume)
+                    ? ""
+                    : fmt::format("; it dominates {:.2f} % of the rectangle between its ends",
+                                  100.0 * found.hypervolume));
     for (const std::size_t i : called_out(found)) print_design(question, found.designs[i], i + 1);
     return;
   }
@@ -167,13 +174,15 @@ std::string json_of(const Question& question, const FoundDesign& found) {
       fmt::join(gradients, ", "), fmt::join(binds, ", "), cliff, hop_command(question.one, found.design));
 }
 
-void print_json(const Question& question, const FoundDesigns& found) {
-  std::vector<std::string> designs;
+void print_json(const Spec& spec, const Question& question, const FoundDesigns& found) {
+  std::vector<std::string> designs, missed;
+  for (std::size_t k = 0; k < found.missed.size(); ++k)
+    missed.push_back(fmt::format("\"{}\": {}", spec.goals[k].field, json_number(found.missed[k])));
   for (const FoundDesign& one : found.designs) designs.push_back(json_of(question, one));
-  say("{{\"reached\": {}, \"evaluations\": {}, \"seconds\": {}, \"hypervolume\": {}, \"designs\": "
-      "[\n{}\n]}}\n",
+  say("{{\"reached\": {}, \"evaluations\": {}, \"seconds\": {}, \"hypervolume\": {}, \"missed\": {{{}}}, "
+      "\"designs\": [\n{}\n]}}\n",
       found.reached, found.evaluations, json_number(found.seconds), json_number(found.hypervolume),
-      fmt::join(designs, ",\n"));
+      fmt::join(missed, ", "), fmt::join(designs, ",\n"));
 }
 
 /// The columns that design.points takes.
@@ -190,10 +199,25 @@ std::string csv_of(const Question& question, const FoundDesigns& found) {
   return text;
 }
 
+/// Whether a file is a list that a search wrote, which another one may replace: it took seconds.
+bool is_found_list(const std::string& path, Locking locking) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) || !hdf5::is_hdf5(path, locking)) return false;
+  const Spec spec = spec_of(MapReader(path, locking), path);
+  return !spec.maximize.empty() || !spec.minimize.empty();
+}
+
 int run(const DesignArguments& arguments) {
   const Spec spec = read_spec(arguments.spec, arguments.overrides);
   const Question question = question_of(spec);
-  refuse_text_over("--csv", arguments.csv, {arguments.spec, arguments.output}, arguments.locking);
+  const std::string map = behind_links(arguments.output.empty() ? spec.output.file : arguments.output);
+  refuse_text_over("--csv", arguments.csv, {arguments.spec, map}, arguments.locking);
+  std::error_code ignored;
+  const bool replaces = !map.empty() && std::filesystem::exists(map, ignored);
+  if (replaces && !arguments.overwrite && !is_found_list(map, arguments.locking))
+    throw InputError(fmt::format(
+        "{}: is there, and no list that leapmap design wrote; allowed: another name by -o, or --overwrite",
+        map));
   note_signals();
   FindOptions options = arguments.options;
   options.stop_requested = [] { return noted_signal() != 0; };
@@ -212,19 +236,19 @@ int run(const DesignArguments& arguments) {
   }
   progress.reset();
   if (arguments.json)
-    print_json(question, found);
+    print_json(spec, question, found);
   else if (!found.reached)
     print_miss(spec, question, found);
   else if (!arguments.quiet)
     print_found(question, found);
   if (!found.reached) return 1;
   if (!arguments.csv.empty()) write_text(arguments.csv, csv_of(question, found));
-  if (arguments.output.empty()) return 0;
-  SweepOptions how{.overwrite = arguments.overwrite,
-                   .threads = arguments.options.threads,
-                   .lock = arguments.locking == Locking::required};
-  sweep(list_of(spec, found), arguments.output, how);
-  if (!arguments.quiet && !arguments.json) say("\nlist     {}\n", arguments.output);
+  if (map.empty()) return 0;
+  sweep(list_of(spec, found), map,
+        {.overwrite = true,
+         .threads = arguments.options.threads,
+         .lock = arguments.locking == Locking::required});
+  if (!arguments.quiet && !arguments.json) say("\nlist     {}\n", map);
   return 0;
 }
 
@@ -236,8 +260,9 @@ void add_design(CLI::App& app, int& status) {
   auto arguments = std::make_shared<DesignArguments>();
   command->add_option("SPEC", arguments->spec, "a spec, TOML, whose axes { from, to } are free")->required();
   command
-      ->add_option("-o,--output", arguments->output,
-                   "write the designs found to this map, a list, best first")
+      ->add_option(
+          "-o,--output", arguments->output,
+          "write the designs found to this map, a list, best first; default: output.file of the spec")
       ->check(named_file());
   command
       ->add_option("--csv", arguments->csv,
@@ -257,7 +282,8 @@ void add_design(CLI::App& app, int& status) {
   command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
       ->check(CLI::Range(1, most_threads));
   command->add_flag("--json", arguments->json, "print JSON and nothing else");
-  command->add_flag("--overwrite", arguments->overwrite, "replace the map of -o if it is there");
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "replace a file that is no list of an earlier search, too");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors, or that no design does it");
   add_no_lock(*command, arguments->locking);
   command->footer(

@@ -31,8 +31,6 @@ struct FitArguments {
   Locking locking = Locking::required;
 };
 
-bool is_found(const ModelFit& fit) { return std::isfinite(fit.information); }
-
 /// What hop needs of it.
 Spec spec_of(const ModelFit& fit) {
   Spec spec;
@@ -79,8 +77,8 @@ void print_events(const Measurements& measured, const ModelFit& fit) {
 
 void print_fit(const Measurements& measured, const ModelFit& fit) {
   say("\nfriction \"{}\": ", model_of(fit.scene).name);
-  if (!is_found(fit)) {
-    say("no hoop of the box does anything like it\n");
+  if (!fit.found) {
+    say("{}\n", fit.why.empty() ? "no hoop of the box does anything like it" : fit.why);
     return;
   }
   say("{} numbers, {} free parameters, {} starts, {} evaluations\n", fit.residuals.size(),
@@ -95,13 +93,16 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
     say("  residuals {:.3g} {} rms{}\n", fit.error, measured.film.phi.empty() ? "m" : "rad",
         std::isnan(measured.film.error) ? ", from which the errors above are told" : "");
   print_events(measured, fit);
+  if (fit.after_landing > 0)
+    say("  {} lines of the film are after this model's landing, where it is not followed: leave them out\n",
+        grouped(fit.after_landing));
   say("  jump: {}, height {:.4g}, at {:.4g} s\n  {}\n", name_of(fit.outcome.status), fit.outcome.jump_height,
       fit.outcome.jump_time, hop_command(spec_of(fit), fit.design));
 }
 
 /// Which model the data prefer, by Akaike's weights.
 void print_preference(const FitReport& report) {
-  if (report.models.size() < 2 || !is_found(report.models[0])) return;
+  if (report.models.size() < 2 || !report.models[1].found) return;
   const double less = report.models[1].information - report.models[0].information;
   say("\nThe data {} \"{}\": Akaike's information is {:.4g} less.\n",
       less > 10.0  ? "clearly prefer"
@@ -128,16 +129,16 @@ std::string json_of(const ModelFit& fit) {
       "\"chi_square\": {}, "
       "\"degrees\": {}, \"error\": {}, \"information\": {},\n   \"model\": {},\n   \"residuals\": {},\n   "
       "\"hop\": \"{}\"}}",
-      model_of(fit.scene).name, is_found(fit), fmt::join(parameters, ", "), json_of(fit.correlations),
+      model_of(fit.scene).name, fit.found, fmt::join(parameters, ", "), json_of(fit.correlations),
       json_number(fit.chi_square), fit.degrees, json_number(fit.error), json_number(fit.information),
-      json_of(fit.model), json_of(fit.residuals), is_found(fit) ? hop_command(spec_of(fit), fit.design) : "");
+      json_of(fit.model), json_of(fit.residuals), fit.found ? hop_command(spec_of(fit), fit.design) : "");
 }
 
 /// A line of each number measured: what it is, what each model has in its place.
 std::string csv_of(const Measurements& measured, const FitReport& report) {
   std::string text = "t,quantity,measured";
   for (const ModelFit& fit : report.models)
-    if (is_found(fit)) text += fmt::format(",model_{0},residual_{0}", model_of(fit.scene).name);
+    if (fit.found) text += fmt::format(",model_{0},residual_{0}", model_of(fit.scene).name);
   text += "\n";
   const bool markers = !measured.film.markers[0].empty();
   constexpr std::array<std::string_view, 4> names{"x_P", "y_P", "x_O", "y_O"};
@@ -152,19 +153,22 @@ std::string csv_of(const Measurements& measured, const FitReport& report) {
     else
       text += fmt::format("{},phi,{}", measured.film.t[i], measured.film.phi[i]);
     for (const ModelFit& fit : report.models)
-      if (is_found(fit)) text += fmt::format(",{},{}", fit.model[i], fit.residuals[i]);
+      if (fit.found) text += fmt::format(",{},{}", fit.model[i], fit.residuals[i]);
     text += "\n";
   }
   return text;
 }
 
 int run(const FitArguments& arguments) {
-  const Spec spec = read_spec(arguments.spec, arguments.overrides);
+  std::vector<std::string> overrides = arguments.overrides;
+  const auto only = std::ranges::find(models(), arguments.model, &Model::name);
+  if (only != models().end() && only->slips)
+    overrides.insert(overrides.begin(), "scene.friction=" + arguments.model);
+  const Spec spec = read_spec(arguments.spec, overrides);
   refuse_text_over("--csv", arguments.csv, {arguments.data, arguments.spec}, arguments.locking);
   const Measurements measured = read_measurements(arguments.data, arguments.reading);
   FitOptions options = arguments.options;
-  if (arguments.model != "both")
-    options.models = {std::ranges::find(models(), arguments.model, &Model::name)->friction};
+  if (only != models().end()) options.models = {only->friction};
   note_signals();
   options.stop_requested = [] { return noted_signal() != 0; };
   FitReport report;
@@ -183,7 +187,7 @@ int run(const FitArguments& arguments) {
     for (const ModelFit& one : report.models) print_fit(measured, one);
     print_preference(report);
   }
-  if (!is_found(report.models[0])) return 1;
+  if (!report.models[0].found) return 1;
   if (!arguments.csv.empty()) write_text(arguments.csv, csv_of(measured, report));
   return 0;
 }

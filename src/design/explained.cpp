@@ -65,22 +65,24 @@ std::pair<double, double> begin_of(const Film& film, double second) {
 Explained::Explained(const Measurements& measured, const Spec& spec, Friction friction)
     : measured_(measured), spec_(spec) {
   spec_.scene.friction = friction;
-  spec_.axes.clear(), spec_.output = {}, spec_.goals.clear(), spec_.maximize.clear(), spec_.minimize.clear();
+  spec_.axes.clear(), spec_.output = {};
+  std::vector<FreeParameter> asked = free_parameters(spec);
   constexpr Design usual;
-  for (const Parameter& parameter : parameters()) {
-    const auto* member = std::get_if<double Design::*>(&parameter.member);
-    if (!member) continue;
-    const auto axis = std::ranges::find(spec.axes, parameter.name, &Axis::key);
-    if (!has(friction, parameter.only_of))
-      spec_.design.** member = usual.**member;
-    else if (axis != spec.axes.end())
-      free_.push_back(
-          free_parameter(parameter.name, std::ranges::min(axis->values), std::ranges::max(axis->values)));
+  for (const Parameter& parameter : parameters()) {  // what the model has not is as it is by default
+    if (has(friction, parameter.only_of)) continue;
+    if (const auto* of_design = std::get_if<double Design::*>(&parameter.member))
+      spec_.design.** of_design = usual.**of_design;
+    else
+      spec_.scene.*std::get<double Scene::*>(parameter.member) =
+          Scene{}.*std::get<double Scene::*>(parameter.member);
+    std::erase_if(asked, [&](const FreeParameter& one) { return one.name == parameter.name; });
   }
-  if (spec.axes.empty()) free_by_default();
-  if (std::ranges::find(free_, "mu_static", &FreeParameter::name) != free_.end() &&
-      spec.design.mu_kinetic == spec.design.mu_static)
-    spec_.design.mu_kinetic = usual.mu_kinetic;  // which follows mu_static
+  free_ = std::move(asked);
+  if (spec.axes.empty()) {
+    free_by_default();
+    if (spec_.design.mu_kinetic == spec_.design.mu_static)
+      spec_.design.mu_kinetic = usual.mu_kinetic;  // follows it
+  }
   if (free_.empty())
     throw InputError(fmt::format(
         "{}: no parameter of the model \"{}\" is free; allowed: release_angle = {{ from, to }}, say",
@@ -120,6 +122,13 @@ void Explained::free_by_default() {
     free_ = {free_parameter("release_angle", 0.5 * pi, 1.95 * pi), free_parameter("release_spin", -1.0, 3.0)};
   } else {
     const double second = time_unit(spec_.scene);
+    constexpr double late = 0.3;  // sqrt(R/g): from farther off nobody can tell where it was at the release
+    if (measured_.film.t.front() > late * second)
+      throw InputError(
+          fmt::format("{}: the film begins at t = {} s, too late to guess the release from; allowed: times "
+                      "counted from its "
+                      "first line, or release_angle and release_spin with bounds, {{ from, to }}",
+                      measured_.origin, measured_.film.t.front()));
     const auto [angle, spin] = begin_of(measured_.film, second);
     free_ = {free_parameter("release_angle", angle - 0.3, angle + 0.3),
              free_parameter("release_spin", spin * second - 0.5, spin * second + 0.5)};

@@ -37,7 +37,7 @@ class Explained {
   std::vector<double> model_at(std::span<const double> residuals) const;
 
  private:
-  /// Residuals of these lines of a film; the origin is one of the parameters, or the best of its own.
+  /// Residuals of these lines of a film; the origin is 0 where it is not among the parameters given.
   template <class S>
   bool film_residuals(std::span<const double> at, std::span<const std::size_t> lines,
                       std::span<double> residuals, std::span<double> jacobian) const;

@@ -40,9 +40,13 @@ Effort effort_of(const Judge& judge, const FindOptions& options) {
     const auto hoops = static_cast<std::size_t>(question.one.scatter.samples);
     effort = {std::clamp<std::size_t>(16 * effort.sample / hoops, 1024, effort.sample), 16, 6, 256};
   }
-  if (options.sample > 0)
-    effort.sample =
-        (options.sample + SobolPoints::replicates - 1) / SobolPoints::replicates * SobolPoints::replicates;
+  if (options.sample > 0) {
+    constexpr std::size_t whole = SobolPoints::replicates;
+    effort.sample = (options.sample + whole - 1) / whole * whole;
+    // A small sample tells few places apart.
+    effort.starts = std::clamp<std::size_t>(effort.sample / 256, 8, effort.starts);
+    effort.climbed = std::clamp<std::size_t>(effort.sample / 1024, 2, effort.climbed);
+  }
   effort.climbed = std::max(effort.climbed, options.most);
   effort.starts = std::max(effort.starts, effort.climbed);
   return effort;
@@ -98,10 +102,11 @@ std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions
         if (verdicts[i].feasible()) feasible.push_back(place(i));
       fronts->add(std::move(feasible));
     }
+    std::ranges::stable_sort(best,
+                             [](const Place& a, const Place& b) { return better(a.verdict, b.verdict); });
+    if (best.size() > most) best.resize(most);
     steps.done();
   }
-  std::ranges::stable_sort(best, [](const Place& a, const Place& b) { return better(a.verdict, b.verdict); });
-  if (best.size() > most) best.resize(most);
   return best;
 }
 
@@ -183,7 +188,7 @@ std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOp
   evolve_front(judge, places, options.seed);
   steps.done(effort.starts / 2);
   fronts.add(std::move(places));
-  refine(judge, fronts, effort.front, options.seed);
+  refine(judge, fronts, effort.front, effort.sample / 32, options.seed);
   Front front = fronts.of_all();
   front.thin(effort.front);
   hypervolume = front.hypervolume();
@@ -247,8 +252,12 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
       one.design = question.at(places[i].at);
       solve({&one.design, 1}, {&one.outcome, 1});
       for (std::size_t k = 0; k < question.objectives.size(); ++k)
-        one.objectives.push_back(question.objectives[k].maximize ? -places[i].verdict.cost[k]
-                                                                 : places[i].verdict.cost[k]);
+        if (const Field* field = question.objectives[k].field;
+            field && !std::holds_alternative<OfMade>(field->source))
+          one.objectives.push_back(stored_number(*field, one.outcome));
+        else
+          one.objectives.push_back(question.objectives[k].maximize ? -places[i].verdict.cost[k]
+                                                                   : places[i].verdict.cost[k]);
       if (!front) one.cliff = near_cliffs(grid, one.design).nearest;
       if (!front && differentiable_method)
         for (const Field* field : quantities_of(question)) {
@@ -268,12 +277,22 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
     if (stays[i]) found.designs.push_back(std::move(told[i]));
 }
 
+/// A field of a design as drawn, or of the hoops made after it.
+double value_there(const Question& question, const Field& field, const FoundDesign& one) {
+  if (!std::holds_alternative<OfMade>(field.source)) return stored_number(field, one.outcome);
+  Spec many = question.one;
+  many.output.fields = {std::string(field.name)};
+  MadeColumns columns(scatter_fields_of(many));
+  ScatterSolver(many, points_of(many.scatter)).solve({&one.design, 1}, columns);
+  return columns.column(field)[0];
+}
+
 }  // namespace
 
 Spec list_of(const Spec& spec, const FoundDesigns& found) {
   const Question question = question_of(spec);
   Spec list = question.one;
-  list.output.file = spec.output.file, list.numerics.audit = 1.0;
+  list.output = spec.output, list.numerics.audit = 1.0;
   if (list.scatter.spreads.empty()) list.goals.clear();  // as in any map of hoops as drawn
   list.maximize = spec.maximize, list.minimize = spec.minimize;
   list.list.count = found.designs.size();
@@ -286,6 +305,7 @@ Spec list_of(const Spec& spec, const FoundDesigns& found) {
 
 FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
   const auto begin = std::chrono::steady_clock::now();
+  if (asked.most == 0) throw InputError("most = 0 designs to tell; allowed: one or more");
   const Question question = question_of(spec);
   FindOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
@@ -299,10 +319,14 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
                                         : best_places(judge, effort, options, steps);
   found.reached = places.front().verdict.feasible();
   tell(judge, places, options, found);
+  if (found.designs.empty()) {  // none holds alone: the goals leave no room for a rounding
+    found.reached = false;
+    tell(judge, {places.front()}, options, found);
+  }
   if (!found.reached) {
     found.designs.resize(1);
     for (const Goal& goal : spec.goals)
-      found.missed.push_back(stored_number(*find_field(goal.field), found.designs[0].outcome));
+      found.missed.push_back(value_there(question, *find_field(goal.field), found.designs[0]));
   }
   found.evaluations = judge.evaluations();
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

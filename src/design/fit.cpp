@@ -20,6 +20,7 @@
 #include "numerics/sobol_points.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
+#include "sweep/spec.hpp"
 
 namespace leapmap {
 namespace {
@@ -65,19 +66,22 @@ void map_coarsely(const Explained& explained, const FitOptions& options, const S
 /// another; best first.
 std::vector<std::vector<double>> coarse_starts(const Explained& explained, const FitOptions& options) {
   const bool film = explained.is_film();  // events are solved in lanes, and tell less
-  const std::size_t samples = options.coarse > 0 ? options.coarse
-                              : film             ? 4096
-                                                 : 1 << 16,
-                    most = options.starts > 0 ? options.starts
-                           : film             ? 8
-                                              : 24;
+  const auto usual = [&](std::size_t asked, std::size_t of_film, std::size_t of_events) {
+    return asked > 0 ? asked : film ? of_film : of_events;
+  };
+  const auto rounded = [](std::size_t samples) {  // Sobol' points come in replicates
+    constexpr std::size_t whole = SobolPoints::replicates;
+    return (samples + whole - 1) / whole * whole;
+  };
+  const std::size_t samples = rounded(usual(options.coarse, 4096, 1 << 16)),
+                    most = usual(options.starts, 8, 24);
   const std::size_t dimensions = explained.free().size();
   std::vector<double> middle;
   for (std::size_t k = 0; k < dimensions; ++k) middle.push_back(explained.problem().bounds[k].value(0.5));
   std::vector<CoarsePlace> places;
   map_coarsely(explained, options, SobolPoints(dimensions, samples, options.seed), middle, 1.0, places);
   // A film's sum of squares has narrow valleys, with steps where a phase appears: closer maps see into them.
-  const SobolPoints fewer(dimensions, std::max(samples / 4, SobolPoints::replicates), options.seed + 1);
+  const SobolPoints fewer(dimensions, rounded(samples / 4), options.seed + 1);
   double finest = 1.0;
   for (const double share : {0.2, 0.05, 0.0125}) {
     if (places.empty()) return {};
@@ -141,32 +145,36 @@ LeastSquaresFit with_one_held(const LeastSquares& problem, std::vector<double> a
   return alone;
 }
 
-/// The ends of where the sum of squares stays within `allowed` of its least, by steps from the best outwards.
+/// The ends of where the sum of squares stays within `allowed` of its least: by steps from the best outwards,
+/// and bisection where that ends.
 std::pair<double, double> profile(const LeastSquares& problem, const LeastSquaresFit& best, std::size_t k,
                                   double allowed) {
-  constexpr int steps = 12;
+  constexpr int steps = 8, halvings = 6;
   const Side& side = problem.bounds[k];
   std::array<double, 2> ends{best.at[k], best.at[k]};
   for (const int way : {-1, 1}) {
     std::vector<double> at = best.at;
     const double bound = way < 0 ? side.low : side.high;
     double& end = ends[way < 0 ? 0 : 1];
-    for (int step = 1; step <= steps; ++step) {
-      const double value = best.at[k] + (bound - best.at[k]) * step / steps;
+    const auto holds = [&](double value) {
       const LeastSquaresFit fit = with_one_held(problem, at, k, value);
-      if (!(fit.sum <= best.sum + allowed)) break;
-      end = value;
-      at = fit.at;
+      if (!(fit.sum <= best.sum + allowed)) return false;
+      end = value, at = fit.at;
       at.insert(at.begin() + static_cast<std::ptrdiff_t>(k), value);
-    }
+      return true;
+    };
+    double beyond = bound;
+    int step = 1;
+    while (step <= steps && holds(beyond = best.at[k] + (bound - best.at[k]) * step / steps)) ++step;
+    for (int halving = 0; step <= steps && halving < halvings; ++halving)
+      if (const double middle = 0.5 * (end + beyond); !holds(middle)) beyond = middle;
   }
   return {ends[0], ends[1]};
 }
 
 /// Standard errors, correlations, and what the data do not tell.
-void tell_uncertainty(const Explained& explained, const LeastSquaresFit& best, double variance,
+void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance,
                       ModelFit& told) {
-  const LeastSquares& problem = explained.problem();
   const auto rows = static_cast<Eigen::Index>(problem.residuals),
              columns = static_cast<Eigen::Index>(problem.bounds.size());
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -207,41 +215,68 @@ void tell_uncertainty(const Explained& explained, const LeastSquaresFit& best, d
   }
 }
 
+/// Nothing given is ignored without a word.
+void refuse_what_has_no_use(const Spec& spec) {
+  const auto refuse = [&](std::string_view what) {
+    throw InputError(
+        fmt::format("{}: {} has no use in a fit; allowed: [scene], [design], and [numerics] as it is",
+                    origin_of(spec), what));
+  };
+  if (!spec.goals.empty() || !spec.maximize.empty() || !spec.minimize.empty()) refuse("[goal]");
+  if (!spec.scatter.spreads.empty()) refuse("[scatter]");
+  if (!spec.points.empty() || !spec.list.columns.empty()) refuse("design.points");
+  if (!spec.output.fields.empty() || !spec.output.gradients.empty()) refuse("[output]");
+  if (resolved_method(spec.numerics) != "exact") refuse("a method other than \"exact\"");
+}
+
+/// Lines later than the landing of the jump that the model has.
+std::size_t lines_after_landing(const Measurements& measured, const Outcome& outcome) {
+  const double landing = outcome.jump_time + outcome.flight_time;
+  return static_cast<std::size_t>(
+      std::ranges::count_if(measured.film.t, [&](double t) { return t > landing; }));
+}
+
 ModelFit fit_model(const Measurements& measured, const Spec& spec, Friction friction,
                    const FitOptions& options) {
   const Explained explained(measured, spec, friction);
-  const LeastSquares& problem = explained.problem();
-  if (problem.residuals < problem.bounds.size())
-    throw InputError(fmt::format("{}: {} numbers for {} free parameters; allowed: as many numbers or more",
-                                 measured.origin, problem.residuals, problem.bounds.size()));
+  LeastSquares problem = explained.problem();
+  problem.evaluate = [&](std::span<const double> at, std::span<double> residuals,
+                         std::span<double> jacobian) {
+    if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
+    return explained.problem().evaluate(at, residuals, jacobian);
+  };
+  const bool known = explained.errors_known();
+  if (problem.residuals < problem.bounds.size() + (known ? 0 : 1))
+    throw InputError(fmt::format("{}: {} numbers for {} free parameters{}; allowed: {}", measured.origin,
+                                 problem.residuals, problem.bounds.size(),
+                                 known ? "" : ", and their error to be told",
+                                 known ? "as many numbers or more" : "more numbers, or --error"));
   ModelFit told{.scene = explained.scene()};
   const auto starts = coarse_starts(explained, options);
   told.starts = starts.size();
-  if (starts.empty()) {
-    told.chi_square = told.information = HUGE_VAL;
-    return told;
-  }
+  if (starts.empty()) return told;
   std::vector<std::vector<double>> whole;
   for (const auto& start : starts) whole.push_back(explained.with_origin(start));
   const LeastSquaresFit best = best_fit(problem, whole, options, told.evaluations);
-  if (best.residuals.empty()) {
-    told.chi_square = told.information = HUGE_VAL;
-    return told;
-  }
+  if (best.residuals.empty()) return told;
+  told.found = true;
   told.design = explained.design_at(best.at);
   told.outcome = solve(told.design, told.scene);
+  told.after_landing = lines_after_landing(measured, told.outcome);
   const auto numbers = static_cast<double>(problem.residuals),
              free = static_cast<double>(problem.bounds.size());
   told.degrees = problem.residuals - problem.bounds.size();
-  // Where nobody says how good the numbers are, the residuals do.
-  const bool known = explained.errors_known();
-  const double variance = known ? 1.0 : best.sum / std::max(static_cast<double>(told.degrees), 1.0);
+  // Where nobody says how good the numbers are, the residuals do; those of numbers without any error by a
+  // rounding.
+  constexpr double rounding = 1e-20;
+  const double sum = std::max(best.sum, rounding * numbers),
+               variance = known ? 1.0 : sum / static_cast<double>(told.degrees);
   told.chi_square = known ? best.sum : static_cast<double>(told.degrees);
   told.error = std::sqrt(best.sum / numbers) * explained.unit_error();
-  told.information = 2.0 * free + (known ? best.sum : numbers * std::log(best.sum / numbers));
+  told.information = 2.0 * free + (known ? best.sum : numbers * std::log(sum / numbers));
   for (std::size_t k = 0; k < explained.free().size(); ++k)
     told.parameters.push_back({.name = explained.free()[k].name, .value = best.at[k]});
-  tell_uncertainty(explained, best, variance, told);
+  tell_uncertainty(problem, best, variance, told);
   told.model = explained.model_at(best.residuals);
   for (const double residual : best.residuals) told.residuals.push_back(residual / std::sqrt(variance));
   return told;
@@ -253,10 +288,19 @@ FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& 
   const auto begin = std::chrono::steady_clock::now();
   FitOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
+  refuse_what_has_no_use(spec);
   check_measurements(measured, spec);
   FitReport report;
-  for (const Friction friction : options.models)
-    report.models.push_back(fit_model(measured, spec, friction, options));
+  std::size_t refused = 0;
+  for (const Friction friction : options.models) {
+    try {
+      report.models.push_back(fit_model(measured, spec, friction, options));
+    } catch (const InputError& error) {  // the other model may have fewer free parameters
+      if (++refused == options.models.size()) throw;
+      ModelFit& without = report.models.emplace_back();
+      without.scene = spec.scene, without.scene.friction = friction, without.why = error.what();
+    }
+  }
   std::ranges::stable_sort(report.models, {}, &ModelFit::information);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;

@@ -81,21 +81,20 @@ Front Fronts::of_all() const {
 }
 
 void Fronts::leave_nearest(std::size_t most) {
-  const Front all = of_all();
+  Front all = of_all();
   if (fronts_.size() <= most || all.places().size() < 2) return;
+  constexpr std::size_t enough = 512;  // to tell how far a band is behind
+  all.thin(enough);
   const auto &first = all.places().front().verdict.cost, &last = all.places().back().verdict.cost;
   const std::array span{last[0] - first[0], first[1] - last[1]};
   // How far the front of all would have to move back for a place to be on it, in shares of its ends'
   // distance.
   const auto behind = [&](const Verdict& verdict) {
-    double least = HUGE_VAL;
-    double lead = -HUGE_VAL;
-    for (const Place& place : all.places()) {
-      least = std::max((verdict.cost[0] - place.verdict.cost[0]) / span[0],
-                       (verdict.cost[1] - place.verdict.cost[1]) / span[1]);
-      lead = std::max(lead, -least);
-    }
-    return -lead;
+    double most_behind = 0.0;
+    for (const Place& place : all.places())
+      most_behind = std::max(most_behind, std::min((verdict.cost[0] - place.verdict.cost[0]) / span[0],
+                                                   (verdict.cost[1] - place.verdict.cost[1]) / span[1]));
+    return most_behind;
   };
   std::vector<std::pair<double, std::uint64_t>> order;
   for (const auto& [outcome, front] : fronts_) {
@@ -130,10 +129,8 @@ void step_from(const Front& front, bool along, bool off, std::mt19937_64& random
 
 }  // namespace
 
-void refine(Judge& judge, Fronts& fronts, std::size_t most, std::uint64_t seed) {
-  const bool slips = judge.question().one.scene.friction != Friction::sticking;
+void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round, std::uint64_t seed) {
   const std::size_t rounds = judge.makes_hoops() ? 12 : 100;
-  const std::size_t a_round = judge.makes_hoops() ? 128 : slips ? 8192 : 65536;
   const std::size_t dimensions = judge.dimensions();
   std::mt19937_64 random(seed);
   std::vector<double> places(a_round * dimensions);

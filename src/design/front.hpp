@@ -42,7 +42,7 @@ class Fronts {
   std::map<std::uint64_t, Front> fronts_;
 };
 
-/// Rounds of small steps from the fronts' places, along them and off them, in blocks on all threads.
-void refine(Judge& judge, Fronts& fronts, std::size_t most, std::uint64_t seed);
+/// Rounds of small steps from the fronts' places, along them and off them, so many a round.
+void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round, std::uint64_t seed);
 
 }  // namespace leapmap

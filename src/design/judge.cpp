@@ -136,11 +136,15 @@ Judge::Judge(const Question& question, int threads, std::function<bool()> stop_r
       points_(asks_of_made(question) ? points_of(question.one.scatter) : nullptr),
       benches_(static_cast<std::size_t>(threads_)) {}
 
-std::unique_ptr<Judge> Judge::alone() const {
-  auto judge = std::make_unique<Judge>(question_, 1, stop_requested_);
-  judge->points_ = points_, judge->evaluations_ = evaluations_;
-  return judge;
-}
+Judge::Judge(const Judge& other, int threads)
+    : question_(other.question_),
+      threads_(threads),
+      stop_requested_(other.stop_requested_),
+      points_(other.points_),
+      evaluations_(other.evaluations_),
+      benches_(static_cast<std::size_t>(threads)) {}
+
+std::unique_ptr<Judge> Judge::alone() const { return std::unique_ptr<Judge>(new Judge(*this, 1)); }
 
 void Judge::judge_designs(std::span<const Design> designs, std::span<Verdict> verdicts) {
   const std::size_t block = makes_hoops() ? 4 : 256;

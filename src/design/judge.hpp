@@ -81,6 +81,8 @@ class Judge {
   std::size_t evaluations() const { return *evaluations_; }
 
  private:
+  Judge(const Judge& other, int threads);  // of the same question
+
   const Question& question_;
   int threads_;
   std::function<bool()> stop_requested_;

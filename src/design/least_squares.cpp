@@ -15,7 +15,7 @@ namespace leapmap {
 namespace {
 
 /// A residual where the model has no answer: no step that leads there is taken.
-constexpr double no_answer = 1e10;
+constexpr double no_answer = 1e150;
 
 /// What GSL's callbacks see.
 struct Followed {

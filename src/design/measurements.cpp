@@ -12,6 +12,7 @@
 #include "model/fields.hpp"
 #include "physics/parameters.hpp"
 #include "support/csv.hpp"
+#include "sweep/spacing.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap {
@@ -115,19 +116,20 @@ void check_angles(const Measurements& measured, double second) {
                     measured.origin, low, high, film.t.back() - film.t.front()));
 }
 
-void check_markers(const Measurements& measured, double length) {
+/// length: L of the hoop, from the least to the most that it may be.
+void check_markers(const Measurements& measured, const Side& length) {
   const auto& [x_P, y_P, x_O, y_O] = measured.film.markers;
   std::vector<double> apart;
   for (std::size_t i = 0; i < x_P.size(); ++i) apart.push_back(std::hypot(x_P[i] - x_O[i], y_P[i] - y_O[i]));
   std::ranges::nth_element(apart, apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2));
   const double median = apart[apart.size() / 2];
   constexpr double off = 1.5;
-  if (!(median < off * length && median > length / off))
+  if (length.high > 0.0 && !(median < off * length.high && median > length.low / off))
     throw InputError(
         fmt::format("{}: the markers are {:.4g} apart, and L of the hoop is {:.4g} m: another unit? allowed: "
                     "metres, or --scale "
                     "{:.4g} (metres a unit); or the radius of the hoop that was filmed, --set radius=...",
-                    measured.origin, median, length, length / median));
+                    measured.origin, median, length.high, length.high / median));
 }
 
 void check_film(const Measurements& measured, const Spec& spec) {
@@ -153,8 +155,15 @@ void check_film(const Measurements& measured, const Spec& spec) {
     throw InputError(
         fmt::format("{}: error = {}; allowed: a standard error above 0", measured.origin, film.error));
   check_times(measured, second);
-  markers ? check_markers(measured, spec.design.offset_ratio * spec.scene.radius)
-          : check_angles(measured, second);
+  if (!markers) {
+    check_angles(measured, second);
+    return;
+  }
+  const auto axis = std::ranges::find(spec.axes, "offset_ratio", &Axis::key);
+  const double R = spec.scene.radius, fixed = spec.design.offset_ratio;
+  check_markers(measured, axis == spec.axes.end()
+                              ? Side{fixed * R, fixed * R}
+                              : Side{std::ranges::min(axis->values) * R, std::ranges::max(axis->values) * R});
 }
 
 /// Where in the header each of these columns stands; nothing if one is missing.
@@ -193,6 +202,14 @@ Measurements read_measurements(const std::string& path, const MeasurementOptions
   if (known == 0 || known != file.header().size())
     throw InputError(fmt::format("{}: columns {}; allowed: {}", file.place().empty() ? path : file.place(),
                                  fmt::join(file.header(), ", "), forms));
+  const bool of_film = options.allow_gaps || !std::isnan(options.error),
+             of_markers = options.scale != 1.0 || options.y_down;
+  if (events && (of_film || of_markers))
+    throw InputError(
+        path +
+        ": holds events; --error, --allow-gaps, --scale and --y-down have no use; allowed: with a film");
+  if (angle && of_markers)
+    throw InputError(path + ": holds angles; --scale and --y-down have no use; allowed: with markers");
   std::vector<std::string> cells;
   while (file.next(cells)) {
     const std::string& place = file.place();

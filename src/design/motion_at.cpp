@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "coulomb/contact_phases.hpp"
 #include "model/model.hpp"
@@ -54,12 +55,18 @@ Moving<S> midpoint_steps(const Moving<S>& from, double span, int count, const Ra
 
 /// Over a span of time by extrapolation, in halves where that does not agree with itself.
 template <class S, class Rate>
-Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, int depth = 0) {
+Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, long& budget, int depth = 0) {
   constexpr std::array counts{2, 4, 6, 8, 10};
   constexpr double longest = 0.3, allowed = 1e-11;
   constexpr int most_halvings = 30;
+  if (--budget < 0) {  // nothing to be followed: it is not told
+    Moving<S> lost;
+    lost.fill(S(std::numeric_limits<double>::quiet_NaN()));
+    return lost;
+  }
   const auto halved = [&] {
-    return integrated(integrated(from, 0.5 * span, rate, depth + 1), 0.5 * span, rate, depth + 1);
+    return integrated(integrated(from, 0.5 * span, rate, budget, depth + 1), 0.5 * span, rate, budget,
+                      depth + 1);
   };
   if (span > longest && depth < most_halvings) return halved();
   std::array<Moving<S>, counts.size()> before, row;
@@ -104,10 +111,10 @@ class Walk {
     const auto rate = rate_of(phase, direction);
     double time = from;
     for (const double sample : times) {
-      at_ = integrated(at_, sample - time, rate), time = sample;
+      at_ = integrated(at_, sample - time, rate, budget_), time = sample;
       taken.push_back({at_[0], at_[2], S(0.0)});
     }
-    if (std::isfinite(to)) at_ = integrated(at_, to - time, rate);
+    if (std::isfinite(to)) at_ = integrated(at_, to - time, rate, budget_);
   }
   /// Ends a phase of contact where the next one begins.
   void end_contact(Phase phase, int direction, Phase next) {
@@ -197,6 +204,7 @@ class Walk {
   Moving<S> at_;
   S normal_{0.0};
   S late_{0.0};
+  long budget_ = 1'000'000;  // of steps, halves of steps among them
 };
 
 }  // namespace
@@ -206,7 +214,8 @@ std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std
   constexpr double tolerance = 1e-12;
   const Motion motion = model_of(scene).tell_exactly(design, scene, tolerance, 0.0);
   std::vector<MotionAt<S>> taken;
-  if (motion.phases.empty() || motion.outcome.status == Status::failed) return taken;
+  const Status status = motion.outcome.status;
+  if (motion.phases.empty() || status == Status::failed || status == Status::indeterminate) return taken;
   const double second = time_unit(scene);
   std::vector<double> scaled;
   for (const double time : times) scaled.push_back(time / second);

@@ -18,7 +18,8 @@ struct MotionAt {
 };
 
 /// The motion at times since release [s], in ascending order; empty if the design cannot be solved. After the
-/// landing of the jump, or the search's end, the last phase goes on for ever.
+/// landing of the jump, or the search's end, the last phase goes on for ever: a flight goes on through the
+/// plane.
 ///
 /// Phases and their ends are the exact solver's. Between them, where the state is no closed form of the time,
 /// the equations are integrated by extrapolation of midpoint steps, to 1e-11; a phase's end gets its

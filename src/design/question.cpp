@@ -20,23 +20,6 @@ namespace {
 
 bool is_of_made(const Field& field) { return std::holds_alternative<OfMade>(field.source); }
 
-std::vector<FreeParameter> free_parameters(const Spec& spec) {
-  std::vector<FreeParameter> free;
-  for (const Axis& axis : spec.axes) {
-    const auto [low, high] = std::ranges::minmax(axis.values);
-    const auto spacing = spacing_of(axis.values);
-    if (!axis.free && axis.values.size() > 2 && !spacing)
-      refuse(spec, fmt::format("design.{} is a list of values", axis.key),
-             "{ from, to }, between which it is free, or a number");
-    if (!(low < high))
-      refuse(spec, fmt::format("design.{} is nothing but {}", axis.key, low), "two bounds, or a number");
-    free.push_back({axis.key,
-                    std::get<ParameterSlot>(find_option("design", axis.key)->slot).member,
-                    {low, high, axis.free ? axis.log : spacing && spacing->log}});
-  }
-  return free;
-}
-
 Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free, const std::string& name,
                        bool maximize) {
   const std::string key = maximize ? "goal.maximize" : "goal.minimize";
@@ -77,6 +60,13 @@ Range possible(const Field& field, const Scene& scene) {
 /// Goals that no design whatever can reach.
 void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objectives) {
   for (const Goal& goal : spec.goals) {
+    const bool quantity = std::holds_alternative<Quantity>(find_field(goal.field)->source);
+    if (quantity && goal.at_least == goal.at_most && goal.at_least != 0.0)
+      refuse(spec, fmt::format("goal.{} {} is met by no hoop to the last digit", goal.field, text_of(goal)),
+             "{ at_least = ..., at_most = ... } with room between them");
+    if (!(goal.at_least <= goal.at_most))
+      refuse(spec, fmt::format("goal.{} {} contradicts itself", goal.field, text_of(goal)),
+             "at_least not above at_most");
     const Range range = possible(*find_field(goal.field), spec.scene);
     if (goal.at_least > range.most || goal.at_most < range.least)
       refuse(spec, fmt::format("goal.{} {} cannot be", goal.field, text_of(goal)),
@@ -95,6 +85,23 @@ void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objec
 }
 
 }  // namespace
+
+std::vector<FreeParameter> free_parameters(const Spec& spec) {
+  std::vector<FreeParameter> free;
+  for (const Axis& axis : spec.axes) {
+    const auto [low, high] = std::ranges::minmax(axis.values);
+    const auto spacing = spacing_of(axis.values);
+    if (!axis.free && axis.values.size() > 2 && !spacing)
+      refuse(spec, fmt::format("design.{} is a list of values", axis.key),
+             "{ from, to }, between which it is free, or a number");
+    if (!(low < high))
+      refuse(spec, fmt::format("design.{} is nothing but {}", axis.key, low), "two bounds, or a number");
+    free.push_back({axis.key,
+                    std::get<ParameterSlot>(find_option("design", axis.key)->slot).member,
+                    {low, high, axis.free ? axis.log : spacing && spacing->log}});
+  }
+  return free;
+}
 
 Design Question::at(std::span<const double> place) const {
   assert(place.size() == free.size());

@@ -41,6 +41,10 @@ struct Question {
   Spec grid() const;
 };
 
+/// The axes of a spec as what is free, in its order. Throws InputError for lists of values and for axes of
+/// one.
+std::vector<FreeParameter> free_parameters(const Spec& spec);
+
 /// Throws InputError for a spec that asks nothing: without a free parameter or without an objective, with
 /// more than two, with goals that contradict themselves or each other; and as check_spec does.
 Question question_of(const Spec& spec);

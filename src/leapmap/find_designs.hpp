@@ -30,7 +30,7 @@ struct FoundDesign {
   /// What keeps it from being better, in words: bounds of parameters, goals, the kind of cliff.
   std::vector<std::string> binds{};
   // Of one objective:
-  std::vector<NearCliff> cliff{};          ///< the nearest in the box; none: there is none
+  std::vector<NearCliff> cliff{};          ///< the nearest in the box, if there is one
   std::vector<FieldGradient> gradients{};  ///< of the quantities that objectives and goals name
 };
 

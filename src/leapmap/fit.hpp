@@ -70,13 +70,18 @@ struct FittedParameter {
 struct ModelFit {
   Scene scene{};
   Design design{};
-  Outcome outcome{};  ///< of that design
+  bool found = false;  ///< false: no hoop of the box does anything like it
+  std::string why{};   ///< why it was not fitted, if it was not
+  Outcome outcome{};   ///< of that design
+  std::size_t after_landing =
+      0;  ///< lines of a film later than the model's landing, where it is not followed
   std::vector<FittedParameter> parameters{};
-  std::vector<double> correlations{};  ///< a row of each parameter
-  double chi_square = 0.0;             ///< over the errors; those of a film may be told by the residuals
-  std::size_t degrees = 0;             ///< of freedom
-  double error = 0.0;                  ///< of a film: rms of residuals, [rad] or [m]
-  double information = 0.0;            ///< Akaike's, corrected for few data; less is better
+  std::vector<double> correlations{};                            ///< a row of each parameter
+  double chi_square = std::numeric_limits<double>::quiet_NaN();  ///< over the errors; those of a film may be
+                                                                 ///< told by the residuals
+  std::size_t degrees = 0;                                       ///< of freedom
+  double error = 0.0;  ///< of a film: rms of residuals, [rad] or [m]
+  double information = std::numeric_limits<double>::infinity();  ///< Akaike's; less is better
   std::vector<double> model{}, residuals{};  ///< of every number measured; residuals over their errors
   std::size_t starts = 0, evaluations = 0;
 };

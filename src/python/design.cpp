@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
 #include "design/judge.hpp"
 #include "leapmap/errors.hpp"
@@ -87,8 +88,7 @@ class Problem {
  public:
   Problem(const std::string& path_or_text, const std::optional<std::string>& origin,
           const std::vector<std::string>& overrides, int threads)
-      : question_(question_of(spec_of(path_or_text, origin, overrides))),
-        judge_(question_, threads_here(threads), {}) {}
+      : question_(question_of(spec_of(path_or_text, origin, overrides))), judge_(question_, threads, {}) {}
 
   py::list free() const {
     py::list rows;
@@ -140,7 +140,11 @@ class Problem {
     std::vector<Verdict> verdicts(count);
     {
       const py::gil_scoped_release unlocked;
-      judge_.judge_designs(designs, verdicts);
+      const std::lock_guard one_at_a_time(busy_);
+      if (forked())
+        judge_.alone()->judge_designs(designs, verdicts);
+      else
+        judge_.judge_designs(designs, verdicts);
     }
     const std::size_t objectives = question_.objectives.size();
     py::array_t<double> costs({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(objectives)});
@@ -155,6 +159,7 @@ class Problem {
  private:
   Question question_;
   Judge judge_;
+  std::mutex busy_;  // its workspaces are for one call at a time
 };
 
 /// t, phi; t and markers; or events as [(name, value, error)].
@@ -192,9 +197,10 @@ py::dict dict_of(const ModelFit& fit) {
   const auto count = static_cast<py::ssize_t>(fit.parameters.size());
   py::array_t<double> correlations({count, count});
   std::copy(fit.correlations.begin(), fit.correlations.end(), correlations.mutable_data());
-  told["friction"] = std::string(model_of(fit.scene).name), told["found"] = std::isfinite(fit.information);
+  told["friction"] = std::string(model_of(fit.scene).name), told["found"] = fit.found, told["why"] = fit.why;
   told["parameters"] = parameters, told["correlations"] = correlations, told["chi_square"] = fit.chi_square;
-  told["degrees"] = fit.degrees, told["error"] = fit.error, told["information"] = fit.information;
+  told["after_landing"] = fit.after_landing, told["degrees"] = fit.degrees, told["error"] = fit.error,
+  told["information"] = fit.information;
   told["model"] = py::array_t<double>(static_cast<py::ssize_t>(fit.model.size()), fit.model.data());
   told["residuals"] =
       py::array_t<double>(static_cast<py::ssize_t>(fit.residuals.size()), fit.residuals.data());

@@ -9,7 +9,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from support.program import PROGRAM, TOP, leapmap
+from support.program import PROGRAM, TOP, leapmap, sweep
 
 BOX = """
 [design]
@@ -58,8 +58,20 @@ def test_the_list_is_a_map_that_sweeps_and_charts_take(tmp_path):
     assert leapmap("check", tmp_path / "best.h5").returncode == 0
     chart = subprocess.run(["/usr/bin/python3", TOP / "analysis/list_chart.py", tmp_path / "best.h5", "-o", tmp_path / "best"], capture_output=True, text=True)
     assert chart.returncode == 0, chart.stderr
-    assert asked(tmp_path, BOX, "-o", tmp_path / "best.h5").returncode == 2, "what is there stays"
-    assert asked(tmp_path, BOX, "-o", tmp_path / "best.h5", "--overwrite").returncode == 0
+    assert asked(tmp_path, BOX, "-o", tmp_path / "best.h5").returncode == 0, "a list of an earlier search gives way"
+    assert asked(tmp_path, BOX + f'[output]\nfile = "{tmp_path}/named.h5"\nfields = ["jump_height", "status"]\n').returncode == 0
+    with h5py.File(tmp_path / "named.h5") as named:
+        assert "jump_height" in named and "jump_time" not in named, "the spec's own output"
+
+
+def test_what_no_search_wrote_is_not_replaced_and_that_is_said_before_anything_is_looked_for(tmp_path):
+    map_file = sweep(tmp_path, "[design]\nslope = { from = 0.1, to = 0.5, count = 5 }\n")
+    begin = time.monotonic()
+    (tmp_path / "q.toml").write_text(BOX)
+    done = leapmap("design", tmp_path / "q.toml", "-o", map_file, "--csv", tmp_path / "best.csv", "--sample", "100000000")
+    assert done.returncode == 2 and "map.h5" in done.stderr and done.stderr.count("\n") == 1 and time.monotonic() - begin < 5
+    assert not (tmp_path / "best.csv").exists()
+    assert asked(tmp_path, BOX, "-o", map_file, "--overwrite").returncode == 0
 
 
 def test_no_design_that_does_it_is_an_answer_with_the_nearest_miss(tmp_path):
@@ -67,7 +79,10 @@ def test_no_design_that_does_it_is_an_answer_with_the_nearest_miss(tmp_path):
     assert done.returncode == 1 and not (tmp_path / "none.h5").exists()
     assert "No design of this box does it" in done.stdout and "nearest miss" in done.stdout and "leapmap hop" in done.stdout
     told = json.loads(asked(tmp_path, BOX.replace("0.9", "2.5"), "--json").stdout)
-    assert not told["reached"] and len(told["designs"]) == 1
+    assert not told["reached"] and len(told["designs"]) == 1 and 0.9 < told["missed"]["jump_height"] < 2.5
+    made = BOX.replace("[goal]", "[scatter]\nslope = { normal = \"3 deg\" }\nsamples = 64\n[goal]\nyield = { at_least = 0.9999 }")
+    told = json.loads(asked(tmp_path, made.replace("0.9 }", "1.3 }"), "--json").stdout)
+    assert not told["reached"] and 0 < told["missed"]["yield"] < 0.9999, "a yield that is missed is told as well"
 
 
 def test_two_objectives_give_a_front(tmp_path):
@@ -156,6 +171,37 @@ def test_wrong_measurements_are_one_line_and_exit_2(tmp_path):
         done = leapmap("fit", tmp_path / "bad.csv")
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr and "bad.csv" in done.stderr, done.stderr
     assert leapmap("fit", tmp_path / "none.csv").returncode == 2
+    for flags, word in ((["--scale", "0.1"], "--scale"), (["--error", "0.1"], "--error"), (["--set", "goal.jump_height={at_least=1}"], "[goal]"),
+                        (["--set", "slope={values=[0.3,0.4,0.5]}"], "list of values"), (["--set", "slope={values=[0.4]}"], "0.4"),
+                        (["--set", "scatter.slope={normal=0.1}"], "[scatter]"), (["--set", "method=gsl-rk4"], "exact")):
+        done = leapmap("fit", TOP / "sweeps/paper_events.csv", *flags)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
+
+
+def test_a_film_that_begins_late_wants_bounds_of_the_release(tmp_path):
+    path = film(tmp_path / "film.csv")
+    lines = path.read_text().splitlines()
+    (tmp_path / "late.csv").write_text("\n".join([lines[0], *lines[100:]]) + "\n")
+    done = leapmap("fit", tmp_path / "late.csv")
+    assert done.returncode == 2 and "begins at" in done.stderr and "release_angle" in done.stderr, done.stderr
+    free = ["--set", "release_angle={from=3.0,to=3.3}", "--set", "release_spin={from=-0.1,to=0.2}"]
+    told = json.loads(leapmap("fit", tmp_path / "late.csv", *free, "--model", "sticking", "--error", "1e-3", "--json").stdout)["models"][0]
+    assert told["parameters"]["release_angle"]["value"] == pytest.approx(np.pi, abs=1e-3)
+
+
+def test_friction_that_is_given_stays_as_it_is_given():
+    given = json.loads(leapmap("fit", TOP / "sweeps/paper_events.csv", "--model", "coulomb", "--set", "mu_kinetic=0.3", "--set",
+                               "mu_static={from=0.3,to=1}", "--json").stdout)["models"][0]
+    assert "--mu-kinetic 0.3" in given["hop"]
+    follows = json.loads(leapmap("fit", TOP / "sweeps/paper_events.csv", "--model", "coulomb", "--json").stdout)["models"][0]
+    assert "--mu-kinetic" not in follows["hop"]
+
+
+def test_a_model_with_too_many_free_parameters_leaves_the_other(tmp_path):
+    (tmp_path / "two.csv").write_text("event,value,error\njump_time,0.54,0.01\njump_height,0.98,0.02\n")
+    models = {model["friction"]: model for model in json.loads(leapmap("fit", tmp_path / "two.csv", "--json").stdout)["models"]}
+    assert models["sticking"]["found"] and not models["coulomb"]["found"]
+    assert "2 numbers for 3 free parameters" in leapmap("fit", tmp_path / "two.csv").stdout
 
 
 def test_markers_in_pixels_that_count_downwards_are_read_with_their_scale(tmp_path):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """leapmap.design, DesignProblem and leapmap.fit."""
+import multiprocessing
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import leapmap
 import numpy as np
@@ -33,7 +35,7 @@ def test_a_front_is_in_order():
 
 
 def test_bad_questions_raise_value_errors():
-    for arguments, word in (({}, "free"), ({**BOX, "maximize": ["height"]}, "height"), ({**BOX, "goal": {"nothing": {"is": 1}}, "maximize": ["jump_height"]}, "nothing")):
+    for arguments, word in (({**BOX, "maximize": ["jump_height"], "most": 0}, "most"), ({**BOX, "goal": {"jump_height": {"is": 1.0}}, "minimize": ["slope"]}, "last digit"), ({}, "free"), ({**BOX, "maximize": ["height"]}, "height"), ({**BOX, "goal": {"nothing": {"is": 1}}, "maximize": ["jump_height"]}, "nothing")):
         with pytest.raises(ValueError, match=word):
             leapmap.design(**arguments)
 
@@ -55,6 +57,18 @@ def test_the_problem_is_one_for_scipy_and_for_pygmo():
     assert again.cost(found.x) == found.fun
     with pytest.raises(ValueError, match="bounds"):
         problem.cost([0.0, 1.0])
+
+
+def test_many_threads_and_forked_processes_may_ask_one_problem():
+    problem = leapmap.DesignProblem(**BOX, maximize=["jump_height"])
+    low, high = map(np.array, problem.get_bounds())
+    places = low + (high - low) * np.random.default_rng(1).random((8, 3000, 2))
+    alone = [problem.costs(some) for some in places]
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(problem.costs, places))
+    assert all(np.array_equal(a, b) for a, b in zip(alone, together))
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        assert np.array_equal(pool.apply_async(problem.costs, (places[0],)).get(timeout=60), alone[0])
 
 
 def test_a_fit_to_arrays_finds_the_release():

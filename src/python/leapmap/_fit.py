@@ -24,13 +24,16 @@ class FittedParameter:
 
 @dataclass(frozen=True)
 class Fit:
-    """One model, fitted. friction: its name. found: False: no hoop of the box does anything like it.
+    """One model, fitted. friction: its name. found: False: no hoop of the box does anything like it, or why tells the reason.
+    after_landing: lines of a film after the model's landing, where it is not followed.
 
     parameters: {name: FittedParameter}, correlations: array, in their order. chi_square over degrees of freedom. error: of a film the rms
     of its residuals. information: Akaike's; less is better. model, residuals: of every number measured, in the order of the data (of
     markers line by line), residuals over their errors."""
     friction: str
     found: bool
+    why: str
+    after_landing: int
     parameters: dict
     correlations: np.ndarray
     chi_square: float
@@ -47,7 +50,7 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
         leapmap.fit("film.csv")
         leapmap.fit({"t": t, "phi": phi}, mass_ratio=3.0, error=2e-3)
         leapmap.fit({"apex_time": (0.129, 0.001), "flight_time": (0.198, 0.001), "jump_height": (1.0, 0.05)},
-                    release_angle={"from": "150 deg", "to": "330 deg"}, friction="coulomb")
+                    release_angle={"from": "150 deg", "to": "330 deg"})
 
     data: a CSV file's path, or {"t": ..., "phi": ...}, {"t", "x_P", "y_P", "x_O", "y_O"}: arrays, in s, rad and m; or
         {field: (value, standard error)} of events. phi: 0 where the mass touches the plane; x along the plane, downhill, y away from
