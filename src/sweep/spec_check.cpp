@@ -124,7 +124,7 @@ void check_spec(const Spec& spec) {
     refuse(spec, "fixed_step or absolute_tolerance", "is set, and exact takes no steps",
            "with method = \"gsl-...\"");
   for (const auto& [key, names] : {std::pair{"maximize", &spec.maximize}, {"minimize", &spec.minimize}})
-        if (!names->empty() && spec.list.columns.empty())  // a list may tell what it was found for
+    if (!names->empty() && spec.list.columns.empty())  // a list may tell what it was found for
       refuse(spec, key, fmt::format("'{}' has no use here", names->front()),
              "with leapmap design, which looks for the best");
   check_gradients(spec);
