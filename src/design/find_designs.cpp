@@ -14,6 +14,7 @@
 #include "leapmap/errors.hpp"
 #include "leapmap/find_designs.hpp"
 #include "leapmap/gradient.hpp"
+#include "leapmap/units.hpp"
 
 #include "model/model.hpp"
 #include "numerics/sobol_points.hpp"
@@ -141,7 +142,6 @@ void leave_one_a_basin(Judge& judge, std::vector<Place>& places, std::size_t mos
 std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps) {
   std::vector<Place> places = starts_of(sampled(judge, effort, options, steps), effort.starts);
   // Each start on a thread of its own: CMA-ES asks for one design at a time.
-  std::atomic<std::size_t> followed{0};
   parallel_for_each(places.size(), judge.threads(), [&] {
     return [&, own = std::shared_ptr<Judge>(judge.alone())](std::size_t i) {
       const std::uint64_t seed = options.seed * 1000 + i;
@@ -152,11 +152,10 @@ std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOpt
              .a_round = std::size_t{own->makes_hoops() ? 8u : 128u},
              .seed = seed,
              .widest = 0.03});
-      ++followed;
       return true;
     };
   });
-  steps.done(followed);
+  steps.done(places.size());
   leave_one_a_basin(judge, places, effort.climbed);
   for (Place& place : places) {
     climb(judge, place,
@@ -201,9 +200,12 @@ std::vector<std::string> binding(const Question& question, const Place& place, c
   std::vector<std::string> binds;
   for (std::size_t k = 0; k < question.free.size(); ++k) {
     const FreeParameter& parameter = question.free[k];
-    if (place.at[k] < on) binds.push_back(fmt::format("{} from {:.6g}", parameter.name, parameter.side.low));
-    if (place.at[k] > 1.0 - on)
-      binds.push_back(fmt::format("{} to {:.6g}", parameter.name, parameter.side.high));
+    const bool angle = find_option("", parameter.name)->unit == "rad";
+    const auto told = [&](double bound) {
+      return angle ? fmt::format("{:.6g} deg", bound / degrees(1.0)) : fmt::format("{:.6g}", bound);
+    };
+    if (place.at[k] < on) binds.push_back(parameter.name + " from " + told(parameter.side.low));
+    if (place.at[k] > 1.0 - on) binds.push_back(parameter.name + " to " + told(parameter.side.high));
   }
   for (const Goal& goal : question.one.goals) {
     const Field& field = *find_field(goal.field);
