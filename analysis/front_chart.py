@@ -99,7 +99,7 @@ def chart(path, seed):
         beside = figure.add_subplot(grid[k, 1])
         if found.outcomes.jump_height[i] > 0:
             draw_hoop(beside, design, spec, NUMBERS[k])
-        words = ", ".join(f"{planes.axis_label(n)} {shown(n, v):.4g}" for n, v in design.items())
+        words = ", ".join(f"{planes.axis_label(n)} {shown(n, v):.4g}" for n, v in design.items() if n not in problem.objectives)
         beside.set_title(textwrap.fill(f"{k + 1}: {words}; {label(first)} {y[i]:.4g}, {label(second)} {x[i]:.4g}", 52), fontsize=7.5, color=NUMBERS[k])
     axis.set_xlabel(label(second))
     axis.set_ylabel(label(first))

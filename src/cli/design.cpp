@@ -87,15 +87,31 @@ void print_gradients(const Question& question, const FoundDesign& found) {
   }
 }
 
+/// What tells it again, as made too where hoops are.
+std::string command_of(const Question& question, const Design& design) {
+  std::string command = hop_command(question.one, design);
+  const Scatter& scatter = question.one.scatter;
+  if (scatter.spreads.empty()) return command;
+  command += fmt::format(" --scatter --set samples={} --set scatter.seed={}", scatter.samples, scatter.seed);
+  for (const Spread& spread : scatter.spreads)
+    command += fmt::format(" --set 'scatter.{}={}'", spread.parameter, text_of(spread));
+  for (const Goal& goal : question.one.goals)
+    command += fmt::format(" --set 'goal.{}={}'", goal.field, text_of(goal));
+  return command;
+}
+
 void print_design(const Question& question, const FoundDesign& found, std::size_t number) {
   say("\n{:>3}  {}\n     {}\n", number, told_parameters(question, found.design),
       told_fields(question, found));
+  if (!std::isnan(found.yield.value))
+    say("     yield {:.4f} +- {:.4f}, of {} hoops made\n", found.yield.value, found.yield.error,
+        question.one.scatter.samples);
   if (!found.binds.empty()) say("     what binds: {}\n", fmt::join(found.binds, "; "));
   if (!found.cliff.empty())
     say("     nearest cliff: {:.2g} of the box away, {}; beyond: {}\n", found.cliff[0].distance,
         name_of(found.cliff[0].kind), told(found.cliff[0].beyond));
   print_gradients(question, found);
-  say("     {}\n", hop_command(question.one, found.design));
+  say("     {}\n", command_of(question, found.design));
 }
 
 /// The ends of a front and the designs between them that turn the most.
@@ -166,11 +182,14 @@ std::string json_of(const Question& question, const FoundDesign& found) {
       found.cliff.empty() ? "null"
                           : fmt::format("{{\"distance\": {}, \"kind\": \"{}\"}}",
                                         json_number(found.cliff[0].distance), name_of(found.cliff[0].kind));
+  const std::string yield = fmt::format("{{\"value\": {}, \"error\": {}}}", json_number(found.yield.value),
+                                        json_number(found.yield.error));
   return fmt::format(
-      "    {{\"parameters\": {{{}}}, \"objectives\": {{{}}}, \"fields\": {{{}}},\n     \"gradients\": "
+      "    {{\"yield\": {}, \"parameters\": {{{}}}, \"objectives\": {{{}}}, \"fields\": {{{}}},\n     "
+      "\"gradients\": "
       "{{{}}}, "
       "\"binds\": [{}], \"cliff\": {}, \"hop\": \"{}\"}}",
-      fmt::join(parameters, ", "), fmt::join(objectives, ", "), fmt::join(fields, ", "),
+      yield, fmt::join(parameters, ", "), fmt::join(objectives, ", "), fmt::join(fields, ", "),
       fmt::join(gradients, ", "), fmt::join(binds, ", "), cliff, hop_command(question.one, found.design));
 }
 
@@ -266,15 +285,18 @@ void add_design(CLI::App& app, int& status) {
       ->check(named_file());
   command
       ->add_option("--csv", arguments->csv,
-                   "write them to this file, too, as leapmap sweep --points reads it")
+                   "write them to this file, too, as leapmap sweep --points FILE reads it, with a spec that "
+                   "has no axes")
       ->check(named_file());
   add_set(*command, arguments->overrides, ", for example --set 'goal.jump_height={at_least=0.8}'");
   for (const Option* option : hop_options())
     if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
   command->add_option("--seed", arguments->options.seed,
                       "of all chance; the same seed, the same designs; default: 1");
-  command->add_option("--most", arguments->options.most, "designs told, one a basin; default: 8")
-      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--most", arguments->options.most,
+                   "designs told, one a basin; default: 8, of a front 2,048")
+      ->check(CLI::Range(1, 100000));
   command
       ->add_option("--sample", arguments->options.sample,
                    "designs of the first, dense sample; default: as many as take a second or two")

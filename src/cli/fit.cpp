@@ -16,6 +16,7 @@
 #include "cli/text_file.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
+#include "model/parameters.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/parallel.hpp"
 
@@ -49,7 +50,23 @@ std::string told(const FittedParameter& parameter) {
   const double error = parameter.error * unit;
   const int digits = error > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
   return fmt::format("{:>12.{}f} +- {:.{}f}{}{}", parameter.value * unit, digits, error, digits, name,
-                     parameter.at_bound ? "; at its bound" : "");
+                     parameter.at_bound ? "; at its bound: there may be better beyond" : "");
+}
+
+/// What was not free.
+void print_held(const ModelFit& fit) {
+  std::vector<std::string> held;
+  for (const Parameter& parameter : parameters()) {
+    const auto* member = std::get_if<double Design::*>(&parameter.member);
+    if (!member || !has(fit.scene.friction, parameter.only_of) || std::isnan(fit.design.**member) ||
+        std::ranges::find(fit.parameters, parameter.name, &FittedParameter::name) != fit.parameters.end())
+      continue;
+    const bool angle = parameter.unit == "rad";
+    held.push_back(fmt::format("{} {:.6g}{}", parameter.name,
+                               fit.design.**member * (angle ? 180.0 / std::numbers::pi : 1.0),
+                               angle ? " deg" : ""));
+  }
+  say("  held: {}\n", fmt::join(held, ", "));
 }
 
 void print_correlations(const ModelFit& fit) {
@@ -85,13 +102,21 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
       fit.parameters.size(), fit.starts, grouped(fit.evaluations));
   for (const FittedParameter& parameter : fit.parameters)
     say("  {:<16} {}\n", parameter.name, told(parameter));
+  print_held(fit);
   print_correlations(fit);
   const bool film = measured.events.empty();
   if (!film || !std::isnan(measured.film.error))
-    say("  chi-square {:.4g} for {} degrees of freedom\n", fit.chi_square, fit.degrees);
+    say("  chi-square {:.4g} for {} degrees of freedom{}\n", fit.chi_square, fit.degrees,
+        std::isnan(fit.probability)
+            ? ": the errors are those of the numbers alone"
+            : fmt::format("; a true model has as much in {:.2g} of 100 cases", 100.0 * fit.probability));
   if (film)
     say("  residuals {:.3g} {} rms{}\n", fit.error, measured.film.phi.empty() ? "m" : "rad",
         std::isnan(measured.film.error) ? ", from which the errors above are told" : "");
+  if (!explains(fit))
+    say("  This does not explain what was measured{}. Look at slope, radius, masses, L/R{}; or free them.\n",
+        film ? fmt::format(": residuals are {:.3g} times the scatter from line to line", fit.misfit) : "",
+        film && measured.film.phi.empty() ? ", --scale, --y-down and the sign of x" : "");
   print_events(measured, fit);
   if (fit.after_landing > 0)
     say("  {} lines of the film are after this model's landing, where it is not followed: leave them out\n",
@@ -103,6 +128,10 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
 /// Which model the data prefer, by Akaike's weights.
 void print_preference(const FitReport& report) {
   if (report.models.size() < 2 || !report.models[1].found) return;
+  if (!explains(report.models[0])) {
+    say("\nNeither model explains the data as they stand.\n");
+    return;
+  }
   const double less = report.models[1].information - report.models[0].information;
   say("\nThe data {} \"{}\": Akaike's information is {:.4g} less.\n",
       less > 10.0  ? "clearly prefer"
@@ -125,13 +154,15 @@ std::string json_of(const ModelFit& fit) {
         parameter.name, json_number(parameter.value), json_number(parameter.error),
         json_number(parameter.low), json_number(parameter.high), parameter.identified, parameter.at_bound));
   return fmt::format(
-      "  {{\"friction\": \"{}\", \"found\": {}, \"parameters\": {{{}}},\n   \"correlations\": {}, "
+      "  {{\"friction\": \"{}\", \"found\": {}, \"explains\": {}, \"parameters\": {{{}}},\n   "
+      "\"correlations\": {}, "
       "\"chi_square\": {}, "
       "\"degrees\": {}, \"error\": {}, \"information\": {},\n   \"model\": {},\n   \"residuals\": {},\n   "
       "\"hop\": \"{}\"}}",
-      model_of(fit.scene).name, fit.found, fmt::join(parameters, ", "), json_of(fit.correlations),
-      json_number(fit.chi_square), fit.degrees, json_number(fit.error), json_number(fit.information),
-      json_of(fit.model), json_of(fit.residuals), fit.found ? hop_command(spec_of(fit), fit.design) : "");
+      model_of(fit.scene).name, fit.found, explains(fit), fmt::join(parameters, ", "),
+      json_of(fit.correlations), json_number(fit.chi_square), fit.degrees, json_number(fit.error),
+      json_number(fit.information), json_of(fit.model), json_of(fit.residuals),
+      fit.found ? hop_command(spec_of(fit), fit.design) : "");
 }
 
 /// A line of each number measured: what it is, what each model has in its place.
@@ -230,6 +261,9 @@ void add_fit(CLI::App& app, int& status) {
       ->check(CLI::Range(1, most_threads));
   command->add_flag("--json", arguments->json, "print JSON and nothing else");
   command->footer(
+      "Without free parameters of a spec or --set release_angle, release_spin and, where the contact slips, "
+      "mu_static are free; with "
+      "any only those.\n"
       "phi: 0 where the mass touches the plane, growing downhill; x along the plane downhill, y away from "
       "it; P is the mass, O the "
       "hoop's centre.\nEvents are quantities of a map: jump_time, apex_time, flight_time, jump_height (in "

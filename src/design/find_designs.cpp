@@ -31,15 +31,16 @@ struct Effort {
   std::size_t starts;   ///< places of it that are followed
   std::size_t climbed;  ///< of these, the best that are followed to the end
   std::size_t front;    ///< places kept of a front
+  std::size_t told;     ///< of either
 };
 
 Effort effort_of(const Judge& judge, const FindOptions& options) {
   const Question& question = judge.question();
   const bool slips = model_of(question.one.scene).slips;
-  Effort effort{slips ? std::size_t{1} << 18 : std::size_t{1} << 21, 64, 16, 2048};
+  Effort effort{slips ? std::size_t{1} << 18 : std::size_t{1} << 21, 64, 16, 2048, 2048};
   if (judge.makes_hoops()) {
     const auto hoops = static_cast<std::size_t>(question.one.scatter.samples);
-    effort = {std::clamp<std::size_t>(16 * effort.sample / hoops, 1024, effort.sample), 16, 6, 256};
+    effort = {std::clamp<std::size_t>(16 * effort.sample / hoops, 1024, effort.sample), 16, 6, 256, 256};
   }
   if (options.sample > 0) {
     constexpr std::size_t whole = SobolPoints::replicates;
@@ -48,7 +49,12 @@ Effort effort_of(const Judge& judge, const FindOptions& options) {
     effort.starts = std::clamp<std::size_t>(effort.sample / 256, 8, effort.starts);
     effort.climbed = std::clamp<std::size_t>(effort.sample / 1024, 2, effort.climbed);
   }
-  effort.climbed = std::max(effort.climbed, options.most);
+  if (question.objectives.size() == 2) {
+    if (options.most > 0) effort.told = options.most;
+  } else {
+    effort.told = options.most > 0 ? options.most : 8;
+    effort.climbed = std::max(effort.climbed, effort.told);
+  }
   effort.starts = std::max(effort.starts, effort.climbed);
   return effort;
 }
@@ -167,7 +173,7 @@ std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOpt
     settle(judge, place, options.seed);
     steps.done();
   }
-  leave_one_a_basin(judge, places, options.most);
+  leave_one_a_basin(judge, places, effort.told);
   return places;
 }
 
@@ -189,7 +195,7 @@ std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOp
   fronts.add(std::move(places));
   refine(judge, fronts, effort.front, effort.sample / 32, options.seed);
   Front front = fronts.of_all();
-  front.thin(effort.front);
+  front.thin(effort.told);
   hypervolume = front.hypervolume();
   return front.places();
 }
@@ -217,9 +223,21 @@ std::vector<std::string> binding(const Question& question, const Place& place, c
     if (is_on(goal.at_least)) binds.push_back(fmt::format("{} at least {:.6g}", goal.field, goal.at_least));
     if (is_on(goal.at_most)) binds.push_back(fmt::format("{} at most {:.6g}", goal.field, goal.at_most));
   }
+  for (const Goal& goal : question.made_goals)  // a hoop more or less is nothing
+    if (std::abs(found.yield.value - goal.at_least) <= 1.5 * found.yield.error)
+      binds.push_back(fmt::format("{} at least {:.6g}", goal.field, goal.at_least));
   if (!found.cliff.empty() && found.cliff[0].distance < on)
     binds.push_back(fmt::format("cliff ({})", name_of(found.cliff[0].kind)));
   return binds;
+}
+
+/// The yield of hoops made after a design.
+Estimate yield_of(const Question& question, const Design& design) {
+  Spec many = question.one;
+  many.output.fields = {"yield", "yield_error"};
+  MadeColumns columns(scatter_fields_of(many));
+  ScatterSolver(many, points_of(many.scatter)).solve({&design, 1}, columns);
+  return {columns.column(*find_field("yield"))[0], columns.column(*find_field("yield_error"))[0]};
 }
 
 /// The quantities that objectives and goals name, each once.
@@ -242,6 +260,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
   const bool front = question.objectives.size() == 2,
              differentiable_method = resolved_method(question.one.numerics) == "exact";
   const std::vector<GoalCheck> goals = goal_checks(question.one.goals);
+  const bool made = judge.makes_hoops() && !question.one.goals.empty();
   const Spec grid = question.grid();
   Spec all = question.one;
   all.scatter = {};
@@ -269,6 +288,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
                gradient(one.design, std::get<Quantity>(field->source).member, question.one.scene, how)});
         }
 
+      if (made) one.yield = yield_of(question, one.design);
       one.binds = binding(question, places[i], one);
       stays[i] = !found.reached ||
                  std::ranges::all_of(goals, [&](const GoalCheck& goal) { return goal.reached(one.outcome); });
@@ -277,16 +297,6 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
   });
   for (std::size_t i = 0; i < told.size(); ++i)
     if (stays[i]) found.designs.push_back(std::move(told[i]));
-}
-
-/// A field of a design as drawn, or of the hoops made after it.
-double value_there(const Question& question, const Field& field, const FoundDesign& one) {
-  if (!std::holds_alternative<OfMade>(field.source)) return stored_number(field, one.outcome);
-  Spec many = question.one;
-  many.output.fields = {std::string(field.name)};
-  MadeColumns columns(scatter_fields_of(many));
-  ScatterSolver(many, points_of(many.scatter)).solve({&one.design, 1}, columns);
-  return columns.column(field)[0];
 }
 
 }  // namespace
@@ -307,7 +317,6 @@ Spec list_of(const Spec& spec, const FoundDesigns& found) {
 
 FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
   const auto begin = std::chrono::steady_clock::now();
-  if (asked.most == 0) throw InputError("most = 0 designs to tell; allowed: one or more");
   const Question question = question_of(spec);
   FindOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
@@ -328,7 +337,9 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
   if (!found.reached) {
     found.designs.resize(1);
     for (const Goal& goal : spec.goals)
-      found.missed.push_back(value_there(question, *find_field(goal.field), found.designs[0]));
+      found.missed.push_back(goal.field == "yield"
+                                 ? found.designs[0].yield.value
+                                 : stored_number(*find_field(goal.field), found.designs[0].outcome));
   }
   found.evaluations = judge.evaluations();
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

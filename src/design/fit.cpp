@@ -4,6 +4,7 @@
 #include "leapmap/solve.hpp"
 
 #include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -229,6 +230,23 @@ void refuse_what_has_no_use(const Spec& spec) {
   if (resolved_method(spec.numerics) != "exact") refuse("a method other than \"exact\"");
 }
 
+/// The scatter of a film from line to line, by third differences, which a smooth motion hardly has: their
+/// median, so that single slips count for nothing. NaN of four lines or fewer.
+double scatter_of(const Film& film) {
+  std::vector<double> differences;
+  for (const auto* column :
+       {&film.phi, &film.markers[0], &film.markers[1], &film.markers[2], &film.markers[3]})
+    for (std::size_t i = 3; i < column->size(); ++i) {
+      const auto at = [&](std::size_t back) { return (*column)[i - back]; };
+      differences.push_back(std::abs(at(0) - 3.0 * at(1) + 3.0 * at(2) - at(3)));
+    }
+  if (differences.size() < 2) return nan;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::ranges::nth_element(differences, middle);
+  const double of_normal = 0.6745 * std::sqrt(20.0);  // 1 + 9 + 9 + 1
+  return *middle / of_normal;
+}
+
 /// Lines later than the landing of the jump that the model has.
 std::size_t lines_after_landing(const Measurements& measured, const Outcome& outcome) {
   const double landing = outcome.jump_time + outcome.flight_time;
@@ -273,6 +291,10 @@ ModelFit fit_model(const Measurements& measured, const Spec& spec, Friction fric
                variance = known ? 1.0 : sum / static_cast<double>(told.degrees);
   told.chi_square = known ? best.sum : static_cast<double>(told.degrees);
   told.error = std::sqrt(best.sum / numbers) * explained.unit_error();
+  if (known && told.degrees > 0)
+    told.probability = gsl_cdf_chisq_Q(best.sum, static_cast<double>(told.degrees));
+  constexpr double least_scatter = 1e-6;  // of numbers without noise no more is asked than six digits
+  if (explained.is_film()) told.misfit = told.error / std::max(scatter_of(measured.film), least_scatter);
   told.information = 2.0 * free + (known ? best.sum : numbers * std::log(sum / numbers));
   for (std::size_t k = 0; k < explained.free().size(); ++k)
     told.parameters.push_back({.name = explained.free()[k].name, .value = best.at[k]});

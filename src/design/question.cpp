@@ -154,10 +154,13 @@ Question question_of(const Spec& spec) {
              "one of them");
     question.objectives.push_back(objective_of(spec, question.free, name, false));
   }
-  if (question.objectives.empty() || question.objectives.size() > 2)
+  if (question.objectives.empty())
+    refuse(spec, "nothing says what is best: maximize and minimize of [goal] are empty",
+           "maximize = [\"jump_height\"] say");
+  if (question.objectives.size() > 2)
     refuse(spec,
            fmt::format("goal.maximize and goal.minimize name {} quantities", question.objectives.size()),
-           "one, or two for a Pareto front; maximize = [\"jump_height\"] say");
+           "one, or two for a Pareto front");
   const auto of_yield = [&](const auto& asked) { return asked.field && asked.field->name == "yield"; };
   if ((std::ranges::any_of(question.objectives, of_yield) || !question.made_goals.empty()) &&
       question.one.goals.empty())

@@ -11,6 +11,7 @@
 
 #include "leapmap/boundaries.hpp"
 #include "leapmap/design.hpp"
+#include "leapmap/estimate.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/spec.hpp"
 
@@ -27,6 +28,7 @@ struct FoundDesign {
   Outcome outcome{};
   std::vector<double>
       objectives{};  ///< in the order of the spec, those to maximize first, in their own units
+  Estimate yield{};  ///< with [scatter] and goals: share of the hoops made that reach them all
   /// What keeps it from being better, in words: bounds of parameters, goals, the kind of cliff.
   std::vector<std::string> binds{};
   // Of one objective:
@@ -48,7 +50,7 @@ struct FoundDesigns {
 
 struct FindOptions {
   std::uint64_t seed = 1;  ///< the same seed, the same designs, whatever the number of threads
-  std::size_t most = 8;    ///< designs told, of one objective
+  std::size_t most = 0;    ///< designs told; 0: 8, of a front 2,048
   std::size_t sample = 0;  ///< designs of the first, dense sample; 0: as many as take about a second
   int threads = 0;         ///< 0: as many as OpenMP offers
   /// Told the steps done and their number, from the caller's thread.

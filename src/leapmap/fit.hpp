@@ -81,10 +81,20 @@ struct ModelFit {
                                                                  ///< told by the residuals
   std::size_t degrees = 0;                                       ///< of freedom
   double error = 0.0;  ///< of a film: rms of residuals, [rad] or [m]
+  double probability =
+      std::numeric_limits<double>::quiet_NaN();  ///< that a true model has such a chi-square, or more
+  double misfit =
+      std::numeric_limits<double>::quiet_NaN();  ///< of a film: residuals over the scatter from line to line
   double information = std::numeric_limits<double>::infinity();  ///< Akaike's; less is better
   std::vector<double> model{}, residuals{};  ///< of every number measured; residuals over their errors
   std::size_t starts = 0, evaluations = 0;
 };
+
+/// Whether a fit explains what was measured: of events by their chi-square, of a film by its scatter.
+inline bool explains(const ModelFit& fit) {
+  constexpr double least_likely = 1e-3, most_misfit = 2.0;
+  return fit.found && !(fit.probability < least_likely) && !(fit.misfit > most_misfit);
+}
 
 struct FitReport {
   std::vector<ModelFit> models{};  ///< best first, by information

@@ -60,6 +60,7 @@ py::dict dict_of(const FoundDesigns& found, const Spec& spec) {
   told["cliff_distance"] = column_of(found, [](const FoundDesign& one) {
     return one.cliff.empty() ? std::numeric_limits<double>::quiet_NaN() : one.cliff[0].distance;
   });
+  told["yield_"] = column_of(found, [](const FoundDesign& one) { return one.yield.value; });
   told["missed"] = missed, told["hypervolume"] = found.hypervolume;
   told["evaluations"] = found.evaluations, told["seconds"] = found.seconds, told["engines"] = found.engines;
   return told;
@@ -199,6 +200,7 @@ py::dict dict_of(const ModelFit& fit) {
   std::copy(fit.correlations.begin(), fit.correlations.end(), correlations.mutable_data());
   told["friction"] = std::string(model_of(fit.scene).name), told["found"] = fit.found, told["why"] = fit.why;
   told["parameters"] = parameters, told["correlations"] = correlations, told["chi_square"] = fit.chi_square;
+  told["explains"] = explains(fit), told["probability"] = fit.probability, told["misfit"] = fit.misfit;
   told["after_landing"] = fit.after_landing, told["degrees"] = fit.degrees, told["error"] = fit.error,
   told["information"] = fit.information;
   told["model"] = py::array_t<double>(static_cast<py::ssize_t>(fit.model.size()), fit.model.data());

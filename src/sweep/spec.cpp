@@ -50,6 +50,10 @@ struct Assign {
   void operator()(GoalSlot) const { spec.goals.push_back(to_goal(entry)); }
   void operator()(TextSlot slot) const { slot(spec) = text(*entry.node); }
   void operator()(TextsSlot slot) const {
+    if (entry.node->is_string()) {  // a list of one
+      slot(spec) = {text(*entry.node)};
+      return;
+    }
     const toml::array* array = entry.node->as_array();
     if (!array || array->empty())
       refuse(entry, "is not a list of names", "a list with " + allowed_values(*entry.option));
@@ -77,6 +81,10 @@ struct Assign {
 };
 
 [[noreturn]] void refuse_key(const std::string& place, std::string_view section, std::string_view key) {
+  if (const Option* parameter = find_option("design", key); section == "goal" && parameter)
+    throw InputError(
+        fmt::format("{}: goal.{}: is a parameter; allowed: its bounds in [design], {} = {{ from, to }}",
+                    place, key, key));
   std::vector<std::string_view> keys;
   for (const Option& option : spec_options())
     if ((section.empty() || option.section == section) && std::ranges::find(keys, option.key) == keys.end())

@@ -117,6 +117,24 @@ def test_bad_questions_are_refused_before_anything_is_looked_for(tmp_path):
     assert (tmp_path / "q.toml").read_text() == BOX
 
 
+def test_a_yield_that_is_a_goal_is_told_with_its_error_and_binds(tmp_path):
+    made = BOX.replace("[goal]", "[scatter]\nslope = { normal = \"1 deg\" }\nsamples = 64\n[goal]\nyield = { at_least = 0.9 }")
+    design = json.loads(asked(tmp_path, made, "--json").stdout)["designs"][0]
+    assert design["yield"]["value"] >= 0.9 and design["yield"]["error"] > 0
+    assert any(bind.startswith("yield at least") for bind in design["binds"])
+    told = asked(tmp_path, made).stdout
+    assert "of 64 hoops made" in told
+    command = next(line.strip() for line in told.splitlines() if line.strip().startswith("leapmap hop"))
+    hop = subprocess.run(f"{PROGRAM} {command.removeprefix('leapmap ')} --json", shell=True, capture_output=True, text=True)
+    assert json.loads(hop.stdout)["scatter"]["yield"]["value"] == design["yield"]["value"], "the command tells the same, hoop by hoop"
+
+
+def test_objectives_may_be_one_name_and_a_goal_on_a_parameter_says_where_it_belongs(tmp_path):
+    assert asked(tmp_path, BOX.replace('minimize = ["mass_ratio"]', 'minimize = "mass_ratio"'), "--quiet").returncode == 0
+    done = asked(tmp_path, BOX + 'slope = { at_most = "10 deg" }\n')
+    assert done.returncode == 2 and "is a parameter" in done.stderr and "[design]" in done.stderr
+
+
 def test_ctrl_c_ends_a_search_and_writes_nothing(tmp_path):
     (tmp_path / "q.toml").write_text(BOX)
     running = subprocess.Popen([PROGRAM, "design", tmp_path / "q.toml", "--sample", "100000000", "-o", tmp_path / "m.h5"], stderr=subprocess.PIPE)
@@ -153,8 +171,16 @@ def test_a_film_of_angles_tells_its_release_and_its_friction(tmp_path):
 def test_people_are_told_estimates_errors_correlations_and_which_model_the_data_prefer(tmp_path):
     done = leapmap("fit", film(tmp_path / "film.csv", 1e-3))
     assert done.returncode == 0
-    for words in ("release_angle", "+-", "correlations", "residuals", 'clearly prefer "sticking"', "leapmap hop --slope"):
+    for words in ("release_angle", "+-", "held: slope 22.9183 deg", "correlations", "residuals", 'clearly prefer "sticking"', "leapmap hop --slope"):
         assert words in done.stdout, done.stdout
+
+
+def test_a_hoop_that_is_not_the_films_is_told_as_no_explanation(tmp_path):
+    path = film(tmp_path / "film.csv", 1e-3, slope="20deg")
+    done = leapmap("fit", path)
+    assert done.returncode == 0 and "does not explain" in done.stdout and "Neither model explains" in done.stdout and "prefer" not in done.stdout, done.stdout
+    free = json.loads(leapmap("fit", path, "--set", "slope={from=0.3,to=0.5}", "--set", "release_spin={from=-0.1,to=0.1}", "--model", "sticking", "--json").stdout)
+    assert free["models"][0]["explains"] and free["models"][0]["parameters"]["slope"]["value"] == pytest.approx(np.radians(20), abs=1e-3)
 
 
 def test_the_papers_events_are_fitted_by_both_models():

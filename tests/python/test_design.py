@@ -35,7 +35,7 @@ def test_a_front_is_in_order():
 
 
 def test_bad_questions_raise_value_errors():
-    for arguments, word in (({**BOX, "maximize": ["jump_height"], "most": 0}, "most"), ({**BOX, "goal": {"jump_height": {"is": 1.0}}, "minimize": ["slope"]}, "last digit"), ({}, "free"), ({**BOX, "maximize": ["height"]}, "height"), ({**BOX, "goal": {"nothing": {"is": 1}}, "maximize": ["jump_height"]}, "nothing")):
+    for arguments, word in (({**BOX, "goal": {"jump_height": {"is": 1.0}}, "minimize": ["slope"]}, "last digit"), ({}, "free"), ({**BOX, "maximize": ["height"]}, "height"), ({**BOX, "goal": {"nothing": {"is": 1}}, "maximize": ["jump_height"]}, "nothing")):
         with pytest.raises(ValueError, match=word):
             leapmap.design(**arguments)
 
@@ -57,6 +57,8 @@ def test_the_problem_is_one_for_scipy_and_for_pygmo():
     assert again.cost(found.x) == found.fun
     with pytest.raises(ValueError, match="bounds"):
         problem.cost([0.0, 1.0])
+    with pytest.raises(ValueError, match="one design"):
+        problem.cost([low, high])
 
 
 def test_many_threads_and_forked_processes_may_ask_one_problem():
@@ -74,8 +76,10 @@ def test_many_threads_and_forked_processes_may_ask_one_problem():
 def test_a_fit_to_arrays_finds_the_release():
     m = leapmap.trace(release_angle="185 deg", release_spin=0.2, interval=2e-3)
     t, first = np.unique(m.t, return_index=True)
+    wrong = leapmap.fit({"t": t, "phi": np.asarray(m.phi)[first]}, slope=0.35)
+    assert not any(one.explains for one in wrong) and wrong[0].misfit > 10, "another slope than the film's does not pass for an answer"
     best = leapmap.fit({"t": t, "phi": np.asarray(m.phi)[first] + 1e-3 * np.random.default_rng(2).standard_normal(len(t))})[0]
-    assert best.friction == "sticking" and best.found
+    assert best.friction == "sticking" and best.found and best.explains and 0.5 < best.misfit < 1.5
     for name, truth in (("release_angle", np.radians(185)), ("release_spin", 0.2)):
         assert abs(best.parameters[name].value - truth) < 4 * best.parameters[name].error < 0.01
     assert best.correlations.shape == (2, 2) and best.correlations[0, 1] == best.correlations[1, 0]

@@ -19,6 +19,7 @@ class Found:
     parameters, objectives: {name: array}. outcomes: Outcomes of them as drawn.
     gradients: {field: {free parameter: array}}, of the quantities that objectives and goals name; empty of a front.
     binds: of each design, in words, what keeps it from being better. cliff_distance: of the nearest cliff, in shares of the box.
+    yield_: with scatter, the share of the hoops made that reach every goal; else NaN.
     hypervolume: of a front, the share of the rectangle between its ends that it dominates; else NaN.
     evaluations: designs solved. engines: whether pagmo and NLopt took part."""
     reached: bool
@@ -28,6 +29,7 @@ class Found:
     gradients: dict
     binds: list
     cliff_distance: np.ndarray
+    yield_: np.ndarray
     missed: dict
     hypervolume: float
     evaluations: int
@@ -38,7 +40,7 @@ class Found:
         return len(self.cliff_distance)
 
 
-def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed=1, most=8, sample=0, threads=0, **overrides):
+def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed=1, most=0, sample=0, threads=0, **overrides):
     """The designs of a box that reach their goals best; a Pareto front of two objectives. As `leapmap design`.
 
         leapmap.design(slope={"from": "2 deg", "to": "20 deg"}, mass_ratio={"from": 0.1, "to": 50, "scale": "log"},
@@ -47,7 +49,7 @@ def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed
     spec: a TOML file's path, or a dictionary {section: {key: value}}; parameters with "from" and "to" are free.
     goal: {field: {"at_least": ...}, {"at_most": ...}, both, or {"is": ...}}. maximize, minimize: one or two fields or free
         parameters in all. scatter: as leapmap.scatter has it; then yield may be a goal or an objective.
-    seed: the same seed, the same designs. most: designs told. sample: designs of the first, dense sample; 0: a second or two.
+    seed: the same seed, the same designs. most: designs told; 0: 8, of a front 2,048. sample: designs of the first, dense sample; 0: a second or two.
     threads: 0 for all cores. overrides: keys of the spec.
 
     Returns Found. Raises ValueError, naming the key, its value and what is allowed. Ctrl-C ends it."""
@@ -95,11 +97,14 @@ class DesignProblem:
         return self._core.judge(np.atleast_2d(np.asarray(places, float)))
 
     def costs(self, places):
+        """Of an array of designs, a row each: an array of costs, a row each."""
         costs, violations = self.judge(places)
         return np.where(violations[:, None] > 0, 1e30 * (1 + violations[:, None]), costs)
 
     def cost(self, place):
         """Of one design, the first objective."""
+        if np.ndim(place) != 1:
+            raise ValueError("cost is of one design; allowed: a vector. costs takes a row each")
         return float(self.costs(place)[0, 0])
 
     def fitness(self, place):

@@ -25,6 +25,8 @@ class FittedParameter:
 @dataclass(frozen=True)
 class Fit:
     """One model, fitted. friction: its name. found: False: no hoop of the box does anything like it, or why tells the reason.
+    explains: whether it explains the data: of events, or a film with a known error, probability is that of such a chi-square, or
+    more, if the model is true; misfit: of a film, residuals over the scatter from line to line.
     after_landing: lines of a film after the model's landing, where it is not followed.
 
     parameters: {name: FittedParameter}, correlations: array, in their order. chi_square over degrees of freedom. error: of a film the rms
@@ -33,6 +35,9 @@ class Fit:
     friction: str
     found: bool
     why: str
+    explains: bool
+    probability: float
+    misfit: float
     after_landing: int
     parameters: dict
     correlations: np.ndarray
@@ -56,7 +61,7 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
         {field: (value, standard error)} of events. phi: 0 where the mass touches the plane; x along the plane, downhill, y away from
         it; P is the mass, O the hoop's centre.
     spec: a TOML file's path or a dictionary: the hoop, and free parameters {"from", "to"}. Without one release_angle, release_spin
-        and mu_static are free.
+        and mu_static are free; with any only those.
     model: "sticking", "coulomb" or both. error: of a film's numbers; default: told by the residuals.
     seed: of the coarse map. threads: 0 for all cores. overrides: keys of the spec.
 
