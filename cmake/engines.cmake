@@ -8,6 +8,9 @@ if(pagmo_FOUND AND NLopt_FOUND)
   set(LEAPMAP_ENGINES ON)
   target_sources(leapmap PRIVATE src/design/engines_pagmo.cpp src/design/descend_nlopt.cpp)
   target_include_directories(leapmap SYSTEM PRIVATE $<TARGET_PROPERTY:Pagmo::pagmo,INTERFACE_INCLUDE_DIRECTORIES>)
+  # Matrices pass between pagmo's code and ours: whoever frees them has to see Eigen's allocator as Debian's build did,
+  # whatever -march or a sanitizer make of it.
+  target_compile_definitions(leapmap PRIVATE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=1)
   find_library(PAGMO_STATIC_LIBRARY libpagmo.a)
   find_library(BOOST_SERIALIZATION_STATIC_LIBRARY libboost_serialization.a)
   set(shared_engines Pagmo::pagmo)
