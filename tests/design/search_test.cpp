@@ -244,7 +244,7 @@ TEST(Fronts, ThinnedKeepTheirEndsAndWhatAddsMost) {
 TEST(Fronts, DominateMoreThanAsManyRandomDesignsAsWereSolved) {
   const Spec spec =
       parse_spec("[design]\n" + common + "[goal]\nmaximize = [\"jump_height\"]\nminimize = [\"jump_time\"]");
-  const FoundDesigns found = find_designs(spec, {.most = most, .sample = sample});
+  const FoundDesigns found = find_designs(spec, {.sample = sample});
   ASSERT_GT(found.designs.size(), 20u);
   for (std::size_t i = 1; i < found.designs.size(); ++i) {
     ASSERT_LT(found.designs[i].objectives[0], found.designs[i - 1].objectives[0]) << "in order of the first";
