@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, BadQuestions,
     ::testing::Values(
         BadQuestion{"nothing_is_free", "[goal]\nmaximize = [\"jump_height\"]", {"no parameter is free"}},
-        BadQuestion{"no_objective", box, {"maximize", "minimize", "0 quantities"}},
+        BadQuestion{"no_objective", box, {"maximize", "minimize", "nothing says what is best"}},
         BadQuestion{"three_objectives",
                     box + "[goal]\nmaximize = [\"jump_height\", \"jump_time\", \"slope\"]",
                     {"3 quantities"}},
