@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "design/climb.hpp"
-#include "design/cloud.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "design/cloud.hpp"
 
 namespace leapmap {
 namespace {
@@ -140,6 +141,12 @@ void settle(Judge& judge, Place& place, std::uint64_t seed) {
     place = best[static_cast<std::size_t>(first - settled.begin())];
     return;
   }
+}
+
+Place place_of(std::span<const double> places, std::span<const Verdict> verdicts, std::size_t i) {
+  const std::size_t dimensions = places.size() / verdicts.size();
+  const std::span<const double> row = places.subspan(i * dimensions, dimensions);
+  return {{row.begin(), row.end()}, verdicts[i]};
 }
 
 double distance(const Place& a, const Place& b) { return between(a, b).lpNorm<Eigen::Infinity>(); }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "design/judge.hpp"
@@ -14,6 +15,9 @@ struct Place {
   std::vector<double> at;
   Verdict verdict;
 };
+
+/// Row i of places judged together, with its verdict.
+Place place_of(std::span<const double> places, std::span<const Verdict> verdicts, std::size_t i);
 
 struct ClimbOptions {
   std::size_t most_rounds = 400;

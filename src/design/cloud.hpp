@@ -34,10 +34,7 @@ class Cloud {
   }
   void judge() { judge_.judge(places_, verdicts_); }
   const Verdict& verdict(std::size_t i) const { return verdicts_[i]; }
-  Place place(std::size_t i) const {
-    const auto begin = places_.begin() + static_cast<std::ptrdiff_t>(i * dimensions_);
-    return {{begin, begin + static_cast<std::ptrdiff_t>(dimensions_)}, verdicts_[i]};
-  }
+  Place place(std::size_t i) const { return place_of(places_, verdicts_, i); }
   /// Best first, the earlier one of equals.
   std::vector<std::size_t> order() const {
     std::vector<std::size_t> order(size());

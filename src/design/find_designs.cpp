@@ -15,7 +15,6 @@
 #include "leapmap/find_designs.hpp"
 #include "leapmap/gradient.hpp"
 #include "leapmap/units.hpp"
-
 #include "model/model.hpp"
 #include "numerics/sobol_points.hpp"
 #include "sweep/options.hpp"
@@ -43,8 +42,7 @@ Effort effort_of(const Judge& judge, const FindOptions& options) {
     effort = {std::clamp<std::size_t>(16 * effort.sample / hoops, 1024, effort.sample), 16, 6, 256, 256};
   }
   if (options.sample > 0) {
-    constexpr std::size_t whole = SobolPoints::replicates;
-    effort.sample = (options.sample + whole - 1) / whole * whole;
+    effort.sample = SobolPoints::whole(options.sample);
     // A small sample tells few places apart.
     effort.starts = std::clamp<std::size_t>(effort.sample / 256, 8, effort.starts);
     effort.climbed = std::clamp<std::size_t>(effort.sample / 1024, 2, effort.climbed);
@@ -91,10 +89,6 @@ std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions
       for (std::size_t i = 0; i < count; ++i) places[i * dimensions + k] = points.column(k)[first + i];
     std::vector<Verdict> verdicts(count);
     judge.judge(places, verdicts);
-    const auto place = [&](std::size_t i) -> Place {
-      const auto begin = places.begin() + static_cast<std::ptrdiff_t>(i * dimensions);
-      return {{begin, begin + static_cast<std::ptrdiff_t>(dimensions)}, verdicts[i]};
-    };
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(std::min(most, count)),
@@ -102,11 +96,12 @@ std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions
                                 if (better(verdicts[a], verdicts[b])) return true;
                                 return !better(verdicts[b], verdicts[a]) && a < b;
                               });
-    for (std::size_t rank = 0; rank < std::min(most, count); ++rank) best.push_back(place(order[rank]));
+    for (std::size_t rank = 0; rank < std::min(most, count); ++rank)
+      best.push_back(place_of(places, verdicts, order[rank]));
     if (fronts) {
       std::vector<Place> feasible;
       for (std::size_t i = 0; i < count; ++i)
-        if (verdicts[i].feasible()) feasible.push_back(place(i));
+        if (verdicts[i].feasible()) feasible.push_back(place_of(places, verdicts, i));
       fronts->add(std::move(feasible));
     }
     std::ranges::stable_sort(best,
@@ -273,9 +268,8 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
       one.design = question.at(places[i].at);
       solve({&one.design, 1}, {&one.outcome, 1});
       for (std::size_t k = 0; k < question.objectives.size(); ++k)
-        if (const Field* field = question.objectives[k].field;
-            field && !std::holds_alternative<OfMade>(field->source))
-          one.objectives.push_back(stored_number(*field, one.outcome));
+        if (question.objectives[k].is_of_drawn())
+          one.objectives.push_back(stored_number(*question.objectives[k].field, one.outcome));
         else
           one.objectives.push_back(question.objectives[k].maximize ? -places[i].verdict.cost[k]
                                                                    : places[i].verdict.cost[k]);
@@ -287,7 +281,6 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
               {std::string(field->name),
                gradient(one.design, std::get<Quantity>(field->source).member, question.one.scene, how)});
         }
-
       if (made) one.yield = yield_of(question, one.design);
       one.binds = binding(question, places[i], one);
       stays[i] = !found.reached ||

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "leapmap/fit.hpp"
 
-#include "leapmap/solve.hpp"
-
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 
@@ -16,6 +14,7 @@
 
 #include "design/explained.hpp"
 #include "design/least_squares.hpp"
+#include "leapmap/solve.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "numerics/sobol_points.hpp"
@@ -70,11 +69,7 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
   const auto usual = [&](std::size_t asked, std::size_t of_film, std::size_t of_events) {
     return asked > 0 ? asked : film ? of_film : of_events;
   };
-  const auto rounded = [](std::size_t samples) {  // Sobol' points come in replicates
-    constexpr std::size_t whole = SobolPoints::replicates;
-    return (samples + whole - 1) / whole * whole;
-  };
-  const std::size_t samples = rounded(usual(options.coarse, 4096, 1 << 16)),
+  const std::size_t samples = SobolPoints::whole(usual(options.coarse, 4096, 1 << 16)),
                     most = usual(options.starts, 8, 24);
   const std::size_t dimensions = explained.free().size();
   std::vector<double> middle;
@@ -82,7 +77,7 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
   std::vector<CoarsePlace> places;
   map_coarsely(explained, options, SobolPoints(dimensions, samples, options.seed), middle, 1.0, places);
   // A film's sum of squares has narrow valleys, with steps where a phase appears: closer maps see into them.
-  const SobolPoints fewer(dimensions, rounded(samples / 4), options.seed + 1);
+  const SobolPoints fewer(dimensions, SobolPoints::whole(samples / 4), options.seed + 1);
   double finest = 1.0;
   for (const double share : {0.2, 0.05, 0.0125}) {
     if (places.empty()) return {};

@@ -147,11 +147,8 @@ void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round,
       }
     judge.judge(places, verdicts);
     std::vector<Place> met;
-    for (std::size_t i = 0; i < a_round; ++i) {
-      if (!verdicts[i].feasible()) continue;
-      const auto begin = places.begin() + static_cast<std::ptrdiff_t>(i * dimensions);
-      met.push_back({{begin, begin + static_cast<std::ptrdiff_t>(dimensions)}, verdicts[i]});
-    }
+    for (std::size_t i = 0; i < a_round; ++i)
+      if (verdicts[i].feasible()) met.push_back(place_of(places, verdicts, i));
     fronts.add(std::move(met));
     fronts.thin(2 * most);
   }

@@ -23,9 +23,7 @@ double missed_by(double value, double at_least, double at_most) {
 }
 
 bool asks_of_made(const Question& question) {
-  return !question.made_goals.empty() || std::ranges::any_of(question.objectives, [](const Objective& asked) {
-    return asked.field && std::holds_alternative<OfMade>(asked.field->source);
-  });
+  return !question.made_goals.empty() || std::ranges::any_of(question.objectives, &Objective::is_of_made);
 }
 
 /// Computes no more than goals and objectives of a hoop as drawn.
@@ -44,8 +42,7 @@ Spec spec_of_many(const Question& question) {
   Spec spec = question.one;
   spec.output.fields = {"yield"};
   for (const Objective& objective : question.objectives)
-    if (objective.field && std::holds_alternative<OfMade>(objective.field->source))
-      spec.output.fields.push_back(objective.name);
+    if (objective.is_of_made()) spec.output.fields.push_back(objective.name);
   return spec;
 }
 
@@ -95,9 +92,8 @@ Verdict Bench::verdict_of(const Outcome& outcome) const {
                              : 1.0;
   }
   for (std::size_t k = 0; k < question_.objectives.size(); ++k)
-    if (const Field* field = question_.objectives[k].field;
-        field && !std::holds_alternative<OfMade>(field->source))
-      weigh(k, stored_number(*field, outcome), verdict);
+    if (question_.objectives[k].is_of_drawn())
+      weigh(k, stored_number(*question_.objectives[k].field, outcome), verdict);
   return verdict;
 }
 
@@ -107,9 +103,7 @@ void Bench::judge_made(const Design& design, Verdict& verdict) {
   for (const Goal& goal : question_.made_goals)
     verdict.violation += missed_by(value(*find_field(goal.field)), goal.at_least, goal.at_most);
   for (std::size_t k = 0; k < question_.objectives.size(); ++k)
-    if (const Field* field = question_.objectives[k].field;
-        field && std::holds_alternative<OfMade>(field->source))
-      weigh(k, value(*field), verdict);
+    if (question_.objectives[k].is_of_made()) weigh(k, value(*question_.objectives[k].field), verdict);
 }
 
 void Bench::judge(std::span<const Design> designs, std::span<Verdict> verdicts) {

@@ -26,6 +26,9 @@ struct Objective {
   bool maximize;
   const Field* field;         ///< nullptr: a parameter
   double Design::*parameter;  ///< nullptr: a field
+
+  bool is_of_made() const { return field && std::holds_alternative<OfMade>(field->source); }
+  bool is_of_drawn() const { return field && !is_of_made(); }
 };
 
 struct Question {

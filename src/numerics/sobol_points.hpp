@@ -17,6 +17,11 @@ class SobolPoints {
   static constexpr std::size_t replicates = 16;
   static constexpr std::size_t most_dimensions = 40;  ///< of GSL's sequence
 
+  /// So many samples or a few more: as many in each replicate.
+  static constexpr std::size_t whole(std::size_t samples) {
+    return (samples + replicates - 1) / replicates * replicates;
+  }
+
   /// samples: a whole number of points for each replicate. The same seed, the same points.
   SobolPoints(std::size_t dimensions, std::size_t samples, std::uint64_t seed);
 

@@ -117,7 +117,6 @@ Spacing to_spacing(const Entry& entry, const toml::table& table) {
   if (*count > 1 && from == to)
     refuse(entry, "'from' and 'to' are the same", "two different bounds, or count = 1");
   if (*count == 1 && from != to) refuse(entry, "'count' is 1", "2 or more, or 'from' equal to 'to'");
-
   spacing.count = static_cast<std::size_t>(*count);
   return spacing;
 }
