@@ -166,10 +166,10 @@ std::string json_of(const Question& question, const FoundDesign& found) {
   for (std::size_t k = 0; k < question.objectives.size(); ++k)
     objectives.push_back(
         fmt::format("\"{}\": {}", question.objectives[k].name, json_number(found.objectives[k])));
-  for (const Field& field : map_fields())
-    if (!std::holds_alternative<Word>(field.source) && has(question.one.scene.friction, field.only_of))
+  for (const Field* field : fields_of(question.one.scene))
+    if (!std::holds_alternative<Word>(field->source))
       fields.push_back(
-          fmt::format("\"{}\": {}", field.name, json_number(stored_number(field, found.outcome))));
+          fmt::format("\"{}\": {}", field->name, json_number(stored_number(*field, found.outcome))));
   for (const FieldGradient& gradient : found.gradients) {
     std::vector<std::string> by;
     for (const FreeParameter& parameter : question.free)

@@ -86,6 +86,22 @@ std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b)
                                                               report.referee_max_error));
 }
 
+/// How many jumps there are, and why no more.
+std::string sequence_line(const Spec& spec, const Outcome& outcome) {
+  const std::string heights = [&] {
+    std::string text = fmt::format("{:.6f}", outcome.jump_height);
+    for (const Jump& jump : outcome.later_jumps) text += fmt::format(", {:.6f}", jump.height);
+    return text;
+  }();
+  const std::string_view end = outcome.sequence_end == Status::jumped    ? "all that were asked for"
+                               : outcome.sequence_end == Status::no_jump ? "then the runway ends"
+                               : outcome.sequence_end == Status::stalled ? "then it stalls"
+                               : outcome.sequence_end == Status::indeterminate
+                                   ? "then the rigid-body equations have no answer or two"
+                                   : "then the method gave up";
+  return fmt::format("{} jumps of {}: {} diameters; {}.", outcome.jumps(), spec.scene.jumps, heights, end);
+}
+
 void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) {
   const Outcome& jump = motion.outcome;
   if (jump.status == Status::jumped) {
@@ -99,6 +115,7 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
           jump.slip_distance, jump.energy_lost, jump.landing_spin / time_unit(spec.scene));
     }
   }
+  if (spec.scene.jumps > 1 && jump.status == Status::jumped) say("{}\n", sequence_line(spec, jump));
   say("{}\n", check_line(spec, motion, checked));
 }
 
@@ -107,7 +124,7 @@ void print_phases(const Motion& motion) {
   const auto begins = [](double t, double phi, double spin) {
     return fmt::format("{:>12.6f} {:>12.4f} {:>14.6f}", t, in_degrees(phi), spin);
   };
-  std::size_t told = 0;
+  std::size_t told = 0, jumps = 0;
   const auto print_flight = [&](std::string_view what) {
     const Candidate& flown = motion.candidates[told++];
     say("{:<22} {} {:>12.6f} {:>12.6f}\n", what, begins(flown.t, flown.phi, flown.spin), flown.height,
@@ -115,18 +132,17 @@ void print_phases(const Motion& motion) {
     if (flown.height == 0.0) say("{:<22} it sinks at once: the plane would have to pull here\n", "");
   };
   // Without slip lift-offs that stay low are no phases: they come before the flight, if there is one.
-  auto flights =
-      static_cast<std::size_t>(std::ranges::count(motion.phases, Phase::flight, &PhaseStart::phase));
-  const auto print_low_ones = [&] {
-    while (motion.candidates.size() - told > flights)
+  const auto print_low_ones = [&](double before) {
+    while (told < motion.candidates.size() && motion.candidates[told].t < before)
       print_flight(fmt::format("   lift-off {}, too low", told + 1));
   };
   for (const PhaseStart& phase : motion.phases) {
     if (phase.phase == Phase::flight) {
-      print_low_ones();
-      --flights;
-      const bool jumps = motion.outcome.status == Status::jumped && told + 1 == motion.candidates.size();
-      print_flight(jumps ? "F  jumps" : "F  hops, too low");
+      print_low_ones(phase.t);
+      if (!motion.candidates[told].is_jump)
+        print_flight("F  hops, too low");
+      else
+        print_flight(++jumps == 1 ? "F  jumps" : fmt::format("F  jumps, {}", jumps));
     } else {
       const std::string_view how = phase.phase == Phase::rolling ? "R  rolls"
                                    : phase.direction > 0         ? "S  slides forwards"
@@ -134,7 +150,7 @@ void print_phases(const Motion& motion) {
       say("{:<22} {}\n", how, begins(phase.t, phase.phi, phase.spin));
     }
   }
-  print_low_ones();
+  print_low_ones(HUGE_VAL);
 }
 
 void print_motor(const Motor& motor, bool is_example) {
@@ -180,23 +196,25 @@ std::string json_text(const Spec& spec, const Motion& motion, const Outcome& che
   for (const Option* parameter : design_parameters(spec))
     design.push_back(
         fmt::format("\"{}\": {}", parameter->key, json_number(value_of(*parameter, spec.design))));
-  for (const Field& field : map_fields()) {
-    if (!has(spec.scene.friction, field.only_of)) continue;
+  for (const Field* row : fields_of(spec.scene)) {
+    const Field& field = *row;
     std::string value;
     if (std::holds_alternative<Word>(field.source))
       value = fmt::format("\"{}\"", phase_letters(motion.outcome.phase_sequence));
     else if (field.name == "status")
       value = fmt::format("\"{}\"", name_of(motion.outcome.status));
+    else if (field.name == "sequence_end")
+      value = fmt::format("\"{}\"", name_of(motion.outcome.sequence_end));
     else
       value = json_number(stored_number(field, motion.outcome));
     outcome.push_back(fmt::format("\"{}\": {}", field.name, value));
   }
   for (const Candidate& flown : motion.candidates)
     candidates.push_back(fmt::format(
-        R"({{"time": {}, "angle": {}, "spin": {}, "height": {}, "apex_time": {}, "flight_time": {}, "dip": {}}})",
+        R"({{"time": {}, "angle": {}, "spin": {}, "height": {}, "apex_time": {}, "flight_time": {}, "dip": {}, "is_jump": {}}})",
         json_number(flown.t), json_number(flown.phi), json_number(flown.spin * second),
         json_number(flown.height), json_number(flown.apex_time), json_number(flown.flight_time),
-        json_number(flown.dip)));
+        json_number(flown.dip), flown.is_jump));
   for (const Graze& graze : motion.grazes)
     grazes.push_back(fmt::format(
         R"({{"time": {}, "angle": {}, "normal_force": {}, "extremum": "{}", "makes_lift_off": {}}})",

@@ -28,9 +28,8 @@ struct Table {
 Table table_of(const Spec& original) {
   Spec spec = original;
   spec.output = {};
-  for (const Field& field : map_fields())
-    if (std::holds_alternative<Quantity>(field.source) && has(spec.scene.friction, field.only_of))
-      spec.output.gradients.emplace_back(field.name);
+  for (const Field* field : fields_of(spec.scene))
+    if (number_of(*field)) spec.output.gradients.emplace_back(field->name);
   check_spec(spec);
   const GradientWanted wanted = gradients_of(spec);
   Gradients gradients(wanted);
@@ -43,7 +42,7 @@ Table table_of(const Spec& original) {
       if (std::get<ParameterSlot>(parameter->slot).member == differentiable[by])
         table.parameters.push_back(parameter);
   for (std::size_t i = 0; i < wanted.of.size(); ++i) {
-    if (std::isnan(outcome.*wanted.of[i])) continue;
+    if (std::isnan(wanted.of[i].of(outcome))) continue;
     Row row{find_field(spec.output.gradients[i]), {}};
     for (std::size_t j = 0; j < wanted.by.size(); ++j) row.by.push_back(gradients.column(i, j)[0]);
     table.rows.push_back(row);

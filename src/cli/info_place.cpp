@@ -51,13 +51,12 @@ Design design_at(const Spec& spec, const std::string& at) {
   return design;
 }
 
-void print_outcome(const Outcome& outcome) {
+void print_outcome(const Outcome& outcome, const Scene& scene) {
   say("{}\n", told(discrete(outcome, false)));
-  for (const Field& field : map_fields()) {
-    const auto* quantity = std::get_if<Quantity>(&field.source);
-    if (!quantity || std::isnan(outcome.*quantity->member)) continue;
-    say("  {:<20} {:<14.8g} {}\n", field.name, outcome.*quantity->member,
-        field.unit == "1" ? "" : field.unit);
+  for (const Field* field : fields_of(scene)) {
+    const std::optional<OutcomeNumber> number = number_of(*field);
+    if (!number || std::isnan(number->of(outcome))) continue;
+    say("  {:<20} {:<14.8g} {}\n", field->name, number->of(outcome), field->unit == "1" ? "" : field->unit);
   }
   if (outcome.phase_sequence != 0) say("  {:<20} {}\n", "phases", phase_letters(outcome.phase_sequence));
 }
@@ -110,7 +109,7 @@ void print_place(const Spec& original, const std::string& at) {
   one.output = {};
   Outcome outcome;
   make_solver(one)({&one.design, 1}, {&outcome, 1});
-  print_outcome(outcome);
+  print_outcome(outcome, one.scene);
   if (!original.scatter.spreads.empty()) print_made(original, one.design);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);
 

@@ -70,17 +70,6 @@ Contact<S> contact_of(const Design& design, const Scene& scene) {
   return {S(std::max(design.mu_static, kinetic)), S(kinetic), S(design.restitution), S(scene.rest_speed)};
 }
 
-/// Mechanical energy over (m + m_p) g R, but for a constant: (3) and (4) with the constraint (1) released;
-/// normal: v_n.
-template <class S>
-S contact_energy(const Hoop<S>& hoop, const ContactState<S>& at) {
-  const Trig<S> phi = trig(at.angle);
-  const S along = at.slip + (hoop.clearance + hoop.rho * phi.versine) * at.spin;
-  const S across = at.normal + hoop.rho * phi.sin * at.spin;
-  return S(0.5) * (along * along + across * across + hoop.Ic * at.spin * at.spin) -
-         at.travel * hoop.sin_slope - hoop.rho * cos_from_vertical(hoop, phi);
-}
-
 inline constexpr int most_phases = 2'000;
 
 /// phase_sequence: two bits a phase, the first lowest, up to 32.

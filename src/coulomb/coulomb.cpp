@@ -6,10 +6,10 @@
 namespace leapmap {
 
 template <class S>
-Outcome CoulombSolver<S>::solve(const Design& design, const Scene& scene, const CoulombObserver& observer,
-                                std::vector<SlideTold<S>>* slides) {
+Outcome CoulombSolver<S>::solve(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
+                                const CoulombObserver& observer, std::vector<SlideTold<S>>* slides) {
   return go_through_phases<S>(
-      design, scene, observer,
+      start, design, from, scene, observer,
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway) {
         typename RollingLeg<S>::Told turns;
         if (observer.turn) turns = [&](const ContactState<S>& state) { observer.turn(in_double(state)); };

@@ -13,6 +13,7 @@
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
 #include "physics/flight.hpp"
+#include "trajectory/sequence.hpp"
 
 namespace leapmap {
 
@@ -40,7 +41,14 @@ class CoulombSolver {
   /// Never throws for a bad design: what cannot be solved has status failed and a reason.
   /// slides, if there, is told the panels of every slide, one after the other.
   Outcome solve(const Design& design, const Scene& scene, const CoulombObserver& observer = {},
-                std::vector<SlideTold<S>>* slides = nullptr);
+                std::vector<SlideTold<S>>* slides = nullptr) {
+    ContactState<S> from = released<S>(design);
+    return solve(Start::release, design, from, scene, observer, slides);
+  }
+  /// The same from where it was released or has just landed; moves that to just after the landing of its
+  /// jump.
+  Outcome solve(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
+                const CoulombObserver& observer = {}, std::vector<SlideTold<S>>* slides = nullptr);
 
  private:
   RollingLeg<S> rolling_;

@@ -49,23 +49,25 @@ ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const
 template <class S, class Roll, class Slide>
 class PhaseMachine {
  public:
-  PhaseMachine(const Design& design, const Scene& scene, const CoulombObserver& observer, const Roll& roll,
-               const Slide& slide)
-      : design_(design),
-        scene_(scene),
+  /// from: the release, or a state just after a landing.
+  PhaseMachine(const Design& design, const ContactState<S>& from, const Scene& scene,
+               const CoulombObserver& observer, const Roll& roll, const Slide& slide)
+      : scene_(scene),
         observer_(observer),
         roll_(roll),
         slide_(slide),
         hoop_(derive<S>(design)),
         contact_(contact_of<S>(design, scene)),
-        runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)) {
-    at_.angle = S(design.release_angle), at_.spin = S(design.release_spin);
+        runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
+        at_(from) {
     released_ = contact_energy(hoop_, at_);
   }
 
-  Outcome run() {
-    ContactPhase next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
-    if (next == ContactPhase::leaves) return ended_as(Status::airborne_at_release);
+  Outcome run(Start start) {
+    ContactPhase next = start == Start::landing
+                            ? phase_after_landing(Leaving::always)
+                            : contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
+    if (start == Start::release && next == ContactPhase::leaves) return ended_as(Status::airborne_at_release);
     while (sequence_.count() < most_phases) {
       const PhaseEnd end = next == ContactPhase::leaves ? PhaseEnd::lifts_off : stay_in_contact(next);
       switch (end) {
@@ -98,7 +100,14 @@ class PhaseMachine {
     return ended_as(Status::failed, "more phases than a design may go through");
   }
 
+  /// Where the design ended: of one that jumps just after the landing.
+  const ContactState<S>& at() const { return at_; }
+
  private:
+  ContactPhase phase_after_landing(Leaving leaving) const {
+    return at_.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
+  }
+
   /// Returns whether the hoop rocks to rest: the phase is then its last.
   bool begin(Phase phase, int direction) {
     const ContactState<double> state = in_double(at_);
@@ -146,23 +155,19 @@ class PhaseMachine {
     if (sinks_without_motor(flight, phi)) return Status::indeterminate;
     begin(Phase::flight, 0);
     const bool jumps = look_at(lift_off, flight);
-    const Sample<S> travel = travel_in_flight(hoop_, phi, at_.spin, at_.slip, flight.flight_time);
-    const S climb = height_above_plane(hoop_, phi, at_.spin, flight.flight_time, at_.normal).rate;
-    at_.time += flight.flight_time;
-    at_.travel += travel.value;
-    at_.angle += at_.spin * flight.flight_time;
-    const Landing<S> landing = land(hoop_, trig(at_.angle), {travel.rate - at_.spin, climb, at_.spin},
+    at_ = after_flight(hoop_, at_, flight.flight_time);
+    if (!jumps && !(std::abs(at_.travel) < runway_)) return Status::no_jump;
+    const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
-    if (jumps) {
-      outcome_.landing_spin = static_cast<double>(landing.after.spin);
-      return Status::jumped;
-    }
-    if (!(std::abs(at_.travel) < runway_)) return Status::no_jump;
     at_.spin = landing.after.spin, at_.slip = landing.after.slip;
     at_.normal = landing.after.normal;
+    if (jumps) {
+      outcome_.landing_spin = static_cast<double>(at_.spin);
+      return Status::jumped;
+    }
     // A flight that rounding made of n0 = 0 takes no time; it is contact.
     const Leaving leaving = flight.flight_time > S(0) ? Leaving::always : Leaving::never;
-    next = at_.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
+    next = phase_after_landing(leaving);
     return Status::not_computed;
   }
 
@@ -178,16 +183,14 @@ class PhaseMachine {
                                static_cast<double>(lift_off.spin)};
     const Flight<double> flown{static_cast<double>(flight.height), static_cast<double>(flight.apex_time),
                                static_cast<double>(flight.flight_time), static_cast<double>(flight.dip)};
-    const bool jumps = consider(outcome_, scene_, design_, told, flown);
+    const bool jumps = consider(outcome_, scene_, told, flown, static_cast<double>(at_.travel));
     if (observer_.lift_off) observer_.lift_off(told, flown);
     if (jumps) {
-      outcome_.jump_distance = static_cast<double>(at_.travel);
       outcome_.energy_lost = static_cast<double>(released_ + driven_ - contact_energy(hoop_, at_));
     }
     return jumps;
   }
 
-  const Design& design_;
   const Scene& scene_;
   const CoulombObserver& observer_;
   const Roll& roll_;
@@ -203,9 +206,12 @@ class PhaseMachine {
 };
 
 template <class S, class Roll, class Slide>
-Outcome go_through_phases(const Design& design, const Scene& scene, const CoulombObserver& observer,
-                          const Roll& roll, const Slide& slide) {
-  return PhaseMachine<S, Roll, Slide>(design, scene, observer, roll, slide).run();
+Outcome go_through_phases(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
+                          const CoulombObserver& observer, const Roll& roll, const Slide& slide) {
+  PhaseMachine<S, Roll, Slide> machine(design, from, scene, observer, roll, slide);
+  const Outcome outcome = machine.run(start);
+  if (outcome.status == Status::jumped) from = machine.at();
+  return outcome;
 }
 
 }  // namespace leapmap

@@ -183,11 +183,12 @@ PhaseEnd CoulombIntegration::slide(const Hoop<double>& hoop, const Contact<doubl
   return end;
 }
 
-Outcome CoulombIntegration::solve(const Design& design, const Scene& scene, const CoulombObserver& observer,
+Outcome CoulombIntegration::solve(Start start, const Design& design, ContactState<double>& from,
+                                  const Scene& scene, const CoulombObserver& observer,
                                   const StepObserver& step_told) {
   steps_ = 0;
   return go_through_phases<double>(
-      design, scene, observer,
+      start, design, from, scene, observer,
       [&](const Hoop<double>& hoop, const Contact<double>& contact, ContactState<double>& at, double runway) {
         return roll(hoop, contact, at, runway, step_told);
       },

@@ -33,7 +33,14 @@ class CoulombIntegration {
 
   /// step, if set, is told of every step in contact, in order.
   Outcome solve(const Design& design, const Scene& scene, const CoulombObserver& observer = {},
-                const StepObserver& step = {});
+                const StepObserver& step = {}) {
+    ContactState<double> from = released<double>(design);
+    return solve(Start::release, design, from, scene, observer, step);
+  }
+  /// The same from where it was released or has just landed; moves that to just after the landing of its
+  /// jump.
+  Outcome solve(Start start, const Design& design, ContactState<double>& from, const Scene& scene,
+                const CoulombObserver& observer = {}, const StepObserver& step = {});
 
   /// What the right-hand sides work on.
   struct System {

@@ -37,7 +37,11 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
   };
   observer.turn = [&](const ContactState<double>& state) { phases.back().turns.push_back(state); };
   observer.end = [&](const ContactState<double>& state) { end = state; };
-  motion.outcome = CoulombSolver<double>(tolerance).solve(design, scene, observer);
+  CoulombSolver<double> solver(tolerance);
+  Sequences<double>([&](Start start, std::span<const Design>, std::span<ContactState<double>> at,
+                        std::span<Outcome> outcome) {
+    outcome[0] = solver.solve(start, design, at[0], scene, observer);
+  }).solve({&design, 1}, scene, {&motion.outcome, 1});
   if (!(interval > 0.0)) return motion;
 
   const Hoop<double> hoop = derive<double>(design);
@@ -50,7 +54,7 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
     const bool is_last = i + 1 == phases.size();
     const ContactState<double>& to = is_last ? end : phases[i + 1].state;
     if (phase == Phase::rolling) {
-      const bool stalls = is_last && motion.outcome.status == Status::stalled;
+      const bool stalls = is_last && motion.outcome.sequence_end == Status::stalled;
       ContactState<double> begin = from;
       for (const ContactState<double>& turn : turns) {
         sampled.roll(begin, turn.angle, true);

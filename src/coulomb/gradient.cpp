@@ -211,12 +211,8 @@ class Chain {
           D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
     }
-    const Sample<D> travel = travel_in_flight(hoop_, phi, at_.spin, at_.slip, flown.flight_time);
-    const D climb = height_above_plane(hoop_, phi, at_.spin, flown.flight_time, at_.normal).rate;
-    at_.time += flown.flight_time;
-    at_.travel += travel.value;
-    at_.angle += at_.spin * flown.flight_time;
-    const Landing<D> landing = land(hoop_, trig(at_.angle), {travel.rate - at_.spin, climb, at_.spin},
+    at_ = after_flight(hoop_, at_, flown.flight_time);
+    const Landing<D> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
     at_.spin = landing.after.spin, at_.slip = landing.after.slip, at_.normal = landing.after.normal;
     if (jumps) put(&Outcome::landing_spin, at_.spin, 1.0);

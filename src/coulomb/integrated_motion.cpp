@@ -39,7 +39,11 @@ Motion tell_by_integration(const Design& design, const Scene& scene, const Integ
       });
     };
   }
-  motion.outcome = CoulombIntegration(options).solve(design, scene, observer, step);
+  CoulombIntegration integration(options);
+  Sequences<double>([&](Start start, std::span<const Design>, std::span<ContactState<double>> at,
+                        std::span<Outcome> outcome) {
+    outcome[0] = integration.solve(start, design, at[0], scene, observer, step);
+  }).solve({&design, 1}, scene, {&motion.outcome, 1});
   to_si(motion.points, scene);
   if (!motion.points.empty()) motion.end = motion.points.back().t;
   return motion;

@@ -7,12 +7,19 @@
 namespace leapmap::coulomb {
 
 /// Everything comes with the phases, wanted or not.
-Solver exact(const Scene& scene, double tolerance, const Wanted&) {
+Solver exact(const Scene& scene, double tolerance, const Wanted& wanted) {
+  if (scene.jumps > 1) return in_sequence(jumps(scene, tolerance, wanted), scene);
   return one_by_one(std::make_shared<CoulombSolver<double>>(tolerance), scene);
 }
 
+JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted&) {
+  return jumps_one_by_one<double>(std::make_shared<CoulombSolver<double>>(tolerance), scene);
+}
+
 Solver integration(const Scene& scene, const IntegrationOptions& options) {
-  return one_by_one(std::make_shared<CoulombIntegration>(options), scene);
+  const auto solver = std::make_shared<CoulombIntegration>(options);
+  if (scene.jumps == 1) return one_by_one(solver, scene);
+  return in_sequence(jumps_one_by_one<double>(solver, scene), scene);
 }
 
 }  // namespace leapmap::coulomb

@@ -5,6 +5,7 @@
 
 #include "leapmap/motion.hpp"
 #include "trajectory/gradient.hpp"
+#include "trajectory/sequence.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap::coulomb {
@@ -12,6 +13,9 @@ namespace leapmap::coulomb {
 /// Rolling by its energy integral, sliding by quadratures, flights in closed form. tolerance: relative, of
 /// times.
 Solver exact(const Scene& scene, double tolerance, const Wanted& wanted);
+
+/// The same from any state to the next jump's landing.
+JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wanted);
 
 /// The same with derivatives (gradient.hpp).
 GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,

@@ -5,7 +5,11 @@
 namespace leapmap::coulomb {
 
 Outcome refined(const Design& design, const Scene& scene) {
-  return CoulombSolver<long double>(1e-15).solve(design, scene);
+  Outcome outcome;
+  const auto solver = std::make_shared<CoulombSolver<long double>>(1e-15);
+  Sequences<long double>(jumps_one_by_one<long double>(solver, scene))
+      .solve({&design, 1}, scene, {&outcome, 1});
+  return outcome;
 }
 
 }  // namespace leapmap::coulomb

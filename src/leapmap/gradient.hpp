@@ -18,11 +18,11 @@ namespace leapmap {
 /// and by mu_kinetic where that is not given or equal to mu_static, which it then follows: the derivative by
 /// mu_static is of both. Method exact only.
 /// Throws as solve does.
-Design gradient(const Design& design, double Outcome::*of, const Scene& scene = {},
+Design gradient(const Design& design, const OutcomeNumber& of, const Scene& scene = {},
                 const SolveOptions& options = {});
 
 /// Those of many designs, on all cores, in their order.
-std::vector<Design> gradient(std::span<const Design> designs, double Outcome::*of, const Scene& scene = {},
-                             const SolveOptions& options = {});
+std::vector<Design> gradient(std::span<const Design> designs, const OutcomeNumber& of,
+                             const Scene& scene = {}, const SolveOptions& options = {});
 
 }  // namespace leapmap

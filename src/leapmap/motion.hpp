@@ -39,6 +39,7 @@ struct Candidate {
   double apex_time;    ///< from the lift-off [s]
   double flight_time;  ///< from the lift-off to the landing [s]
   double dip;          ///< how far the flight first enters the plane [hoop diameters], <= 0
+  bool is_jump;        ///< it is as high as a jump has to be
 };
 
 /// A place where the normal force touches zero, or nearly so: a lift-off decided by a hair.
@@ -53,12 +54,12 @@ struct Graze {
   bool makes_lift_off() const { return minimum == (normal_force < 0.0); }
 };
 
-/// From release to the end: the jump's landing, the stall or the runway's end. A motion towards a stall ends
-/// a hair before it, as the stall itself is approached for ever.
+/// From release to the end: the last jump's landing, the stall or the runway's end. A motion towards a stall
+/// ends a hair before it, as the stall itself is approached for ever.
 struct Motion {
   Outcome outcome;
-  std::vector<PhaseStart> phases;     ///< in order; without slip: it rolls until the jump
-  std::vector<Candidate> candidates;  ///< in order; the last one is the jump if outcome.status is jumped
+  std::vector<PhaseStart> phases;     ///< in order; without slip: it rolls until a jump
+  std::vector<Candidate> candidates;  ///< in order, jumps among them
   std::vector<Graze> grazes;          ///< found by integration only
   std::vector<MotionPoint> points;    ///< empty unless asked for
   double end = 0.0;  ///< when the motion ends [s], if points were asked for; by integration, their last

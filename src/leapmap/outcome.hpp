@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace leapmap {
 
@@ -44,7 +45,22 @@ enum class Phase : std::uint8_t { rolling = 1, sliding = 2, flight = 3 };
 /// A phase_sequence as letters, for example "RSRSF"; "-": none; with "..." where there are 32 phases or more.
 std::string phase_letters(std::uint64_t sequence);
 
-/// As maps store it. NaN: does not apply.
+/// A jump of a sequence: its lift-off, flight and landing.
+struct Jump {
+  double height;        ///< of the apex above the plane [hoop diameters]
+  double time;          ///< from release to lift-off [s]
+  double angle;         ///< phi at lift-off [rad]
+  double spin;          ///< w at lift-off [sqrt(g/R)]
+  double distance;      ///< travelled by the hoop's centre from release to lift-off [R]
+  double flight_time;   ///< [s]
+  double landing_spin;  ///< w after the landing [sqrt(g/R)]
+};
+
+/// Most jumps that a scene may ask for, and most that are stored.
+inline constexpr long most_jumps = 250;
+
+/// As maps store it. NaN: does not apply. What has no number is of the first jump, or of the way to it,
+/// however many jumps the scene asks for.
 struct Outcome {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr std::uint8_t no_lift_off = 255;  ///< spurious_first_jump where there is no lift-off at all
@@ -53,13 +69,15 @@ struct Outcome {
   Status status = Status::not_computed;
   std::uint8_t spurious_first_jump = no_lift_off;  ///< 1: the first lift-off stayed below hop_height
   std::uint8_t candidates = 0;                     ///< lift-offs looked at, the jump included
-  double jump_height = none;                       ///< apex of the jump above the plane [hoop diameters]
-  double jump_time = none;                         ///< from release to lift-off [s]
-  double jump_angle = none;                        ///< phi at lift-off [rad]
-  double jump_spin = none;                         ///< w at lift-off [sqrt(g/R)]
-  double jump_distance = none;                     ///< travelled since release [R]
-  double apex_time = none;                         ///< from lift-off [s]
-  double flight_time = none;                       ///< from lift-off to landing [s]
+  Status sequence_end =
+      Status::not_computed;         ///< of a sequence: jumped if it made all the jumps, else why not
+  double jump_height = none;        ///< apex of the jump above the plane [hoop diameters]
+  double jump_time = none;          ///< from release to lift-off [s]
+  double jump_angle = none;         ///< phi at lift-off [rad]
+  double jump_spin = none;          ///< w at lift-off [sqrt(g/R)]
+  double jump_distance = none;      ///< travelled since release [R]
+  double apex_time = none;          ///< from lift-off [s]
+  double flight_time = none;        ///< from lift-off to landing [s]
   double dip = none;                ///< how far the flight first enters the plane [hoop diameters], <= 0
   double first_jump_height = none;  ///< of the first lift-off [hoop diameters]
   double first_jump_time = none;    ///< [s]
@@ -69,6 +87,26 @@ struct Outcome {
   double landing_spin = none;        ///< w after the landing of the jump [sqrt(g/R)]
   double energy_lost = none;         ///< from release to the lift-off of the jump, over (m + m_p) g R
   const char* failure = nullptr;     ///< why the status is failed, if that is known
+  std::vector<Jump> later_jumps{};   ///< those after the first, as many of Scene::jumps as it makes
+
+  /// How many jumps it makes.
+  std::size_t jumps() const { return status == Status::jumped ? 1 + later_jumps.size() : 0; }
+};
+
+/// A number of an outcome: one of its own, or that of a later jump; NaN if it makes no such jump.
+struct OutcomeNumber {
+  double Outcome::*own = nullptr;
+  double Jump::*of_jump = nullptr;
+  std::size_t jump = 1;  ///< which, from 1; 1: an outcome's own
+
+  constexpr OutcomeNumber(double Outcome::*member) : own(member) {}
+  constexpr OutcomeNumber(double Jump::*member, std::size_t which) : of_jump(member), jump(which) {}
+  bool operator==(const OutcomeNumber&) const = default;
+
+  double of(const Outcome& outcome) const {
+    if (jump == 1) return outcome.*own;
+    return jump <= outcome.jumps() ? outcome.later_jumps[jump - 2].*of_jump : Outcome::none;
+  }
 };
 
 /// Whether two methods see the same: status, spurious flag, number of candidates and phases.

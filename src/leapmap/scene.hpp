@@ -14,6 +14,7 @@ struct Scene {
   Friction friction = Friction::sticking;
   double runway = 5.0;       ///< where the search for a jump ends [revolutions rolled since release], > 0
   double hop_height = 0.05;  ///< a lift-off this high is the jump [hoop diameters], >= 0; 0: the first one is
+  long jumps = 1;            ///< go on after a landing until that many jumps, in [1, 250]
   double rest_speed = 1e-3;  ///< coulomb: a rebound slower than this counts as none [sqrt(g R)]
   double radius = 0.041;     ///< R [m], > 0; scales lengths and times, nothing else
   double gravity = 9.81;     ///< g [m/s^2], > 0; scales times, nothing else

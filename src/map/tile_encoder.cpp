@@ -118,6 +118,8 @@ void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes, con
       };
       if (const auto* quantity = std::get_if<Quantity>(&field.source))
         gather(some, [&](const Outcome& outcome) { return outcome.*quantity->member; });
+      else if (const auto* later = std::get_if<OfJump>(&field.source))
+        gather(some, [&](const Outcome& outcome) { return later->number.of(outcome); });
       else
         gather(column(field).subspan(from, some.size()), [](double value) { return value; });
     }

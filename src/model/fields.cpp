@@ -66,11 +66,32 @@ const std::array fields{
           "spin after the landing of the jump, in sqrt(g/R)", 3, Friction::coulomb},
     Field{"energy_lost", Quantity{&Outcome::energy_lost}, "1",
           "energy lost from release to the lift-off of the jump, over (m + m_p) g R", 3, Friction::coulomb},
+    Field{"jumps",
+          Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.jumps()); },
+               [](Outcome& o, std::uint8_t code) { o.later_jumps.resize(code > 1 ? code - 1u : 0u); },
+               255,
+               {}},
+          "1", "jumps made, as many as the scene asks for or fewer", 9, std::nullopt, true},
+    Field{"sequence_end",
+          Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.sequence_end); },
+               [](Outcome& o, std::uint8_t code) {
+                 o.sequence_end = code < status_count ? static_cast<Status>(code) : Status::not_computed;
+               },
+               0, status_names},
+          "1", "how the sequence of jumps ended; jumped: it made all that the scene asks for", 9,
+          std::nullopt, true},
 };
 
 }  // namespace
 
 std::span<const Field> map_fields() { return fields; }
+
+bool has(const Scene& scene, const Field& field) {
+  if (const auto* later = std::get_if<OfJump>(&field.source);
+      later && later->number.jump > static_cast<std::size_t>(scene.jumps))
+    return false;
+  return (!field.only_of || *field.only_of == scene.friction) && (!field.of_sequence || scene.jumps > 1);
+}
 
 namespace {
 
@@ -78,6 +99,57 @@ namespace {
 struct RowTexts {
   std::string name, unit, long_name;
 };
+
+struct JumpTable {
+  std::deque<RowTexts> texts;
+  std::vector<Field> rows;
+
+  JumpTable() {
+    for (std::size_t jump = 2; jump <= static_cast<std::size_t>(most_jumps); ++jump) {
+      const std::string number = std::to_string(jump), which = "jump " + number;
+      const auto add = [&](std::string name, double Jump::*member, Measure measure, std::string_view unit,
+                           const std::string& meaning) {
+        const RowTexts& text = texts.emplace_back(RowTexts{std::move(name) + number, {}, meaning});
+        rows.push_back(
+            Field{text.name, OfJump{{member, jump}, measure}, unit, text.long_name, 9, std::nullopt, true});
+      };
+      add("jump_height_", &Jump::height, Measure::height, "1",
+          "apex of " + which + " above the plane, in hoop diameters");
+      add("jump_time_", &Jump::time, Measure::time, "s", "time from release to the lift-off of " + which);
+    }
+  }
+};
+
+/// Which of the rows has that name; nullptr: none.
+const Field* find_among(std::span<const Field> rows, std::string_view name) {
+  const auto found = std::ranges::find(rows, name, &Field::name);
+  return found == rows.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::span<const Field> jump_fields() {
+  static const JumpTable table;
+  return table.rows;
+}
+
+std::vector<const Field*> fields_of(const Scene& scene) {
+  std::vector<const Field*> all;
+  for (const Field& field : fields)
+    if (has(scene, field)) all.push_back(&field);
+  if (scene.jumps == 1) return all;
+  for (const Field& field : jump_fields())
+    if (has(scene, field)) all.push_back(&field);
+  return all;
+}
+
+std::optional<OutcomeNumber> number_of(const Field& field) {
+  if (const auto* quantity = std::get_if<Quantity>(&field.source)) return quantity->member;
+  if (const auto* later = std::get_if<OfJump>(&field.source)) return later->number;
+  return std::nullopt;
+}
+
+namespace {
 
 std::string unit_of_derivative(std::string_view of, std::string_view by) {
   if (by != "rad") return std::string(of);  // a pure number, or one that is told in words
@@ -88,33 +160,46 @@ struct GradientTable {
   std::deque<RowTexts> texts;
   std::vector<Field> rows;
 
-  GradientTable() {
-    for (const Field& field : fields)
-      for (const Parameter& parameter : parameters()) {
-        const auto* of = std::get_if<Quantity>(&field.source);
-        const auto* by = std::get_if<double Design::*>(&parameter.member);
-        if (!of || !by) continue;
-        const bool own = parameter.unit != "rad" && parameter.unit != "1";
-        const std::string name(field.name), parameter_name(parameter.name);
-        const RowTexts& text = texts.emplace_back(
-            RowTexts{name + "_by_" + parameter_name, unit_of_derivative(field.unit, parameter.unit),
-                     "derivative of " + name + " by " + parameter_name +
-                         (own ? ", which is in " + std::string(parameter.unit) : std::string())});
-        rows.push_back(Field{text.name, Derivative{of->member, *by}, text.unit, text.long_name, 7,
-                             parameter.only_of ? parameter.only_of : field.only_of});
-      }
+  void add(const Field& field) {
+    const std::optional<OutcomeNumber> of = number_of(field);
+    for (const Parameter& parameter : parameters()) {
+      const auto* by = std::get_if<double Design::*>(&parameter.member);
+      if (!of || !by) continue;
+      const bool own = parameter.unit != "rad" && parameter.unit != "1";
+      const std::string name(field.name), parameter_name(parameter.name);
+      const RowTexts& text = texts.emplace_back(
+          RowTexts{name + "_by_" + parameter_name, unit_of_derivative(field.unit, parameter.unit),
+                   "derivative of " + name + " by " + parameter_name +
+                       (own ? ", which is in " + std::string(parameter.unit) : std::string())});
+      rows.push_back(Field{text.name, Derivative{*of, *by}, text.unit, text.long_name,
+                           std::max(7, field.since), parameter.only_of ? parameter.only_of : field.only_of,
+                           field.of_sequence});
+    }
+  }
+
+  explicit GradientTable(std::span<const Field> of) {
+    for (const Field& field : of) add(field);
   }
 };
 
 }  // namespace
 
 std::span<const Field> gradient_fields() {
-  static const GradientTable table;
+  static const GradientTable table(fields);
   return table.rows;
 }
 
-const Field* find_gradient(double Outcome::*of, double Design::*by) {
-  for (const Field& field : gradient_fields()) {
+namespace {
+
+std::span<const Field> later_gradient_fields() {
+  static const GradientTable table(jump_fields());
+  return table.rows;
+}
+
+}  // namespace
+
+const Field* find_gradient(const OutcomeNumber& of, double Design::*by) {
+  for (const Field& field : of.jump == 1 ? gradient_fields() : later_gradient_fields()) {
     const auto& derivative = std::get<Derivative>(field.source);
     if (derivative.of == of && derivative.by == by) return &field;
   }
@@ -166,18 +251,18 @@ std::span<const Field> scatter_fields() {
 }
 
 const Field* find_field(std::string_view name) {
-  const auto find_among = [&](std::span<const Field> rows) {
-    const auto found =
-        std::find_if(rows.begin(), rows.end(), [&](const Field& field) { return field.name == name; });
-    return found == rows.end() ? nullptr : &*found;
-  };
-  const Field* found = find_among(fields);
-  if (!found && name.find("_by_") != name.npos) found = find_among(gradient_fields());
-  return found ? found : find_among(scatter_fields());
+  if (const Field* found = find_among(fields, name)) return found;
+  if (!name.empty() && name.back() >= '0' && name.back() <= '9')
+    if (const Field* found = find_among(jump_fields(), name)) return found;
+  if (name.find("_by_") != name.npos) {
+    if (const Field* found = find_among(gradient_fields(), name)) return found;
+    if (const Field* found = find_among(later_gradient_fields(), name)) return found;
+  }
+  return find_among(scatter_fields(), name);
 }
 
 double stored_number(const Field& field, const Outcome& outcome) {
-  if (const auto* quantity = std::get_if<Quantity>(&field.source)) return outcome.*quantity->member;
+  if (const auto number = number_of(field)) return number->of(outcome);
   const auto* code = std::get_if<Code>(&field.source);
   return code && code->value(outcome) != code->fill ? code->value(outcome) : Outcome::none;
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
@@ -39,10 +40,16 @@ struct Word {
   std::uint64_t Outcome::*member;
 };
 
+/// A quantity of a later jump, stored as f8, NaN where there is no such jump.
+struct OfJump {
+  OutcomeNumber number;
+  Measure measure;
+};
+
 /// A derivative of a quantity by a parameter of the design, stored as f8, NaN where the quantity does not
 /// apply or the derivative is infinite.
 struct Derivative {
-  double Outcome::*of;
+  OutcomeNumber of;
   double Design::*by;
 };
 
@@ -58,24 +65,38 @@ struct OfMade {
 
 struct Field {
   std::string_view name;
-  std::variant<Quantity, Code, Word, Derivative, OfMade> source;
+  std::variant<Quantity, Code, Word, OfJump, Derivative, OfMade> source;
   std::string_view unit;  ///< as UDUNITS reads it; "1": a pure number
   std::string_view long_name;
   int since = 0;                      ///< the minor version of the map's format that brought it
   std::optional<Friction> only_of{};  ///< the one model that fills it; unset: every model
+  bool of_sequence = false;           ///< of scenes with more jumps than one
 };
+
+/// Whether a design of the scene has it.
+bool has(const Scene& scene, const Field& field);
 
 /// A field's value where it is a number, NaN where it does not apply. Words have none.
 double stored_number(const Field& field, const Outcome& outcome);
 
-/// Every field of a map, in the order of the file, but for derivatives.
+/// Every field of a map, in the order of the file, but for those of later jumps, derivatives and what is of
+/// hoops as made.
 std::span<const Field> map_fields();
+
+/// jump_height_2, jump_time_2, jump_height_3 and so on.
+std::span<const Field> jump_fields();
+
+/// Those of both that a scene has.
+std::vector<const Field*> fields_of(const Scene& scene);
+
+/// The number that a field stores of an outcome, if it stores one that can be differentiated.
+std::optional<OutcomeNumber> number_of(const Field& field);
 
 /// The derivatives that a map may hold besides, jump_height_by_slope and so on: of each quantity, in the
 /// order of map_fields, by each parameter of a design, in the order of parameters.
 std::span<const Field> gradient_fields();
 /// One of these; nullptr: the member is no quantity, or no parameter.
-const Field* find_gradient(double Outcome::*of, double Design::*by);
+const Field* find_gradient(const OutcomeNumber& of, double Design::*by);
 
 /// What a map may hold of hoops as made: yield, jump_height_mean and so on, each followed by its error.
 std::span<const Field> scatter_fields();

@@ -10,6 +10,7 @@
 #include "leapmap/motion.hpp"
 #include "leapmap/scene.hpp"
 #include "trajectory/gradient.hpp"
+#include "trajectory/sequence.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap {
@@ -22,6 +23,8 @@ struct Model {
   bool slips;  ///< goes through phases of contact, each with roundings of its own, and loses energy
   /// Without an integrator, to a relative tolerance of times.
   Solver (*exact)(const Scene&, double tolerance, const Wanted&);
+  /// The same from any state to the landing of the next jump.
+  JumpSolver<double> (*jumps)(const Scene&, double tolerance, const Wanted&);
   /// The same with derivatives.
   GradientSolver (*gradients)(const Scene&, double tolerance, const Wanted&, const GradientWanted&);
   /// By integration in time.

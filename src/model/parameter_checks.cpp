@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "leapmap/errors.hpp"
+#include "leapmap/outcome.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 
@@ -81,6 +82,9 @@ void check_scene(const Scene& scene) {
       refuse_unused({}, parameter, value, scene);
     if (!parameter.range.holds(value)) refuse_range({}, parameter, value);
   }
+  if (scene.jumps < 1 || scene.jumps > most_jumps)
+    throw InputError(fmt::format("jumps = {} is out of range; allowed: a whole number in [1, {}]",
+                                 scene.jumps, most_jumps));
 }
 
 bool is_allowed(const Design& design, const Scene& scene) { return !first_refused(design, scene); }

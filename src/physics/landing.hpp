@@ -9,6 +9,16 @@
 
 namespace leapmap {
 
+/// The spin after a landing that holds at once and does not rebound: the angular momentum about the contact
+/// is kept. travel: x', climb: y' of the hoop's centre before it, with spin w.
+template <class T>
+T spin_after_holding(const Hoop<T>& hoop, const Trig<T>& phi, const T& travel, const T& climb,
+                     const T& spin) {
+  const T along = travel - hoop.rho * phi.cos * spin, across = climb + hoop.rho * phi.sin * spin;
+  return (hoop.Ic * spin + (hoop.clearance + hoop.rho * phi.versine) * along + hoop.rho * phi.sin * across) /
+         contact_inertia(hoop, phi);
+}
+
 /// Velocities at the contact, and the spin.
 template <class S>
 struct ContactVelocity {

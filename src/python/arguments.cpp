@@ -33,7 +33,7 @@ bool is_numbers(const py::handle& value, const py::array& array) {
 const Parameter& parameter_of(const std::string& name) {
   for (const Parameter& parameter : parameters())
     if (parameter.name == name) return parameter;
-  std::vector<std::string_view> names{"friction"};
+  std::vector<std::string_view> names{"friction", "jumps"};
   for (const Parameter& parameter : parameters()) names.push_back(parameter.name);
   throw InputError(fmt::format("{}: is no parameter; allowed: {}", name, fmt::join(names, ", ")));
 }
@@ -46,6 +46,13 @@ Designs::Designs(const py::dict& given, Scene scene) : scene_(scene) {
 }
 
 void Designs::take(const std::string& name, const py::handle& value) {
+  if (name == "jumps") {
+    if (!py::isinstance<py::int_>(value))
+      throw InputError(fmt::format("jumps = {} is no whole number; allowed: {}", shown(value),
+                                   allowed_values(*find_option("scene", "jumps"))));
+    scene_.jumps = py::cast<long>(value);
+    return;
+  }
   const Parameter& parameter = parameter_of(name);
   if (!has(scene_.friction, parameter.only_of))
     throw InputError(fmt::format("{} = {} {}; allowed: {}", name, shown(value), no_use(scene_),

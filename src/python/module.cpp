@@ -58,12 +58,11 @@ py::dict gradient(const py::dict& given, const std::string& friction, const std:
                   int threads) {
   const Designs designs(given, scene_of(friction));
   const Field* field = find_field(of);
-  const auto* quantity = field ? std::get_if<Quantity>(&field->source) : nullptr;
-  if (!quantity || !has(designs.scene().friction, field->only_of)) {
+  const std::optional<OutcomeNumber> number = field ? number_of(*field) : std::nullopt;
+  if (!number || !has(designs.scene(), *field)) {
     std::vector<std::string_view> allowed;
-    for (const Field& each : map_fields())
-      if (std::holds_alternative<Quantity>(each.source) && has(designs.scene().friction, each.only_of))
-        allowed.push_back(each.name);
+    for (const Field* each : fields_of(designs.scene()))
+      if (number_of(*each)) allowed.push_back(each->name);
     throw InputError(
         fmt::format("of = '{}': has no derivatives; allowed: one of {}", of, fmt::join(allowed, ", ")));
   }
@@ -75,7 +74,7 @@ py::dict gradient(const py::dict& given, const std::string& friction, const std:
     const py::gil_scoped_release unlocked;
     std::vector<Design> all(designs.count());
     designs.fill(0, all);
-    found = leapmap::gradient(all, quantity->member, designs.scene(), options);
+    found = leapmap::gradient(all, *number, designs.scene(), options);
   } catch (const Stopped&) {
     interrupts.rethrow();
     throw;

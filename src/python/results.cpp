@@ -43,18 +43,16 @@ py::array_t<std::uint8_t> phase_column(const std::vector<Item>& items) {
 Columns::Columns(const std::vector<std::string>& fields, const Scene& scene,
                  const std::vector<py::ssize_t>& shape) {
   std::vector<std::string_view> known;
-  for (const Field& field : map_fields())
-    if (has(scene.friction, field.only_of)) known.push_back(field.name);
+  const std::vector<const Field*> there = fields_of(scene);
+  for (const Field* field : there) known.push_back(field->name);
   for (const std::string& name : fields)
     if (std::ranges::find(known, name) == known.end())
       throw InputError(
           fmt::format("fields = {}: is no field of this model; allowed: {}", name, fmt::join(known, ", ")));
-  for (const Field& field : map_fields()) {
-    const bool wanted = fields.empty() ? has(scene.friction, field.only_of)
-                                       : std::ranges::find(fields, field.name) != fields.end();
-    if (!wanted) continue;
-    py::array array(type_of(field), shape);
-    columns_.push_back({&field, array, array.mutable_data()});
+  for (const Field* field : there) {
+    if (!fields.empty() && std::ranges::find(fields, field->name) == fields.end()) continue;
+    py::array array(type_of(*field), shape);
+    columns_.push_back({field, array, array.mutable_data()});
   }
 }
 
@@ -71,6 +69,8 @@ void Columns::take(std::size_t first, std::span<const Outcome> outcomes) {
     };
     if (const auto* quantity = std::get_if<Quantity>(&column.field->source)) {
       put(static_cast<double*>(nullptr), [&](const Outcome& outcome) { return outcome.*quantity->member; });
+    } else if (const auto* later = std::get_if<OfJump>(&column.field->source)) {
+      put(static_cast<double*>(nullptr), [&](const Outcome& outcome) { return later->number.of(outcome); });
     } else if (const auto* code = std::get_if<Code>(&column.field->source)) {
       put(static_cast<std::uint8_t*>(nullptr), code->value);
     } else {
@@ -162,6 +162,7 @@ py::dict dict_of(const Motion& motion, const Scene& scene) {
   lift_offs["apex_time"] = column(motion.candidates, &Candidate::apex_time);
   lift_offs["flight_time"] = column(motion.candidates, &Candidate::flight_time);
   lift_offs["dip"] = column(motion.candidates, &Candidate::dip);
+  lift_offs["is_jump"] = column(motion.candidates, &Candidate::is_jump);
   told["candidates"] = lift_offs;
   told["failure"] = motion.outcome.failure ? py::object(py::str(motion.outcome.failure)) : py::none();
   return told;

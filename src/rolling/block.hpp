@@ -57,6 +57,8 @@ struct Block {
         jump_angle;     ///< of the lift-offs so far: the first one, and the last one on this leg or NaN
     bool first_on_leg;  ///< the first one is on this leg, or there is none yet
     S first_time;       ///< else its time
+    S jump_time;        ///< of the jump, from where the design set out, if it was asked for
+    S travelled;        ///< before it set out, as seen on the first leg
 
     /// Whether the leg ends where the design set out: from rest it turns there a second time.
     bool returns() const { return leg == 3 || (leg == 2 && turns && released == S(0)); }
@@ -65,6 +67,7 @@ struct Block {
   std::vector<IntervalSearch<S>> searches = std::vector<IntervalSearch<S>>(most_designs);
   std::vector<Found> found = std::vector<Found>(most_designs);
   DesignList searching;  ///< designs whose search is not over
+  DesignList bouncing;   ///< designs that leave the plane at once after a landing
 
   /// The lanes of U, T or WideOf<T>, here and below.
   template <class U>

@@ -25,19 +25,25 @@ void note_time(Outcome& outcome, double Outcome::*time, const S& told) {
 }  // namespace
 
 template <class T>
-void ExactSolver<T>::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
-                           Told* told) {
+void ExactSolver<T>::solve(Start start, std::span<const Design> designs,
+                           std::span<ContactState<ScalarOf<T>>> states, const Scene& scene,
+                           std::span<Outcome> outcomes, Told* told) {
   take_off_.told = told;
   for (std::size_t first = 0; first < designs.size(); first += Block<T>::most_designs) {
     const std::size_t count = std::min(Block<T>::most_designs, designs.size() - first);
-    solve_block(designs.subspan(first, count), scene, outcomes.subspan(first, count));
+    solve_block(start, designs.subspan(first, count), states.empty() ? states : states.subspan(first, count),
+                scene, outcomes.subspan(first, count));
   }
 }
 
 template <class T>
-void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& scene,
+void ExactSolver<T>::solve_block(Start start, std::span<const Design> designs,
+                                 std::span<ContactState<ScalarOf<T>>> states, const Scene& scene,
                                  std::span<Outcome> outcomes) {
-  prepare(designs, scene, block_, outcomes);
+  take_off_.landed = {};
+  if (start == Start::landing) take_off_.landed = states;
+  prepare(designs, take_off_.landed, scene, block_, outcomes);
+  take_off_.bounce(block_, designs, scene, outcomes, block_.searching);
   unscanned_ = block_.searching;
   while (!block_.searching.empty()) {
     scan_.run(block_, unscanned_);
@@ -52,8 +58,14 @@ void ExactSolver<T>::solve_block(std::span<const Design> designs, const Scene& s
     if (outcomes[i].candidates > 0) lifted_.push_back(static_cast<std::uint32_t>(i));
     if (outcomes[i].status == Status::jumped) jumped_.push_back(static_cast<std::uint32_t>(i));
   }
-  if (wanted_.descent) land(block_, jumped_, outcomes);
   if (wanted_.first_jump_time || wanted_.jump_time) take_times(outcomes);
+  std::erase_if(jumped_, [&](std::uint32_t i) { return outcomes[i].status == Status::failed; });
+  if (start == Start::landing)
+    for (const std::uint32_t i : lifted_) {
+      outcomes[i].first_jump_time += static_cast<double>(states[i].time);
+      outcomes[i].jump_time += static_cast<double>(states[i].time);
+    }
+  if (wanted_.descent || !states.empty()) land(block_, jumped_, outcomes, states);
   const double second = time_unit(scene);
   for (Outcome& outcome : outcomes) to_seconds(outcome, second);
 }
@@ -118,8 +130,10 @@ void ExactSolver<T>::take_times(std::span<Outcome> outcomes) {
       note_time(outcomes[design], &Outcome::first_jump_time, found[design].first_time);
   }
   clock_.read(block_, readings_);
-  for (const auto& reading : readings_)
+  for (const auto& reading : readings_) {
     note_time(outcomes[reading.design], &Outcome::first_jump_time, reading.time);
+    block_.found[reading.design].first_time = reading.time;
+  }
 
   readings_.clear();
   for (const std::uint32_t design : jumped_) {
@@ -131,8 +145,10 @@ void ExactSolver<T>::take_times(std::span<Outcome> outcomes) {
     }
   }
   clock_.read(block_, readings_);
-  for (const auto& reading : readings_)
+  for (const auto& reading : readings_) {
     note_time(outcomes[reading.design], &Outcome::jump_time, reading.time);
+    block_.found[reading.design].jump_time = reading.time;
+  }
 }
 
 #ifdef LEAPMAP_KERNELS

@@ -8,6 +8,7 @@
 #include "rolling/clock.hpp"
 #include "rolling/find.hpp"
 #include "rolling/take_off.hpp"
+#include "trajectory/sequence.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap {
@@ -31,12 +32,19 @@ class ExactSolver {
   /// Solves designs[i] into outcomes[i]. told, if given, is told the way of the last one: of one design at a
   /// time.
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
-             Told* told = nullptr);
+             Told* told = nullptr) {
+    solve(Start::release, designs, {}, scene, outcomes, told);
+  }
+  /// The same from where states[i] have designs[i], which have just landed there or are released; moves each
+  /// to just after the landing of its jump.
+  void solve(Start start, std::span<const Design> designs, std::span<ContactState<ScalarOf<T>>> states,
+             const Scene& scene, std::span<Outcome> outcomes, Told* told = nullptr);
   /// What the solver knows of the last designs it solved, as many as a block holds.
   const Block<T>& block() const { return block_; }
 
  private:
-  void solve_block(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
+  void solve_block(Start start, std::span<const Design> designs, std::span<ContactState<ScalarOf<T>>> states,
+                   const Scene& scene, std::span<Outcome> outcomes);
   void pick_intervals(std::span<Outcome> outcomes);
   void end_leg(std::uint32_t design, Outcome& outcome);
   void take_times(std::span<Outcome> outcomes);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// One design's motion without slip and without an integrator.
+#include <algorithm>
+#include <iterator>
 #include <numbers>
 
 #include "physics/flight_search.hpp"
@@ -18,11 +20,10 @@ struct Leg {
   double begin;  ///< its time [sqrt(R/g)]
 };
 
-std::vector<Leg> legs_of(const Design& design, const Hoop<double>& hoop, const std::vector<double>& turns,
-                         const RollingTime<double>& time) {
-  double way = way_of(hoop, design.release_angle, design.release_spin);
-  std::vector<Leg> legs{
-      {way, begin_roll(seen(hoop, way), way * design.release_angle, way * design.release_spin), 0.0}};
+std::vector<Leg> legs_of(const ContactState<double>& from, const Hoop<double>& hoop,
+                         const std::vector<double>& turns, const RollingTime<double>& time) {
+  double way = way_of(hoop, from.angle, from.spin);
+  std::vector<Leg> legs{{way, begin_roll(seen(hoop, way), way * from.angle, way * from.spin), from.time}};
   for (const double turn : turns) {
     const Leg last = legs.back();
     way = -way;
@@ -47,6 +48,7 @@ std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, const Told& t
     lift_off.time = passed += time.halving(roll, leg.way * lift_off.angle);
     roll = begin_roll(leg.roll.hoop, leg.way * lift_off.angle, leg.way * lift_off.spin);
     candidates.push_back(in_si(lift_off, fly(leg.roll.hoop, lift_off), scene));
+    candidates.back().is_jump = false;
   }
   if (!candidates.empty()) {
     candidates.front().t = outcome.first_jump_time;
@@ -54,63 +56,96 @@ std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, const Told& t
   }
   if (outcome.status == Status::jumped) {
     Candidate& jump = candidates.back();
-    jump.t = outcome.jump_time, jump.height = outcome.jump_height;
+    jump.t = outcome.jump_time, jump.height = outcome.jump_height, jump.is_jump = true;
     jump.apex_time = outcome.apex_time, jump.flight_time = outcome.flight_time, jump.dip = outcome.dip;
   }
   return candidates;
 }
 
-/// Where a way ends that has turned so often.
-double end_of(const Outcome& outcome, const Design& design, const Scene& scene, double way) {
-  if (outcome.status == Status::jumped) return outcome.jump_angle;
-  if (outcome.status == Status::stalled) return design.release_angle;
-  return design.release_angle + way * 2.0 * std::numbers::pi * scene.runway;
-}
+/// Tells the ways to jumps, one after the other, of one design.
+class Teller {
+ public:
+  Teller(const Design& design, const Scene& scene, double tolerance, double interval, Motion& motion)
+      : design_(design),
+        scene_(scene),
+        hoop_(derive<double>(design)),
+        second_(time_unit(scene)),
+        samples_(interval > 0.0),
+        solver_(tolerance),
+        time_(tolerance),
+        sampled_(hoop_, interval / second_, motion.points),
+        motion_(motion) {}
+
+  Outcome tell(Start start, ContactState<double>& at) {
+    const ContactState<double> from = at;
+    Told told;
+    Outcome outcome;
+    solver_.solve(start, {&design_, 1}, {&at, 1}, scene_, {&outcome, 1}, &told);
+    const double way = way_of(hoop_, from.angle, from.spin);
+    if (way == 0.0 || outcome.status == Status::airborne_at_release || outcome.status == Status::failed)
+      return outcome;
+    const std::vector<Leg> legs = legs_of(from, hoop_, told.turns, time_);
+    std::ranges::copy(candidates_of(legs, told, outcome, scene_, time_),
+                      std::back_inserter(motion_.candidates));
+
+    const bool jumps = outcome.status == Status::jumped;
+    const bool rolls = !jumps || outcome.jump_angle != from.angle;  // else it bounces where it landed
+    const ContactState<double> lift_off{.time = outcome.jump_time / second_,
+                                        .travel = outcome.jump_distance,
+                                        .angle = outcome.jump_angle,
+                                        .spin = outcome.jump_spin};
+    if (rolls) motion_.phases.push_back(in_si(Phase::rolling, from, 0, scene_));
+    if (jumps) {
+      motion_.phases.push_back(in_si(Phase::flight, lift_off, 0, scene_));
+      motion_.phases.back().t = outcome.jump_time;  // to the last digit
+    }
+    if (!samples_) return outcome;
+    if (rolls) sample(from, outcome, told.turns, legs.back().way);
+    if (jumps) {
+      motion_.points.push_back(rolling_point(hoop_, lift_off));
+      sampled_.fly(lift_off, outcome.flight_time / second_);
+    }
+    motion_.end = sampled_.end() * second_;
+    return outcome;
+  }
+
+ private:
+  /// What it rolls, over turns on the last of which it goes `way`.
+  void sample(const ContactState<double>& begin, const Outcome& outcome, const std::vector<double>& turns,
+              double way) {
+    ContactState<double> from = begin;
+    for (const double turn : turns) {
+      sampled_.roll(from, turn, true);
+      from = {.time = sampled_.end(), .travel = begin.travel + (turn - begin.angle), .angle = turn};
+    }
+    const double end = outcome.status == Status::jumped ? outcome.jump_angle
+                       : outcome.status == Status::stalled
+                           ? begin.angle
+                           : begin.angle - begin.travel + way * 2.0 * std::numbers::pi * scene_.runway;
+    // From rest the second turn is where it set out.
+    sampled_.roll(from, end, outcome.status == Status::stalled && begin.spin == 0.0);
+  }
+
+  const Design& design_;
+  const Scene& scene_;
+  Hoop<double> hoop_;
+  double second_;
+  bool samples_;
+  ExactSolver<Batch> solver_;
+  RollingTime<double> time_;
+  RollingMotion sampled_;
+  Motion& motion_;
+};
 
 }  // namespace
 
 Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval) {
   Motion motion;
-  Told told;
-  ExactSolver<Batch>(tolerance).solve({&design, 1}, scene, {&motion.outcome, 1}, &told);
-  const Outcome& outcome = motion.outcome;
-  const Hoop<double> hoop = derive<double>(design);
-  if (way_of(hoop, design.release_angle, design.release_spin) == 0.0 ||
-      outcome.status == Status::airborne_at_release || outcome.status == Status::failed)
-    return motion;
-  const std::vector<double>& turns = told.turns;
-  const RollingTime<double> time(tolerance);
-  const std::vector<Leg> legs = legs_of(design, hoop, turns, time);
-  motion.candidates = candidates_of(legs, told, outcome, scene, time);
-
-  const ContactState<double> release{.angle = design.release_angle, .spin = design.release_spin};
-  motion.phases.push_back(in_si(Phase::rolling, release, 0, scene));
-  const double second = time_unit(scene);
-  const bool jumps = outcome.status == Status::jumped;
-  const ContactState<double> lift_off{.time = outcome.jump_time / second,
-                                      .travel = outcome.jump_distance,
-                                      .angle = outcome.jump_angle,
-                                      .spin = outcome.jump_spin};
-  if (jumps) {
-    motion.phases.push_back(in_si(Phase::flight, lift_off, 0, scene));
-    motion.phases.back().t = outcome.jump_time;  // to the last digit
-  }
-  if (!(interval > 0.0)) return motion;
-
-  RollingMotion sampled(hoop, interval / second, motion.points);
-  ContactState<double> from = release;
-  for (std::size_t k = 0; k < turns.size(); ++k) {
-    sampled.roll(from, turns[k], true);
-    from = {.time = sampled.end(), .travel = turns[k] - design.release_angle, .angle = turns[k]};
-  }
-  // From rest the second turn is at the release.
-  const bool ends_at_rest = outcome.status == Status::stalled && design.release_spin == 0.0;
-  sampled.roll(from, end_of(outcome, design, scene, legs.back().way), ends_at_rest);
-  if (jumps) {
-    motion.points.push_back(rolling_point(hoop, lift_off));
-    sampled.fly(lift_off, outcome.flight_time / second);
-  }
-  motion.end = sampled.end() * second;
+  Teller teller(design, scene, tolerance, interval, motion);
+  Sequences<double>([&](Start start, std::span<const Design>, std::span<ContactState<double>> at,
+                        std::span<Outcome> outcome) {
+    outcome[0] = teller.tell(start, at[0]);
+  }).solve({&design, 1}, scene, {&motion.outcome, 1});
   to_si(motion.points, scene);
   return motion;
 }

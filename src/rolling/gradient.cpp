@@ -100,7 +100,7 @@ RollingGradients::RollingGradients(double tolerance, const Wanted& wanted, const
               }()),
       teller_(tolerance, {.first_jump_time = false, .jump_time = false, .descent = false}),
       clock_(finest) {
-  of_jump_ = std::ranges::any_of(gradients.of, [](double Outcome::*quantity) {
+  of_jump_ = std::ranges::any_of(gradients.of, [](const OutcomeNumber& quantity) {
     return quantity != &Outcome::first_jump_height && quantity != &Outcome::first_jump_time;
   });
 }

@@ -88,11 +88,11 @@ void turn_round(Block<T>& block, const DesignList& designs, const Scene& scene) 
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
     const std::size_t count = std::min(Lanes<T>::count, designs.size() - first);
     const DesignLanes<T> index = lanes_from<T>(designs, first);
-    LaneArray<T> turns, releases, energies, reaches, legs;
+    LaneArray<T> turns, releases, energies, reaches, legs, travelled;
     for (std::size_t i = 0; i < index.size(); ++i) {
       const auto& found = block.found[index[i]];
       turns[i] = found.turn, releases[i] = found.release, energies[i] = found.released;
-      reaches[i] = found.reach, legs[i] = S(found.leg + 1);
+      reaches[i] = found.reach, legs[i] = S(found.leg + 1), travelled[i] = found.travelled;
     }
     const MaskOf<T> third = Lanes<T>::load(legs.data()) > T(2);
     const Roll<T> before = block.template load_path<T>(index.data());
@@ -107,7 +107,8 @@ void turn_round(Block<T>& block, const DesignList& designs, const Scene& scene) 
     leg.release = begin_roll(hoop, -release, T(0));
     leg.release.released = Lanes<T>::load(energies.data());
     leg.release.level = before.level;
-    leg.end = select(third, release, T(S(2) * pi_of<S>) * T(S(scene.runway)) - release);
+    leg.end = select(third, release,
+                     T(S(2) * pi_of<S>) * T(S(scene.runway)) + Lanes<T>::load(travelled.data()) - release);
     leg.above = lift(leg.roll, leg.roll.release).value > T(0);
     leg.last = third;
     for (std::size_t i = 0; i < count; ++i) {

@@ -5,12 +5,16 @@
 
 #include "leapmap/motion.hpp"
 #include "trajectory/gradient.hpp"
+#include "trajectory/sequence.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap::rolling {
 
 /// By the energy integral (exact.hpp), in lanes. tolerance: relative, of times.
 Solver exact(const Scene& scene, double tolerance, const Wanted& wanted);
+
+/// The same from any state to the next jump's landing.
+JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wanted);
 
 /// The same with derivatives (gradient.hpp).
 GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,

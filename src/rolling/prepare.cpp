@@ -23,12 +23,12 @@ void clear(std::span<Outcome> outcomes) {
 }  // namespace
 
 template <class B>
-void prepare(std::span<const Design> designs, const Scene& scene, Block<B>& block,
-             std::span<Outcome> outcomes) {
+void prepare(std::span<const Design> designs, std::span<const ContactState<ScalarOf<B>>> landed,
+             const Scene& scene, Block<B>& block, std::span<Outcome> outcomes) {
   using S = ScalarOf<B>;
   using T = WideOf<B>;
   using std::abs, std::atan2;
-  block.searching.clear();
+  block.searching.clear(), block.bouncing.clear();
   clear(outcomes);
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
     const std::size_t count = std::min(Lanes<T>::count, designs.size() - first);
@@ -40,12 +40,19 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<B>& bloc
       for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = S(designs[index[i]].*member);
       return Lanes<T>::load(lanes.data());
     };
+    // Of where it sets out: of the landing, or of the release.
+    const auto start = [&](S ContactState<S>::*member, double Design::*released) {
+      if (landed.empty()) return parameter(released);
+      LaneArray<T> lanes;
+      for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = landed[index[i]].*member;
+      return Lanes<T>::load(lanes.data());
+    };
     const T slope = parameter(&Design::slope);
     const Hoop<T> hoop = derive(slope, parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
                                 parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
-    const T spin = parameter(&Design::release_spin);
+    const T spin = start(&ContactState<S>::spin, &Design::release_spin);
     // A release many turns from 0 is taken back to the first, so that angles have digits to spare.
-    const T release_angle = parameter(&Design::release_angle);
+    const T release_angle = start(&ContactState<S>::angle, &Design::release_angle);
     T nearest = release_angle;
     if (const MaskOf<T> far = abs(release_angle) > T(S(4) * pi_of<S>); any(far)) {
       const Trig<T> direction = trig(release_angle);
@@ -60,6 +67,13 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<B>& bloc
     const unsigned in_the_air = Lanes<T>::bits(!(force > T(0))), at_rest = Lanes<T>::bits(sets_out == T(0));
     const auto releases = lanes_of(roll.release), released = lanes_of(roll.released), ways = lanes_of(way),
                turns_back = lanes_of(release_angle - nearest);
+    T travelled(0);
+    if (!landed.empty()) {
+      LaneArray<T> lanes;
+      for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = landed[index[i]].travel;
+      travelled = way * Lanes<T>::load(lanes.data());
+    }
+    const auto travels = lanes_of(travelled);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t design = index[i];
       block.found[design] = {.turned_back = turns_back[i],
@@ -73,22 +87,28 @@ void prepare(std::span<const Design> designs, const Scene& scene, Block<B>& bloc
                              .first_angle = 0,
                              .jump_angle = std::numeric_limits<S>::quiet_NaN(),
                              .first_on_leg = true,
-                             .first_time = 0};
+                             .first_time = 0,
+                             .jump_time = std::numeric_limits<S>::quiet_NaN(),
+                             .travelled = travels[i]};
       if (in_the_air >> i & 1u) {
-        outcomes[design].status = Status::airborne_at_release;
+        if (landed.empty())
+          outcomes[design].status = Status::airborne_at_release;
+        else
+          block.bouncing.push_back(design);
       } else if (at_rest >> i & 1u) {
         outcomes[design].status = Status::stalled;
       } else {
         block.searching.push_back(design);
       }
     }
-    const T end = roll.release + T(S(2) * pi_of<S>) * T(S(scene.runway));
-    begin_leg(block, index, count, LegStart<T>{roll, roll, way * slope, end, end == end, !(end == end)});
+    const T end = roll.release + T(S(2) * pi_of<S>) * T(S(scene.runway)) - travelled;
+    begin_leg(block, index, count, LegStart<T>{roll, roll, way * slope, end, force > T(0), !(end == end)});
   }
 }
 
-#define LEAPMAP_INSTANTIATE(T) \
-  template void prepare<T>(std::span<const Design>, const Scene&, Block<T>&, std::span<Outcome>);
+#define LEAPMAP_INSTANTIATE(T)                                                                  \
+  template void prepare<T>(std::span<const Design>, std::span<const ContactState<ScalarOf<T>>>, \
+                           const Scene&, Block<T>&, std::span<Outcome>);
 #ifdef LEAPMAP_KERNELS
 LEAPMAP_INSTANTIATE(Batch)
 #endif

@@ -8,12 +8,14 @@
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
 #include "rolling/block.hpp"
+#include "trajectory/contact_state.hpp"
 
 namespace leapmap {
 
-/// Derives every design's roll and begins its search. Designs that do not set out are settled here.
+/// Derives every design's roll and begins its search. Designs that do not set out are settled here. landed:
+/// where the designs have just landed and go on from; empty: from their releases.
 template <class T>
-void prepare(std::span<const Design> designs, const Scene& scene, Block<T>& block,
-             std::span<Outcome> outcomes);
+void prepare(std::span<const Design> designs, std::span<const ContactState<ScalarOf<T>>> landed,
+             const Scene& scene, Block<T>& block, std::span<Outcome> outcomes);
 
 }  // namespace leapmap

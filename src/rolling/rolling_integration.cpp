@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "physics/flight_search.hpp"
+#include "physics/landing.hpp"
 #include "trajectory/jump_rule.hpp"
 #include "trajectory/units.hpp"
 
@@ -52,8 +53,20 @@ Integration<Model>::Integration(const IntegrationOptions& options)
                   {&right_hand_side<Model>, &jacobian<Model>, D, &system_}) {}
 
 template <class Model>
-Outcome Integration<Model>::solve(const Design& design, const Scene& scene, const Observer& observer) {
-  Outcome outcome = roll(design, scene, observer);
+Outcome Integration<Model>::solve(Start start, const Design& design, ContactState<double>& from,
+                                  const Scene& scene, const Observer& observer) {
+  Outcome outcome = roll(start, design, from, scene, observer);
+  if (outcome.status == Status::jumped) {
+    const Hoop<double>& hoop = system_.model.hoop;
+    from = after_flight(hoop,
+                        {.time = outcome.jump_time,
+                         .travel = outcome.jump_distance,
+                         .angle = outcome.jump_angle,
+                         .spin = outcome.jump_spin},
+                        outcome.flight_time);
+    from.spin = spin_after_holding(hoop, trig(from.angle), from.slip + from.spin, from.normal, from.spin);
+    from.slip = from.normal = 0.0;
+  }
   to_seconds(outcome, time_unit(scene));
   return outcome;
 }
@@ -117,8 +130,19 @@ void Integration<Model>::tell_grazes(const Rolling& rolling, double end) {
   if (!rolling.observer.graze) return;
   for (const NearMiss& miss : lift_offs_.near_misses)
     if (State<D> y; miss.tau <= end && retake(miss.tau, y))
-      rolling.observer.graze(
-          {integrator_.step().t0 + miss.tau, system_.model.angle(y), miss.value, miss.minimum});
+      rolling.observer.graze({rolling.from.time + integrator_.step().t0 + miss.tau, system_.model.angle(y),
+                              miss.value, miss.minimum});
+}
+
+/// Flies off, tau after the start of the step. True: it is the jump.
+template <class Model>
+bool Integration<Model>::take(Rolling& rolling, const LiftOff<double>& lift_off, double tau) {
+  const Flight<double> flight = fly(system_.model.hoop, lift_off);
+  const bool is_jump = consider(rolling.outcome, rolling.scene, lift_off, flight,
+                                lift_off.angle - (rolling.from.angle - rolling.from.travel));
+  if (rolling.observer.step && is_jump && tau > 0.0) rolling.observer.step(integrator_, tau);
+  if (rolling.observer.lift_off) rolling.observer.lift_off(lift_off, flight);
+  return is_jump;
 }
 
 /// Takes the step's lift-offs up to the end of the way. True: the outcome is settled.
@@ -126,18 +150,14 @@ template <class Model>
 bool Integration<Model>::take_lift_offs(Rolling& rolling, double end) {
   const Model& model = system_.model;
   for (const Fall<D>& fall : lift_offs_.falls) {
-    const LiftOff<double> lift_off{integrator_.step().t0 + fall.tau, model.angle(fall.state),
-                                   model.spin(fall.state)};
+    const LiftOff<double> lift_off{rolling.from.time + integrator_.step().t0 + fall.tau,
+                                   model.angle(fall.state), model.spin(fall.state)};
     if (fall.tau > end) break;
     if (!is_believable(fall.state, rolling.energy)) {
       rolling.outcome = failed_outcome(energy_lost);
       return true;
     }
-    const Flight<double> flight = fly(model.hoop, lift_off);
-    const bool is_jump = consider(rolling.outcome, rolling.scene, rolling.design, lift_off, flight);
-    if (rolling.observer.step && is_jump) rolling.observer.step(integrator_, fall.tau);
-    if (rolling.observer.lift_off) rolling.observer.lift_off(lift_off, flight);
-    if (!is_jump) continue;
+    if (!take(rolling, lift_off, fall.tau)) continue;
     // The minimum that made this fall lies just after it.
     const auto made_by = std::ranges::find_if(
         lift_offs_.near_misses, [&](const NearMiss& miss) { return miss.minimum && miss.tau >= fall.tau; });
@@ -153,16 +173,16 @@ template <class Model>
 double Integration<Model>::end_of_way(Rolling& rolling) {
   const Model& model = system_.model;
   const Step<D>& step = integrator_.step();
-  const double release = rolling.design.release_angle;
+  const double release = rolling.from.angle;
   double from = 0.0, travelled = model.angle(step.y0) - release;
   const auto part = [&](double to, double turned_to) {
     if (rolling.turns >= 2 && (travelled > 0.0) != (turned_to > 0.0)) {
       rolling.outcome.status = Status::stalled;
       return time_at(release, from, to);
     }
-    if (std::abs(turned_to) >= rolling.runway) {
+    if (const double there = rolling.from.travel + turned_to; std::abs(there) >= rolling.runway) {
       rolling.outcome.status = Status::no_jump;
-      return time_at(release + std::copysign(rolling.runway, turned_to), from, to);
+      return time_at(release - rolling.from.travel + std::copysign(rolling.runway, there), from, to);
     }
     from = to, travelled = turned_to;
     return HUGE_VAL;
@@ -173,7 +193,7 @@ double Integration<Model>::end_of_way(Rolling& rolling) {
     if (rolling.turns == 1) rolling.side = travelled;
     // From rest, or nearly, the second or third turn is at the release, or short of it by the method's error.
     const bool same_side = (travelled > 0.0) == (rolling.side > 0.0);
-    if (rolling.turns == 3 || (rolling.turns == 2 && (same_side || rolling.design.release_spin == 0.0))) {
+    if (rolling.turns == 3 || (rolling.turns == 2 && (same_side || rolling.from.spin == 0.0))) {
       rolling.outcome.status = Status::stalled;
       return turn.tau;
     }
@@ -227,19 +247,21 @@ bool Integration<Model>::settle(Rolling& rolling) {
 
 /// The outcome with its times in sqrt(R/g).
 template <class Model>
-Outcome Integration<Model>::roll(const Design& design, const Scene& scene, const Observer& observer) {
+Outcome Integration<Model>::roll(Start start, const Design& design, const ContactState<double>& from,
+                                 const Scene& scene, const Observer& observer) {
   system_.model.set(derive<double>(design));
-  const State<D> release = system_.model.rolling(design.release_angle, design.release_spin);
-  Rolling rolling{design,
+  const State<D> release = system_.model.rolling(from.angle, from.spin);
+  Rolling rolling{from,
                   scene,
                   observer,
-                  rolling_energy(system_.model.hoop, design.release_angle, design.release_spin),
+                  rolling_energy(system_.model.hoop, from.angle, from.spin),
                   two_pi * scene.runway,
                   normal_force_at(release),
                   spin_at(release)};
   if (rolling.force.value <= 0.0) {
-    rolling.outcome.status = Status::airborne_at_release;
-    return rolling.outcome;
+    if (start == Start::release) rolling.outcome.status = Status::airborne_at_release;
+    if (start == Start::release || take(rolling, {from.time, from.angle, from.spin}, 0.0))
+      return rolling.outcome;
   }
   if (rolling.spin.value == 0.0 && rolling.spin.rate == 0.0) {
     rolling.outcome.status = Status::stalled;

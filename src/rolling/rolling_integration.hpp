@@ -11,6 +11,7 @@
 #include "physics/flight.hpp"
 #include "rolling/rolling_models.hpp"
 #include "trajectory/integration_options.hpp"
+#include "trajectory/sequence.hpp"
 
 namespace leapmap {
 
@@ -39,7 +40,14 @@ class Integration {
 
   /// Rolls the design until its jump or the end of the runway, or until it has turned round twice and comes
   /// to where it set out. Never throws for a bad design: what the method cannot do has status failed.
-  Outcome solve(const Design& design, const Scene& scene, const Observer& observer = {});
+  Outcome solve(const Design& design, const Scene& scene, const Observer& observer = {}) {
+    ContactState<double> from = released<double>(design);
+    return solve(Start::release, design, from, scene, observer);
+  }
+  /// The same from where it was released or has just landed; moves that to just after the landing of its
+  /// jump.
+  Outcome solve(Start start, const Design& design, ContactState<double>& from, const Scene& scene,
+                const Observer& observer = {});
 
   /// How often the acceleration was asked for so far, by the stepper and by the search for events.
   long evaluations() const { return system_.evaluations; }
@@ -53,17 +61,19 @@ class Integration {
  private:
   /// A design on its way.
   struct Rolling {
-    const Design& design;
+    const ContactState<double>& from;
     const Scene& scene;
     const Observer& observer;
-    double energy, runway;       ///< runway: how far from the release, either way
+    double energy, runway;  ///< runway: how far from the release, either way, the hoop's centre may travel
     Sample<double> force, spin;  ///< at the end of the step before
     int turns = 0;
-    double side = 0.0;  ///< where it turned first, from the release
+    double side = 0.0;  ///< where it turned first, from where it set out
     Outcome outcome{};
   };
 
-  Outcome roll(const Design& design, const Scene& scene, const Observer& observer);
+  Outcome roll(Start start, const Design& design, const ContactState<double>& from, const Scene& scene,
+               const Observer& observer);
+  bool take(Rolling& rolling, const LiftOff<double>& lift_off, double tau);
   bool settle(Rolling& rolling);
   bool take_lift_offs(Rolling& rolling, double end);
   double end_of_way(Rolling& rolling);

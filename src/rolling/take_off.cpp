@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "physics/flight_search.hpp"
+#include "physics/landing.hpp"
 #include "rolling/find.hpp"
 #include "trajectory/jump_rule.hpp"
 
@@ -29,70 +30,121 @@ void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Sce
     const Trig<W> phi = trig(angle);
     // Beside a turn E may round to nothing.
     const W spin = sqrt(larger(vis_viva(roll, angle, phi), W(1e-290)) / contact_inertia(roll.hoop, phi));
-    const Ascent<W> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), all_lanes);
-    const W height = W(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
-    const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
-               apexes = lanes_of(apex_time);
-    if (keeps_flights) block.store(TakenOff<W>{angle, spin, ascent}, lanes.index.data(), count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t design = lanes.index[i];
-      auto& found = block.found[design];
-      Outcome& outcome = outcomes[design];
-      if (!std::isfinite(angles[i]) || !std::isfinite(spins[i]) || !std::isfinite(heights[i])) {
-        outcome = failed_outcome("a lift-off could not be solved");
-        continue;
-      }
-      // Between two falls so near each other the normal force rises by less than rounding: they are one.
-      constexpr S one_fall = S(1e-6);
-      const bool again = outcome.candidates > 0 && !std::isnan(found.jump_angle) &&
-                         angles[i] - found.jump_angle < one_fall * std::max(S(1), std::abs(angles[i]));
-      if (!again) {
-        if (outcome.candidates == 0) found.first_angle = angles[i];
-        found.jump_angle = angles[i];
-        const LiftOff<double> lift_off{Outcome::none,
-                                       static_cast<double>(found.way * angles[i] + found.turned_back),
-                                       static_cast<double>(found.way * spins[i])};
-        if (told) {
-          told->lift_offs.push_back(lift_off);
-          told->legs.push_back(static_cast<std::size_t>(found.leg - 1));
-        }
-        const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]),
-                                    Outcome::none, Outcome::none};
-        if (consider(outcome, scene, designs[design], lift_off, flight)) continue;
-      }
-      block.searches[design].advance();
-      going_on.push_back(design);
-    }
+    fly(block, lanes.index, count, roll, angle, phi, spin, designs, scene, outcomes,
+        [&](std::uint32_t design) {
+          block.searches[design].advance();
+          going_on.push_back(design);
+        });
   }
 }
 
 template <class T>
-void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes) {
+void TakeOff<T>::bounce(Block<T>& block, std::span<const Design> designs, const Scene& scene,
+                        std::span<Outcome> outcomes, DesignList& going_on) {
+  using std::sqrt;
+  using W = WideOf<T>;
+  for (std::size_t first = 0; first < block.bouncing.size(); first += Lanes<W>::count) {
+    const std::size_t count = std::min(Lanes<W>::count, block.bouncing.size() - first);
+    const DesignLanes<W> index = lanes_from<W>(block.bouncing, first);
+    const Roll<W> roll = block.template load_roll<W>(index.data());
+    const W spin = sqrt(roll.released / contact_inertia(roll.hoop, roll.release_trig));
+    fly(block, index, count, roll, roll.release, roll.release_trig, spin, designs, scene, outcomes,
+        [&](std::uint32_t design) { going_on.push_back(design); });
+  }
+}
+
+template <class T>
+template <class Low>
+void TakeOff<T>::fly(Block<T>& block, const DesignLanes<WideOf<T>>& index, std::size_t count,
+                     const Roll<WideOf<T>>& roll, const WideOf<T>& angle, const Trig<WideOf<T>>& phi,
+                     const WideOf<T>& spin, std::span<const Design> designs, const Scene& scene,
+                     std::span<Outcome> outcomes, const Low& low) {
+  using S = ScalarOf<T>;
+  using W = WideOf<T>;
+  const Ascent<W> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), angle == angle);
+  const W height = W(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
+  const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
+             apexes = lanes_of(apex_time);
+  if (keeps_flights) block.store(TakenOff<W>{angle, spin, ascent}, index.data(), count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t design = index[i];
+    auto& found = block.found[design];
+    Outcome& outcome = outcomes[design];
+    if (!std::isfinite(angles[i]) || !std::isfinite(spins[i]) || !std::isfinite(heights[i])) {
+      outcome = failed_outcome("a lift-off could not be solved");
+      continue;
+    }
+    // Between two falls so near each other the normal force rises by less than rounding: they are one.
+    constexpr S one_fall = S(1e-6);
+    const bool again = outcome.candidates > 0 && !std::isnan(found.jump_angle) &&
+                       angles[i] - found.jump_angle < one_fall * std::max(S(1), std::abs(angles[i]));
+    if (!again) {
+      if (outcome.candidates == 0) found.first_angle = angles[i];
+      found.jump_angle = angles[i];
+      const LiftOff<double> lift_off{Outcome::none,
+                                     static_cast<double>(found.way * angles[i] + found.turned_back),
+                                     static_cast<double>(found.way * spins[i])};
+      if (told) {
+        told->lift_offs.push_back(lift_off);
+        told->legs.push_back(static_cast<std::size_t>(found.leg - 1));
+      }
+      const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]),
+                                  Outcome::none, Outcome::none};
+      const double distance =
+          landed.empty() ? lift_off.angle - designs[design].release_angle
+                         : lift_off.angle - static_cast<double>(landed[design].angle - landed[design].travel);
+      if (consider(outcome, scene, lift_off, flight, distance)) continue;
+    }
+    low(design);
+  }
+}
+
+template <class T>
+void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes,
+          std::span<ContactState<ScalarOf<T>>> states) {
   using W = WideOf<T>;
   for (std::size_t first = 0; first < jumped.size(); first += Lanes<W>::count) {
     const std::size_t count = std::min(Lanes<W>::count, jumped.size() - first);
     const DesignLanes<W> index = lanes_from<W>(jumped, first);
     const Roll<W> roll = block.template load_path<W>(index.data());
     const TakenOff<W> off = block.template load_lift_off<W>(index.data());
-    const Toss<W> toss = toss_of(roll.hoop, off.angle, trig(off.angle), off.spin);
+    const Trig<W> phi = trig(off.angle);
+    const Toss<W> toss = toss_of(roll.hoop, off.angle, phi, off.spin);
     const Flight<W> flight = scaled(descend(toss, off.ascent, off.spin == off.spin), roll.hoop, off.spin);
     const auto landings = lanes_of(flight.flight_time), dips = lanes_of(flight.dip);
     for (std::size_t i = 0; i < count; ++i) {
       outcomes[index[i]].flight_time = static_cast<double>(landings[i]);
       outcomes[index[i]].dip = static_cast<double>(dips[i]);
     }
+    if (states.empty()) continue;
+    const ContactState<W> end =
+        after_flight(roll.hoop, ContactState<W>{.angle = off.angle, .spin = off.spin}, flight.flight_time);
+    const W spin = spin_after_holding(roll.hoop, trig(end.angle), end.slip + end.spin, end.normal, end.spin);
+    const auto lift_offs = lanes_of(off.angle), angles = lanes_of(end.angle), travels = lanes_of(end.travel),
+               spins = lanes_of(spin);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& found = block.found[index[i]];
+      auto& state = states[index[i]];
+      state.travel += (found.way * lift_offs[i] + found.turned_back - state.angle) + found.way * travels[i];
+      state.angle = found.way * angles[i] + found.turned_back;
+      state.spin = found.way * spins[i];
+      state.time += landings[i] + (outcomes[index[i]].candidates == 1 ? found.first_time : found.jump_time);
+    }
   }
 }
 
 #ifdef LEAPMAP_KERNELS
 template struct TakeOff<Batch>;
-template void land(const Block<Batch>&, const DesignList&, std::span<Outcome>);
+template void land(const Block<Batch>&, const DesignList&, std::span<Outcome>,
+                   std::span<ContactState<double>>);
 #endif
 #ifdef LEAPMAP_SCALARS
 template struct TakeOff<double>;
 template struct TakeOff<long double>;
-template void land(const Block<double>&, const DesignList&, std::span<Outcome>);
-template void land(const Block<long double>&, const DesignList&, std::span<Outcome>);
+template void land(const Block<double>&, const DesignList&, std::span<Outcome>,
+                   std::span<ContactState<double>>);
+template void land(const Block<long double>&, const DesignList&, std::span<Outcome>,
+                   std::span<ContactState<long double>>);
 #endif
 
 }  // namespace leapmap

@@ -65,7 +65,7 @@ void GradientAuditor::look_at(std::size_t number, const Design& design, const Ou
   }
   bool wrong = false;
   for (std::size_t i = 0; i < wanted_.of.size(); ++i) {
-    const auto at = [&](std::size_t k) { return beside.outcomes[k].*wanted_.of[i]; };
+    const auto at = [&](std::size_t k) { return wanted_.of[i].of(beside.outcomes[k]); };
     // Of fourth order, and the difference of the two of second order is more than its error.
     const double near = (at(0) - at(1)) / (2.0 * beside.step), far = (at(2) - at(3)) / (4.0 * beside.step);
     const double truth = (4.0 * near - far) / 3.0, found = gradient[i * parameters + j];

@@ -22,7 +22,7 @@ MapAxis describe(const Option& option, std::vector<double> values) {
 }  // namespace
 
 bool stores(const Spec& spec, const Field& field) {
-  const bool silent = !has(spec.scene.friction, field.only_of);
+  const bool silent = !has(spec.scene, field);
   return stores(spec.output, field.name) && !(spec.output.fields.empty() && silent);
 }
 
@@ -33,8 +33,8 @@ MapLayout layout_of(const Spec& spec) {
     for (const Option* parameter : design_parameters(spec))
       layout.columns.push_back(describe(*parameter, list_values(spec, *parameter)));
   layout.labels = spec.list.labels;
-  for (const Field& field : map_fields())
-    if (stores(spec, field)) layout.fields.push_back(&field);
+  for (const Field* field : fields_of(spec.scene))
+    if (stores(spec, *field)) layout.fields.push_back(field);
   const GradientWanted derivatives = gradients_of(spec);
   for (const auto of : derivatives.of)
     for (const std::size_t by : derivatives.by)

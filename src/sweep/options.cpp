@@ -45,6 +45,10 @@ bool is_parameter(std::string_view name) {
   });
 }
 
+bool is_of_jump(std::string_view name) {
+  return std::ranges::find(jump_fields(), name, &Field::name) != jump_fields().end();
+}
+
 bool is_of_made(std::string_view name) {
   return std::ranges::find(scatter_fields(), name, &Field::name) != scatter_fields().end();
 }
@@ -72,6 +76,12 @@ const std::array keys{
            "\"sticking\": never slips (the paper's model); \"coulomb\": slips, lands and hops on",
            {},
            frictions},
+    Option{"scene",
+           "jumps",
+           IntegerSlot{[](Spec& s) -> long& { return s.scene.jumps; }},
+           "1",
+           "go on after a landing until that many jumps",
+           {1, static_cast<double>(most_jumps)}},
     Option{"design", "points", TextSlot{[](Spec& s) -> std::string& { return s.points; }}, "",
            "CSV file with one design a line instead of axes; its header names parameters (angles in rad)"},
     Option{"numerics",
@@ -121,8 +131,9 @@ const std::array keys{
            {},
            field_names,
            {},
-           is_of_made,
-           "with [scatter] yield, yield_error, cut_off, unsolved and jump_height_mean, _sd, _q05, _q50, _q95 "
+           [](std::string_view name) { return is_of_jump(name) || is_of_made(name); },
+           "with scene.jumps jump_height_2, jump_time_2 and so on; with [scatter] yield, yield_error, "
+           "cut_off, unsolved and jump_height_mean, _sd, _q05, _q50, _q95 "
            "and the like "
            "of any quantity, each also with _error"},
     Option{"output",
@@ -132,7 +143,10 @@ const std::array keys{
            "quantities whose derivatives are stored too, as jump_height_by_slope and so on (exact only); "
            "default: none",
            {},
-           quantity_names},
+           quantity_names,
+           {},
+           is_of_jump,
+           "with scene.jumps jump_height_2, jump_time_2 and so on"},
     Option{"output",
            "gradients_by",
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients_by; }},

@@ -59,12 +59,13 @@ void store_words(hid_t dataset, const Word& word, const Tile& tile, std::span<co
 
 double stored_value(const Field& field, const Outcome& outcome) {
   const auto* code = std::get_if<Code>(&field.source);
-  return code ? code->value(outcome) : outcome.*std::get<Quantity>(field.source).member;
+  return code ? code->value(outcome) : number_of(field)->of(outcome);
 }
 
 /// Puts the outcomes of one tile's designs in their places in every field.
 void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Failed> designs) {
-  for (const Field& field : map_fields()) {
+  for (const Field* row : fields_of(spec.scene)) {
+    const Field& field = *row;
     if (!stores(spec, field)) continue;
     const std::string name(field.name), what = "retrying failed designs in " + name;
     hdf5::Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, what);

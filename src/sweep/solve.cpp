@@ -108,18 +108,21 @@ std::vector<Outcome> solve(std::span<const Design> designs, const Scene& scene, 
   return outcomes;
 }
 
-Design gradient(const Design& design, double Outcome::*of, const Scene& scene, const SolveOptions& options) {
+Design gradient(const Design& design, const OutcomeNumber& of, const Scene& scene,
+                const SolveOptions& options) {
   return gradient(std::span(&design, 1), of, scene, options)[0];
 }
 
-std::vector<Design> gradient(std::span<const Design> designs, double Outcome::*of, const Scene& scene,
+std::vector<Design> gradient(std::span<const Design> designs, const OutcomeNumber& of, const Scene& scene,
                              const SolveOptions& options) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Spec spec = spec_of(scene, options);
   spec.output.fields = {"status"};
-  for (const Field& field : map_fields())
-    if (const auto* quantity = std::get_if<Quantity>(&field.source); quantity && quantity->member == of)
-      spec.output.gradients = {std::string(field.name)};
+  for (const Field* field : fields_of(scene))
+    if (number_of(*field) == of) spec.output.gradients = {std::string(field->name)};
+  if (spec.output.gradients.empty())
+    throw InputError(
+        fmt::format("jump {} is not asked for; allowed: up to scene.jumps = {}", of.jump, scene.jumps));
   check_spec(spec);
   const GradientWanted wanted = gradients_of(spec);
   std::vector<Design> found(designs.size());

@@ -37,8 +37,7 @@ Solver make_solver(const Spec& spec) {
 
 GradientWanted gradients_of(const Spec& spec) {
   GradientWanted wanted;
-  for (const std::string& name : spec.output.gradients)
-    wanted.of.push_back(std::get<Quantity>(find_field(name)->source).member);
+  for (const std::string& name : spec.output.gradients) wanted.of.push_back(*number_of(*find_field(name)));
   if (wanted.of.empty()) return wanted;
   const std::vector<std::string>& by = spec.output.gradients_by;
   for (std::size_t k = 0; k < differentiable.size(); ++k) {

@@ -59,6 +59,11 @@ void check_gradients(const Spec& spec) {
     if (const Field* field = find_field(name); field && !has(spec.scene.friction, field->only_of))
       refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)),
              with_model(*field->only_of));
+  for (const auto& [key, names] : {std::pair{"gradients", &output.gradients}, {"fields", &output.fields}})
+    for (const std::string& name : *names)
+      if (const Field* field = find_field(name); field && field->of_sequence && !has(spec.scene, *field))
+        refuse(spec, key, fmt::format("'{}' has no use with scene.jumps = {}", name, spec.scene.jumps),
+               "with as many scene.jumps");
   for (const std::string& name : output.gradients_by)
     if (const Option* option = find_option("", name); option && !has(spec.scene.friction, option->only_of))
       refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene)),
@@ -103,7 +108,8 @@ void check_count(const Spec& spec) {
 void check_spec(const Spec& spec) {
   check_scene(spec.scene);
   Spec copy;  // as slots are of specs that may be changed; without the designs, which may be many
-  copy.numerics = spec.numerics, copy.output = spec.output, copy.points = spec.points;
+  copy.scene = spec.scene, copy.numerics = spec.numerics, copy.output = spec.output,
+  copy.points = spec.points;
   copy.scatter = spec.scatter, copy.maximize = spec.maximize, copy.minimize = spec.minimize;
   for (const Option& option : spec_options())
     std::visit(

@@ -2,6 +2,9 @@
 /// Where the hoop is, and how it moves, in contact with the plane or leaving it.
 #pragma once
 
+#include "physics/flight.hpp"
+#include "physics/rolling.hpp"
+
 namespace leapmap {
 
 template <class S>
@@ -17,6 +20,30 @@ template <class S>
 ContactState<double> in_double(const ContactState<S>& at) {
   return {static_cast<double>(at.time), static_cast<double>(at.travel), static_cast<double>(at.angle),
           static_cast<double>(at.spin), static_cast<double>(at.slip),   static_cast<double>(at.normal)};
+}
+
+/// Mechanical energy over (m + m_p) g R, but for a constant: (3) and (4) with the constraint (1) released;
+/// normal: v_n.
+template <class S>
+S contact_energy(const Hoop<S>& hoop, const ContactState<S>& at) {
+  const Trig<S> phi = trig(at.angle);
+  const S along = at.slip + (hoop.clearance + hoop.rho * phi.versine) * at.spin;
+  const S across = at.normal + hoop.rho * phi.sin * at.spin;
+  return S(0.5) * (along * along + across * across + hoop.Ic * at.spin * at.spin) -
+         at.travel * hoop.sin_slope - hoop.rho * cos_from_vertical(hoop, phi);
+}
+
+/// The end of a flight just before it touches the plane; normal: v_n there, below zero.
+template <class S>
+ContactState<S> after_flight(const Hoop<S>& hoop, const ContactState<S>& at, const S& flight_time) {
+  const Trig<S> phi = trig(at.angle);
+  const Sample<S> travel = travel_in_flight(hoop, phi, at.spin, at.slip, flight_time);
+  return {at.time + flight_time,
+          at.travel + travel.value,
+          at.angle + at.spin * flight_time,
+          at.spin,
+          travel.rate - at.spin,
+          height_above_plane(hoop, phi, at.spin, flight_time, at.normal).rate};
 }
 
 }  // namespace leapmap

@@ -54,10 +54,10 @@ inline bool kinetic_follows(const Design& design) {
 
 /// Which derivatives are asked for.
 struct GradientWanted {
-  std::vector<double Outcome::*> of;
+  std::vector<OutcomeNumber> of;
   std::vector<std::size_t> by;  ///< places in `differentiable`
 
-  bool wants(double Outcome::*quantity) const {
+  bool wants(const OutcomeNumber& quantity) const {
     return std::find(of.begin(), of.end(), quantity) != of.end();
   }
 };
@@ -80,7 +80,7 @@ class Gradients {
     return columns_[i * wanted_.by.size() + j];
   }
   /// The same by what it is; it must be asked for.
-  std::span<const double> column(double Outcome::*of, double Design::*by) const {
+  std::span<const double> column(const OutcomeNumber& of, double Design::*by) const {
     const auto i = std::find(wanted_.of.begin(), wanted_.of.end(), of) - wanted_.of.begin();
     const auto j = std::find_if(wanted_.by.begin(), wanted_.by.end(),
                                 [&](std::size_t k) { return differentiable[k] == by; }) -
@@ -92,14 +92,15 @@ class Gradients {
   /// The derivatives of one quantity of one design, in `unit` of the solver's own. Does nothing if they are
   /// not asked for.
   template <std::size_t N>
-  void put(double Outcome::*quantity, std::size_t design, const Dual<double, N>& value, double unit = 1.0) {
+  void put(const OutcomeNumber& quantity, std::size_t design, const Dual<double, N>& value,
+           double unit = 1.0) {
     for_each(quantity, [&](std::vector<double>& column, std::size_t by) {
       if (by < N) column[design] = unit * value.by[by];
     });
   }
   /// The same of several designs, each in the lane of its bit.
   template <class T, std::size_t N, class Index>
-  void put(double Outcome::*quantity, const Index& designs, unsigned lanes, const Dual<T, N>& value,
+  void put(const OutcomeNumber& quantity, const Index& designs, unsigned lanes, const Dual<T, N>& value,
            double unit) {
     for_each(quantity, [&](std::vector<double>& column, std::size_t by) {
       if (by >= N) return;
@@ -111,7 +112,7 @@ class Gradients {
 
  private:
   template <class Visit>
-  void for_each(double Outcome::*quantity, const Visit& visit) {
+  void for_each(const OutcomeNumber& quantity, const Visit& visit) {
     for (std::size_t i = 0; i < wanted_.of.size(); ++i)
       if (wanted_.of[i] == quantity)
         for (std::size_t j = 0; j < wanted_.by.size(); ++j)

@@ -41,7 +41,8 @@ inline Candidate in_si(const LiftOff<double>& lift_off, const Flight<double>& fl
           flight.height,
           flight.apex_time * second,
           flight.flight_time * second,
-          flight.dip};
+          flight.dip,
+          flight.height >= scene.hop_height};
 }
 
 }  // namespace leapmap

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Jump after jump: from a landing on to the next one, whatever the model and the method.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+#include "trajectory/contact_state.hpp"
+#include "trajectory/solver.hpp"
+
+namespace leapmap {
+
+/// Where a way to a jump begins: at a release, where N <= 0 means that it is airborne, or just after a
+/// landing, where it means that the hoop lifts off again at once.
+enum class Start { release, landing };
+
+/// Takes designs[i] from states[i] to their next jump, told in outcomes[i] (times in seconds since release),
+/// and states[i] of those that jump to just after its landing. Owns its workspace: one a thread.
+template <class S>
+using JumpSolver = std::function<void(Start, std::span<const Design>, std::span<ContactState<S>> states,
+                                      std::span<Outcome>)>;
+
+/// A jump solver that takes one design after another, by anything that solves one.
+template <class S, class One>
+JumpSolver<S> jumps_one_by_one(std::shared_ptr<One> one, const Scene& scene) {
+  return [one, scene](Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
+                      std::span<Outcome> outcomes) {
+    for (std::size_t i = 0; i < designs.size(); ++i)
+      outcomes[i] = one->solve(start, designs[i], states[i], scene);
+  };
+}
+
+template <class S>
+ContactState<S> released(const Design& design) {
+  return {.angle = S(design.release_angle), .spin = S(design.release_spin)};
+}
+
+inline Jump jump_of(const Outcome& outcome, double landing_spin) {
+  return {outcome.jump_height,   outcome.jump_time,   outcome.jump_angle, outcome.jump_spin,
+          outcome.jump_distance, outcome.flight_time, landing_spin};
+}
+
+/// Follows designs through as many jumps as their scene asks for. A thread's own workspace.
+template <class S>
+class Sequences {
+ public:
+  explicit Sequences(JumpSolver<S> next) : next_(std::move(next)) {}
+
+  void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
+    states_.clear(), going_.clear();
+    for (const Design& design : designs) states_.push_back(released<S>(design));
+    next_(Start::release, designs, states_, outcomes);
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      outcomes[i].sequence_end = outcomes[i].status;
+      if (outcomes[i].status == Status::jumped) going_.push_back(i);
+    }
+    for (long jump = 2; jump <= scene.jumps && !going_.empty(); ++jump) go_on(designs, scene, outcomes);
+  }
+
+ private:
+  /// One jump more of those that still go on.
+  void go_on(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
+    const S runway = S(2) * std::numbers::pi_v<S> * S(scene.runway);
+    std::erase_if(going_, [&](std::size_t i) {
+      const bool is_over = !(std::abs(states_[i].travel) < runway);
+      if (is_over) outcomes[i].sequence_end = Status::no_jump;
+      return is_over;
+    });
+    some_.clear(), some_states_.clear(), found_.resize(going_.size());
+    for (const std::size_t i : going_) some_.push_back(designs[i]), some_states_.push_back(states_[i]);
+    next_(Start::landing, some_, some_states_, found_);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < going_.size(); ++k) {
+      const std::size_t i = going_[k];
+      outcomes[i].sequence_end = found_[k].status;
+      if (found_[k].status != Status::jumped) continue;
+      states_[i] = some_states_[k];
+      outcomes[i].later_jumps.push_back(jump_of(found_[k], static_cast<double>(states_[i].spin)));
+      going_[kept++] = i;
+    }
+    going_.resize(kept);
+  }
+
+  JumpSolver<S> next_;
+  std::vector<ContactState<S>> states_, some_states_;
+  std::vector<std::size_t> going_;
+  std::vector<Design> some_;
+  std::vector<Outcome> found_;
+};
+
+/// A solver of whole sequences.
+inline Solver in_sequence(JumpSolver<double> next, const Scene& scene) {
+  return [sequences = std::make_shared<Sequences<double>>(std::move(next)), scene](
+             std::span<const Design> designs, std::span<Outcome> outcomes) {
+    sequences->solve(designs, scene, outcomes);
+  };
+}
+
+}  // namespace leapmap
