@@ -17,8 +17,6 @@ namespace {
 
 using D = DesignDual;
 
-constexpr std::size_t by_mu_static = 7, by_mu_kinetic = 8, by_restitution = 9;
-
 /// A guard, in weights, that passes zero more slowly than this, per sqrt(R/g) or per radian: its zero is
 /// known to so few digits that no derivative is worth telling.
 constexpr double slowest = 1e-4;
@@ -39,6 +37,24 @@ struct Recorded {
   ContactState<double> end;
 };
 
+/// The phases of a design on its way to a jump, as the plain solver goes through them.
+Outcome recorded_way(CoulombSolver<double>& solver, Start start, const Design& design,
+                     ContactState<double>& at, const Scene& scene, Recorded& recorded) {
+  recorded = {};
+  CoulombObserver observer;
+  observer.phase = [&](Phase phase, const ContactState<double>& state, int direction) {
+    recorded.phases.push_back({phase, state, direction, {}});
+  };
+  observer.lift_off = [&](const LiftOff<double>&, const Flight<double>& flight) {
+    recorded.flights.push_back(flight);
+  };
+  observer.turn = [&](const ContactState<double>& state) {
+    recorded.phases.back().turns.push_back(state.angle);
+  };
+  observer.end = [&](const ContactState<double>& state) { recorded.end = state; };
+  return solver.solve(start, design, at, scene, observer, &recorded.slides);
+}
+
 /// As contact_of has it. Where mu_kinetic follows mu_static both are one parameter, and so they are where
 /// mu_static, being less than mu_kinetic, counts as much.
 Contact<D> dual_contact(const Design& design, const Scene& scene) {
@@ -52,33 +68,31 @@ Contact<D> dual_contact(const Design& design, const Scene& scene) {
 /// The chain of one design's phases.
 class Chain {
  public:
-  Chain(const Design& design, const Scene& scene, const SlidingPanels<D>& panels, const DualTime<D>& time)
-      : panels_(panels), time_(time), second_(time_unit(scene)), contact_(dual_contact(design, scene)) {
-    const std::array<D, without_slip> p = dual_parameters<D>(design);
-    hoop_ = derive(p);
-    at_.angle = p[by_release_angle], at_.spin = p[by_release_spin];
+  Chain(const Hoop<D>& hoop, const Contact<D>& contact, const ContactState<D>& from, double second,
+        const SlidingPanels<D>& panels, const DualTime<D>& time)
+      : panels_(panels), time_(time), second_(second), contact_(contact), hoop_(hoop), at_(from) {
     released_ = contact_energy(hoop_, at_);
   }
 
-  /// put(quantity, value, unit) takes what is known; a chain that breaks puts no more.
+  /// put(quantity, value, unit) takes what is known; a chain that breaks puts no more, and returns false.
   template <class Put>
-  void run(const Recorded& recorded, const Outcome& outcome, const Put& put) {
+  bool run(const Recorded& recorded, const Outcome& outcome, const Put& put) {
     std::size_t flight = 0, slide = 0;
     for (std::size_t k = 0; k < recorded.phases.size(); ++k) {
       const Recorded::Begun& begun = recorded.phases[k];
       const bool last = k + 1 == recorded.phases.size();
       const ContactState<double>& next = last ? recorded.end : recorded.phases[k + 1].at;
-      if (!agrees(begun.at)) return;
+      if (!agrees(begun.at)) return false;
       switch (begun.phase) {
         case Phase::rolling:
           if (last) break;  // it stalls, or the runway ends: nothing slips any more
-          if (!roll(begun, next)) return;
+          if (!roll(begun, next)) return false;
           break;
         case Phase::sliding:
           if (slide == recorded.slides.size()) break;  // it rocks to rest, which nobody followed
           if (!slide_on(recorded.slides[slide++], begun.direction, next,
                         !last && recorded.phases[k + 1].phase == Phase::flight))
-            return;
+            return false;
           break;
         case Phase::flight:
           fly(recorded.flights[flight], flight == 0, last && outcome.status == Status::jumped, put);
@@ -87,7 +101,11 @@ class Chain {
       }
     }
     put(&Outcome::slip_distance, slipped_, 1.0);
+    return true;
   }
+
+  /// Where it came to: of a jump just after its landing.
+  const ContactState<D>& at() const { return at_; }
 
  private:
   /// Takes the plain solver's values, if the chain came to the same.
@@ -245,21 +263,14 @@ void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene
                              Gradients& gradients) {
   gradients.begin(designs.size());
   Recorded recorded;
-  CoulombObserver observer;
-  observer.phase = [&](Phase phase, const ContactState<double>& at, int direction) {
-    recorded.phases.push_back({phase, at, direction, {}});
-  };
-  observer.lift_off = [&](const LiftOff<double>&, const Flight<double>& flight) {
-    recorded.flights.push_back(flight);
-  };
-  observer.turn = [&](const ContactState<double>& at) { recorded.phases.back().turns.push_back(at.angle); };
-  observer.end = [&](const ContactState<double>& at) { recorded.end = at; };
   for (std::size_t i = 0; i < designs.size(); ++i) {
-    recorded = {};
     outcomes[i] = solver_.solve(designs[i], scene);
     if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate) continue;
-    if (!same_flags(outcomes[i], finer_.solve(designs[i], scene, observer, &recorded.slides))) continue;
-    Chain(designs[i], scene, panels_, time_)
+    ContactState<double> at = released<double>(designs[i]);
+    if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
+      continue;
+    Chain(derive(dual_parameters<D>(designs[i])), dual_contact(designs[i], scene), dual_release(designs[i]),
+          time_unit(scene), panels_, time_)
         .run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
           if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
           if (std::isfinite(outcomes[i].*quantity)) gradients.put(quantity, i, value, unit);
@@ -267,11 +278,44 @@ void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene
   }
 }
 
-GradientSolver coulomb::gradients(const Scene& scene, double tolerance, const Wanted&,
+Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& scene, Along along,
+                               ContactState<D>& at, const PutDual& put) {
+  Recorded recorded;
+  ContactState<double> landed = plain(at);
+  Outcome outcome = recorded_way(finer_, start, design, landed, scene, recorded);
+  if (outcome.status != Status::jumped) return outcome;
+  Contact<D> contact = dual_contact(design, scene);
+  if (along == Along::state)
+    contact = {D(contact.mu_static.value), D(contact.mu_kinetic.value), D(contact.restitution.value),
+               contact.rest_speed};
+  Chain chain(derive(parameters_along(design, along)), contact, at, time_unit(scene), panels_, time_);
+  const bool known =
+      chain.run(recorded, outcome, [&](double Outcome::*quantity, const D& value, double unit) {
+        if (put) put(quantity, value, unit);
+      });
+  at = chain.at();
+  set_values(at, landed);
+  if (!known)
+    for (D* number : {&at.time, &at.travel, &at.angle, &at.spin, &at.slip, &at.normal})
+      number->by.fill(std::numeric_limits<double>::quiet_NaN());
+  return outcome;
+}
+
+GradientSolver coulomb::gradients(const Scene& scene, double tolerance, const Wanted& wanted,
                                   const GradientWanted&) {
-  return [solver = std::make_shared<CoulombGradients>(tolerance), scene](
-             std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+  const GradientSolver first = [solver = std::make_shared<CoulombGradients>(tolerance), scene](
+                                   std::span<const Design> designs, std::span<Outcome> outcomes,
+                                   Gradients& gradients) {
     solver->solve(designs, scene, outcomes, gradients);
+  };
+  if (scene.jumps == 1) return first;
+  return in_sequence(first, jumps(scene, tolerance, wanted), dual_jumps(scene, tolerance), scene);
+}
+
+DualJumpSolver coulomb::dual_jumps(const Scene& scene, double tolerance) {
+  return [solver = std::make_shared<CoulombGradients>(tolerance), scene](
+             Start start, const Design& design, Along along, ContactState<D>& at, const PutDual& put) {
+    return solver->jump(start, design, scene, along, at, put);
   };
 }
 

@@ -8,6 +8,7 @@
 #include "coulomb/coulomb.hpp"
 #include "rolling/dual_time.hpp"
 #include "trajectory/gradient.hpp"
+#include "trajectory/sequence_gradient.hpp"
 
 namespace leapmap {
 
@@ -23,6 +24,10 @@ class CoulombGradients {
 
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
              Gradients& gradients);
+
+  /// One jump with derivatives, as DualJumpSolver has it.
+  Outcome jump(Start start, const Design& design, const Scene& scene, Along along,
+               ContactState<DesignDual>& at, const PutDual& put);
 
  private:
   static constexpr double finest = 1e-12;

@@ -9,7 +9,7 @@
 #include "leapmap/estimate.hpp"
 #include "leapmap/find_designs.hpp"
 #include "leapmap/fit.hpp"
-
+#include "leapmap/gait.hpp"
 #include "leapmap/gradient.hpp"
 #include "leapmap/map.hpp"
 #include "leapmap/motion.hpp"

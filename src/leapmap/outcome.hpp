@@ -86,8 +86,15 @@ struct Outcome {
   double slip_distance = none;       ///< slid, either way, from release to the end [R]
   double landing_spin = none;        ///< w after the landing of the jump [sqrt(g/R)]
   double energy_lost = none;         ///< from release to the lift-off of the jump, over (m + m_p) g R
-  const char* failure = nullptr;     ///< why the status is failed, if that is known
-  std::vector<Jump> later_jumps{};   ///< those after the first, as many of Scene::jumps as it makes
+  // With Scene::settle > 0: the gait that the hoop settles on.
+  static constexpr std::uint8_t no_gait = 255;  ///< gait_period where jumps go on and none is found
+  std::uint8_t gait_period = no_gait;           ///< in jumps; 0: they come to an end
+  double gait_multiplier = none;                ///< of the return map round the gait: errors shrink by it
+  double gait_height = none;                    ///< mean of its jumps [hoop diameters]
+  double gait_speed = none;                     ///< down the plane [m/s]
+  double gait_energy_lost = none;               ///< a jump, over (m + m_p) g R
+  const char* failure = nullptr;                ///< why the status is failed, if that is known
+  std::vector<Jump> later_jumps{};  ///< those after the first, as many of Scene::jumps as it makes
 
   /// How many jumps it makes.
   std::size_t jumps() const { return status == Status::jumped ? 1 + later_jumps.size() : 0; }

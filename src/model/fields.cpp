@@ -80,6 +80,22 @@ const std::array fields{
                0, status_names},
           "1", "how the sequence of jumps ended; jumped: it made all that the scene asks for", 9,
           std::nullopt, true},
+    Field{"gait_period",
+          Code{[](const Outcome& o) { return o.gait_period; },
+               [](Outcome& o, std::uint8_t code) { o.gait_period = code; },
+               255,
+               {}},
+          "1", "jumps after which the hoop repeats itself for ever; 0: it comes to an end; 255: none found",
+          9, std::nullopt, false, true},
+    Field{"gait_multiplier", Quantity{&Outcome::gait_multiplier}, "1",
+          "derivative of the return map round the gait: its largest eigenvalue", 9, std::nullopt, false,
+          true},
+    Field{"gait_height", Quantity{&Outcome::gait_height, Measure::height}, "1",
+          "mean apex of the gait's jumps above the plane, in hoop diameters", 9, std::nullopt, false, true},
+    Field{"gait_speed", Quantity{&Outcome::gait_speed}, "m s-1", "speed of the gait down the plane", 9,
+          std::nullopt, false, true},
+    Field{"gait_energy_lost", Quantity{&Outcome::gait_energy_lost}, "1",
+          "energy that the gait loses a jump, over (m + m_p) g R", 9, std::nullopt, false, true},
 };
 
 }  // namespace
@@ -90,7 +106,8 @@ bool has(const Scene& scene, const Field& field) {
   if (const auto* later = std::get_if<OfJump>(&field.source);
       later && later->number.jump > static_cast<std::size_t>(scene.jumps))
     return false;
-  return (!field.only_of || *field.only_of == scene.friction) && (!field.of_sequence || scene.jumps > 1);
+  return (!field.only_of || *field.only_of == scene.friction) && (!field.of_sequence || scene.jumps > 1) &&
+         (!field.of_gait || scene.settle > 0);
 }
 
 namespace {
@@ -122,7 +139,8 @@ struct JumpTable {
 
 /// Which of the rows has that name; nullptr: none.
 const Field* find_among(std::span<const Field> rows, std::string_view name) {
-  const auto found = std::ranges::find(rows, name, &Field::name);
+  const auto found =
+      std::find_if(rows.begin(), rows.end(), [&](const Field& field) { return field.name == name; });
   return found == rows.end() ? nullptr : &*found;
 }
 
@@ -137,7 +155,6 @@ std::vector<const Field*> fields_of(const Scene& scene) {
   std::vector<const Field*> all;
   for (const Field& field : fields)
     if (has(scene, field)) all.push_back(&field);
-  if (scene.jumps == 1) return all;
   for (const Field& field : jump_fields())
     if (has(scene, field)) all.push_back(&field);
   return all;

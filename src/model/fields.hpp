@@ -71,6 +71,7 @@ struct Field {
   int since = 0;                      ///< the minor version of the map's format that brought it
   std::optional<Friction> only_of{};  ///< the one model that fills it; unset: every model
   bool of_sequence = false;           ///< of scenes with more jumps than one
+  bool of_gait = false;               ///< of scenes that look for gaits
 };
 
 /// Whether a design of the scene has it.

@@ -10,7 +10,7 @@
 #include "leapmap/motion.hpp"
 #include "leapmap/scene.hpp"
 #include "trajectory/gradient.hpp"
-#include "trajectory/sequence.hpp"
+#include "trajectory/sequence_gradient.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap {
@@ -27,6 +27,8 @@ struct Model {
   JumpSolver<double> (*jumps)(const Scene&, double tolerance, const Wanted&);
   /// The same with derivatives.
   GradientSolver (*gradients)(const Scene&, double tolerance, const Wanted&, const GradientWanted&);
+  /// One jump after the other, by parameters or by the state that it begins at.
+  DualJumpSolver (*dual_jumps)(const Scene&, double tolerance);
   /// By integration in time.
   Solver (*integration)(const Scene&, const IntegrationOptions&);
   /// By the exact solver in long double.

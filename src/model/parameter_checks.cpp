@@ -82,6 +82,15 @@ void check_scene(const Scene& scene) {
       refuse_unused({}, parameter, value, scene);
     if (!parameter.range.holds(value)) refuse_range({}, parameter, value);
   }
+  if (scene.settle < 0 || scene.settle > 1'000'000)
+    throw InputError(
+        fmt::format("settle = {} is out of range; allowed: a whole number in [0, 1000000]", scene.settle));
+  if (scene.most_period < 1 || scene.most_period > 64)
+    throw InputError(fmt::format("most_period = {} is out of range; allowed: a whole number in [1, 64]",
+                                 scene.most_period));
+  if (!(scene.gait_tolerance > 0.0 && scene.gait_tolerance <= 1.0))
+    throw InputError(fmt::format("gait_tolerance = {} is out of range; allowed: a number in (0, 1]",
+                                 scene.gait_tolerance));
   if (scene.jumps < 1 || scene.jumps > most_jumps)
     throw InputError(fmt::format("jumps = {} is out of range; allowed: a whole number in [1, {}]",
                                  scene.jumps, most_jumps));

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
@@ -30,10 +32,15 @@ bool is_numbers(const py::handle& value, const py::array& array) {
          !py::module_::import("numpy").attr("ma").attr("isMaskedArray")(value).cast<bool>();
 }
 
+/// Of the scene.
+constexpr std::array<std::pair<std::string_view, long Scene::*>, 3> whole_numbers{
+    {{"jumps", &Scene::jumps}, {"settle", &Scene::settle}, {"most_period", &Scene::most_period}}};
+
 const Parameter& parameter_of(const std::string& name) {
   for (const Parameter& parameter : parameters())
     if (parameter.name == name) return parameter;
-  std::vector<std::string_view> names{"friction", "jumps"};
+  std::vector<std::string_view> names{"friction"};
+  for (const auto& [key, member] : whole_numbers) names.push_back(key);
   for (const Parameter& parameter : parameters()) names.push_back(parameter.name);
   throw InputError(fmt::format("{}: is no parameter; allowed: {}", name, fmt::join(names, ", ")));
 }
@@ -46,11 +53,12 @@ Designs::Designs(const py::dict& given, Scene scene) : scene_(scene) {
 }
 
 void Designs::take(const std::string& name, const py::handle& value) {
-  if (name == "jumps") {
+  for (const auto& [key, member] : whole_numbers) {
+    if (name != key) continue;
     if (!py::isinstance<py::int_>(value))
-      throw InputError(fmt::format("jumps = {} is no whole number; allowed: {}", shown(value),
-                                   allowed_values(*find_option("scene", "jumps"))));
-    scene_.jumps = py::cast<long>(value);
+      throw InputError(fmt::format("{} = {} is no whole number; allowed: {}", name, shown(value),
+                                   allowed_values(*find_option("", key))));
+    scene_.*member = py::cast<long>(value);
     return;
   }
   const Parameter& parameter = parameter_of(name);

@@ -40,6 +40,7 @@ template <class T>
 void ExactSolver<T>::solve_block(Start start, std::span<const Design> designs,
                                  std::span<ContactState<ScalarOf<T>>> states, const Scene& scene,
                                  std::span<Outcome> outcomes) {
+  take_off_.keeps_flights = wanted_.descent || !states.empty();
   take_off_.landed = {};
   if (start == Start::landing) take_off_.landed = states;
   prepare(designs, take_off_.landed, scene, block_, outcomes);

@@ -25,9 +25,7 @@ template <class T>
 class ExactSolver {
  public:
   /// tolerance: relative, of times; angles, spins and heights are good to rounding.
-  explicit ExactSolver(double tolerance, const Wanted& wanted = {}) : wanted_(wanted), clock_(tolerance) {
-    take_off_.keeps_flights = wanted.descent;
-  }
+  explicit ExactSolver(double tolerance, const Wanted& wanted = {}) : wanted_(wanted), clock_(tolerance) {}
 
   /// Solves designs[i] into outcomes[i]. told, if given, is told the way of the last one: of one design at a
   /// time.

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// One design's motion without slip and without an integrator.
-#include <algorithm>
-#include <iterator>
 #include <numbers>
 
 #include "physics/flight_search.hpp"
@@ -85,11 +83,12 @@ class Teller {
     if (way == 0.0 || outcome.status == Status::airborne_at_release || outcome.status == Status::failed)
       return outcome;
     const std::vector<Leg> legs = legs_of(from, hoop_, told.turns, time_);
-    std::ranges::copy(candidates_of(legs, told, outcome, scene_, time_),
-                      std::back_inserter(motion_.candidates));
+    for (const Candidate& candidate : candidates_of(legs, told, outcome, scene_, time_))
+      motion_.candidates.push_back(candidate);
 
     const bool jumps = outcome.status == Status::jumped;
-    const bool rolls = !jumps || outcome.jump_angle != from.angle;  // else it bounces where it landed
+    const bool rolls =
+        !jumps || !told.bounces || told.lift_offs.size() > 1;  // else it leaves where it landed
     const ContactState<double> lift_off{.time = outcome.jump_time / second_,
                                         .travel = outcome.jump_distance,
                                         .angle = outcome.jump_angle,

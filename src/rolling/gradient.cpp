@@ -6,7 +6,9 @@
 #include <limits>
 #include <memory>
 
+#include "rolling/lift_off_dual.hpp"
 #include "rolling/model.hpp"
+#include "trajectory/sequence_gradient.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap {
@@ -16,57 +18,11 @@ namespace {
 /// digits.
 constexpr double finest = 1e-14;
 
-/// A lift-off with its derivatives, as seen on its leg.
-template <class D>
-struct LiftOffDual {
-  D angle, spin;
-};
-
 /// The roll of a design of these parameters, seen from the side where it goes.
 template <class D>
 Roll<D> dual_roll(const std::array<D, without_slip>& parameter, const D& way = D(1.0)) {
   return begin_roll(seen(derive(parameter), way), way * parameter[by_release_angle],
                     way * parameter[by_release_spin]);
-}
-
-template <class T, std::size_t N>
-Roll<T> plain(const Roll<Dual<T, N>>& roll) {
-  const Hoop<Dual<T, N>>& h = roll.hoop;
-  const Trig<Dual<T, N>>& phi = roll.release_trig;
-  return {.hoop = {h.sin_slope.value, h.cos_slope.value, h.rho.value, h.clearance.value, h.Ic.value,
-                   h.J_min.value, h.drive.value, h.thrust.value},
-          .release = roll.release.value,
-          .release_trig = {phi.sin.value, phi.cos.value, phi.versine.value},
-          .released = roll.released.value,
-          .level = roll.level.value,
-          .push = roll.push.value};
-}
-
-/// A lift-off that was found in plain numbers. Where G hardly falls, on a fold, the root itself is known to
-/// so few digits that the derivative's own error would be beyond a millionth of it: NaN.
-template <class D, class T>
-LiftOffDual<D> lift_off_at(const Roll<D>& roll, const T& angle) {
-  using std::abs, std::sqrt;
-  using S = ScalarOf<T>;
-  const Roll<T> known = plain(roll);
-  const CurvedSample<T> G = lift(known, angle);
-  const Trig<T> at = trig(angle);
-  const LiftTerms<T> terms = lift_terms(known.hoop, at);
-  const T rho = known.hoop.rho;
-  const T rounding =
-      T(S(8) * std::numeric_limits<S>::epsilon()) *
-      (abs(terms.P) * terms.J +
-       rho * abs(terms.K) * (abs(known.level) + T(2) * (abs(angle * known.hoop.thrust) + rho)));
-  const MaskOf<T> folded = !(rounding * abs(G.curvature) <= T(S(1e-6)) * G.rate * G.rate);
-  const T slope = select(folded, T(std::numeric_limits<S>::quiet_NaN()), G.rate);
-
-  const D here(angle);
-  const Trig<D> there = trig(here);
-  const D E = vis_viva(roll, here, there);
-  const D root = with_derivatives(
-      angle, lift(roll.hoop, lift_terms(roll.hoop, there), E, D(2) * torque(roll.hoop, there)).value, slope);
-  const Trig<D> phi = trig(root);
-  return {root, sqrt(vis_viva(roll, root, phi) / contact_inertia(roll.hoop, phi))};
 }
 
 template <class T>
@@ -311,10 +267,13 @@ namespace rolling {
 
 GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,
                          const GradientWanted& asked) {
-  return [solver = std::make_shared<RollingGradients>(tolerance, wanted, asked), scene](
-             std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+  const GradientSolver first = [solver = std::make_shared<RollingGradients>(tolerance, wanted, asked), scene](
+                                   std::span<const Design> designs, std::span<Outcome> outcomes,
+                                   Gradients& gradients) {
     solver->solve(designs, scene, outcomes, gradients);
   };
+  if (scene.jumps == 1) return first;
+  return in_sequence(first, jumps(scene, tolerance, wanted), dual_jumps(scene, tolerance), scene);
 }
 
 }  // namespace rolling

@@ -5,7 +5,7 @@
 
 #include "leapmap/motion.hpp"
 #include "trajectory/gradient.hpp"
-#include "trajectory/sequence.hpp"
+#include "trajectory/sequence_gradient.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap::rolling {
@@ -19,6 +19,9 @@ JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wan
 /// The same with derivatives (gradient.hpp).
 GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,
                          const GradientWanted& asked);
+
+/// One jump after the other with derivatives.
+DualJumpSolver dual_jumps(const Scene& scene, double tolerance);
 
 /// By integration in time (rolling_integration.hpp).
 Solver integration(const Scene& scene, const IntegrationOptions& options);

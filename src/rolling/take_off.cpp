@@ -43,6 +43,7 @@ void TakeOff<T>::bounce(Block<T>& block, std::span<const Design> designs, const 
                         std::span<Outcome> outcomes, DesignList& going_on) {
   using std::sqrt;
   using W = WideOf<T>;
+  if (told && !block.bouncing.empty()) told->bounces = true;
   for (std::size_t first = 0; first < block.bouncing.size(); first += Lanes<W>::count) {
     const std::size_t count = std::min(Lanes<W>::count, block.bouncing.size() - first);
     const DesignLanes<W> index = lanes_from<W>(block.bouncing, first);

@@ -19,6 +19,7 @@ struct Told {
   std::vector<LiftOff<double>> lift_offs;
   std::vector<std::size_t> legs;  ///< of each lift-off, from 0
   std::vector<double> turns;
+  bool bounces = false;  ///< the first lift-off is where it landed
 };
 
 template <class T>

@@ -121,6 +121,24 @@ const std::array keys{
            "1",
            "share of designs solved again by an independent method",
            {0.0, 1.0}},
+    Option{"gait",
+           "settle",
+           IntegerSlot{[](Spec& s) -> long& { return s.scene.settle; }},
+           "1",
+           "jumps before a gait is looked for; 0: none is; with any other key of this section 500",
+           {0, 1'000'000}},
+    Option{"gait",
+           "most_period",
+           IntegerSlot{[](Spec& s) -> long& { return s.scene.most_period; }},
+           "1",
+           "longest gait looked for, in jumps",
+           {1, 64}},
+    Option{"gait",
+           "tolerance",
+           NumberSlot{[](Spec& s) -> double& { return s.scene.gait_tolerance; }},
+           "1",
+           "how nearly a landing must come again, in rad and sqrt(g/R), before the gait is closed by Newton",
+           {0.0, 1.0, false, true}},
     Option{"output", "file", TextSlot{[](Spec& s) -> std::string& { return s.output.file; }}, "",
            "the map to write; -o overrides it"},
     Option{"output",
@@ -234,7 +252,8 @@ Option option_of(const Parameter& parameter) {
 /// Section by section: what picks the model, the parameters, the other keys.
 std::vector<Option> all_options() {
   std::vector<Option> all;
-  for (const std::string_view section : {"scene", "design", "numerics", "output", "scatter", "goal"}) {
+  for (const std::string_view section :
+       {"scene", "design", "numerics", "gait", "output", "scatter", "goal"}) {
     const auto add_keys = [&](bool pick_model) {
       std::ranges::copy_if(keys, std::back_inserter(all), [&](const Option& key) {
         return key.section == section && std::holds_alternative<FrictionSlot>(key.slot) == pick_model;

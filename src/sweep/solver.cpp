@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gait/settle.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
@@ -21,14 +22,26 @@ namespace {
 
 Wanted wanted_of(const Output& output) {
   const auto stored = [&](std::string_view field) { return stores(output, field); };
+  const bool of_later_times = std::ranges::any_of(
+      output.fields, [](const std::string& field) { return field.starts_with("jump_time_"); });
   return {.first_jump_time = stored("first_jump_time"),
-          .jump_time = stored("jump_time"),
+          .jump_time = stored("jump_time") || of_later_times,
           .descent = stored("flight_time") || stored("dip")};
 }
 
 }  // namespace
 
 Solver make_solver(const Spec& spec) {
+  if (spec.scene.settle > 0) {
+    Spec without = spec;
+    without.scene.settle = 0;
+    return [solver = make_solver(without),
+            gaits = std::make_shared<GaitSolver>(spec.scene, spec.numerics.tolerance)](
+               std::span<const Design> designs, std::span<Outcome> outcomes) {
+      solver(designs, outcomes);
+      gaits->solve(designs, outcomes);
+    };
+  }
   const Model& model = model_of(spec.scene);
   if (resolved_method(spec.numerics) != "exact")
     return model.integration(spec.scene, integration_options(spec.numerics));
@@ -57,6 +70,16 @@ GradientSolver make_gradient_solver(const Spec& spec) {
   if (asked.of.empty())
     return [solver = make_solver(spec)](std::span<const Design> designs, std::span<Outcome> outcomes,
                                         Gradients&) { solver(designs, outcomes); };
+  if (spec.scene.settle > 0) {
+    Spec without = spec;
+    without.scene.settle = 0;
+    return [solver = make_gradient_solver(without),
+            gaits = std::make_shared<GaitSolver>(spec.scene, spec.numerics.tolerance)](
+               std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+      solver(designs, outcomes, gradients);
+      gaits->solve(designs, outcomes);
+    };
+  }
   return model_of(spec.scene).gradients(spec.scene, spec.numerics.tolerance, wanted_of(spec.output), asked);
 }
 

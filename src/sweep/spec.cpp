@@ -105,10 +105,10 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
       throw InputError(fmt::format("{}: {}: a key stands below its section; allowed: [{}] above it", place,
                                    section.str(), option->section));
     if (!known || !table)
-      throw InputError(fmt::format(
-          "{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [output], [scatter], "
-          "[goal]",
-          place, section.str()));
+      throw InputError(
+          fmt::format("{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [gait], [output], "
+                      "[scatter], [goal]",
+                      place, section.str()));
     for (const auto& [key, value] : *table) {
       const Option* option = find_option(section.str(), key.str());
       const auto position = value.source().begin;
@@ -236,6 +236,9 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
     });
   };
   for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
+  const bool asks_for_gaits =
+      std::ranges::any_of(entries, [](const Entry& e) { return e.option->section == "gait"; });
+  if ((asks_for_gaits || file.contains("gait")) && !given("settle")) spec.scene.settle = 500;
   if (!lenient) refuse_what_has_no_use(entries, spec);
   // Where mu_static varies, mu_kinetic follows it from design to design.
   const bool varies = std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() ||

@@ -60,10 +60,15 @@ void check_gradients(const Spec& spec) {
       refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)),
              with_model(*field->only_of));
   for (const auto& [key, names] : {std::pair{"gradients", &output.gradients}, {"fields", &output.fields}})
-    for (const std::string& name : *names)
-      if (const Field* field = find_field(name); field && field->of_sequence && !has(spec.scene, *field))
+    for (const std::string& name : *names) {
+      const Field* field = find_field(name);
+      if (!field || has(spec.scene, *field)) continue;
+      if (field->of_sequence)
         refuse(spec, key, fmt::format("'{}' has no use with scene.jumps = {}", name, spec.scene.jumps),
                "with as many scene.jumps");
+      if (field->of_gait)
+        refuse(spec, key, fmt::format("'{}' has no use without [gait]", name), "with gait.settle = 500, say");
+    }
   for (const std::string& name : output.gradients_by)
     if (const Option* option = find_option("", name); option && !has(spec.scene.friction, option->only_of))
       refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene)),
@@ -133,6 +138,9 @@ void check_spec(const Spec& spec) {
     if (!names->empty() && spec.list.columns.empty())  // a list may tell what it was found for
       refuse(spec, key, fmt::format("'{}' has no use here", names->front()),
              "with leapmap design, which looks for the best");
+  if (spec.scene.settle > 0 && resolved_method(spec.numerics) != "exact")
+    refuse(spec, "settle", fmt::format("has no use with method \"{}\"", spec.numerics.method),
+           "with method = \"exact\"");
   check_gradients(spec);
   check_scatter(spec);
   check_count(spec);

@@ -61,6 +61,7 @@ std::string text_of(const Spec& original, bool spaced) {
     }
   };
   for (const Option& option : spec_options()) {
+    if (option.section == "gait" && spec.scene.settle == 0) continue;
     if (option.key == "points") axes();  // after all numbers of the section
     const bool parameter = std::holds_alternative<ParameterSlot>(option.slot);
     if (parameter && std::ranges::find(spec.axes, option.key, &Axis::key) != spec.axes.end()) continue;

@@ -24,7 +24,8 @@ inline constexpr std::array<double Design::*, 10> differentiable{
     &Design::release_angle, &Design::release_spin, &Design::drive_torque, &Design::mu_static,
     &Design::mu_kinetic,    &Design::restitution};
 inline constexpr std::size_t without_slip = 7;
-inline constexpr std::size_t by_release_angle = 4, by_release_spin = 5;  ///< places among them
+inline constexpr std::size_t by_release_angle = 4, by_release_spin = 5, by_mu_static = 7, by_mu_kinetic = 8,
+                             by_restitution = 9;  ///< places among them
 
 /// A number with its derivatives by every parameter of one design.
 using DesignDual = Dual<double, differentiable.size()>;

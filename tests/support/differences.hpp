@@ -55,9 +55,9 @@ inline Comparison compare_with_differences(std::span<const Design> designs, cons
       }
       for (std::size_t i = 0; i < wanted.of.size(); ++i) {
         const auto of = wanted.of[i];
-        if (std::isnan(outcomes[d].*of)) continue;
-        const double near = (beside[0].*of - beside[1].*of) / (2.0 * h),
-                     far = (beside[2].*of - beside[3].*of) / (4.0 * h), truth = (4.0 * near - far) / 3.0;
+        if (std::isnan(of.of(outcomes[d]))) continue;
+        const double near = (of.of(beside[0]) - of.of(beside[1])) / (2.0 * h),
+                     far = (of.of(beside[2]) - of.of(beside[3])) / (4.0 * h), truth = (4.0 * near - far) / 3.0;
         const double ours = gradients.column(i, j)[d], error = std::abs(ours - truth);
         const std::string where =
             fmt::format("design {}, quantity {} by parameter {}: {} for {}", d, i, j, ours, truth);

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gait/return_map.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace leapmap {
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+StateVector vector_of(const Landed& at) { return {at.angle, at.spin, at.slip, at.normal}; }
+
+/// Moved along what is not held at zero: slip where it sticks, and a rebound where there is none.
+Landed moved(const Landed& at, const StateVector& by) {
+  Landed to = at;
+  to.angle += by[0], to.spin += by[1];
+  if (at.slip != 0.0) to.slip += by[2];
+  if (at.normal != 0.0) to.normal += by[3];
+  return to;
+}
+
+double largest_eigenvalue(const StateMatrix& slope) {
+  const auto values = slope.eigenvalues();
+  double largest = 0.0;
+  for (const auto& value : values)
+    if (std::abs(value) > std::abs(largest))
+      largest = std::abs(value.imag()) <= 1e-12 * std::abs(value) ? value.real() : std::abs(value);
+  return largest;
+}
+
+Scene each_jump_alone(Scene scene) {
+  scene.jumps = 1, scene.settle = 0;
+  return scene;
+}
+
+}  // namespace
+
+Landed reduced(const Landed& at) {
+  return {.angle = std::remainder(at.angle, two_pi), .spin = at.spin, .slip = at.slip, .normal = at.normal};
+}
+
+StateVector between(const Landed& a, const Landed& b) {
+  StateVector difference = vector_of(b) - vector_of(a);
+  difference[0] = std::remainder(difference[0], two_pi);
+  return difference;
+}
+
+ReturnMap::ReturnMap(const Scene& scene, double tolerance)
+    : scene_(each_jump_alone(scene)),
+      jumps_(model_of(scene_).jumps(scene_, tolerance,
+                                    {.first_jump_time = false, .jump_time = false, .descent = true})),
+      timed_jumps_(model_of(scene_).jumps(scene_, tolerance, {})),
+      duals_(model_of(scene_).dual_jumps(scene_, tolerance)) {}
+
+void ReturnMap::next(Start start, std::span<const Design> designs, std::span<Landed> states,
+                     std::vector<Outcome>& outcomes) {
+  outcomes.resize(designs.size());
+  jumps_(start, designs, states, outcomes);
+  for (Landed& state : states) state = reduced(state);
+}
+
+bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatrix& slope) {
+  ContactState<DesignDual> dual{.angle = DesignDual::parameter(at.angle, 0),
+                                .spin = DesignDual::parameter(at.spin, 1),
+                                .slip = DesignDual(at.slip),
+                                .normal = DesignDual(at.normal)};
+  if (at.slip != 0.0) dual.slip = DesignDual::parameter(at.slip, 2);
+  if (at.normal != 0.0) dual.normal = DesignDual::parameter(at.normal, 3);
+  for (int k = 0; k < period; ++k) {
+    if (duals_(Start::landing, design, Along::state, dual, {}).status != Status::jumped) return false;
+    set_values(dual, reduced(plain(dual)));
+  }
+  at = plain(dual);
+  const std::array numbers{&dual.angle, &dual.spin, &dual.slip, &dual.normal};
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      slope(row, column) = numbers[static_cast<std::size_t>(row)]->by[static_cast<std::size_t>(column)];
+  return slope.allFinite();
+}
+
+bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbit& orbit) {
+  constexpr int most_steps = 40;
+  constexpr double farthest = 0.3;  // [rad, sqrt(g/R)] that one step may go
+  Landed at = near;
+  StateMatrix slope;
+  double before = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < most_steps; ++step) {
+    Landed there = at;
+    if (!go_round(design, period, there, slope)) return false;
+    const StateVector gap = between(at, there);
+    StateVector move = (StateMatrix::Identity() - slope).fullPivLu().solve(gap);
+    const double length = move.lpNorm<Eigen::Infinity>();
+    if (!std::isfinite(length)) return false;
+    // To rounding: steps get no shorter.
+    if (length <= 1e-9 && length >= 0.25 * before) return describe(design, period, at, slope, orbit);
+    if (length == 0.0) return describe(design, period, at, slope, orbit);
+    if (length > farthest) move *= farthest / length;
+    at = reduced(moved(at, move));
+    before = length;
+  }
+  return false;
+}
+
+/// Once round the orbit, with times.
+bool ReturnMap::describe(const Design& design, int period, const Landed& start, const StateMatrix& slope,
+                         Orbit& orbit) {
+  orbit = {};
+  orbit.multiplier = largest_eigenvalue(slope);
+  const double second = time_unit(scene_);
+  const Hoop<double> hoop = derive<double>(design);
+  Landed at = start;
+  double time = 0.0, travel = 0.0, work = 0.0;
+  for (int k = 0; k < period; ++k) {
+    const Landed from = reduced(at);
+    at = from;
+    Outcome outcome;
+    timed_jumps_(Start::landing, {&design, 1}, {&at, 1}, {&outcome, 1});
+    if (outcome.status != Status::jumped) return false;
+    orbit.jumps.push_back(jump_of(outcome, at.spin));
+    orbit.landings.push_back(reduced(at));
+    const double turned_in_flights = outcome.jump_spin * outcome.flight_time / second;
+    work += hoop.drive * ((at.angle - from.angle) - turned_in_flights);
+    orbit.height += outcome.jump_height / period;
+    time += at.time * second, travel += at.travel;
+    const bool is_back = between(start, orbit.landings.back()).lpNorm<Eigen::Infinity>() < 1e-8;
+    if (is_back && k + 1 < period) return false;  // it is of a shorter period
+  }
+  orbit.speed = travel * scene_.radius / time;
+  orbit.energy_lost = (travel * hoop.sin_slope + work) / period;
+  return true;
+}
+
+}  // namespace leapmap

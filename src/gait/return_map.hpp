@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The map from one landing to the next: its periodic orbits are gaits.
+///
+/// The state just after a landing is angle, spin, slip and the normal velocity of a rebound. Nothing depends
+/// on whole turns of the angle, nor on how far or for how long the hoop has come. Without slip the last two
+/// are zero, and as N = 0 ties spin to angle at a lift-off from rolling, the map has one dimension: its
+/// derivative has one eigenvalue that is not zero. Passive walkers are told in these words, too (McGeer 1990,
+/// Garcia et al. 1998).
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "model/model.hpp"
+
+namespace leapmap {
+
+using Landed = ContactState<double>;
+
+/// Angle, spin, slip and normal velocity.
+using StateVector = Eigen::Vector4d;
+using StateMatrix = Eigen::Matrix4d;
+
+/// A state without whole turns, time and travel.
+Landed reduced(const Landed& at);
+
+/// How far b is from a, angles the shorter way round.
+StateVector between(const Landed& a, const Landed& b);
+
+/// A periodic orbit: as many landings as its period, each with the jump that ends there.
+struct Orbit {
+  std::vector<Landed> landings;
+  std::vector<Jump>
+      jumps;  ///< jumps[k] goes from landings[k - 1] to landings[k]; times and distances from there
+  double multiplier = 0.0;  ///< the largest eigenvalue by size of the return map's derivative round the orbit
+  double height = 0.0;      ///< mean of the jumps [hoop diameters]
+  double speed = 0.0;       ///< of the hoop's centre down the plane [m/s]
+  double energy_lost = 0.0;  ///< a jump, over (m + m_p) g R
+};
+
+/// Goes round orbits of one design after the other. A thread's own workspace.
+class ReturnMap {
+ public:
+  /// tolerance: relative, of times. The runway counts from each landing.
+  ReturnMap(const Scene& scene, double tolerance);
+
+  /// Takes designs from their landings, or releases, to their next landings, reduced; jumped[i] tells which
+  /// did.
+  void next(Start start, std::span<const Design> designs, std::span<Landed> states,
+            std::vector<Outcome>& outcomes);
+
+  /// `period` jumps on from a state, with the derivative by it. False: it does not make them, or the
+  /// derivative is not known.
+  bool go_round(const Design& design, int period, Landed& at, StateMatrix& slope);
+
+  /// The orbit of that period near a state, by Newton's iteration to rounding. False: there is none, or one
+  /// of a shorter period that divides it.
+  bool close(const Design& design, int period, const Landed& near, Orbit& orbit);
+
+ private:
+  bool describe(const Design& design, int period, const Landed& at, const StateMatrix& slope, Orbit& orbit);
+
+  Scene scene_;
+  JumpSolver<double> jumps_, timed_jumps_;
+  DualJumpSolver duals_;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gait/settle.hpp"
+
+#include <cmath>
+
+namespace leapmap {
+
+void GaitSolver::solve(std::span<const Design> designs, std::span<Outcome> outcomes) {
+  settle(designs);
+  look_on();
+  for (Outcome& outcome : outcomes) outcome.gait_period = 0;
+  Orbit orbit;
+  for (std::size_t k = 0; k < going_.size(); ++k) {
+    Outcome& outcome = outcomes[going_[k]];
+    outcome.gait_period = Outcome::no_gait;
+    if (!find_orbit(some_[k], seen_[k], orbit)) continue;
+    outcome.gait_period = static_cast<std::uint8_t>(orbit.jumps.size());
+    outcome.gait_multiplier = orbit.multiplier;
+    outcome.gait_height = orbit.height;
+    outcome.gait_speed = orbit.speed;
+    outcome.gait_energy_lost = orbit.energy_lost;
+  }
+}
+
+/// Leaves those designs that go on for so many jumps.
+void GaitSolver::settle(std::span<const Design> designs) {
+  going_.clear(), states_.clear();
+  some_.assign(designs.begin(), designs.end());
+  for (std::size_t i = 0; i < designs.size(); ++i)
+    going_.push_back(i), states_.push_back(released<double>(designs[i]));
+  for (long jump = 0; jump < scene_.settle && !going_.empty(); ++jump) {
+    map_.next(jump == 0 ? Start::release : Start::landing, some_, states_, found_);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < going_.size(); ++k) {
+      if (found_[k].status != Status::jumped) continue;
+      going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
+      ++kept;
+    }
+    going_.resize(kept), some_.resize(kept), states_.resize(kept);
+  }
+}
+
+/// As many jumps more as the longest period has.
+void GaitSolver::look_on() {
+  seen_.assign(going_.size(), {});
+  for (std::size_t k = 0; k < going_.size(); ++k) seen_[k].push_back(states_[k]);
+  for (long jump = 0; jump < scene_.most_period && !going_.empty(); ++jump) {
+    map_.next(Start::landing, some_, states_, found_);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < going_.size(); ++k) {
+      if (found_[k].status != Status::jumped) continue;
+      seen_[k].push_back(states_[k]);
+      going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
+      if (kept != k) seen_[kept] = std::move(seen_[k]);
+      ++kept;
+    }
+    going_.resize(kept), some_.resize(kept), states_.resize(kept), seen_.resize(kept);
+  }
+}
+
+/// The orbit that it is drawn to: of the shortest period after which it is nearly where it was.
+bool GaitSolver::find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit) {
+  for (std::size_t period = 1; period < seen.size(); ++period) {
+    const double gap = between(seen[0], seen[period]).lpNorm<Eigen::Infinity>();
+    if (!(gap < scene_.gait_tolerance)) continue;
+    if (!map_.close(design, static_cast<int>(period), seen[0], orbit)) continue;
+    if (!(std::abs(orbit.multiplier) < 1.0)) continue;
+    // What it has not yet come near by is a geometric series of gaps.
+    const double left = between(seen[0], orbit.landings.back()).lpNorm<Eigen::Infinity>();
+    if (left <= 10.0 * gap / (1.0 - std::abs(orbit.multiplier)) + 1e-9) return true;
+  }
+  return false;
+}
+
+}  // namespace leapmap
