@@ -77,6 +77,12 @@ LOOKS = {
     "landing_spin": Look("spin after landing", "√(g/R)"),
     "jump_distance": Look("rolled until the jump's lift-off", "R"),
     "energy_lost": Look("energy lost until the jump", "(m + mₚ) g R"),
+    "jumps": Look("jumps made", "", levels=()),
+    "gait_period": Look("period of the gait: 0 ends, 255 none found", "jumps", levels=()),
+    "gait_multiplier": Look("multiplier of the gait", "", levels=(-0.5, 0.0, 0.5)),
+    "gait_height": Look("mean height of the gait's jumps", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "gait_speed": Look("speed of the gait", "m/s"),
+    "gait_energy_lost": Look("energy that the gait loses a jump", "(m + mₚ) g R"),
 }
 # Vertical jumping agility of published jumpers [m/s]: Haldane, Plecnik, Yim and Fearing, "Robotic vertical jumping agility via
 # series-elastic power modulation", Science Robotics 1 (2016) eaag2048.

@@ -10,6 +10,7 @@
 #include "gait/return_map.hpp"
 #include "leapmap/gait.hpp"
 #include "model/parameters.hpp"
+#include "numerics/root.hpp"
 #include "physics/flight_search.hpp"
 #include "physics/landing.hpp"
 #include "physics/rolling_by_angle.hpp"
@@ -26,7 +27,7 @@ constexpr int first_angles = 720;
 struct Sampled {
   double angle;
   double height = nan;
-  Landed landed{};                  ///< of the jump from there
+  Landed landed{};                      ///< of the jump from there
   std::vector<double> next{}, slope{};  ///< after 1, 2, ... jumps, as far as it comes
 };
 
@@ -66,7 +67,7 @@ class Section {
         if (quantity == &Outcome::jump_angle) lift_off = value;
       };
       const Outcome outcome = duals_(Start::landing, design_, Along::state, dual, note);
-      if (outcome.status != Status::jumped) break;
+      if (outcome.status != Status::jumped || is_beyond(scene_, plain(dual))) break;
       const bool again_at_once = lift_off.value == landed,
                  other_way = lift_off.value == lift_off.value && outcome.jump_spin * way_ < 0.0;
       const bool on_section = !again_at_once && !other_way;
@@ -166,7 +167,7 @@ class Search {
     const Sampled middle = section.at(0.5 * (a.angle + b.angle));
     if (is_foretold(a, middle, b, options_.most_period)) {
       for (const auto& [from, to] : {std::pair(&a, &middle), std::pair(&middle, &b)}) {
-        look_for_orbits(*from, *to);
+        look_for_orbits(section, *from, *to);
         keep(*to, way);
       }
     } else if (b.angle - a.angle < finest) {
@@ -179,17 +180,25 @@ class Search {
 
   /// An orbit is where a return meets its own angle: between ends of either side, or where the cubic turns to
   /// it.
-  void look_for_orbits(const Sampled& a, const Sampled& b) {
+  void look_for_orbits(const Section& section, const Sampled& a, const Sampled& b) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(options_.most_period); ++k) {
       if (!returns(a, k) || !returns(b, k)) continue;
       const double fa = gap(a, k), fb = gap(b, k);
       if (std::abs(fa - fb) > std::numbers::pi) continue;  // the shorter way round changes there
-      const double length = b.angle - a.angle;
-      const bool crosses = (fa > 0.0) != (fb > 0.0);
-      const bool turns = std::min(std::abs(fa), std::abs(fb)) <
-                         length * (1.0 + std::abs(a.slope[k] - 1.0) + std::abs(b.slope[k] - 1.0)) * 0.5;
-      if (crosses || turns)
-        for (const Sampled* near : {&a, &b}) close(near->landed, static_cast<int>(k) + 1);
+      if ((fa > 0.0) != (fb > 0.0)) {
+        const auto gap_at = [&](double angle) {
+          const Sampled there = section.at(angle);
+          return returns(there, k) ? Sample<double>{gap(there, k), there.slope[k] - 1.0}
+                                   : Sample<double>{nan, nan};
+        };
+        const double root = polish_root(gap_at, a.angle, b.angle, 0.5 * (a.angle + b.angle), fb > 0.0, 1e-13);
+        if (const Sampled there = section.at(root); returns(there, k))
+          close(there.landed, static_cast<int>(k) + 1);
+      } else if (std::min(std::abs(fa), std::abs(fb)) <
+                 0.5 * (b.angle - a.angle) * (2.0 + std::abs(a.slope[k]) + std::abs(b.slope[k]))) {
+        for (const Sampled* near : {&a, &b})  // it may turn to the diagonal and back
+          close(near->landed, static_cast<int>(k) + 1);
+      }
     }
   }
 

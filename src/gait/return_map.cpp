@@ -44,6 +44,10 @@ Landed reduced(const Landed& at) {
   return {.angle = std::remainder(at.angle, two_pi), .spin = at.spin, .slip = at.slip, .normal = at.normal};
 }
 
+bool is_beyond(const Scene& scene, const Landed& at) {
+  return !(std::abs(at.travel) < two_pi * scene.runway);
+}
+
 StateVector between(const Landed& a, const Landed& b) {
   StateVector difference = vector_of(b) - vector_of(a);
   difference[0] = std::remainder(difference[0], two_pi);
@@ -61,7 +65,11 @@ void ReturnMap::next(Start start, std::span<const Design> designs, std::span<Lan
                      std::vector<Outcome>& outcomes) {
   outcomes.resize(designs.size());
   jumps_(start, designs, states, outcomes);
-  for (Landed& state : states) state = reduced(state);
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    if (outcomes[i].status == Status::jumped && is_beyond(scene_, states[i]))
+      outcomes[i].status = Status::no_jump;
+    states[i] = reduced(states[i]);
+  }
 }
 
 bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatrix& slope) {
@@ -73,6 +81,7 @@ bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatr
   if (at.normal != 0.0) dual.normal = DesignDual::parameter(at.normal, 3);
   for (int k = 0; k < period; ++k) {
     if (duals_(Start::landing, design, Along::state, dual, {}).status != Status::jumped) return false;
+    if (is_beyond(scene_, plain(dual))) return false;
     set_values(dual, reduced(plain(dual)));
   }
   at = plain(dual);

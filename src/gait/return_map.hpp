@@ -25,6 +25,10 @@ using StateMatrix = Eigen::Matrix4d;
 /// A state without whole turns, time and travel.
 Landed reduced(const Landed& at);
 
+/// Whether a jump has taken the hoop farther than the runway: one that jumps higher and higher is not
+/// followed.
+bool is_beyond(const Scene& scene, const Landed& at);
+
 /// How far b is from a, angles the shorter way round.
 StateVector between(const Landed& a, const Landed& b);
 
@@ -42,7 +46,7 @@ struct Orbit {
 /// Goes round orbits of one design after the other. A thread's own workspace.
 class ReturnMap {
  public:
-  /// tolerance: relative, of times. The runway counts from each landing.
+  /// tolerance: relative, of times. The runway counts from each landing to the next.
   ReturnMap(const Scene& scene, double tolerance);
 
   /// Takes designs from their landings, or releases, to their next landings, reduced; jumped[i] tells which

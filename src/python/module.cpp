@@ -90,6 +90,47 @@ py::dict gradient(const py::dict& given, const std::string& friction, const std:
   return arrays;
 }
 
+template <class Item>
+py::array_t<double> numbers(const std::vector<Item>& items, double Item::*member) {
+  py::array_t<double> array(static_cast<py::ssize_t>(items.size()));
+  std::ranges::transform(items, array.mutable_data(), [&](const Item& item) { return item.*member; });
+  return array;
+}
+
+py::dict gaits(const py::dict& given, int most_period, double tolerance) {
+  const Designs designs(given, scene_of("sticking"));
+  if (designs.count() != 1 || !designs.shape().empty())
+    throw InputError("gaits tells those of one design; allowed: numbers, no arrays");
+  Design design;
+  designs.fill(0, {&design, 1});
+  Gaits found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = find_gaits(design, designs.scene(), {.most_period = most_period, .tolerance = tolerance});
+  }
+  py::dict told, returns;
+  py::list orbits;
+  for (const Gait& gait : found.gaits) {
+    py::dict one, jumps;
+    one["period"] = gait.jumps.size(), one["multiplier"] = gait.multiplier, one["height"] = gait.height;
+    one["speed"] = gait.speed, one["energy_lost"] = gait.energy_lost;
+    jumps["angle"] = numbers(gait.jumps, &Jump::angle), jumps["spin"] = numbers(gait.jumps, &Jump::spin);
+    jumps["height"] = numbers(gait.jumps, &Jump::height), jumps["time"] = numbers(gait.jumps, &Jump::time);
+    jumps["distance"] = numbers(gait.jumps, &Jump::distance);
+    one["jumps"] = jumps;
+    orbits.append(one);
+  }
+  returns["angle"] = numbers(found.returns, &ReturnPoint::angle);
+  returns["next"] = numbers(found.returns, &ReturnPoint::next);
+  returns["slope"] = numbers(found.returns, &ReturnPoint::slope);
+  returns["height"] = numbers(found.returns, &ReturnPoint::height);
+  py::array_t<bool> uphill(static_cast<py::ssize_t>(found.returns.size()));
+  std::ranges::transform(found.returns, uphill.mutable_data(), &ReturnPoint::uphill);
+  returns["uphill"] = uphill;
+  told["gaits"] = orbits, told["returns"] = returns;
+  return told;
+}
+
 py::dict trace(const py::dict& given, const std::string& friction, double interval, const std::string& method,
                double tolerance, long max_steps) {
   const Designs designs(given, scene_of(friction));
@@ -201,6 +242,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("scatter", &python::scatter);
   python::add_design(module);
   module.def("trace", &python::trace);
+  module.def("gaits", &python::gaits);
   module.def("sweep", &python::sweep);
   module.def("spec_file", [](const std::string& path_or_text, const std::optional<std::string>& origin,
                              const std::vector<std::string>& overrides) {

@@ -61,6 +61,22 @@ def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10,
     return Motion(told, parameters | {"friction": friction})
 
 
+def gaits(*, most_period=1, tolerance=1e-10, **parameters):
+    """Every gait of one hoop that never slips: the periodic orbits of its map from lift-off to lift-off, stable or not.
+
+    Parameters
+    ----------
+    {parameters}
+    most_period: longest gait looked for, in jumps, 1 to 16.
+    tolerance: relative, of times.
+
+    Returns a dict: gaits, each a dict of period, multiplier (stable where below 1 in size), height [hoop diameters], speed [m/s],
+    energy_lost [(m + m_p) g R, a jump] and jumps, arrays of angle, spin, height, time and distance once round; and returns, arrays
+    of angle, next, slope, height and uphill of the return map where it was looked at.
+    """
+    return _core.gaits(parameters, _whole("most_period", most_period, 1, 16), tolerance)
+
+
 def _names(fields):
     if fields is None:
         return []
@@ -106,3 +122,4 @@ os.register_at_fork(after_in_child=_core.after_fork_in_child)
 _document(solve)
 _document(gradient)
 _document(trace)
+_document(gaits)

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap gait: how one hoop goes on jumping for ever.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "leapmap/errors.hpp"
+#include "leapmap/gait.hpp"
+#include "model/model.hpp"
+#include "sweep/options.hpp"
+#include "sweep/solver.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct GaitArguments {
+  std::string spec;
+  std::vector<std::string> overrides, flags;
+  int most_period = 2;
+  bool json = false;
+};
+
+double degrees_within_a_turn(double radians) {
+  const double turned = std::fmod(radians * 180.0 / std::numbers::pi, 360.0);
+  return turned < 0.0 ? turned + 360.0 : turned;
+}
+
+/// What the release comes to.
+std::string settled_line(const Outcome& outcome, long settle) {
+  if (outcome.gait_period == 0)
+    return fmt::format("As released it does not go on for {} jumps: it stalls, or comes to the runway's end.",
+                       settle);
+  if (outcome.gait_period == Outcome::no_gait)
+    return fmt::format(
+        "As released it goes on, and after {} jumps repeats itself in no gait that was looked for.", settle);
+  return fmt::format(
+      "As released it settles on a gait of period {}: {:.6f} diameters, {:.4g} m/s down the plane, {:.6g} (m "
+      "+ m_p) "
+      "g R lost a jump; multiplier {:.6f}.",
+      outcome.gait_period, outcome.gait_height, outcome.gait_speed, outcome.gait_energy_lost,
+      outcome.gait_multiplier);
+}
+
+void print_gaits(const Gaits& found, int most_period) {
+  if (found.gaits.empty()) {
+    say("No gait of up to {} jumps: its return map, looked at in {} places, has no periodic orbit.\n",
+        most_period, found.returns.size());
+    return;
+  }
+  say("Every gait of up to {} jumps, by its return map in {} places:\n\n{:>6} {:>9} {:>12} {:>12} {:>11} "
+      "{:>12}  "
+      "{}\n",
+      most_period, found.returns.size(), "period", "", "multiplier", "height [2R]", "speed [m/s]",
+      "energy lost", "lift-offs [deg]: heights [2R]");
+  for (const Gait& gait : found.gaits) {
+    std::vector<std::string> jumps;
+    for (const Jump& jump : gait.jumps)
+      jumps.push_back(fmt::format("{:.4f}: {:.6f}", degrees_within_a_turn(jump.angle), jump.height));
+    say("{:>6} {:>9} {:>12.6f} {:>12.6f} {:>11.4f} {:>12.6f}  {}\n", gait.jumps.size(),
+        gait.is_stable() ? "stable" : "unstable", gait.multiplier, gait.height, gait.speed, gait.energy_lost,
+        fmt::join(jumps, ", "));
+  }
+  say("\n");
+}
+
+std::string json_text(const Spec& spec, const Gaits& found, const Outcome& outcome) {
+  std::vector<std::string> gaits, returns;
+  for (const Gait& gait : found.gaits) {
+    std::vector<std::string> jumps;
+    for (const Jump& jump : gait.jumps)
+      jumps.push_back(fmt::format(R"({{"angle": {}, "spin": {}, "height": {}, "time": {}, "distance": {}}})",
+                                  json_number(jump.angle), json_number(jump.spin), json_number(jump.height),
+                                  json_number(jump.time), json_number(jump.distance)));
+    gaits.push_back(fmt::format(
+        R"({{"period": {}, "multiplier": {}, "height": {}, "speed": {}, "energy_lost": {}, "jumps": [{}]}})",
+        gait.jumps.size(), json_number(gait.multiplier), json_number(gait.height), json_number(gait.speed),
+        json_number(gait.energy_lost), fmt::join(jumps, ", ")));
+  }
+  for (const ReturnPoint& point : found.returns)
+    returns.push_back(fmt::format("[{}, {}, {}, {}, {}]", json_number(point.angle), json_number(point.next),
+                                  json_number(point.slope), json_number(point.height), point.uphill));
+  std::vector<std::string> design;
+  for (const Option* parameter : design_parameters(spec))
+    design.push_back(
+        fmt::format("\"{}\": {}", parameter->key, json_number(value_of(*parameter, spec.design))));
+  return fmt::format(
+      "{{\n  \"design\": {{{}}},\n  \"gait_period\": {},\n  \"gait_multiplier\": {},\n  \"gait_height\": "
+      "{},\n  "
+      "\"gait_speed\": {},\n  \"gait_energy_lost\": {},\n  \"gaits\": [{}],\n  \"return_map\": [{}]\n}}\n",
+      fmt::join(design, ", "), outcome.gait_period, json_number(outcome.gait_multiplier),
+      json_number(outcome.gait_height), json_number(outcome.gait_speed),
+      json_number(outcome.gait_energy_lost), fmt::join(gaits, ",\n    "), fmt::join(returns, ",\n    "));
+}
+
+int run(const GaitArguments& arguments) {
+  std::vector<std::string> overrides = arguments.overrides;
+  overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
+  refuse_scatter(overrides, "allowed: one design as drawn");
+  Spec spec = read_spec(arguments.spec, overrides);
+  if (!spec.axes.empty() || !spec.points.empty())
+    throw InputError(
+        fmt::format("{}: has many designs; allowed: one for leapmap gait, and leapmap sweep with [gait] "
+                    "for a map of gaits",
+                    origin_of(spec)));
+  if (spec.scene.settle == 0) spec.scene.settle = 500;
+  check_spec(spec);
+  Outcome outcome;
+  make_solver(spec)({&spec.design, 1}, {&outcome, 1});
+  Gaits found;
+  const bool one_dimension = !model_of(spec.scene).slips;
+  if (one_dimension)
+    found = find_gaits(spec.design, spec.scene,
+                       {.most_period = arguments.most_period, .tolerance = spec.numerics.tolerance});
+  if (arguments.json) {
+    say("{}", json_text(spec, found, outcome));
+    return 0;
+  }
+  if (one_dimension) print_gaits(found, arguments.most_period);
+  say("{}\n", settled_line(outcome, spec.scene.settle));
+  return 0;
+}
+
+}  // namespace
+
+void add_gait(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("gait", "how one hoop goes on jumping for ever: its periodic jumps, stable or not");
+  auto arguments = std::make_shared<GaitArguments>();
+  command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop");
+  for (const Option* option : hop_options()) add_flag_of(*command, *option, arguments->flags);
+  add_set(*command, arguments->overrides, ", for example gait.settle=2000");
+  command->add_option("--most-period", arguments->most_period, "longest gait looked for, in jumps; default 2")
+      ->check(CLI::Range(1, 16));
+  command->add_flag("--json", arguments->json, "print JSON, with the return map where it was looked at");
+  command->footer(
+      "A gait is stable where its multiplier, by which small errors grow from one round to the next, is "
+      "below 1 in\n"
+      "size. Without slip N = 0 ties spin to angle at a lift-off, so that the map from one lift-off to the "
+      "next is a\n"
+      "curve: all its periodic orbits are looked for, unstable ones too. With friction the gait is told that "
+      "the\n"
+      "release settles on. The runway counts from one landing to the next.");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli
