@@ -46,7 +46,7 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
   if (d.flags) return d;
   for (const Field& field : map_fields()) {
     const auto* quantity = std::get_if<Quantity>(&field.source);
-    if (!quantity) continue;
+    if (!quantity || field.of_gait) continue;  // of which a stepper tells nothing
     const double a = ours.*quantity->member, b = theirs.*quantity->member;
     if (std::isnan(a) && std::isnan(b)) continue;
     const Measure measure = quantity->measure;

@@ -57,7 +57,8 @@ inline Comparison compare_with_differences(std::span<const Design> designs, cons
         const auto of = wanted.of[i];
         if (std::isnan(of.of(outcomes[d]))) continue;
         const double near = (of.of(beside[0]) - of.of(beside[1])) / (2.0 * h),
-                     far = (of.of(beside[2]) - of.of(beside[3])) / (4.0 * h), truth = (4.0 * near - far) / 3.0;
+                     far = (of.of(beside[2]) - of.of(beside[3])) / (4.0 * h),
+                     truth = (4.0 * near - far) / 3.0;
         const double ours = gradients.column(i, j)[d], error = std::abs(ours - truth);
         const std::string where =
             fmt::format("design {}, quantity {} by parameter {}: {} for {}", d, i, j, ours, truth);

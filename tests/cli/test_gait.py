@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Jump after jump on the command line: sequences in maps and told, and gaits."""
+import json
+
+import h5py
+import numpy as np
+import pytest
+
+from support.program import leapmap, sweep
+
+HOOP = ["--slope", "12 deg", "--mass-ratio", "3", "--offset-ratio", "0.5"]
+
+
+def told(*arguments):
+    done = leapmap(*arguments, "--json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_hop_tells_every_jump():
+    done = leapmap("hop", *HOOP, "--jumps", "5", "--set", "runway=20")
+    assert done.returncode == 0, done.stderr
+    assert "F  jumps, 5" in done.stdout and "5 jumps of 5" in done.stdout
+    hop = told("hop", *HOOP, "--jumps", "5", "--set", "runway=20")
+    heights = [hop["jump_height"]] + [hop[f"jump_height_{k}"] for k in range(2, 6)]
+    assert [one["height"] for one in hop["lift_offs"] if one["is_jump"]] == pytest.approx(heights, abs=1e-12)
+    assert hop["jumps"] == 5 and hop["sequence_end"] == "jumped"
+
+
+@pytest.mark.parametrize("friction", ["sticking", "coulomb"])
+def test_a_map_of_sequences_holds_what_hop_tells_and_its_end(tmp_path, friction):
+    spec = f"[scene]\nfriction = \"{friction}\"\njumps = 3\nrunway = 6.0\n[design]\nslope = {{ from = 0.1, to = 0.5, count = 9 }}\n[numerics]\naudit = 1\n"
+    path = sweep(tmp_path, spec)
+    with h5py.File(path) as m:
+        jumps, end = m["jumps"][:], m["sequence_end"][:]
+        later = m["jump_height_3"][:]
+        assert (np.isfinite(later) == (jumps == 3)).all() and (end[jumps == 3] == 1).all() and (end[jumps < 3] != 1).all()
+        assert len(set(jumps.tolist())) > 1
+        for i in (0, 4, 8):
+            hop = told("hop", "--friction", friction, "--slope", repr(float(m["slope"][i])), "--jumps", "3", "--set", "runway=6")
+            assert hop["jumps"] == jumps[i]
+            for k in range(2, jumps[i] + 1):
+                assert hop[f"jump_height_{k}"] == pytest.approx(m[f"jump_height_{k}"][i], abs=1e-12)
+                assert hop[f"jump_time_{k}"] == pytest.approx(m[f"jump_time_{k}"][i], rel=1e-9)
+
+
+def test_sequences_and_gaits_have_the_same_bits_whatever_the_threads(tmp_path):
+    spec = ("[scene]\njumps = 4\nrunway = 20.0\n[design]\nslope = { from = 0.1, to = 0.5, count = 40 }\n"
+            "mass_ratio = { from = 0.5, to = 9, count = 30 }\noffset_ratio = 0.5\n[gait]\nsettle = 100\n[numerics]\naudit = 0\n")
+    maps = [sweep(tmp_path, spec, "--threads", threads, name=f"{threads}.h5") for threads in ("1", "2")]
+    with h5py.File(maps[0]) as one, h5py.File(maps[1]) as two:
+        for name in ("jump_height_4", "jump_time_4", "gait_period", "gait_multiplier", "gait_speed"):
+            assert one[name][:].tobytes() == two[name][:].tobytes(), name
+        period, multiplier = one["gait_period"][:], one["gait_multiplier"][:]
+    found = (period > 0) & (period < 255)
+    assert found.sum() > 100 and (np.abs(multiplier[found]) < 1).all() and np.isnan(multiplier[~found]).all()
+
+
+def test_gait_tells_every_gait_of_a_hoop_and_which_the_release_settles_on():
+    done = leapmap("gait", *HOOP)
+    assert done.returncode == 0, done.stderr
+    assert "settles on a gait of period 1" in done.stdout and "unstable" in done.stdout
+    all_of_them = told("gait", *HOOP, "--most-period", "2")
+    stable = [gait for gait in all_of_them["gaits"] if abs(gait["multiplier"]) < 1]
+    assert len(stable) == 1 and stable[0]["height"] == pytest.approx(all_of_them["gait_height"], abs=1e-10)
+    assert stable[0]["multiplier"] == pytest.approx(all_of_them["gait_multiplier"], abs=1e-8)
+    assert {gait["period"] for gait in all_of_them["gaits"]} == {1, 2}
+    # The return map's own slope where it crosses the diagonal is the multiplier.
+    angle, following, slope = np.array([row[:3] for row in all_of_them["return_map"] if None not in row[:3]], float).T
+    there = stable[0]["jumps"][0]["angle"] % (2 * np.pi)
+    nearest = np.argmin(np.abs(angle - there))
+    assert abs(following[nearest] - angle[nearest]) < 0.02 and slope[nearest] == pytest.approx(stable[0]["multiplier"], abs=0.02)
+
+
+def test_with_friction_gait_tells_what_the_release_settles_on():
+    hop = told("gait", *HOOP, "--friction", "coulomb", "--mu-static", "0.8")
+    assert hop["gaits"] == [] and 0 <= hop["gait_period"] <= 255
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (["hop", "--jumps", "251"], "jumps"), (["hop", "--jumps", "1.5"], "jumps"), (["gait", "--most-period", "17"], "most-period"),
+    (["gait", "--set", "gait.settle=-1"], "settle"), (["gait", "--set", "method=gsl-rk8pd"], "settle"),
+    (["gait", "--set", "slope={from=0.1,to=0.2,count=3}"], "leapmap sweep"),
+    (["sweep", "--set", "fields=[\"jump_height_3\"]", "--set", "jumps=2", "--dry-run"], "jump_height_3"),
+    (["sweep", "--set", "fields=[\"gait_period\"]", "--dry-run"], "gait")])
+def test_bad_input_is_one_line(tmp_path, arguments, words):
+    if arguments[0] == "sweep":
+        (tmp_path / "spec.toml").write_text("[design]\nslope = { values = [0.3, 0.4] }\n")
+        arguments = ["sweep", tmp_path / "spec.toml"] + arguments[1:]
+    done = leapmap(*arguments)
+    assert done.returncode == 2 and done.stdout == ""
+    assert len(done.stderr.strip().splitlines()) == 1 and words in done.stderr
