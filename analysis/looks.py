@@ -78,6 +78,7 @@ LOOKS = {
     "jump_distance": Look("rolled until the jump's lift-off", "R"),
     "energy_lost": Look("energy lost until the jump", "(m + mₚ) g R"),
     "jumps": Look("jumps made", "", levels=()),
+    "sequence_condition": Look("growth of errors up to the last landing", ""),
     "gait_period": Look("period of the gait: 0 ends, 255 none found", "jumps", levels=()),
     "gait_multiplier": Look("multiplier of the gait", "", levels=(-0.5, 0.0, 0.5)),
     "gait_height": Look("mean height of the gait's jumps", "hoop diameters", exponent=0.6, levels=HEIGHTS),

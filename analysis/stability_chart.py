@@ -21,13 +21,14 @@ TITLES = {
     "step": "fixed steps, ever longer",
     "tolerance": "tolerances no double can reach",
     "landing": "flights that start on the plane and dip below it",
+    "chaos": "jump after jump of a hoop that has no stable gait",
     "painleve": "with friction: a slide that just misses Painlevé's edge",
     "slow": "with friction: rolled off ever more slowly",
     "dip": "with friction: n₀ of a slide just touches zero",
     "stick": "with friction: friction just holds",
     "bounces": "with friction: ever more rebounds",
 }
-BESIDE = {"needle": "evaluations", "release": "condition", "graze": "condition", "long": "energy_drift", "step": "share", "tolerance": "evaluations",
+BESIDE = {"needle": "evaluations", "release": "condition", "graze": "condition", "long": "energy_drift", "step": "share", "tolerance": "evaluations", "chaos": "condition",
           "painleve": "evaluations", "slow": "evaluations", "dip": "condition", "stick": "condition", "bounces": "evaluations"}
 LABELS = {"evaluations": "right-hand sides of a design", "condition": "condition: relative change of the answer over that of the inputs",
           "energy_drift": "energy drift at the jump, over 1 + kinetic energy", "share": "designs wrong (solid) or failed (dotted) [%]"}

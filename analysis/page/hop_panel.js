@@ -6,9 +6,16 @@ function hopPanel(map, solver) {
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
   const now = { design: null, story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null };
-  const chosen = { radius: map.fixed.radius, mass: 0.0282 };  // m; kg, of hoop and point mass: the paper's 8.2 g and 20 g
+  const chosen = { radius: map.fixed.radius, mass: 0.0282, jumps: map.jumps };  // m; kg, of hoop and point mass: the paper's 8.2 g and 20 g
   radius.value = 1000 * chosen.radius;
   mass.value = 1000 * chosen.mass;
+  const jumps = element("jumps");
+  jumps.value = chosen.jumps;
+
+  const showGaits = gaitsPart(map, solver, (name, value) => {
+    const { label, unit } = map.parameters[name];
+    begin({ ...now.design, [name]: value }, `One hoop: ${label.toLowerCase()} ${withUnit(short(unit === "°" ? value * 180 / Math.PI : value), unit)}`);
+  });
 
   const GHOSTS = 20, ghosts = element("ghosts");
   element("ghosts-label").hidden = map.scatter.length === 0;
@@ -22,7 +29,7 @@ function hopPanel(map, solver) {
       return;
     }
     drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts);
-    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.story.outcome, now.time, chosen.mass * now.design.gravity, now.design.radius);
+    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.time, chosen.mass * now.design.gravity, now.design.radius);
     clock.textContent = `${now.time.toFixed(3)} s`;
     scrub.value = now.time;
   }
@@ -73,6 +80,10 @@ function hopPanel(map, solver) {
       add("jump_distance", map.slips ? "travelled until lift-off" : "rolled until lift-off", length(outcome.jump_distance * R));
       if (!map.slips) add("dip", "flight first dips", length(2 * R * outcome.dip, 3));
     }
+    if (jumped && chosen.jumps > 1) {
+      const { height, is_jump } = now.story.liftOffs;
+      add("jumps", "jumps made", `${outcome.jumps} of ${chosen.jumps}: ${[...height].filter((_, i) => is_jump[i] === 1).map((h) => short(h)).join(", ")} diameters`);
+    }
     if (outcome.candidates > 0) {
       add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"
         : outcome.first_jump_height > 0 ? `spurious: ${length(2 * R * outcome.first_jump_height, 3)} high, after ${short(outcome.first_jump_time)} s`
@@ -107,6 +118,7 @@ function hopPanel(map, solver) {
     if (map.slips) words.push("--set friction=coulomb", `--set rest_speed=${design.rest_speed}`);
     for (const key of ["runway", "hop_height", "radius", "gravity"])
       if (design[key] !== solver.defaults[key]) words.push(`--set ${key}=${design[key]}`);
+    if (chosen.jumps > 1) words.push(`--jumps ${chosen.jumps}`);
     if (map.tolerance !== 1e-10) words.push(`--set tolerance=${map.tolerance}`);
     return words;
   }
@@ -119,8 +131,9 @@ function hopPanel(map, solver) {
     const { design } = now;
     design.radius = chosen.radius;
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
-    now.story = solver.solve(design, map.slips, map.tolerance);
+    now.story = solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps);
     haunt();
+    showGaits(design);
     now.time = 0;
     tell();
     draw();
@@ -129,7 +142,7 @@ function hopPanel(map, solver) {
   /** Makes hoops after the design shown, if they are asked for, and says how many of them jump. */
   function haunt() {
     now.ghosts = !ghosts.checked ? [] : madeAfter(now.design, map.scatter, solver.ranges, GHOSTS)
-      .map((design) => ({ design, story: solver.solve(design, map.slips, map.tolerance) }));
+      .map((design) => ({ design, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) }));
     const outcomes = now.ghosts.map(({ story }) => story.outcome);
     const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, map.goals, solver.codes)).length;
     element("ghosts-told").textContent = outcomes.length === 0 ? "" : `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
@@ -151,6 +164,14 @@ function hopPanel(map, solver) {
     if (now.story) then();
   });
   choose(radius, "radius", solve);
+  jumps.addEventListener("change", () => {
+    const good = jumps.value !== "" && jumps.checkValidity();
+    jumps.setAttribute("aria-invalid", String(!good));
+    notice(good ? "" : `How many jumps must be a whole number from ${jumps.min} to ${jumps.max}.`);
+    if (!good) return;
+    chosen.jumps = Number(jumps.value);
+    if (now.design) { solve(); run(!still && now.story !== null); }
+  });
   choose(mass, "mass", () => { tell(); draw(); });
   const seek = (event) => { if (now.timeAt && (event.type === "click" || event.buttons === 1)) { run(false); now.time = now.timeAt(event.clientX); draw(); } };
   plots.addEventListener("click", seek);

@@ -7,7 +7,7 @@ const PLOTS = [
 ];
 
 /** Draws the plots; weight: what forces are multiplied by [N]; radius: of the hoop [m]. Returns the time at a place on the screen. */
-function drawPlots(canvas, motion, liftOffs, outcome, time, weight, radius) {
+function drawPlots(canvas, motion, liftOffs, time, weight, radius) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
   canvas.width = Math.max(1, Math.round(box.width * ratio));
   canvas.height = Math.max(1, Math.round(box.height * ratio));
@@ -50,7 +50,7 @@ function drawPlots(canvas, motion, liftOffs, outcome, time, weight, radius) {
     context.restore();
     // Lift-offs: dashed, the jump's in red.
     for (let i = 0; i < liftOffs.time.length; ++i) {
-      const jump = outcome.status === "jumped" && i + 1 === liftOffs.time.length;
+      const jump = liftOffs.is_jump[i] === 1;
       context.beginPath();
       context.setLineDash(jump ? [] : [4 * ratio, 4 * ratio]);
       context.strokeStyle = jump ? "#d62728" : "#555555";

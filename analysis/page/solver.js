@@ -30,14 +30,16 @@ async function loadSolver(text) {
   };
   const ranges = Object.fromEntries(parameters.map((name, i) => [name, [leapmap.parameter_least(i), leapmap.parameter_most(i)]]));
   const codes = Object.fromEntries(fields.map((name, i) => [name, namesBy((code) => leapmap.code_name(i, code))]));
+  const give = (design) => doubles(leapmap.parameter_values(), parameters.length).set(parameters.map((name) => design[name] ?? defaults[name]));
   return {
     defaults, ranges, codes,
     /**
      * One design in full: {outcome, motion, liftOffs}, in SI but for forces, in weights, and heights, in diameters. interval: of the
-     * motion's samples [s]; 0: as fine as a picture needs.
+     * motion's samples [s]; 0: as fine as a picture needs. jumps: how many it is followed for.
      */
-    solve(design, slips, tolerance, interval = 0) {
-      doubles(leapmap.parameter_values(), parameters.length).set(parameters.map((name) => design[name] ?? defaults[name]));
+    solve(design, slips, tolerance, interval = 0, jumps = 1) {
+      give(design);
+      leapmap.set_jumps(jumps);
       leapmap.solve(slips ? 1 : 0, tolerance, interval);
       const outcome = Object.fromEntries(fields.map((name, i) => [name, word(leapmap.field_text(i)) ?? leapmap.field_value(i)]));
       return {
@@ -45,6 +47,15 @@ async function loadSolver(text) {
         motion: rows(columns, leapmap.points(), leapmap.point_count()),
         liftOffs: rows(liftOffColumns, leapmap.lift_offs(), leapmap.lift_off_count()),
       };
+    },
+    /**
+     * Heights of the jumps that `count` hoops go on making, which differ in one parameter: after `settle` jumps `keep` of each, hoop by
+     * hoop [diameters]; NaN: it makes none.
+     */
+    bifurcate(design, slips, tolerance, { parameter, from, to, count, settle, keep }) {
+      give(design);
+      leapmap.bifurcate(slips ? 1 : 0, tolerance, parameters.indexOf(parameter), from, to, count, settle, keep);
+      return doubles(leapmap.heights(), count * keep).slice();
     },
   };
 }

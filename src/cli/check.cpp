@@ -10,6 +10,7 @@
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
+#include "cli/told_audit.hpp"
 #include "support/posix.hpp"
 #include "support/printable.hpp"
 #include "sweep/parallel.hpp"
@@ -43,6 +44,7 @@ bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
   if (report.sample && report.sample->gradient_designs > 0)
     say("gradient of {} designs by differences in long double: largest error {:.1e}\n",
         grouped(report.sample->gradient_designs), report.sample->gradient_max_error);
+  if (report.sample) say_sequences(*report.sample);
   if (report.whole && !report.sealed)
     say("note     its format is older than 1.4: it has no checksum of all of it\n");
   say("right    {}\n", printable(arguments.path));

@@ -211,6 +211,15 @@ int run(const InfoArguments& arguments) {
         "decide\n",
         compared, told("audit_gradients_wrong"), short_form("audit_gradient_max_error", ".1e"),
         told("audit_gradient_undecided"));
+  if (const std::string compared = map.attribute("audit_jumps_compared");
+      !compared.empty() && (compared != "0" || told("audit_jumps_beyond") != "0"))
+    say("later jumps: {} again, {} beyond what is known of them; {} designs wrong, largest error {}\n",
+        compared, told("audit_jumps_beyond"), told("audit_sequences_wrong"),
+        short_form("audit_jump_max_error", ".1e"));
+  if (const std::string gaits = map.attribute("audit_gaits"); !gaits.empty() && gaits != "0")
+    say("gaits: {} by integration: {} wrong, largest error {}, of a multiplier {}, {} it cannot decide\n",
+        gaits, told("audit_gaits_wrong"), short_form("audit_gait_max_error", ".1e"),
+        short_form("audit_multiplier_max_error", ".1e"), told("audit_gaits_undecided"));
   if (hdf5::has_attribute(map.file(), "retry_designs"))
     say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),
         told("retry_tolerance"));

@@ -152,7 +152,7 @@ int run(const StabilityArguments& arguments) {
 
 void add_stability(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "stability", "find where methods fail: twelve walks into trouble, every method's verdict in each");
+      "stability", "find where methods fail: thirteen walks into trouble, every method's verdict in each");
   auto arguments = std::make_shared<StabilityArguments>();
   command->add_option("-o,--output", arguments->table, "the table to write, HDF5; default: maps/stability.h5")
       ->check(named_file());
@@ -163,7 +163,8 @@ void add_stability(CLI::App& app, int& status) {
       "graze (across the fold where a pair of lift-offs is born), long (up to 10,000 turns to the jump), "
       "step (fixed steps\n"
       "ever longer), tolerance (down to 1e-30), landing (flights that dip below the plane, or start with a "
-      "triple root).\n"
+      "triple root),\n"
+      "chaos (jump after jump of a hoop that has no stable gait).\n"
       "With Coulomb friction: painleve (a slide that just misses the edge where rigid bodies have no "
       "answer), "
       "slow (released\n"

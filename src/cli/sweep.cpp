@@ -13,6 +13,7 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "cli/told_audit.hpp"
 #include "leapmap/version.hpp"
 #include "support/printable.hpp"
 #include "sweep/begin_map.hpp"
@@ -131,6 +132,7 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
     say("gradient {} of them by differences in long double: {} wrong, largest error {:.1e}{}\n",
         grouped(report.gradient_designs), report.gradients_wrong, report.gradient_max_error,
         report.gradient_undecided > 0 ? fmt::format("; {} it cannot decide", report.gradient_undecided) : "");
+  if (!arguments.quiet) say_sequences(report);
   const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
       tell(fmt::format("audit: {} on design {}; see it by: {}", what, told_design(spec, *design),
@@ -141,6 +143,8 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
   complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
   complain(report.first_wrong_gradient,
            "a derivative differs by more than 1e-6 from differences in long double");
+  complain(report.first_wrong_sequence, both + " disagree on later jumps by more than errors grow");
+  complain(report.first_wrong_gait, "integration does not find the gait that is stored");
   complain(report.first_overruled,
            resolved_method(spec.numerics) + " and an integration of the paper's (7) to (9) disagree");
   return disagree(report) ? 1 : 0;

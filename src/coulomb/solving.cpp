@@ -11,7 +11,10 @@ Solving coulomb::solving(const Contestant& contestant, const Scene& scene, long 
   if (contestant.model == RollingModel::energy_integral)
     return {exact(scene, contestant.setting, {}), {}, {}};
   const auto integration = std::make_shared<CoulombIntegration>(options_of(contestant, max_steps));
-  return {one_by_one(integration, scene), [integration] { return integration->evaluations(); }, {}};
+  return {scene.jumps > 1 ? in_sequence(jumps_one_by_one<double>(integration, scene), scene)
+                          : one_by_one(integration, scene),
+          [integration] { return integration->evaluations(); },
+          {}};
 }
 
 }  // namespace leapmap

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -24,6 +25,8 @@ Landed moved(const Landed& at, const StateVector& by) {
   return to;
 }
 
+}  // namespace
+
 double largest_eigenvalue(const StateMatrix& slope) {
   const auto values = slope.eigenvalues();
   double largest = 0.0;
@@ -38,14 +41,23 @@ Scene each_jump_alone(Scene scene) {
   return scene;
 }
 
-}  // namespace
-
-Landed reduced(const Landed& at) {
-  return {.angle = std::remainder(at.angle, two_pi), .spin = at.spin, .slip = at.slip, .normal = at.normal};
+ContactState<DesignDual> by_state(const Landed& at) {
+  ContactState<DesignDual> dual{.angle = DesignDual::parameter(at.angle, 0),
+                                .spin = DesignDual::parameter(at.spin, 1),
+                                .slip = DesignDual(at.slip),
+                                .normal = DesignDual(at.normal)};
+  if (at.slip != 0.0) dual.slip = DesignDual::parameter(at.slip, 2);
+  if (at.normal != 0.0) dual.normal = DesignDual::parameter(at.normal, 3);
+  return dual;
 }
 
-bool is_beyond(const Scene& scene, const Landed& at) {
-  return !(std::abs(at.travel) < two_pi * scene.runway);
+StateMatrix slope_of(const ContactState<DesignDual>& at) {
+  const std::array numbers{&at.angle, &at.spin, &at.slip, &at.normal};
+  StateMatrix slope;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      slope(row, column) = numbers[static_cast<std::size_t>(row)]->by[static_cast<std::size_t>(column)];
+  return slope;
 }
 
 StateVector between(const Landed& a, const Landed& b) {
@@ -73,22 +85,14 @@ void ReturnMap::next(Start start, std::span<const Design> designs, std::span<Lan
 }
 
 bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatrix& slope) {
-  ContactState<DesignDual> dual{.angle = DesignDual::parameter(at.angle, 0),
-                                .spin = DesignDual::parameter(at.spin, 1),
-                                .slip = DesignDual(at.slip),
-                                .normal = DesignDual(at.normal)};
-  if (at.slip != 0.0) dual.slip = DesignDual::parameter(at.slip, 2);
-  if (at.normal != 0.0) dual.normal = DesignDual::parameter(at.normal, 3);
+  ContactState<DesignDual> dual = by_state(at);
   for (int k = 0; k < period; ++k) {
     if (duals_(Start::landing, design, Along::state, dual, {}).status != Status::jumped) return false;
     if (is_beyond(scene_, plain(dual))) return false;
     set_values(dual, reduced(plain(dual)));
   }
   at = plain(dual);
-  const std::array numbers{&dual.angle, &dual.spin, &dual.slip, &dual.normal};
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column)
-      slope(row, column) = numbers[static_cast<std::size_t>(row)]->by[static_cast<std::size_t>(column)];
+  slope = slope_of(dual);
   return slope.allFinite();
 }
 
@@ -115,12 +119,10 @@ bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbi
   return false;
 }
 
-/// Once round the orbit, with times.
-bool ReturnMap::describe(const Design& design, int period, const Landed& start, const StateMatrix& slope,
-                         Orbit& orbit) {
+bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const Design& design, int period,
+                   const Landed& start, Orbit& orbit) {
   orbit = {};
-  orbit.multiplier = largest_eigenvalue(slope);
-  const double second = time_unit(scene_);
+  const double second = time_unit(scene);
   const Hoop<double> hoop = derive<double>(design);
   Landed at = start;
   double time = 0.0, travel = 0.0, work = 0.0;
@@ -128,7 +130,7 @@ bool ReturnMap::describe(const Design& design, int period, const Landed& start, 
     const Landed from = reduced(at);
     at = from;
     Outcome outcome;
-    timed_jumps_(Start::landing, {&design, 1}, {&at, 1}, {&outcome, 1});
+    jumps(Start::landing, {&design, 1}, {&at, 1}, {&outcome, 1});
     if (outcome.status != Status::jumped) return false;
     orbit.jumps.push_back(jump_of(outcome, at.spin));
     orbit.landings.push_back(reduced(at));
@@ -139,8 +141,15 @@ bool ReturnMap::describe(const Design& design, int period, const Landed& start, 
     const bool is_back = between(start, orbit.landings.back()).lpNorm<Eigen::Infinity>() < 1e-8;
     if (is_back && k + 1 < period) return false;  // it is of a shorter period
   }
-  orbit.speed = travel * scene_.radius / time;
+  orbit.speed = travel * scene.radius / time;
   orbit.energy_lost = (travel * hoop.sin_slope + work) / period;
+  return true;
+}
+
+bool ReturnMap::describe(const Design& design, int period, const Landed& start, const StateMatrix& slope,
+                         Orbit& orbit) {
+  if (!go_once_round(timed_jumps_, scene_, design, period, start, orbit)) return false;
+  orbit.multiplier = largest_eigenvalue(slope);
   return true;
 }
 

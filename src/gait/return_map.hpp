@@ -22,12 +22,15 @@ using Landed = ContactState<double>;
 using StateVector = Eigen::Vector4d;
 using StateMatrix = Eigen::Matrix4d;
 
-/// A state without whole turns, time and travel.
-Landed reduced(const Landed& at);
+/// The scene of one jump, from wherever it begins.
+Scene each_jump_alone(Scene scene);
 
-/// Whether a jump has taken the hoop farther than the runway: one that jumps higher and higher is not
-/// followed.
-bool is_beyond(const Scene& scene, const Landed& at);
+/// A state that knows its derivatives by itself; by the normal velocity only where there is one, as by slip.
+ContactState<DesignDual> by_state(const Landed& at);
+/// Those of a state that a map has taken from there.
+StateMatrix slope_of(const ContactState<DesignDual>& at);
+/// By size; of a pair of complex ones the size.
+double largest_eigenvalue(const StateMatrix& slope);
 
 /// How far b is from a, angles the shorter way round.
 StateVector between(const Landed& a, const Landed& b);
@@ -42,6 +45,11 @@ struct Orbit {
   double speed = 0.0;       ///< of the hoop's centre down the plane [m/s]
   double energy_lost = 0.0;  ///< a jump, over (m + m_p) g R
 };
+
+/// Goes `period` jumps on from a landing and tells them, but for the multiplier. False: it does not make
+/// them, or is back before.
+bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const Design& design, int period,
+                   const Landed& start, Orbit& orbit);
 
 /// Goes round orbits of one design after the other. A thread's own workspace.
 class ReturnMap {

@@ -22,6 +22,12 @@ void GaitSolver::solve(std::span<const Design> designs, std::span<Outcome> outco
   }
 }
 
+bool GaitSolver::orbit_of(const Design& design, Orbit& orbit) {
+  settle({&design, 1});
+  look_on();
+  return !going_.empty() && find_orbit(design, seen_[0], orbit);
+}
+
 /// Leaves those designs that go on for so many jumps.
 void GaitSolver::settle(std::span<const Design> designs) {
   going_.clear(), states_.clear();

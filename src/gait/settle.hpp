@@ -18,6 +18,9 @@ class GaitSolver {
   /// Fills in what outcomes tell of gaits.
   void solve(std::span<const Design> designs, std::span<Outcome> outcomes);
 
+  /// The orbit that one design settles on. False: none.
+  bool orbit_of(const Design& design, Orbit& orbit);
+
  private:
   void settle(std::span<const Design> designs);
   void look_on();

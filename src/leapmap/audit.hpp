@@ -38,12 +38,26 @@ struct AuditReport {
   std::size_t gradients_wrong = 0;     ///< designs one of whose derivatives is off by more than 1e-6
   double gradient_max_error = 0.0;     ///< relative; of derivatives below a thousandth, to that
   std::optional<std::size_t> first_wrong_gradient;  ///< the least design number of those
+  // Later jumps' part, where the sweep asks for any: by the second method, as far as the condition allows.
+  std::size_t jumps_compared = 0;  ///< jumps after the first, of all these designs together
+  std::size_t jumps_beyond =
+      0;  ///< jumps that are not: errors have grown by more than 1e5, or the second method is in doubt itself
+  std::size_t sequences_wrong = 0;  ///< designs that make other jumps, or one farther off than errors grow
+  double jump_max_error = 0.0;  ///< the largest of their heights' and times', over how much errors have grown
+  std::optional<std::size_t> first_wrong_sequence;  ///< the least design number of those
+  // Gaits' part: once round each of them by the second method, and its multiplier by differences.
+  std::size_t gaits = 0;              ///< designs that settle on one
+  std::size_t gaits_undecided = 0;    ///< of those, designs that make other jumps a hair away
+  std::size_t gaits_wrong = 0;        ///< designs whose gait is none, or is another
+  double gait_max_error = 0.0;        ///< of height, speed and energy, relative to one more than their size
+  double multiplier_max_error = 0.0;  ///< relative to one more than its size
+  std::optional<std::size_t> first_wrong_gait;  ///< the least design number of those
 };
 
 /// Whether the second method or the referee disagrees on some design, by flags or beyond the tolerance.
 inline bool disagree(const AuditReport& report) {
   return report.first_mismatch || report.first_inaccurate || report.first_overruled ||
-         report.first_wrong_gradient;
+         report.first_wrong_gradient || report.first_wrong_sequence || report.first_wrong_gait;
 }
 
 }  // namespace leapmap

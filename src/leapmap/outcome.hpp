@@ -86,6 +86,8 @@ struct Outcome {
   double slip_distance = none;       ///< slid, either way, from release to the end [R]
   double landing_spin = none;        ///< w after the landing of the jump [sqrt(g/R)]
   double energy_lost = none;         ///< from release to the lift-off of the jump, over (m + m_p) g R
+  // With Scene::jumps > 1, where it is asked for by name:
+  double sequence_condition = none;  ///< what errors of one at the release and at every landing come to
   // With Scene::settle > 0: the gait that the hoop settles on.
   static constexpr std::uint8_t no_gait = 255;  ///< gait_period where jumps go on and none is found
   std::uint8_t gait_period = no_gait;           ///< in jumps; 0: they come to an end
@@ -113,6 +115,11 @@ struct OutcomeNumber {
   double of(const Outcome& outcome) const {
     if (jump == 1) return outcome.*own;
     return jump <= outcome.jumps() ? outcome.later_jumps[jump - 2].*of_jump : Outcome::none;
+  }
+  /// Where an outcome keeps it; nullptr: it makes no such jump.
+  double* in(Outcome& outcome) const {
+    if (jump == 1) return &(outcome.*own);
+    return jump <= outcome.jumps() ? &(outcome.later_jumps[jump - 2].*of_jump) : nullptr;
   }
 };
 

@@ -72,6 +72,7 @@ struct Field {
   std::optional<Friction> only_of{};  ///< the one model that fills it; unset: every model
   bool of_sequence = false;           ///< of scenes with more jumps than one
   bool of_gait = false;               ///< of scenes that look for gaits
+  bool by_name = false;               ///< not among the fields of who names none: it costs too much
 };
 
 /// Whether a design of the scene has it.

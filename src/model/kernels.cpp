@@ -15,15 +15,15 @@ namespace {
 // Made by the compiler: nothing of a set may run before it is chosen.
 constinit const std::array list{
     Model{Friction::sticking, "sticking", "never slips (the paper's model)", false, rolling::exact,
-          rolling::jumps, rolling::gradients, rolling::dual_jumps, rolling::integration, rolling::refined,
-          rolling::tell_exactly,
+          rolling::jumps, rolling::gradients, rolling::dual_jumps, rolling::integration,
+          rolling::integrated_jumps, rolling::refined, rolling::tell_exactly,
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
             return rolling::tell_by_integration(design, scene, options, interval);
           },
           rolling::solving},
     Model{Friction::coulomb, "coulomb", "slips, lands and hops on", true, coulomb::exact, coulomb::jumps,
-          coulomb::gradients, coulomb::dual_jumps, coulomb::integration, coulomb::refined,
-          coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving}};
+          coulomb::gradients, coulomb::dual_jumps, coulomb::integration, coulomb::integrated_jumps,
+          coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving}};
 
 constinit const Kernels of_this_set{list, static_cast<int>(Lanes<Batch>::count)};
 

@@ -31,6 +31,8 @@ struct Model {
   DualJumpSolver (*dual_jumps)(const Scene&, double tolerance);
   /// By integration in time.
   Solver (*integration)(const Scene&, const IntegrationOptions&);
+  /// The same from any state to the landing of the next jump.
+  JumpSolver<double> (*integrated_jumps)(const Scene&, const IntegrationOptions&);
   /// By the exact solver in long double.
   Outcome (*refined)(const Design&, const Scene&);
   /// One design's motion, sampled every `interval` [s]; 0: not sampled.

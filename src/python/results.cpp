@@ -50,7 +50,7 @@ Columns::Columns(const std::vector<std::string>& fields, const Scene& scene,
       throw InputError(
           fmt::format("fields = {}: is no field of this model; allowed: {}", name, fmt::join(known, ", ")));
   for (const Field* field : there) {
-    if (!fields.empty() && std::ranges::find(fields, field->name) == fields.end()) continue;
+    if (fields.empty() ? field->by_name : std::ranges::find(fields, field->name) == fields.end()) continue;
     py::array array(type_of(*field), shape);
     columns_.push_back({field, array, array.mutable_data()});
   }

@@ -21,9 +21,12 @@ JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wan
 }
 
 Solver integration(const Scene& scene, const IntegrationOptions& options) {
-  const auto solver = std::make_shared<RollingIntegration>(options);
-  if (scene.jumps == 1) return one_by_one(solver, scene);
-  return in_sequence(jumps_one_by_one<double>(solver, scene), scene);
+  if (scene.jumps > 1) return in_sequence(integrated_jumps(scene, options), scene);
+  return one_by_one(std::make_shared<RollingIntegration>(options), scene);
+}
+
+JumpSolver<double> integrated_jumps(const Scene& scene, const IntegrationOptions& options) {
+  return jumps_one_by_one<double>(std::make_shared<RollingIntegration>(options), scene);
 }
 
 }  // namespace leapmap::rolling

@@ -26,6 +26,9 @@ DualJumpSolver dual_jumps(const Scene& scene, double tolerance);
 /// By integration in time (rolling_integration.hpp).
 Solver integration(const Scene& scene, const IntegrationOptions& options);
 
+/// The same from any state to the next jump's landing.
+JumpSolver<double> integrated_jumps(const Scene& scene, const IntegrationOptions& options);
+
 /// The exact solver in long double: a reference for studies and tests.
 Outcome refined(const Design& design, const Scene& scene);
 

@@ -12,7 +12,10 @@ namespace {
 template <class Model>
 Solving integrate(const IntegrationOptions& options, const Scene& scene) {
   const auto integration = std::make_shared<Integration<Model>>(options);
-  Solving solving{one_by_one(integration, scene), [integration] { return integration->evaluations(); }, {}};
+  Solving solving{scene.jumps > 1 ? in_sequence(jumps_one_by_one<double>(integration, scene), scene)
+                                  : one_by_one(integration, scene),
+                  [integration] { return integration->evaluations(); },
+                  {}};
   if constexpr (Model::dimension > 2)
     solving.drift = [integration, scene](const Design& design) {
       Model model;

@@ -23,8 +23,8 @@ namespace leapmap {
 enum class Finding {
   fine,  ///< error within the tolerance asked (1e-6 of a fixed step, which asks for none; no tolerance below
          ///< 1e-12 counts), or within 100 roundings times the condition
-  undecided,  ///< four ulps of an input, a hundred with friction, change status, flag or candidates: no
-              ///< method in double can be asked
+  undecided,  ///< four ulps of an input, a hundred with friction, change status, flag, candidates or the
+              ///< number of jumps, or the answer by more than 5 %: no method in double can be asked
   lossy,      ///< digits are lost beyond that, but not beyond 5 %
   failed,     ///< the method says that it failed
   wrong       ///< status, flag or candidates are wrong, or the error is beyond 5 %, and nothing says so
@@ -59,8 +59,7 @@ struct StabilityRow {
   std::string control;   ///< "tolerance", "step" or "rule" (landing)
   double setting = 0.0;  ///< tolerance or step; NaN for a rule
   double x = 0.0;
-  double error = 0.0;  ///< largest of jump_height's, absolute [diameters], jump_time's and first_jump_time's,
-                       ///< relative; NaN where the finding is failed or flags are wrong
+  double error = 0.0;  ///< largest of heights', absolute [diameters], and of times to lift-offs, relative; NaN where the finding is failed or flags are wrong
   double energy_drift =
       0.0;                 ///< at the jump, over 1 + its kinetic energy; NaN without a jump or with friction
   double condition = 0.0;  ///< times that a relative change of the inputs comes back in the answer
@@ -75,7 +74,7 @@ struct StabilityOptions {
   bool quick = false;  ///< fewer places and fewer steps before a method gives up
 };
 
-/// The cases whose subjects are designs: needle, release, graze, long, step, tolerance, and those of
+/// The cases whose subjects are designs: needle, release, graze, long, step, tolerance, chaos, and those of
 /// friction_cases.
 std::vector<StabilityCase> stability_cases(const StabilityOptions& options);
 

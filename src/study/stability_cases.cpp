@@ -118,6 +118,20 @@ StabilityCase unreachable_tolerances(bool quick) {
   return tolerances;
 }
 
+/// Jump after jump of a hoop with no stable gait: errors grow by a factor from each landing to the next.
+StabilityCase chaos(bool quick) {
+  StabilityCase chaos{"chaos", "jumps", {}, usual_contestants(Friction::sticking)};
+  for (const long jumps : {1, 2, 5, 10, 15, 20, 25, 30, 35, 40, 50, 60}) {
+    if (quick && jumps != 1 && jumps != 10 && jumps != 40) continue;
+    StabilitySubject subject{static_cast<double>(jumps),
+                             {.slope = 0.35, .mass_ratio = 3.0, .offset_ratio = 0.8},
+                             {.runway = 1000.0}};
+    subject.scene.jumps = jumps;
+    chaos.subjects.push_back(subject);
+  }
+  return chaos;
+}
+
 }  // namespace
 
 std::vector<Contestant> usual_contestants(Friction friction) {
@@ -137,7 +151,8 @@ std::vector<Contestant> usual_contestants(Friction friction) {
 std::vector<StabilityCase> stability_cases(const StabilityOptions& options) {
   std::vector<StabilityCase> cases{needle(options.quick),     release(options.quick),
                                    graze(options.quick),      long_run(options.quick),
-                                   long_steps(options.quick), unreachable_tolerances(options.quick)};
+                                   long_steps(options.quick), unreachable_tolerances(options.quick),
+                                   chaos(options.quick)};
   for (StabilityCase& with_friction : friction_cases(options.quick))
     cases.push_back(std::move(with_friction));
   if (options.quick)

@@ -32,7 +32,7 @@ class Integrations {
         beside.*input *= 1.0 + way * own_error;
         if (!(beside.offset_ratio <= 1.0 && beside.restitution <= 1.0)) continue;
         const Outcome there = fine(beside);
-        if (there.status != Status::failed && !same_flags(there, outcome)) return false;
+        if (there.status != Status::failed && !same_course(there, outcome)) return false;
       }
     return true;
   }
@@ -65,6 +65,10 @@ std::vector<double Design::*> inputs_of(Friction friction) {
   return inputs;
 }
 
+bool same_course(const Outcome& a, const Outcome& b) {
+  return same_flags(a, b) && a.jumps() == b.jumps();
+}
+
 double error_of(const Outcome& ours, const Outcome& right) {
   double error = 0.0;
   const auto worsen = [&](double by) { error = by > error || std::isnan(by) ? by : error; };
@@ -72,6 +76,10 @@ double error_of(const Outcome& ours, const Outcome& right) {
   if (right.status == Status::jumped) {
     worsen(std::abs(ours.jump_height - right.jump_height));
     worsen(std::abs(ours.jump_time / right.jump_time - 1.0));
+  }
+  for (std::size_t k = 0; k < right.later_jumps.size(); ++k) {
+    worsen(std::abs(ours.later_jumps[k].height - right.later_jumps[k].height));
+    worsen(std::abs(ours.later_jumps[k].time / right.later_jumps[k].time - 1.0));
   }
   return error;
 }
@@ -86,12 +94,12 @@ std::vector<Truth> truths_of(std::span<const Design> designs, const Scene& scene
   for (const Design& design : designs) {
     const Outcome refined = refined_outcome(design, scene), fine = by_time.fine(design);
     const Outcome coarse = fine.status == Status::failed ? fine : by_time.coarse(design);
-    if (fine.status == Status::failed || !same_flags(fine, coarse)) {
+    if (fine.status == Status::failed || !same_course(fine, coarse)) {
       truths.push_back({refined, Witness::long_double});
       continue;
     }
     const double doubt = own_error + slack * error_of(coarse, fine);
-    if (same_flags(refined, fine) && error_of(refined, fine) <= doubt)
+    if (same_course(refined, fine) && error_of(refined, fine) <= doubt)
       truths.push_back({refined, Witness::both});
     else if (by_time.is_sure(design, fine))
       truths.push_back({fine, Witness::integration});

@@ -36,8 +36,11 @@ std::vector<double Design::*> inputs_of(Friction friction);
 /// The exact solver's answer in long double, to some roundings.
 Outcome refined_outcome(const Design& design, const Scene& scene);
 
-/// The largest of the errors of height, absolute [hoop diameters], and of both times, relative. Of outcomes
-/// with the same flags.
+/// Whether two methods see the same of the whole sequence: flags, and how many jumps.
+bool same_course(const Outcome& a, const Outcome& b);
+
+/// The largest of the errors of heights, absolute [hoop diameters], and of times, relative. Of outcomes with
+/// the same course.
 double error_of(const Outcome& ours, const Outcome& right);
 
 }  // namespace leapmap

@@ -19,8 +19,6 @@ namespace {
 
 constexpr double audit_tolerance = 1e-13, coarser_tolerance = 1e-12;
 constexpr std::size_t usual_referee_every = 10;
-constexpr double audit_reach =
-    1e-11;  // relative: how far off an integration at that tolerance may see a flag flip
 constexpr double own_error = 1e-11;  // an integration's at that tolerance, over a few revolutions
 constexpr double adaptive_slack = 100.0;
 
@@ -46,7 +44,7 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
   if (d.flags) return d;
   for (const Field& field : map_fields()) {
     const auto* quantity = std::get_if<Quantity>(&field.source);
-    if (!quantity || field.of_gait) continue;  // of which a stepper tells nothing
+    if (!quantity || field.of_sequence || field.of_gait) continue;  // judged elsewhere
     const double a = ours.*quantity->member, b = theirs.*quantity->member;
     if (std::isnan(a) && std::isnan(b)) continue;
     const Measure measure = quantity->measure;
@@ -63,21 +61,12 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
   return d;
 }
 
-/// The design with each parameter some relative distance away, either way; 0: one unit in the last place.
-std::vector<Design> beside(const Design& design, const Spec& spec, double distance) {
-  std::vector<Design> designs;
-  for (const Option* parameter : design_parameters(spec)) {
-    const auto member = std::get<ParameterSlot>(parameter->slot).member;
-    const double value = design.*member;
-    if (value == 0.0) continue;  // as written, and the number beside it is no rounding of it
-    for (const double way : {-1.0, 1.0}) {
-      Design nudged = design;
-      nudged.*member =
-          distance > 0.0 ? value * (1.0 + way * distance) : std::nextafter(value, way * HUGE_VAL);
-      if (in_range(*parameter, nudged.*member)) designs.push_back(nudged);
-    }
-  }
-  return designs;
+/// As a map in f4 keeps it.
+void round_to_single(Outcome& outcome) {
+  const auto round = [](double& value) { value = static_cast<float>(value); };
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source)) round(outcome.*quantity->member);
+  for (Jump& jump : outcome.later_jumps) round(jump.height), round(jump.time);
 }
 
 }  // namespace
@@ -111,12 +100,7 @@ std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, c
   const GradientWanted& derivatives = gradients.wanted();
   for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile, first, outcomes.size())) {
     samples.push_back({tiling.number(tile, drawn), outcomes[drawn - first]});
-    for (const Field& field : map_fields()) {
-      const auto* quantity = std::get_if<Quantity>(&field.source);
-      if (!quantity) continue;
-      double& value = samples.back().outcome.*quantity->member;
-      if (single) value = static_cast<float>(value);
-    }
+    if (single) round_to_single(samples.back().outcome);
     for (std::size_t i = 0; i < derivatives.of.size(); ++i)
       for (std::size_t j = 0; j < derivatives.by.size(); ++j) {
         const double value = gradients.column(i, j)[drawn - first];
@@ -144,7 +128,8 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
           map.read(std::string(find_gradient(of, differentiable[by])->name), tile);
       for (std::size_t i = 0; i < samples.size(); ++i) samples[i].gradient.push_back(values[drawn[i]]);
     }
-  for (const Field& field : map_fields()) {
+  for (const Field* each : fields_of(spec.scene)) {
+    const Field& field = *each;
     if (samples.empty() || !map.has(std::string(field.name))) continue;
     const auto place = [&](const auto& values, const auto& put) {
       for (std::size_t i = 0; i < samples.size(); ++i) put(samples[i].outcome, values[drawn[i]]);
@@ -157,6 +142,10 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
     const std::vector<double> values = map.read(std::string(field.name), tile);
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
       place(values, [&](Outcome& outcome, double value) { outcome.*quantity->member = value; });
+    } else if (const auto* later = std::get_if<OfJump>(&field.source)) {
+      place(values, [&](Outcome& outcome, double value) {
+        if (double* kept = later->number.in(outcome)) *kept = value;
+      });
     } else {
       const auto& code = std::get<Code>(field.source);
       place(values,
@@ -181,6 +170,11 @@ AuditReport begin_audit(const Spec& spec) {
 
 namespace {
 
+Spec first_jump_of(Spec spec) {
+  spec.scene.jumps = 1, spec.scene.settle = 0;
+  return spec;
+}
+
 Solver solver_by_referee(const Scene& scene, double tolerance) {
   return [referee = std::make_shared<referee::Referee>(scene, tolerance)](std::span<const Design> designs,
                                                                           std::span<Outcome> outcomes) {
@@ -193,11 +187,13 @@ Solver solver_by_referee(const Scene& scene, double tolerance) {
 Auditor::Auditor(const Spec& spec, std::size_t referee_every)
     : spec_(spec),
       space_(spec),
-      second_{make_solver(spec, audit_method(spec.numerics), audit_tolerance),
-              make_solver(spec, audit_method(spec.numerics), coarser_tolerance)},
+      second_{make_solver(first_jump_of(spec), audit_method(spec.numerics), audit_tolerance),
+              make_solver(first_jump_of(spec), audit_method(spec.numerics), coarser_tolerance)},
       referee_{solver_by_referee(spec.scene, audit_tolerance),
                solver_by_referee(spec.scene, coarser_tolerance)},
       gradients_(spec),
+      sequences_(spec, begin_audit(spec).allowed_error),
+      gaits_(spec, begin_audit(spec).allowed_error),
       referee_every_(referee_every),
       allowed_(begin_audit(spec).allowed_error) {
   if (referee_every == 0) {
@@ -206,21 +202,8 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
   }
 }
 
-/// What a judge itself makes of the design with one unit in the last place of each input changed, and at a
-/// coarser tolerance; of flags, also with the inputs changed by as much as its own error. The solver under
-/// audit has no say in it.
-std::vector<Outcome> Auditor::outcomes_beside(const Judge& judge, const Design& design, bool of_flags) const {
-  std::vector<Design> designs = beside(design, spec_, 0.0);
-  if (of_flags) std::ranges::copy(beside(design, spec_, audit_reach), std::back_inserter(designs));
-  std::vector<Outcome> outcomes(designs.size() + 1);
-  judge.solve(designs, std::span(outcomes).first(designs.size()));
-  judge.coarser({&design, 1}, {&outcomes.back(), 1});
-  return outcomes;
-}
-
 auto Auditor::verdict_of(const Judge& judge, const Design& design, const Outcome& ours) const -> Verdict {
-  Outcome theirs;
-  judge.solve({&design, 1}, {&theirs, 1});
+  const Outcome theirs = solved(judge.solve, design);
   Verdict verdict;
   verdict.difference = difference(ours, theirs, spec_.output);
   verdict.undecided = theirs.status == Status::failed;
@@ -229,7 +212,7 @@ auto Auditor::verdict_of(const Judge& judge, const Design& design, const Outcome
   verdict.inaccurate = !verdict.wrong_flags && exceeds(verdict.difference, {}, ours);
   if (!verdict.wrong_flags && !verdict.inaccurate) return verdict;
 
-  std::vector<Outcome> beside = outcomes_beside(judge, design, verdict.wrong_flags);
+  std::vector<Outcome> beside = outcomes_beside(judge, design, spec_, verdict.wrong_flags);
   if (std::ranges::all_of(beside, [&](const Outcome& o) { return same_flags(o, theirs); })) {
     Difference doubt;
     for (const Outcome& outcome : beside) doubt = larger(doubt, difference(outcome, theirs), 10.0);
@@ -294,6 +277,8 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
     return;
   }
   const Design design = space_.at(number);
+  sequences_.look_at(number, design, ours, report);
+  gaits_.look_at(number, design, ours, report);
   if (!sample.gradient.empty()) gradients_.look_at(number, design, ours, sample.gradient, report);
   Verdict verdict = verdict_of(second_, design, ours);
   std::optional<Verdict> ruling;

@@ -13,8 +13,11 @@
 #include "leapmap/outcome.hpp"
 #include "map/reader.hpp"
 #include "map/tile.hpp"
+#include "sweep/audit_gait.hpp"
 #include "sweep/audit_gradient.hpp"
+#include "sweep/audit_judge.hpp"
 #include "sweep/audit_report.hpp"
+#include "sweep/audit_sequence.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/solver.hpp"
 #include "sweep/spec.hpp"
@@ -71,17 +74,12 @@ class Auditor {
   void look_at(const AuditSample& sample, AuditReport& report) const;
 
  private:
-  /// A method that judges another, and itself at a coarser tolerance.
-  struct Judge {
-    Solver solve, coarser;
-  };
   struct Verdict {
     bool undecided = false, wrong_flags = false, inaccurate = false;
     AuditDifference difference;
 
     bool convicts() const { return !undecided && (wrong_flags || inaccurate); }
   };
-  std::vector<Outcome> outcomes_beside(const Judge& judge, const Design& design, bool of_flags) const;
   Verdict verdict_of(const Judge& judge, const Design& design, const Outcome& ours) const;
   Verdict verdict_among(const Outcome& ours, const std::vector<Outcome>& beside) const;
   bool exceeds(const AuditDifference& d, const AuditDifference& doubt, const Outcome& ours) const;
@@ -90,6 +88,8 @@ class Auditor {
   DesignSpace space_;
   Judge second_, referee_;
   GradientAuditor gradients_;
+  SequenceAuditor sequences_;
+  GaitAuditor gaits_;
   std::size_t referee_every_;
   double allowed_;
 };

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "leapmap/errors.hpp"
+#include "leapmap/outcome.hpp"
 #include "map/tile.hpp"
 
 namespace leapmap {
@@ -36,6 +37,17 @@ void merge(AuditReport& report, const AuditReport& other) {
   report.gradients_wrong += other.gradients_wrong;
   report.gradient_max_error = std::max(report.gradient_max_error, other.gradient_max_error);
   least(report.first_wrong_gradient, other.first_wrong_gradient);
+  report.jumps_compared += other.jumps_compared;
+  report.jumps_beyond += other.jumps_beyond;
+  report.sequences_wrong += other.sequences_wrong;
+  report.jump_max_error = std::max(report.jump_max_error, other.jump_max_error);
+  least(report.first_wrong_sequence, other.first_wrong_sequence);
+  report.gaits += other.gaits;
+  report.gaits_undecided += other.gaits_undecided;
+  report.gaits_wrong += other.gaits_wrong;
+  report.gait_max_error = std::max(report.gait_max_error, other.gait_max_error);
+  report.multiplier_max_error = std::max(report.multiplier_max_error, other.multiplier_max_error);
+  least(report.first_wrong_gait, other.first_wrong_gait);
 }
 
 namespace {
@@ -46,6 +58,7 @@ struct AuditAttribute {
   const char* name;
   Member member;
   int since;
+  long most = 1;  ///< of a count, a design
 };
 using Count = AuditAttribute<std::size_t AuditReport::*>;
 using Error = AuditAttribute<double AuditReport::*>;
@@ -60,17 +73,28 @@ constexpr std::array counts{Count{"audit_designs", &AuditReport::designs, 0},
                             Count{"audit_overruled", &AuditReport::overruled, 5},
                             Count{"audit_gradient_designs", &AuditReport::gradient_designs, 7},
                             Count{"audit_gradient_undecided", &AuditReport::gradient_undecided, 7},
-                            Count{"audit_gradients_wrong", &AuditReport::gradients_wrong, 7}};
+                            Count{"audit_gradients_wrong", &AuditReport::gradients_wrong, 7},
+                            Count{"audit_jumps_compared", &AuditReport::jumps_compared, 10, most_jumps},
+                            Count{"audit_jumps_beyond", &AuditReport::jumps_beyond, 10, most_jumps},
+                            Count{"audit_sequences_wrong", &AuditReport::sequences_wrong, 10},
+                            Count{"audit_gaits", &AuditReport::gaits, 10},
+                            Count{"audit_gaits_undecided", &AuditReport::gaits_undecided, 10},
+                            Count{"audit_gaits_wrong", &AuditReport::gaits_wrong, 10}};
 constexpr std::array errors{Error{"audit_max_abs_height_error", &AuditReport::max_abs_height_error, 0},
                             Error{"audit_max_rel_time_error", &AuditReport::max_rel_time_error, 0},
                             Error{"audit_max_rel_motion_error", &AuditReport::max_rel_motion_error, 5},
                             Error{"audit_allowed_error", &AuditReport::allowed_error, 4},
                             Error{"audit_referee_max_error", &AuditReport::referee_max_error, 5},
-                            Error{"audit_gradient_max_error", &AuditReport::gradient_max_error, 7}};
+                            Error{"audit_gradient_max_error", &AuditReport::gradient_max_error, 7},
+                            Error{"audit_jump_max_error", &AuditReport::jump_max_error, 10},
+                            Error{"audit_gait_max_error", &AuditReport::gait_max_error, 10},
+                            Error{"audit_multiplier_max_error", &AuditReport::multiplier_max_error, 10}};
 constexpr std::array firsts{First{"audit_first_mismatch", &AuditReport::first_mismatch, 4},
                             First{"audit_first_inaccurate", &AuditReport::first_inaccurate, 4},
                             First{"audit_first_overruled", &AuditReport::first_overruled, 5},
-                            First{"audit_first_wrong_gradient", &AuditReport::first_wrong_gradient, 7}};
+                            First{"audit_first_wrong_gradient", &AuditReport::first_wrong_gradient, 7},
+                            First{"audit_first_wrong_sequence", &AuditReport::first_wrong_sequence, 10},
+                            First{"audit_first_wrong_gait", &AuditReport::first_wrong_gait, 10}};
 
 }  // namespace
 
@@ -98,7 +122,7 @@ AuditReport read_audit(const MapReader& map) {
     return value;
   };
   for (const auto& row : counts)
-    if (has(row)) report.*row.member = static_cast<std::size_t>(count(row.name, 0, designs));
+    if (has(row)) report.*row.member = static_cast<std::size_t>(count(row.name, 0, designs * row.most));
   for (const auto& row : errors)
     if (has(row)) report.*row.member = hdf5::read_number(map.file(), row.name);
   for (const auto& row : firsts)

@@ -114,6 +114,9 @@ void check_sample(Check& check) {
        fmt::format("the map differs by more than {:.1e} from {}", audited.allowed_error, audited.method));
   tell(audited.first_wrong_gradient,
        "a derivative differs by more than 1e-6 from differences in long double");
+  tell(audited.first_wrong_sequence,
+       "a later jump differs from " + audited.method + " by more than errors grow");
+  tell(audited.first_wrong_gait, "integration does not find the gait that the map has");
   tell(audited.first_overruled, "the map differs from an integration of the paper's (7) to (9)");
   check.report.sample = audited;
 }

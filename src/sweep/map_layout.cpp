@@ -22,7 +22,7 @@ MapAxis describe(const Option& option, std::vector<double> values) {
 }  // namespace
 
 bool stores(const Spec& spec, const Field& field) {
-  const bool silent = !has(spec.scene, field);
+  const bool silent = !has(spec.scene, field) || field.by_name;
   return stores(spec.output, field.name) && !(spec.output.fields.empty() && silent);
 }
 

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 
+#include "gait/error_growth.hpp"
 #include "gait/settle.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "sweep/map_layout.hpp"
 
 namespace leapmap {
 
@@ -29,23 +31,49 @@ Wanted wanted_of(const Output& output) {
           .descent = stored("flight_time") || stored("dip")};
 }
 
+bool asks_for(const Spec& spec, bool Field::*kind) {
+  return std::ranges::any_of(fields_of(spec.scene),
+                             [&](const Field* field) { return field->*kind && stores(spec, *field); });
+}
+
+/// The first jump alone, where nothing is asked for of later ones.
+Scene scene_asked(const Spec& spec) {
+  Scene scene = spec.scene;
+  const bool derives = std::ranges::any_of(gradients_of(spec).of, [](const auto& of) { return of.jump > 1; });
+  if (!derives && !asks_for(spec, &Field::of_sequence)) scene.jumps = 1;
+  return scene;
+}
+
+/// Fills in what comes of whole sequences, once the designs are solved; empty: nothing is asked for.
+Solver afterwards(const Spec& spec) {
+  const double tolerance = spec.numerics.tolerance;
+  std::shared_ptr<ErrorGrowth> growth;
+  std::shared_ptr<GaitSolver> gaits;
+  if (spec.scene.jumps > 1 && stores(spec, *find_field("sequence_condition")))
+    growth = std::make_shared<ErrorGrowth>(spec.scene, tolerance);
+  if (spec.scene.settle > 0 && asks_for(spec, &Field::of_gait))
+    gaits = std::make_shared<GaitSolver>(spec.scene, tolerance);
+  if (!growth && !gaits) return {};
+  return [growth, gaits](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    if (growth) growth->tell(designs, outcomes);
+    if (gaits) gaits->solve(designs, outcomes);
+  };
+}
+
 }  // namespace
 
 Solver make_solver(const Spec& spec) {
-  if (spec.scene.settle > 0) {
-    Spec without = spec;
-    without.scene.settle = 0;
-    return [solver = make_solver(without),
-            gaits = std::make_shared<GaitSolver>(spec.scene, spec.numerics.tolerance)](
-               std::span<const Design> designs, std::span<Outcome> outcomes) {
-      solver(designs, outcomes);
-      gaits->solve(designs, outcomes);
-    };
-  }
-  const Model& model = model_of(spec.scene);
-  if (resolved_method(spec.numerics) != "exact")
-    return model.integration(spec.scene, integration_options(spec.numerics));
-  return model.exact(spec.scene, spec.numerics.tolerance, wanted_of(spec.output));
+  const Scene scene = scene_asked(spec);
+  const Model& model = model_of(scene);
+  Solver solver = resolved_method(spec.numerics) == "exact"
+                      ? model.exact(scene, spec.numerics.tolerance, wanted_of(spec.output))
+                      : model.integration(scene, integration_options(spec.numerics));
+  const Solver after = afterwards(spec);
+  if (!after) return solver;
+  return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    solver(designs, outcomes);
+    after(designs, outcomes);
+  };
 }
 
 GradientWanted gradients_of(const Spec& spec) {
@@ -70,17 +98,16 @@ GradientSolver make_gradient_solver(const Spec& spec) {
   if (asked.of.empty())
     return [solver = make_solver(spec)](std::span<const Design> designs, std::span<Outcome> outcomes,
                                         Gradients&) { solver(designs, outcomes); };
-  if (spec.scene.settle > 0) {
-    Spec without = spec;
-    without.scene.settle = 0;
-    return [solver = make_gradient_solver(without),
-            gaits = std::make_shared<GaitSolver>(spec.scene, spec.numerics.tolerance)](
-               std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
-      solver(designs, outcomes, gradients);
-      gaits->solve(designs, outcomes);
-    };
-  }
-  return model_of(spec.scene).gradients(spec.scene, spec.numerics.tolerance, wanted_of(spec.output), asked);
+  const Scene scene = scene_asked(spec);
+  GradientSolver solver =
+      model_of(scene).gradients(scene, spec.numerics.tolerance, wanted_of(spec.output), asked);
+  const Solver after = afterwards(spec);
+  if (!after) return solver;
+  return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes,
+                                             Gradients& gradients) {
+    solver(designs, outcomes, gradients);
+    after(designs, outcomes);
+  };
 }
 
 Solver make_solver(const Spec& spec, std::string_view method, double tolerance) {
@@ -91,10 +118,15 @@ Solver make_solver(const Spec& spec, std::string_view method, double tolerance) 
 
 Motion tell(const Spec& spec, double interval) {
   const Model& model = model_of(spec.scene);
-  return resolved_method(spec.numerics) == "exact"
-             ? model.tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
-             : model.tell_by_integration(spec.design, spec.scene, integration_options(spec.numerics),
-                                         interval);
+  Motion motion =
+      resolved_method(spec.numerics) == "exact"
+          ? model.tell_exactly(spec.design, spec.scene, spec.numerics.tolerance, interval)
+          : model.tell_by_integration(spec.design, spec.scene, integration_options(spec.numerics), interval);
+  Spec everything = spec;
+  everything.output.fields.clear();
+  for (const Field* field : fields_of(spec.scene)) everything.output.fields.emplace_back(field->name);
+  if (const Solver after = afterwards(everything)) after({&spec.design, 1}, {&motion.outcome, 1});
+  return motion;
 }
 
 Motion tell(const Spec& spec, std::string_view method, double tolerance) {

@@ -28,7 +28,8 @@ GradientSolver make_gradient_solver(const Spec& spec);
 /// The solver of a method other than the spec's: exact at that tolerance, or one of GSL's steppers.
 Solver make_solver(const Spec& spec, std::string_view method, double tolerance);
 
-/// The motion of the spec's design by its method, sampled every `interval` [s]; 0: not sampled.
+/// The motion of the spec's design by its method, with every field of its outcome, sampled every `interval`
+/// [s]; 0: not sampled.
 Motion tell(const Spec& spec, double interval);
 
 /// Its phases and lift-offs by another method, as make_solver has it.

@@ -2,6 +2,9 @@
 /// Where the hoop is, and how it moves, in contact with the plane or leaving it.
 #pragma once
 
+#include <cmath>
+#include <numbers>
+
 #include "physics/flight.hpp"
 #include "physics/rolling.hpp"
 
@@ -15,6 +18,16 @@ struct ContactState {
   S slip = S(0);    ///< v = x' - w
   S normal = S(0);  ///< v_n with which a flight begins: of a rebound above zero
 };
+
+/// A state without whole turns, time and travel, on which nothing depends that comes after it.
+template <class S>
+ContactState<S> reduced(const ContactState<S>& at) {
+  using std::remainder;
+  return {.angle = remainder(at.angle, S(2) * std::numbers::pi_v<S>),
+          .spin = at.spin,
+          .slip = at.slip,
+          .normal = at.normal};
+}
 
 template <class S>
 ContactState<double> in_double(const ContactState<S>& at) {

@@ -44,6 +44,12 @@ ContactState<S> released(const Design& design) {
   return {.angle = S(design.release_angle), .spin = S(design.release_spin)};
 }
 
+/// Whether the hoop has come farther than the runway, either way.
+template <class S>
+bool is_beyond(const Scene& scene, const ContactState<S>& at) {
+  return !(std::abs(at.travel) < S(2) * std::numbers::pi_v<S> * S(scene.runway));
+}
+
 inline Jump jump_of(const Outcome& outcome, double landing_spin) {
   return {outcome.jump_height,   outcome.jump_time,   outcome.jump_angle, outcome.jump_spin,
           outcome.jump_distance, outcome.flight_time, landing_spin};
@@ -69,9 +75,8 @@ class Sequences {
  private:
   /// One jump more of those that still go on.
   void go_on(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
-    const S runway = S(2) * std::numbers::pi_v<S> * S(scene.runway);
     std::erase_if(going_, [&](std::size_t i) {
-      const bool is_over = !(std::abs(states_[i].travel) < runway);
+      const bool is_over = is_beyond(scene, states_[i]);
       if (is_over) outcomes[i].sequence_end = Status::no_jump;
       return is_over;
     });

@@ -7,13 +7,17 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "coulomb/coulomb.hpp"
 #include "coulomb/model.hpp"
 #include "model/fields.hpp"
 #include "model/parameters.hpp"
+#include "rolling/exact.hpp"
 #include "rolling/model.hpp"
 
 namespace leapmap {
@@ -22,7 +26,8 @@ namespace {
 /// What a point of the motion holds, in this order; lengths in m, times in s, forces in weights.
 constexpr std::array column_names{"t", "phi", "spin", "x", "y", "normal_force", "friction", "phase"};
 /// Likewise a lift-off.
-constexpr std::array lift_off_names{"time", "angle", "spin", "height", "apex_time", "flight_time", "dip"};
+constexpr std::array lift_off_names{"time",      "angle",       "spin", "height",
+                                    "apex_time", "flight_time", "dip",  "is_jump"};
 
 /// The models' motions, in the order of Friction.
 constexpr std::array tells{rolling::tell_exactly, coulomb::tell_exactly};
@@ -41,13 +46,45 @@ struct Page {
       parameters.push_back(value_of(parameter, design, scene));
   }
 
+  Design design() const {
+    Design design;
+    Scene scene;
+    fill(design, scene);
+    return design;
+  }
+  Scene scene(int friction) const {
+    Design design;
+    Scene scene;
+    fill(design, scene);
+    scene.friction = static_cast<Friction>(friction);
+    scene.jumps = jumps;
+    return scene;
+  }
+
   std::vector<double> parameters;
+  long jumps = 1;
   Outcome outcome;
   std::string text;
   std::vector<std::array<double, column_names.size()>> points;
   std::vector<std::array<double, lift_off_names.size()>> lift_offs;
+  std::vector<double> heights;
+
+ private:
+  void fill(Design& design, Scene& scene) const {
+    const auto all = leapmap::parameters();
+    for (std::size_t i = 0; i < all.size(); ++i) value_of(all[i], design, scene) = parameters[i];
+  }
 };
 Page page;
+
+JumpSolver<double> jump_solver(const Scene& scene, double tolerance) {
+  if (scene.friction == Friction::coulomb)
+    return jumps_one_by_one<double>(std::make_shared<CoulombSolver<double>>(tolerance), scene);
+  constexpr Wanted heights_only{.first_jump_time = false, .jump_time = false, .descent = true};
+  return [solver = std::make_shared<ExactSolver<Batch>>(tolerance, heights_only), scene](
+             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+             std::span<Outcome> outcomes) { solver->solve(start, designs, states, scene, outcomes); };
+}
 
 template <std::size_t n>
 const char* name_in(const std::array<const char*, n>& names, int i) {
@@ -94,11 +131,8 @@ LEAPMAP_EXPORT double* parameter_values() { return page.parameters.data(); }
 /// Solves the design to a tolerance of times, and its motion every `interval` [s]; 0: as often as a picture
 /// needs, 400 to 4,000 times in all. friction: a Friction's number.
 LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
-  Design design;
-  Scene scene;
-  scene.friction = static_cast<Friction>(friction);
-  const auto all = leapmap::parameters();
-  for (std::size_t i = 0; i < all.size(); ++i) value_of(all[i], design, scene) = page.parameters[i];
+  const Design design = page.design();
+  const Scene scene = page.scene(friction);
   const auto tell = tells.at(static_cast<std::size_t>(friction));
   const double second = time_unit(scene);
   if (!(interval > 0.0)) {
@@ -113,8 +147,55 @@ LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
                            point.friction, static_cast<double>(point.phase)});
   for (const Candidate& flown : motion.candidates)
     page.lift_offs.push_back({flown.t, flown.phi, flown.spin * second, flown.height, flown.apex_time,
-                              flown.flight_time, flown.dip});
+                              flown.flight_time, flown.dip, flown.is_jump ? 1.0 : 0.0});
 }
+
+/// How many jumps solve follows a hoop for.
+LEAPMAP_EXPORT void set_jumps(int jumps) {
+  page.jumps = std::clamp(static_cast<long>(jumps), 1l, most_jumps);
+}
+
+/// Lets hoops jump that differ in one parameter, evenly from `from` to `to`: heights()[i * keep + k] is the
+/// height of hoop i's jump settle + k + 1 [diameters]; NaN: it makes none. Each may roll as far as the runway
+/// to its next landing. Returns how many jumps were made in all.
+LEAPMAP_EXPORT int bifurcate(int friction, double tolerance, int parameter, double from, double to, int count,
+                             int settle, int keep) {
+  Scene scene = page.scene(friction);
+  scene.jumps = 1;
+  const auto member =
+      std::get_if<double Design::*>(&leapmap::parameters()[static_cast<std::size_t>(parameter)].member);
+  page.heights.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(keep), Outcome::none);
+  if (!member) return 0;
+  const JumpSolver<double> solve = jump_solver(scene, tolerance);
+  std::vector<Design> designs;
+  std::vector<ContactState<double>> states;
+  std::vector<std::size_t> which;
+  for (int i = 0; i < count; ++i) {
+    designs.push_back(page.design());
+    designs.back().** member = count > 1 ? from + (to - from) * i / (count - 1) : from;
+    states.push_back(released<double>(designs.back()));
+    which.push_back(static_cast<std::size_t>(i));
+  }
+  std::vector<Outcome> outcomes;
+  int made = 0;
+  for (int jump = 0; jump < settle + keep && !designs.empty(); ++jump) {
+    outcomes.resize(designs.size());
+    solve(jump == 0 ? Start::release : Start::landing, designs, states, outcomes);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      if (outcomes[i].status != Status::jumped || is_beyond(scene, states[i])) continue;
+      ++made;
+      if (jump >= settle)
+        page.heights[which[i] * static_cast<std::size_t>(keep) + static_cast<std::size_t>(jump - settle)] =
+            outcomes[i].jump_height;
+      designs[kept] = designs[i], states[kept] = reduced(states[i]), which[kept] = which[i];
+      ++kept;
+    }
+    designs.resize(kept), states.resize(kept), which.resize(kept);
+  }
+  return made;
+}
+LEAPMAP_EXPORT const double* heights() { return page.heights.data(); }
 
 /// A field of the outcome as the map stores it; NaN where it does not apply, or is a text.
 LEAPMAP_EXPORT double field_value(int i) {

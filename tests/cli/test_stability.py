@@ -15,7 +15,7 @@ def table(tmp_path_factory):
     return folder / "table.h5", done.stdout
 
 
-CASES = ("landing", "needle", "release", "graze", "long", "step", "tolerance", "painleve", "slow", "dip", "stick", "bounces")
+CASES = ("landing", "needle", "release", "graze", "long", "step", "tolerance", "chaos", "painleve", "slow", "dip", "stick", "bounces")
 
 
 def test_every_method_has_a_verdict_in_every_case_and_no_default_is_wrong_without_a_word(table):
@@ -28,7 +28,7 @@ def test_every_method_has_a_verdict_in_every_case_and_no_default_is_wrong_withou
             assert any([word.strip() for word in (line[:10], line[11:38], line[39:48], line[50:70])] == [study, method, control, verdict]
                        for line in lines)
         defaults = [v for s, m, c, v in said if m in ("exact", "closed form (leapmap)")]
-        assert len(defaults) == 11 and set(defaults) == {"fine"}
+        assert len(defaults) == 12 and set(defaults) == {"fine"}
         assert {s for s, *_ in said} == set(CASES)
         wrong = t.finding == "wrong"
         assert ((t.verdict == "wrong without a word") | ~wrong).all() and wrong.any(), "a study in which nothing fails shows nothing"

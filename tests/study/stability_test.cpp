@@ -70,7 +70,7 @@ TEST_P(StabilityOfTheDefault, IsFineOnTheWholeWalk) {
   EXPECT_LE(std::ranges::count(rows, Finding::undecided, &StabilityRow::finding), slips ? 4 : 1);
 }
 INSTANTIATE_TEST_SUITE_P(Walks, StabilityOfTheDefault,
-                         ::testing::Values("needle", "release", "graze", "long", "tolerance", "painleve",
+                         ::testing::Values("needle", "release", "graze", "long", "tolerance", "chaos", "painleve",
                                            "slow", "dip", "stick", "bounces"),
                          [](const auto& walk) { return std::string(walk.param); });
 

@@ -10,7 +10,7 @@ import sys
 
 from leapmap._analysis import FOLDER
 
-CHARTS = {name: name + "_chart.py" for name in ("adequacy", "cut", "design", "experiment", "fit", "front", "gait", "list", "precision", "scatter", "stability", "status", "trace",
+CHARTS = {name: name + "_chart.py" for name in ("adequacy", "cut", "design", "experiment", "fit", "front", "gait", "list", "period", "precision", "scatter", "stability", "status", "trace",
                                              "yield")}
 CHARTS |= {"explorer": "explorer", "phases": "phase_diagram.py", "scatter_convergence": "scatter_convergence.py"}
 

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A method that judges another's outcomes, and what it is itself unsure about.
+#pragma once
+
+#include <vector>
+
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "sweep/spec.hpp"
+#include "trajectory/solver.hpp"
+
+namespace leapmap {
+
+/// A method at a fine tolerance, and at a coarser one.
+struct Judge {
+  Solver solve, coarser;
+};
+
+/// Solves one design.
+Outcome solved(const Solver& solve, const Design& design);
+
+/// What a judge itself makes of the design with one unit in the last place of each input changed, and at a
+/// coarser tolerance; with `farther` also with the inputs changed by as much as its own error, by which it
+/// may see a flag flip. The solver under audit has no say in it.
+std::vector<Outcome> outcomes_beside(const Judge& judge, const Design& design, const Spec& spec,
+                                     bool farther);
+
+}  // namespace leapmap
