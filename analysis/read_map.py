@@ -242,12 +242,18 @@ def read_trace(path):
     if not isinstance(trace.attributes.get("status"), str):
         raise NotAMap(f"{trace.path}: is damaged: its attribute status is no text")
     columns = ("phi", "spin", "x", "y", "normal_force", "friction", "phase")
-    for name in (*columns, "candidate_time", "candidate_height"):
+    for name in (*columns, "candidate_time", "candidate_height", *(["candidate_is_jump"] if "candidate_is_jump" in trace.fields else [])):
         along = trace.dims.get("t" if name in columns else "candidate", np.zeros(0))
         _check_numbers(trace, name, trace.fields[name], 1)
         if len(trace.fields[name]) != len(along):
             raise NotAMap(f"{trace.path}: is damaged: {name} is not as long as its axis")
-    if trace.attributes["status"] == "jumped" and not (len(trace.fields["candidate_time"]) and trace.code("phase", "flight").any()):
+    # Older traces end with their one jump.
+    times = trace.fields["candidate_time"]
+    if "candidate_is_jump" in trace.fields:
+        trace.fields["candidate_is_jump"] = np.asarray(trace.fields["candidate_is_jump"]) == 1
+    else:
+        trace.fields["candidate_is_jump"] = (np.arange(len(times)) == len(times) - 1) & (trace.attributes["status"] == "jumped")
+    if trace.attributes["status"] == "jumped" and not (trace.fields["candidate_is_jump"].any() and len(trace.fields["candidate_time"]) and trace.code("phase", "flight").any()):
         raise NotAMap(f"{trace.path}: is damaged: it says that the hoop jumped, but holds no flight")
     return trace
 

@@ -44,9 +44,8 @@ def chart(trace, paper):
     t = trace.dims["t"]
     if len(t) < 2:
         raise NotAMap(f"{trace.path}: holds no motion to draw (the hoop {trace.attributes['status'].replace('_', ' ')})")
-    jumped = trace.attributes["status"] == "jumped"
     flight, sliding = trace.code("phase", "flight"), trace.code("phase", "sliding")
-    times, heights = trace.fields["candidate_time"], trace.fields["candidate_height"]
+    times, heights, jumps = (trace.fields[name] for name in ("candidate_time", "candidate_height", "candidate_is_jump"))
     figure, axes = plt.subplots(5, 1, sharex=True, figsize=(6.6, 9.6), layout="constrained")
     for axis, (label, values) in zip(axes, panels(trace)):
         # Forces end with contact: no line is drawn through the lift-off.
@@ -57,7 +56,7 @@ def chart(trace, paper):
         for begin, end in runs(sliding):
             axis.axvspan(t[begin], t[end], color="#ff7f0e", alpha=0.10, linewidth=0)
         for i, time in enumerate(times):
-            is_jump = jumped and i == len(times) - 1
+            is_jump = jumps[i]
             axis.axvline(time, color=style.MARK if is_jump else "#555555", linestyle="-" if is_jump else "--", linewidth=1.0)
         if force:
             axis.axhline(0.0, color="black", linewidth=0.6)
@@ -69,8 +68,8 @@ def chart(trace, paper):
         axis.margins(x=0.01)
         axis.grid(alpha=0.25)
     for i, (time, height) in enumerate(zip(times, heights)):
-        is_jump = jumped and i == len(times) - 1
-        if len(times) > 6 and i > 0 and not is_jump:
+        is_jump = jumps[i]
+        if len(times) > 6 and i not in (0, np.argmax(jumps), len(times) - 1):
             continue  # there is no room for all
         text = f"{'jump' if is_jump else 'candidate'} {time:.4f} s\nflies {height:.3g} diameters"
         place = dict(xy=(time, 0.06), xytext=(5, 0), ha="left", va="bottom", color=style.MARK) if is_jump else dict(
@@ -89,26 +88,29 @@ def chart(trace, paper):
 
 
 def flight_chart(trace, paper):
-    """The flight of the jump, after the paper's Fig. 6."""
+    """The flight of the first jump, after the paper's Fig. 6."""
     t, f = trace.dims["t"], trace.fields
-    begin = runs(trace.code("phase", "flight"))[-1][0]
+    first = int(np.argmax(f["candidate_is_jump"]))
+    time = f["candidate_time"][first]
+    begin, end = next(run for run in runs(trace.code("phase", "flight")) if t[run[1]] >= time * (1 - 1e-12))
     # The lift-off itself is the last moment of contact where it is a sample, as without slip.
-    begin -= int(begin > 0 and t[begin - 1] >= trace.fields["candidate_time"][-1] * (1 - 1e-12))
-    after = t[begin:] - trace.fields["candidate_time"][-1]
+    begin -= int(begin > 0 and t[begin - 1] >= time * (1 - 1e-12))
+    part = slice(begin, end + 1)
+    after = t[part] - time
     radius = trace.numbers()["radius"]
     figure, axes = plt.subplots(3, 1, sharex=True, figsize=(6.6, 6.6), layout="constrained")
     for axis, (label, values) in zip(axes, (("Δx along the plane [mm]", 1e3 * (f["x"] - f["x"][begin])), ("Δy above the plane [mm]", 1e3 * f["y"]),
                                             ("Δφ [degrees]", np.degrees(f["phi"] - f["phi"][begin])))):
-        axis.plot(after, values[begin:], color="#1f4e79", linewidth=1.3, label="leapmap")
+        axis.plot(after, values[part], color="#1f4e79", linewidth=1.3, label="leapmap")
         axis.set_ylabel(label)
         axis.grid(alpha=0.25)
         axis.margins(x=0.01)
         if paper:
             axis.axvline(PAPER_APEX, color=PUBLISHED, linestyle="-.", linewidth=1.4)
             axis.axvline(PAPER_LANDING, color=PUBLISHED, linestyle="-.", linewidth=1.4)
-    apex = int(np.argmax(f["y"][begin:]))
-    axes[1].plot(after[apex], 1e3 * f["y"][begin:][apex], "o", color="#1f4e79", markersize=4)
-    axes[1].annotate(f"apex {trace.fields['candidate_height'][-1]:.3f} diameters\nafter {after[apex]:.3f} s", (after[apex], 1e3 * f["y"][begin:][apex]),
+    apex = int(np.argmax(f["y"][part]))
+    axes[1].plot(after[apex], 1e3 * f["y"][part][apex], "o", color="#1f4e79", markersize=4)
+    axes[1].annotate(f"apex {f['candidate_height'][first]:.3f} diameters\nafter {after[apex]:.3f} s", (after[apex], 1e3 * f["y"][part][apex]),
                      xytext=(0, -18), textcoords="offset points", ha="center", va="top", fontsize=7.5, bbox=dict(facecolor="white", edgecolor="none", pad=1))
     axes[1].annotate(f"lands after {after[-1]:.4f} s", (after[-1], 0), xytext=(-24, 2), textcoords="offset points", ha="right", va="bottom", fontsize=7.5)
     if paper:
@@ -147,7 +149,7 @@ def main():
     arguments = p.parse_args()
     trace = read_trace(arguments.source)
     jumped = trace.attributes["status"] == "jumped"
-    same_clock = jumped and abs(trace.fields["candidate_time"][-1] - PAPER_SEEN) < 0.05
+    same_clock = jumped and abs(trace.fields["candidate_time"][np.argmax(trace.fields["candidate_is_jump"])] - PAPER_SEEN) < 0.05
     if arguments.paper and not same_clock:
         print(f"{trace.path}: was released at another moment than the paper's hoop; its times since release are not marked", file=sys.stderr)
     style.save(chart(trace, arguments.paper and same_clock), arguments.output)

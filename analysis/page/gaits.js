@@ -27,8 +27,8 @@ function gaitsPart(map, solver, choose) {
   const bounds = () => [inputs.from, inputs.to].map((input) => Number(input.value) / factor());
   function setBounds() {
     const [from, to] = OVER[over.value];
-    inputs.from.value = Number((from * factor()).toPrecision(6));
-    inputs.to.value = Number((to * factor()).toPrecision(6));
+    inputs.from.value = Number((from * factor()).toPrecision(4));
+    inputs.to.value = Number((to * factor()).toPrecision(4));
   }
 
   /** Where the picture has its frame: pixels, and the canvas scaled to the screen. */
@@ -52,7 +52,12 @@ function gaitsPart(map, solver, choose) {
       while (source > column - now.width && !now.heights[source]) --source;
       if (!now.heights[source]) continue;
       hits.fill(0);
-      for (const height of now.heights[source]) if (height >= 0) ++hits[Math.min(ROWS - 1, Math.floor(height / most * ROWS))];
+      for (const height of now.heights[source]) {
+        if (!(height >= 0)) continue;
+        const row = Math.min(ROWS - 2, Math.floor(height / most * ROWS));
+        ++hits[row];
+        ++hits[row + 1];  // one row alone is hard to see
+      }
       for (let row = 0; row < ROWS; ++row) {
         if (!hits[row]) continue;
         const at = 4 * ((ROWS - 1 - row) * COLUMNS + column), shade = 0.35 + 0.65 * Math.log(1 + hits[row]) / Math.log(1 + KEEP);

@@ -40,11 +40,14 @@ Table candidate_table(const Motion& motion) {
   const auto candidates = [&](double Candidate::*member) { return column(motion.candidates, member); };
   std::vector<double> numbers(motion.candidates.size());
   std::iota(numbers.begin(), numbers.end(), 1.0);
+  std::vector<double> jumps;
+  for (const Candidate& candidate : motion.candidates) jumps.push_back(candidate.is_jump ? 1.0 : 0.0);
   return {{"candidate", "1", "lift-offs in order, from 1", numbers},
           {"candidate_time", "s", "time since release of the lift-off", candidates(&Candidate::t)},
           {"candidate_angle", "rad", "angle at the lift-off", candidates(&Candidate::phi)},
           {"candidate_spin", "rad s-1", "spin at the lift-off", candidates(&Candidate::spin)},
-          {"candidate_height", "1", "apex of its flight, in hoop diameters", candidates(&Candidate::height)}};
+          {"candidate_height", "1", "apex of its flight, in hoop diameters", candidates(&Candidate::height)},
+          {"candidate_is_jump", "1", "1: one of the jumps; 0: it stays below hop_height", jumps}};
 }
 
 }  // namespace

@@ -210,6 +210,34 @@ def test_a_trace_with_friction_has_its_flight_drawn_from_the_jump_on(tmp_path):
     assert f"lands after {told['flight_time']:.4f} s" in words and f"apex {told['jump_height']:.3f} diameters" in words, words
 
 
+def test_a_trace_of_several_jumps_marks_each_and_its_flight_chart_is_of_the_first(tmp_path):
+    leapmap("hop", "--slope", "12 deg", "--mass-ratio", "3", "--offset-ratio", "0.5", "--jumps", "3", "--set", "runway=20", "--trace", tmp_path / "trace.h5")
+    done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "figure")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "figure.svg")
+    assert sum(word.startswith("jump ") for word in words) == 3 and not any(word.startswith("candidate") for word in words)
+    assert "apex 0.142 diameters" in texts(tmp_path / "figure_flight.svg")
+
+
+def test_the_period_chart_tells_periods_and_of_one_hoop_which_release_leads_to_which_gait(tmp_path):
+    spec = "[scene]\nrunway = 20.0\n[design]\n{}\n[gait]\nsettle = 200\n"
+    path = sweep(tmp_path, spec.format("slope = { from = 0.1, to = 0.4, count = 24 }\nmass_ratio = { from = 1, to = 9, count = 20 }\noffset_ratio = 0.5"))
+    done = draw("period_chart.py", path, "-o", tmp_path / "periods")
+    assert done.returncode == 0, done.stderr
+    words = [w for w in texts(tmp_path / "periods.svg") if w.endswith("%")]
+    with h5py.File(path) as m:
+        period = m["gait_period"][:]
+    assert f"every jump alike: {100 * (period == 1).mean():.3g} %" in words and f"comes to an end: {100 * (period == 0).mean():.3g} %" in words
+    hoop = "slope = 0.4057\nmass_ratio = 11.29\noffset_ratio = 0.4428\nrelease_angle = { from = \"0 deg\", to = \"360 deg\", count = 25 }\nrelease_spin = { from = -1, to = 1, count = 15 }"
+    done = draw("period_chart.py", sweep(tmp_path, spec.format(hoop), name="basins.h5"), "-x", "release_angle", "-o", tmp_path / "basins")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "basins.svg")
+    for gait in ("0.328 diameters", "0.735 diameters", "0.992 diameters, period 2"):
+        assert any(word.startswith(gait + ":") for word in words), gait
+    refused = draw("period_chart.py", sweep(tmp_path, CHART, name="plain.h5"), "-o", tmp_path / "no")
+    assert refused.returncode == 2 and "gait" in refused.stderr and len(refused.stderr.splitlines()) == 1
+
+
 def test_a_trace_without_a_jump_is_drawn_too(tmp_path):
     leapmap("hop", "--slope", "1deg", "--mass-ratio", "0.1", "--trace", tmp_path / "trace.h5")
     done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "figure")

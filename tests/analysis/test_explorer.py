@@ -595,6 +595,70 @@ def test_an_unfinished_map_says_how_much_of_it_is_there(browser, map_file, tmp_p
     assert "INCOMPLETE" in browser.find_element("id", "subtitle").text
 
 
+def test_a_hoop_goes_on_jumping_as_leapmap_hop_tells(page):
+    index = page.execute_script("""const { map, solver } = window.explorer, axes = map.axes.map((a) => a.values);
+        for (let i = 0; i < axes[0].length; i += 3) for (let j = 0; j < axes[1].length; j += 3) {
+          const design = {...map.fixed, slope: axes[0][i], mass_ratio: axes[1][j], offset_ratio: axes[2][1]};
+          if (solver.solve(design, false, 1e-10, 0, 4).outcome.jumps >= 3) return [i, j, 1];
+        }""")
+    select_layer(page, 1)
+    point(page, index, click=True)
+    page.execute_script("const j = document.getElementById('jumps'); j.value = 4; j.dispatchEvent(new Event('change'))")
+    try:
+        told = told_by_leapmap(page)
+        words = page.find_element("id", "command").text.split()
+        assert words[words.index("--jumps") + 1] == "4"
+        heights = [told["jump_height"], *(told[f"jump_height_{k}"] for k in range(2, told["jumps"] + 1))]
+        assert told["jumps"] >= 2
+        shown = page.find_element("css selector", "tr[data-name='jumps'] td").text
+        made, listed = shown.removesuffix(" diameters").split(": ")
+        assert made == f"{told['jumps']} of 4" and [float(w) for w in listed.split(", ")] == pytest.approx(heights, rel=6e-4)
+        landed, end = page.execute_script("""const { solver, map } = window.explorer, story = solver.solve({...map.fixed, ...arguments[0]}, false, 1e-10, 0, 4);
+            const { time, flight_time, is_jump } = story.liftOffs, k = is_jump.lastIndexOf(1);
+            return [time[k] + flight_time[k], story.motion.t.at(-1)]""", told["design"])
+        assert end >= landed - 1e-9 > told["jump_time"] + told["flight_time"]  # the motion goes on to the last landing
+    finally:
+        page.execute_script("const j = document.getElementById('jumps'); j.value = 0; j.dispatchEvent(new Event('change'))")
+        assert "whole number" in page.find_element("id", "message").text
+        page.execute_script("const j = document.getElementById('jumps'); j.value = 1; j.dispatchEvent(new Event('change'))")
+    assert page.find_element("id", "message").text == "" and "--jumps" not in page.find_element("id", "command").text
+
+
+def test_bifurcations_are_of_the_jumps_that_leapmap_hop_tells(page):
+    """Three jumps after the second of some hoops, with and without slip."""
+    compared = 0
+    for slips in (False, True):
+        heights = page.execute_script("""const s = window.explorer.solver;
+            return Array.from(s.bifurcate({...s.defaults, mass_ratio: 3, offset_ratio: 0.6, mu_static: 0.7, runway: 30}, arguments[0], 1e-10,
+              { parameter: "slope", from: 0.1, to: 0.4, count: 7, settle: 2, keep: 3 }), String)""", slips)
+        for i in range(7):
+            told = json.loads(finished(PROGRAM, "hop", "--slope", str(0.1 + 0.05 * i), "--mass-ratio", 3, "--offset-ratio", 0.6, "--jumps", 5, "--set", "runway=150", "--json",
+                                       *(["--set", "friction=coulomb", "--mu-static", 0.7] if slips else [])).stdout)
+            for k in range(3):
+                expected, found = told[f"jump_height_{3 + k}"], float(heights[3 * i + k])
+                assert (expected is None) == math.isnan(found), (slips, i, k)
+                if expected is not None:
+                    assert found == pytest.approx(expected, rel=1e-7)  # slopes are one rounding apart, and errors grow
+                    compared += 1
+    assert compared >= 20
+
+
+def test_the_bifurcation_picture_is_drawn_once_it_is_opened(page):
+    picture = page.find_element("id", "gaits-picture")
+    assert picture.get_attribute("data-hoops") is None, "nothing is computed before anybody asks"
+    page.execute_script("document.getElementById('gaits').open = true")
+    WebDriverWait(page, 60).until(lambda b: picture.get_attribute("data-hoops") == "512")
+    lively = int(picture.get_attribute("data-lively"))
+    assert 50 < lively < 512 and f"{lively} of 512" in page.find_element("id", "gaits-told").text
+    Select(page.find_element("id", "gaits-over")).select_by_value("offset_ratio")
+    WebDriverWait(page, 60).until(lambda b: picture.get_attribute("data-hoops") == "512" and picture.get_attribute("data-lively") != str(lively))
+    ActionChains(page).move_to_element_with_offset(picture, 0, 0).click().perform()
+    assert "L/R" in page.find_element("id", "hop-title").text or "offset" in page.find_element("id", "hop-title").text.lower()
+    page.execute_script("const f = document.getElementById('gaits-from'); f.value = -3; f.dispatchEvent(new Event('change'))")
+    assert "between" in page.find_element("id", "gaits-told").text
+    page.execute_script("document.getElementById('gaits').open = false")
+
+
 def test_the_solver_on_the_page_is_as_good_as_the_program_on_random_designs(page):
     """A hundred designs with and without slip, through the page's WebAssembly and through leapmap hop."""
     random = np.random.default_rng(7)

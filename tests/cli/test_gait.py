@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Jump after jump on the command line: sequences in maps and told, and gaits."""
 import json
+import shutil
 
 import h5py
 import numpy as np
@@ -42,6 +43,47 @@ def test_a_map_of_sequences_holds_what_hop_tells_and_its_end(tmp_path, friction)
             for k in range(2, jumps[i] + 1):
                 assert hop[f"jump_height_{k}"] == pytest.approx(m[f"jump_height_{k}"][i], abs=1e-12)
                 assert hop[f"jump_time_{k}"] == pytest.approx(m[f"jump_time_{k}"][i], rel=1e-9)
+
+
+def test_the_audit_tells_of_later_jumps_and_gaits_and_check_sees_a_wrong_one(tmp_path):
+    spec = ("[scene]\njumps = 4\nrunway = 20.0\n[design]\nslope = { from = 0.1, to = 0.4, count = 8 }\nmass_ratio = { from = 1, to = 4, count = 4 }\n"
+            "offset_ratio = 0.5\n[gait]\nsettle = 200\n[numerics]\naudit = 1\n")
+    (tmp_path / "spec.toml").write_text(spec)
+    path = tmp_path / "map.h5"
+    done = leapmap("sweep", tmp_path / "spec.toml", "-o", path)
+    assert done.returncode == 0, done.stderr
+    assert "later ones again: 0 designs wrong" in done.stdout and "by integration once round: 0 wrong" in done.stdout
+    with h5py.File(path) as m:
+        made, period = m["jumps"][:], m["gait_period"][:]
+        assert m.attrs["audit_jumps_compared"] + m.attrs["audit_jumps_beyond"] == (made[made > 0] - 1).sum() > 20
+        assert m.attrs["audit_gaits"] == ((period > 0) & (period < 255)).sum() > 5 and m.attrs["audit_gaits_wrong"] == 0
+        assert 0 < m.attrs["audit_jump_max_error"] < 1e-11 and m.attrs["audit_first_wrong_gait"] == -1
+    assert "later jumps" in leapmap("info", path).stdout
+    assert leapmap("check", path, "--sample", "32").returncode == 0
+    shutil.copy(path, path.with_suffix(".right"))
+    for field, words in (("jump_height_3", "later jump"), ("gait_height", "does not find the gait")):
+        with h5py.File(path, "r+") as m:
+            del m.attrs["tiles_checksum"]
+            values = m[field][:]
+            where = tuple(np.argwhere(np.isfinite(values))[0])
+            m[field][where] = values[where] + 1e-6
+        found = leapmap("check", path, "--sample", "32")
+        assert found.returncode == 1 and words in found.stdout, found.stdout + found.stderr
+        shutil.copy(path.with_suffix(".right"), path)
+
+
+def test_the_growth_of_errors_is_told_where_it_is_asked_for(tmp_path):
+    spec = "[scene]\njumps = 40\nrunway = 500.0\n[design]\nslope = {{ values = [0.2094395102393195, 0.35] }}\nmass_ratio = 3.0\noffset_ratio = {}\n{}"
+    plain = sweep(tmp_path, spec.format(0.5, ""), name="plain.h5")
+    with h5py.File(plain) as m:
+        assert "sequence_condition" not in m
+    asked = "[output]\nfields = [\"jumps\", \"sequence_condition\"]\n"
+    with h5py.File(sweep(tmp_path, spec.format(0.5, asked), name="tame.h5")) as m:
+        assert m["jumps"][0] == 40 and 1 < m["sequence_condition"][0] < 1e3
+    with h5py.File(sweep(tmp_path, spec.format(0.8, asked), name="wild.h5")) as m:
+        assert m["jumps"][1] == 40 and m["sequence_condition"][1] > 1e4
+    hop = told("hop", "--slope", "0.35", "--mass-ratio", "3", "--offset-ratio", "0.8", "--jumps", "250", "--set", "runway=1000")
+    assert hop["jumps"] == 250 and hop["sequence_condition"] == 1e20
 
 
 def test_sequences_and_gaits_have_the_same_bits_whatever_the_threads(tmp_path):
