@@ -29,7 +29,7 @@ Table table_of(const Spec& original) {
   Spec spec = original;
   spec.output = {};
   for (const Field* field : fields_of(spec.scene))
-    if (number_of(*field)) spec.output.gradients.emplace_back(field->name);
+    if (can_be_differentiated(*field)) spec.output.gradients.emplace_back(field->name);
   check_spec(spec);
   const GradientWanted wanted = gradients_of(spec);
   Gradients gradients(wanted);

@@ -169,6 +169,10 @@ std::optional<OutcomeNumber> number_of(const Field& field) {
   return std::nullopt;
 }
 
+bool can_be_differentiated(const Field& field) {
+  return number_of(field) && !field.of_gait && !field.by_name;
+}
+
 namespace {
 
 std::string unit_of_derivative(std::string_view of, std::string_view by) {
@@ -181,17 +185,18 @@ struct GradientTable {
   std::vector<Field> rows;
 
   void add(const Field& field) {
-    const std::optional<OutcomeNumber> of = number_of(field);
+    if (!can_be_differentiated(field)) return;
+    const OutcomeNumber of = *number_of(field);
     for (const Parameter& parameter : parameters()) {
       const auto* by = std::get_if<double Design::*>(&parameter.member);
-      if (!of || !by) continue;
+      if (!by) continue;
       const bool own = parameter.unit != "rad" && parameter.unit != "1";
       const std::string name(field.name), parameter_name(parameter.name);
       const RowTexts& text = texts.emplace_back(
           RowTexts{name + "_by_" + parameter_name, unit_of_derivative(field.unit, parameter.unit),
                    "derivative of " + name + " by " + parameter_name +
                        (own ? ", which is in " + std::string(parameter.unit) : std::string())});
-      rows.push_back(Field{text.name, Derivative{*of, *by}, text.unit, text.long_name,
+      rows.push_back(Field{text.name, Derivative{of, *by}, text.unit, text.long_name,
                            std::max(7, field.since), parameter.only_of ? parameter.only_of : field.only_of,
                            field.of_sequence});
     }

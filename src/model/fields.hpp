@@ -91,8 +91,11 @@ std::span<const Field> jump_fields();
 /// Those of both that a scene has.
 std::vector<const Field*> fields_of(const Scene& scene);
 
-/// The number that a field stores of an outcome, if it stores one that can be differentiated.
+/// The number that a field stores of an outcome, if it stores one.
 std::optional<OutcomeNumber> number_of(const Field& field);
+
+/// Whether that number's derivatives can be told: not of gaits, nor of how errors grow.
+bool can_be_differentiated(const Field& field);
 
 /// The derivatives that a map may hold besides, jump_height_by_slope and so on: of each quantity, in the
 /// order of map_fields, by each parameter of a design, in the order of parameters.

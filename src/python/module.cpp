@@ -58,11 +58,12 @@ py::dict gradient(const py::dict& given, const std::string& friction, const std:
                   int threads) {
   const Designs designs(given, scene_of(friction));
   const Field* field = find_field(of);
-  const std::optional<OutcomeNumber> number = field ? number_of(*field) : std::nullopt;
+  const std::optional<OutcomeNumber> number =
+      field && can_be_differentiated(*field) ? number_of(*field) : std::nullopt;
   if (!number || !has(designs.scene(), *field)) {
     std::vector<std::string_view> allowed;
     for (const Field* each : fields_of(designs.scene()))
-      if (number_of(*each)) allowed.push_back(each->name);
+      if (can_be_differentiated(*each)) allowed.push_back(each->name);
     throw InputError(
         fmt::format("of = '{}': has no derivatives; allowed: one of {}", of, fmt::join(allowed, ", ")));
   }

@@ -53,10 +53,10 @@ bool is_of_made(std::string_view name) {
   return std::ranges::find(scatter_fields(), name, &Field::name) != scatter_fields().end();
 }
 
-std::vector<std::string_view> quantity_names() {
+std::vector<std::string_view> differentiable_names() {
   std::vector<std::string_view> names;
   for (const Field& field : map_fields())
-    if (std::holds_alternative<Quantity>(field.source)) names.push_back(field.name);
+    if (can_be_differentiated(field)) names.push_back(field.name);
   return names;
 }
 
@@ -161,7 +161,7 @@ const std::array keys{
            "quantities whose derivatives are stored too, as jump_height_by_slope and so on (exact only); "
            "default: none",
            {},
-           quantity_names,
+           differentiable_names,
            {},
            is_of_jump,
            "with scene.jumps jump_height_2, jump_time_2 and so on"},

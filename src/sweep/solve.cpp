@@ -119,10 +119,13 @@ std::vector<Design> gradient(std::span<const Design> designs, const OutcomeNumbe
   Spec spec = spec_of(scene, options);
   spec.output.fields = {"status"};
   for (const Field* field : fields_of(scene))
-    if (number_of(*field) == of) spec.output.gradients = {std::string(field->name)};
+    if (can_be_differentiated(*field) && number_of(*field) == of)
+      spec.output.gradients = {std::string(field->name)};
   if (spec.output.gradients.empty())
-    throw InputError(
-        fmt::format("jump {} is not asked for; allowed: up to scene.jumps = {}", of.jump, scene.jumps));
+    throw InputError(fmt::format(
+        "of: has no derivatives, or is of jump {} where scene.jumps = {}; allowed: a quantity of one of "
+        "the jumps",
+        of.jump, scene.jumps));
   check_spec(spec);
   const GradientWanted wanted = gradients_of(spec);
   std::vector<Design> found(designs.size());
