@@ -90,11 +90,31 @@ T RollingTime<T>::nodes_for_length(const NodesNeeded<T>& needed, const T& length
 template <class T>
 T RollingTime<T>::stretch(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
                           const T& span, MaskOf<T>& hard) {
+  using std::floor;
+  const MaskOf<T> slowing = !(roll.push > T(0));
+  if (any(slowing)) {  // E is least ahead of the release, not behind it: there is nothing to take out
+    const T turns = floor(roll.release / (T(2) * pi_of<T>)), half = T(0.5) * span;  // half: less than pi
+    const T from = roll.release - T(2) * pi_of<T> * turns;
+    MaskOf<T> too_hard = !(quiet.vis_viva > T(0));
+    const T plainly = between(roll, needed, T(2) * turns, from, half, too_hard) +
+                      between(roll, needed, T(2) * turns, from + half, half, too_hard);
+    MaskOf<T> others_hard(false);
+    const T others = all(slowing) ? plainly : stretched(roll, quiet, needed, span, others_hard);
+    hard = hard | (slowing & too_hard) | ((!slowing) & others_hard);
+    return select(slowing, plainly, others);
+  }
+  return stretched(roll, quiet, needed, span, hard);
+}
+
+/// Where E rises from the release on.
+template <class T>
+T RollingTime<T>::stretched(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
+                            const T& span, MaskOf<T>& hard) {
   using std::floor, std::sqrt;
   const Hoop<T>& hoop = roll.hoop;
   const T rho2 = T(2) * hoop.rho;
   const auto [bend, discriminant, root, real, x1] = parabola_at_release(roll);
-  hard = hard | !(roll.push > T(0)) | !(real | (-discriminant > T(4) * bend * bend));
+  hard = hard | !(real | (-discriminant > T(4) * bend * bend));
 
   const T q0 = sqrt(-x1), q1 = sqrt(span - x1);
   const T reach = span / (q0 + q1), half = T(0.5) * reach;  // q1 - q0, which would cancel for a fast release
@@ -191,19 +211,26 @@ T RollingTime<T>::panel(const Roll<T>& roll, long panel, int nodes) {
   return total;
 }
 
-/// By a rule of an even number of nodes: those at +x and -x from the middle share their sine and cosine.
 template <class T>
 T RollingTime<T>::rest(const Roll<T>& roll, const NodesNeeded<T>& needed, const T& panel,
                        const T& length) const {
   using std::floor;
   MaskOf<T> hard = length != length;
+  const T even = T(2) * floor(panel * T(0.5));
+  return between(roll, needed, even, (panel - even) * T(pi_of<S>), length, hard);
+}
+
+/// From an angle past `even` pi over no more than a half-turn. By a rule of an even number of nodes: those at
+/// +x and -x from the middle share their sine and cosine.
+template <class T>
+T RollingTime<T>::between(const Roll<T>& roll, const NodesNeeded<T>& needed, const T& even, const T& from,
+                          const T& length, MaskOf<T>& hard) const {
   const auto need = lanes_of(nodes_for_length(needed, larger(length, T(1e-3)), hard));
   const auto half_of_nodes = (static_cast<std::size_t>(*std::max_element(need.begin(), need.end())) + 1) / 2;
   const GaussRule<S>& rule = rule_of<S>(2 * half_of_nodes);
 
   const Hoop<T>& hoop = roll.hoop;
-  const T even = T(2) * floor(panel * T(0.5)), pi(pi_of<S>);
-  const T half = T(0.5) * length, from_edge = (panel - even) * pi + half;
+  const T pi(pi_of<S>), half = T(0.5) * length, from_edge = from + half;
   const Trig<T> phi = trig(from_edge);
   const T gain = T(2) * hoop.thrust, rho2 = T(2) * hoop.rho;
   const T level = roll.level + gain * (even * pi + from_edge);

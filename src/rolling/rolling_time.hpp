@@ -2,7 +2,8 @@
 /// The time that rolling takes, t = integral of sqrt(J / E) dphi, by Gauss-Legendre quadrature.
 ///
 /// From the release to the first multiple of pi is a stretch in q, phi = phi0 + x1 + q^2, which takes out the
-/// nearer zero x1 of E = released + 2 push x + bend x^2 + ... From there half-turns are panels whose nodes
+/// nearer zero x1 of E = released + 2 push x + bend x^2 + ...; with no stretching where E falls from the
+/// release on, as after many landings. From there half-turns are panels whose nodes
 /// all designs share; what is left is the rest, a design's own.
 ///
 /// A rule of n nodes converges like r^(-2 n), r the sum of the half-axes of the largest ellipse about its
@@ -87,6 +88,10 @@ class RollingTime {
     std::vector<SharedNode> nodes;
   };
 
+  T stretched(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed, const T& span,
+              MaskOf<T>& hard);
+  T between(const Roll<T>& roll, const NodesNeeded<T>& needed, const T& even, const T& from, const T& length,
+            MaskOf<T>& hard) const;
   T nodes_for_length(const NodesNeeded<T>& needed, const T& length, MaskOf<T>& hard) const;
   T nodes_for(const T& square_growth, MaskOf<T>& hard) const;
   const std::vector<SharedNode>& start_from_rest(const S& span, int nodes);
