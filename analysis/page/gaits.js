@@ -116,11 +116,12 @@ function gaitsPart(map, solver, choose) {
 
   function begin() {
     cancelAnimationFrame(now.frame);
+    now.heights = [];
     if (!part.open || !now.design) return;
     const [from, to] = bounds(), [least, most] = solver.ranges[over.value];
     const good = to > from && from >= least && to <= most;
     for (const input of Object.values(inputs)) input.setAttribute("aria-invalid", String(!good));
-    if (!good) { told.textContent = `from below to, between ${short(least * factor())} and ${short(most * factor())}`; return; }
+    if (!good) { draw(); told.textContent = `from below to, between ${short(least * factor())} and ${short(most * factor())}`; return; }
     now.heights = new Array(COLUMNS).fill(null);
     now.work = columnsInOrder();
     step();
@@ -134,7 +135,7 @@ function gaitsPart(map, solver, choose) {
     const place = ((event.clientX - box.left) * canvas.width / box.width - left) / (right - left);
     if (now.design && place >= 0 && place <= 1) choose(over.value, from + (to - from) * place);
   });
-  new ResizeObserver(() => { if (part.open && now.design) draw(); }).observe(canvas);
+  new ResizeObserver(() => { if (part.open && now.heights.length > 0) draw(); }).observe(canvas);
   setBounds();
 
   /** What the picture is of, but for the one parameter: nothing is computed anew if that alone is another. */

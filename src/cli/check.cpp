@@ -10,7 +10,7 @@
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
-#include "cli/told_audit.hpp"
+#include "cli/told_sequences.hpp"
 #include "support/posix.hpp"
 #include "support/printable.hpp"
 #include "sweep/parallel.hpp"

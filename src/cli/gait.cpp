@@ -2,12 +2,14 @@
 /// leapmap gait: how one hoop goes on jumping for ever.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "cli/told_sequences.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/gait.hpp"
 #include "model/model.hpp"
@@ -20,38 +22,26 @@ namespace {
 struct GaitArguments {
   std::string spec;
   std::vector<std::string> overrides, flags;
-  int most_period = 2;
+  int most_period = 0;  // 0: not given
   bool json = false;
 };
+
+constexpr int usual_most_period = 2;
 
 double degrees_within_a_turn(double radians) {
   const double turned = std::fmod(radians * 180.0 / std::numbers::pi, 360.0);
   return turned < 0.0 ? turned + 360.0 : turned;
 }
 
-/// What the release comes to.
-std::string settled_line(const Outcome& outcome, long settle) {
-  if (outcome.gait_period == 0)
-    return fmt::format("As released it does not go on for {} jumps: it stalls, or comes to the runway's end.",
-                       settle);
-  if (outcome.gait_period == Outcome::no_gait)
-    return fmt::format(
-        "As released it goes on, and after {} jumps repeats itself in no gait that was looked for.", settle);
-  return fmt::format(
-      "As released it settles on a gait of period {}: {:.6f} diameters, {:.4g} m/s down the plane, {:.6g} (m "
-      "+ m_p) "
-      "g R lost a jump; multiplier {:.6f}.",
-      outcome.gait_period, outcome.gait_height, outcome.gait_speed, outcome.gait_energy_lost,
-      outcome.gait_multiplier);
-}
-
 void print_gaits(const Gaits& found, int most_period) {
   if (found.gaits.empty()) {
-    say("No gait of up to {} jumps: its return map, looked at in {} places, has no periodic orbit.\n",
+    say("No gait of up to {} jumps found: its return map, looked at in {} places, has no periodic orbit "
+        "there.\n",
         most_period, found.returns.size());
     return;
   }
-  say("Every gait of up to {} jumps, by its return map in {} places:\n\n{:>6} {:>9} {:>12} {:>12} {:>11} "
+  say("Every gait found of up to {} jumps, by its return map in {} places:\n\n{:>6} {:>9} {:>12} {:>12} "
+      "{:>11} "
       "{:>12}  "
       "{}\n",
       most_period, found.returns.size(), "period", "", "multiplier", "height [2R]", "speed [m/s]",
@@ -65,11 +55,15 @@ void print_gaits(const Gaits& found, int most_period) {
         fmt::join(jumps, ", "));
   }
   say("\n");
+  if (!found.is_whole)
+    say("Its return map has more folds than were looked at: longer gaits may be missing; try a smaller "
+        "--most-period.\n\n");
 }
 
-std::string json_text(const Spec& spec, const Gaits& found, const Outcome& outcome) {
+/// found: none were looked for.
+std::string json_text(const Spec& spec, const Gaits* found, const Outcome& outcome) {
   std::vector<std::string> gaits, returns;
-  for (const Gait& gait : found.gaits) {
+  for (const Gait& gait : found ? found->gaits : std::vector<Gait>{}) {
     std::vector<std::string> jumps;
     for (const Jump& jump : gait.jumps)
       jumps.push_back(fmt::format(R"({{"angle": {}, "spin": {}, "height": {}, "time": {}, "distance": {}}})",
@@ -80,7 +74,7 @@ std::string json_text(const Spec& spec, const Gaits& found, const Outcome& outco
         gait.jumps.size(), json_number(gait.multiplier), json_number(gait.height), json_number(gait.speed),
         json_number(gait.energy_lost), fmt::join(jumps, ", ")));
   }
-  for (const ReturnPoint& point : found.returns)
+  for (const ReturnPoint& point : found ? found->returns : std::vector<ReturnPoint>{})
     returns.push_back(fmt::format("[{}, {}, {}, {}, {}]", json_number(point.angle), json_number(point.next),
                                   json_number(point.slope), json_number(point.height), point.uphill));
   std::vector<std::string> design;
@@ -90,10 +84,12 @@ std::string json_text(const Spec& spec, const Gaits& found, const Outcome& outco
   return fmt::format(
       "{{\n  \"design\": {{{}}},\n  \"gait_period\": {},\n  \"gait_multiplier\": {},\n  \"gait_height\": "
       "{},\n  "
-      "\"gait_speed\": {},\n  \"gait_energy_lost\": {},\n  \"gaits\": [{}],\n  \"return_map\": [{}]\n}}\n",
+      "\"gait_speed\": {},\n  \"gait_energy_lost\": {},\n  \"gaits\": {},\n  \"return_map\": {}\n}}\n",
       fmt::join(design, ", "), outcome.gait_period, json_number(outcome.gait_multiplier),
       json_number(outcome.gait_height), json_number(outcome.gait_speed),
-      json_number(outcome.gait_energy_lost), fmt::join(gaits, ",\n    "), fmt::join(returns, ",\n    "));
+      json_number(outcome.gait_energy_lost),
+      found ? fmt::format("[{}]", fmt::join(gaits, ",\n    ")) : "null",
+      found ? fmt::format("[{}]", fmt::join(returns, ",\n    ")) : "null");
 }
 
 int run(const GaitArguments& arguments) {
@@ -106,20 +102,32 @@ int run(const GaitArguments& arguments) {
         fmt::format("{}: has many designs; allowed: one for leapmap gait, and leapmap sweep with [gait] "
                     "for a map of gaits",
                     origin_of(spec)));
+  const bool slips = model_of(spec.scene).slips;
+  if (slips && arguments.most_period != 0)
+    throw InputError(
+        "--most-period: has no use with friction, where only what the release settles on is told; allowed: "
+        "gait.most_period");
+  const bool names_settle = std::ranges::any_of(overrides, [](const std::string& text) {
+    return text.starts_with("gait.settle=") || text.starts_with("settle=");
+  });
+  if (names_settle && spec.scene.settle == 0)
+    throw InputError("gait.settle = 0: leaves nothing to tell; allowed: a number of jumps, 500 by default");
   if (spec.scene.settle == 0) spec.scene.settle = 500;
+  spec.scene.jumps = 1;
+  spec.output = {};
   check_spec(spec);
   Outcome outcome;
   make_solver(spec)({&spec.design, 1}, {&outcome, 1});
   Gaits found;
-  const bool one_dimension = !model_of(spec.scene).slips;
-  if (one_dimension)
+  const int most_period = arguments.most_period != 0 ? arguments.most_period : usual_most_period;
+  if (!slips)
     found = find_gaits(spec.design, spec.scene,
-                       {.most_period = arguments.most_period, .tolerance = spec.numerics.tolerance});
+                       {.most_period = most_period, .tolerance = spec.numerics.tolerance});
   if (arguments.json) {
-    say("{}", json_text(spec, found, outcome));
+    say("{}", json_text(spec, slips ? nullptr : &found, outcome));
     return 0;
   }
-  if (one_dimension) print_gaits(found, arguments.most_period);
+  if (!slips) print_gaits(found, most_period);
   say("{}\n", settled_line(outcome, spec.scene.settle));
   return 0;
 }
@@ -131,7 +139,8 @@ void add_gait(CLI::App& app, int& status) {
       app.add_subcommand("gait", "how one hoop goes on jumping for ever: its periodic jumps, stable or not");
   auto arguments = std::make_shared<GaitArguments>();
   command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop");
-  for (const Option* option : hop_options()) add_flag_of(*command, *option, arguments->flags);
+  for (const Option* option : hop_options())
+    if (option->key != "jumps") add_flag_of(*command, *option, arguments->flags);
   add_set(*command, arguments->overrides, ", for example gait.settle=2000");
   command->add_option("--most-period", arguments->most_period, "longest gait looked for, in jumps; default 2")
       ->check(CLI::Range(1, 16));
@@ -141,7 +150,7 @@ void add_gait(CLI::App& app, int& status) {
       "below 1 in\n"
       "size. Without slip N = 0 ties spin to angle at a lift-off, so that the map from one lift-off to the "
       "next is a\n"
-      "curve: all its periodic orbits are looked for, unstable ones too. With friction the gait is told that "
+      "curve: its periodic orbits are looked for, unstable ones too. With friction the gait is told that "
       "the\n"
       "release settles on. The runway counts from one landing to the next.");
   command->callback([arguments, &status] { status = run(*arguments); });

@@ -13,6 +13,7 @@
 #include "cli/motor.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
+#include "cli/told_sequences.hpp"
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
 #include "map/trace_file.hpp"
@@ -76,14 +77,16 @@ std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b)
   AuditReport report;
   Auditor(spec, 1).look_at({0, a}, report);
   const bool disagrees = report.first_mismatch || report.first_inaccurate;
-  return fmt::format("Check: {} {} {:.1e} diameters, time {} {:.1e}.{}", by,
+  const std::string later = later_jumps_line(report, a);
+  return fmt::format("Check: {} {} {:.1e} diameters, time {} {:.1e}.{}{}", by,
                      disagrees ? "DISAGREES: height off by" : "agrees, height within",
                      std::abs(a.jump_height - b.jump_height), disagrees ? "by" : "within",
                      std::abs(a.jump_time / b.jump_time - 1.0),
                      report.first_overruled     ? " The paper's (7) to (9) DISAGREE."
                      : report.referee_undecided ? ""
                                                 : fmt::format(" The paper's (7) to (9): all within {:.1e}.",
-                                                              report.referee_max_error));
+                                                              report.referee_max_error),
+                     later.empty() ? "" : "\n" + later);
 }
 
 /// How many jumps there are, and why no more.
@@ -116,6 +119,7 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
     }
   }
   if (spec.scene.jumps > 1 && jump.status == Status::jumped) say("{}\n", sequence_line(spec, jump));
+  if (spec.scene.settle > 0) say("{}\n", settled_line(jump, spec.scene.settle));
   say("{}\n", check_line(spec, motion, checked));
 }
 

@@ -212,7 +212,8 @@ int run(const InfoArguments& arguments) {
         compared, told("audit_gradients_wrong"), short_form("audit_gradient_max_error", ".1e"),
         told("audit_gradient_undecided"));
   if (const std::string compared = map.attribute("audit_jumps_compared");
-      !compared.empty() && (compared != "0" || told("audit_jumps_beyond") != "0"))
+      !compared.empty() &&
+      (compared != "0" || told("audit_jumps_beyond") != "0" || told("audit_sequences_wrong") != "0"))
     say("later jumps: {} again, {} beyond what is known of them; {} designs wrong, largest error {}\n",
         compared, told("audit_jumps_beyond"), told("audit_sequences_wrong"),
         short_form("audit_jump_max_error", ".1e"));

@@ -13,7 +13,7 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
-#include "cli/told_audit.hpp"
+#include "cli/told_sequences.hpp"
 #include "leapmap/version.hpp"
 #include "support/printable.hpp"
 #include "sweep/begin_map.hpp"

@@ -40,6 +40,13 @@ Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free,
   return {name, maximize, field, nullptr};
 }
 
+/// The search goes along derivatives.
+void refuse_without_derivatives(const Spec& spec, const std::string& key, const Field& field) {
+  if (std::holds_alternative<Quantity>(field.source) && !can_be_differentiated(field))
+    refuse(spec, fmt::format("{}: {} has no derivatives", key, field.name),
+           "a quantity of a jump, or a code as a goal, gait_period = { is = 1 } say");
+}
+
 bool is_of_jumps(const Field& field) {
   const auto* quantity = std::get_if<Quantity>(&field.source);
   return quantity && field.name.starts_with("first_") == false && field.name != "slip_distance";
@@ -59,7 +66,10 @@ Range possible(const Field& field, const Scene& scene) {
 
 /// Goals that no design whatever can reach.
 void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objectives) {
+  for (const Objective& objective : objectives)
+    if (objective.field) refuse_without_derivatives(spec, "goal", *objective.field);
   for (const Goal& goal : spec.goals) {
+    refuse_without_derivatives(spec, "goal", *find_field(goal.field));
     const bool quantity = std::holds_alternative<Quantity>(find_field(goal.field)->source);
     if (quantity && goal.at_least == goal.at_most && goal.at_least != 0.0)
       refuse(spec, fmt::format("goal.{} {} is met by no hoop to the last digit", goal.field, text_of(goal)),

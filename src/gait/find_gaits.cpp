@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -21,7 +22,8 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi, nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double finest = 1e-7;  // of the scan [rad]
 constexpr double agrees = 1e-3;  // of the cubic with what is between [rad]
-constexpr int first_angles = 720;
+constexpr int first_angles = 5760;
+constexpr std::size_t most_samples = 200'000;  // some seconds
 
 /// Some returns of the map from one angle.
 struct Sampled {
@@ -29,7 +31,12 @@ struct Sampled {
   double height = nan;
   Landed landed{};                      ///< of the jump from there
   std::vector<double> next{}, slope{};  ///< after 1, 2, ... jumps, as far as it comes
+  /// What becomes of it from the first, second, ... landing on, as a number: it lies on another branch of the
+  /// map where that is another.
+  std::vector<long> courses{};
 };
+
+enum class Course : long { returns, again_at_once, the_other_way, no_jump };
 
 /// The return map of one hoop on the curve N = 0, on one side of the spin.
 class Section {
@@ -58,6 +65,7 @@ class Section {
     dual = after_flight(hoop, dual, flown.flight_time);
     dual.spin = spin_after_holding(hoop, trig(dual.angle), dual.slip + dual.spin, dual.normal, dual.spin);
     dual.slip = dual.normal = D(0.0);
+    double turned = dual.angle.value;
     set_values(dual, reduced(plain(dual)));
     sampled.landed = plain(dual);
     for (int k = 0; k < returns_; ++k) {
@@ -67,10 +75,16 @@ class Section {
         if (quantity == &Outcome::jump_angle) lift_off = value;
       };
       const Outcome outcome = duals_(Start::landing, design_, Along::state, dual, note);
-      if (outcome.status != Status::jumped || is_beyond(scene_, plain(dual))) break;
-      const bool again_at_once = lift_off.value == landed,
-                 other_way = lift_off.value == lift_off.value && outcome.jump_spin * way_ < 0.0;
-      const bool on_section = !again_at_once && !other_way;
+      const bool jumps = outcome.status == Status::jumped && !is_beyond(scene_, plain(dual));
+      const Course course = !jumps                           ? Course::no_jump
+                            : lift_off.value == landed       ? Course::again_at_once
+                            : outcome.jump_spin * way_ < 0.0 ? Course::the_other_way
+                                                             : Course::returns;
+      sampled.courses.push_back(4 * static_cast<long>(std::floor(turned / two_pi)) +
+                                static_cast<long>(course));
+      if (!jumps) break;
+      turned += dual.angle.value - landed;
+      const bool on_section = course == Course::returns;
       sampled.next.push_back(on_section ? within_a_turn(lift_off.value) : nan);
       sampled.slope.push_back(on_section ? lift_off.by[0] : nan);
       set_values(dual, reduced(plain(dual)));
@@ -119,19 +133,23 @@ bool returns(const Sampled& sampled, std::size_t k) {
   return k < sampled.next.size() && std::isfinite(sampled.next[k]) && std::isfinite(sampled.slope[k]);
 }
 
-/// Whether the cubic between a and b foretells every return at `middle`; where neither end returns there is
-/// nothing to foretell.
-bool is_foretold(const Sampled& a, const Sampled& middle, const Sampled& b, int count) {
-  const double length = b.angle - a.angle;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-    const bool there = returns(a, k);
-    if (returns(b, k) != there || returns(middle, k) != there) return false;
-    if (!there) continue;
-    const double fa = gap(a, k), fb = fa + std::remainder(gap(b, k) - fa, two_pi);
-    const double told = 0.5 * (fa + fb) + length * (a.slope[k] - b.slope[k]) / 8.0;
-    if (std::abs(std::remainder(gap(middle, k) - told, two_pi)) > agrees) return false;
-  }
-  return true;
+/// Up to the k-th return.
+bool same_course(const Sampled& a, const Sampled& b, std::size_t k) {
+  const auto end = [&](const Sampled& s) {
+    return s.courses.begin() + static_cast<std::ptrdiff_t>(std::min(s.courses.size(), k + 1));
+  };
+  return std::equal(a.courses.begin(), end(a), b.courses.begin(), end(b));
+}
+
+/// Whether the cubic between a and b foretells the k-th return at `middle`; where none of them returns there
+/// is nothing to foretell.
+bool is_foretold(const Sampled& a, const Sampled& middle, const Sampled& b, std::size_t k) {
+  const bool there = returns(a, k);
+  if (returns(b, k) != there || returns(middle, k) != there) return false;
+  if (!there) return same_course(a, b, k) && same_course(a, middle, k);
+  const double fa = gap(a, k), fb = fa + std::remainder(gap(b, k) - fa, two_pi);
+  const double told = 0.5 * (fa + fb) + (b.angle - a.angle) * (a.slope[k] - b.slope[k]) / 8.0;
+  return std::abs(std::remainder(gap(middle, k) - told, two_pi)) <= agrees;
 }
 
 class Search {
@@ -139,16 +157,16 @@ class Search {
   Search(const Design& design, const Scene& scene, const GaitOptions& options)
       : design_(design), options_(options), scene_(scene), map_(scene, options.tolerance) {}
 
+  /// One number of returns after the other, each as if the others were not looked for: what is found of a
+  /// period does not depend on the longest.
   Gaits run() {
     for (const double way : {1.0, -1.0}) {
       const Section section(design_, scene_, options_.tolerance, way, options_.most_period);
-      Sampled left = section.at(0.0);
-      keep(left, way);
-      for (int i = 1; i <= first_angles; ++i) {
-        const Sampled right = section.at(two_pi * i / first_angles);
-        look_between(section, left, right, way);
-        left = right;
-      }
+      samples_.clear();
+      for (std::size_t k = 0; k < static_cast<std::size_t>(options_.most_period); ++k)
+        for (int i = 0; i < first_angles; ++i)
+          look_between(section, two_pi * i / first_angles, two_pi * (i + 1) / first_angles, k);
+      keep_samples(way);
     }
     std::ranges::sort(found_.gaits, [](const Gait& a, const Gait& b) {
       return a.jumps.size() != b.jumps.size() ? a.jumps.size() < b.jumps.size() : a.height < b.height;
@@ -157,54 +175,61 @@ class Search {
   }
 
  private:
-  void keep(const Sampled& sampled, double way) {
-    const bool there = !sampled.next.empty();
-    found_.returns.push_back({sampled.angle, there ? sampled.next[0] : nan, there ? sampled.slope[0] : nan,
-                              sampled.height, way < 0.0});
+  void keep_samples(double way) {
+    for (const auto& [angle, sampled] : samples_) {
+      const bool there = !sampled.next.empty();
+      found_.returns.push_back(
+          {angle, there ? sampled.next[0] : nan, there ? sampled.slope[0] : nan, sampled.height, way < 0.0});
+    }
   }
 
-  void look_between(const Section& section, const Sampled& a, const Sampled& b, double way) {
-    const Sampled middle = section.at(0.5 * (a.angle + b.angle));
-    if (is_foretold(a, middle, b, options_.most_period)) {
-      for (const auto& [from, to] : {std::pair(&a, &middle), std::pair(&middle, &b)}) {
-        look_for_orbits(section, *from, *to);
-        keep(*to, way);
-      }
-    } else if (b.angle - a.angle < finest) {
-      keep(b, way);
-    } else {
-      look_between(section, a, middle, way);
-      look_between(section, middle, b, way);
+  const Sampled& sample(const Section& section, double angle) {
+    const auto [place, is_new] = samples_.try_emplace(angle);
+    if (is_new) place->second = section.at(angle);
+    return place->second;
+  }
+
+  void look_between(const Section& section, double from, double to, std::size_t k) {
+    const double between = 0.5 * (from + to);
+    const Sampled &a = sample(section, from), &b = sample(section, to), &middle = sample(section, between);
+    if (is_foretold(a, middle, b, k)) {
+      look_for_orbits(section, a, middle, k);
+      look_for_orbits(section, middle, b, k);
+    } else if (samples_.size() >= most_samples) {
+      found_.is_whole = false;
+    } else if (to - from >= finest) {
+      look_between(section, from, between, k);
+      look_between(section, between, to, k);
     }
   }
 
   /// An orbit is where a return meets its own angle: between ends of either side, or where the cubic turns to
   /// it.
-  void look_for_orbits(const Section& section, const Sampled& a, const Sampled& b) {
-    for (std::size_t k = 0; k < static_cast<std::size_t>(options_.most_period); ++k) {
-      if (!returns(a, k) || !returns(b, k)) continue;
-      const double fa = gap(a, k), fb = gap(b, k);
-      if (std::abs(fa - fb) > std::numbers::pi) continue;  // the shorter way round changes there
-      if ((fa > 0.0) != (fb > 0.0)) {
-        const auto gap_at = [&](double angle) {
-          const Sampled there = section.at(angle);
-          return returns(there, k) ? Sample<double>{gap(there, k), there.slope[k] - 1.0}
-                                   : Sample<double>{nan, nan};
-        };
-        const double root = polish_root(gap_at, a.angle, b.angle, 0.5 * (a.angle + b.angle), fb > 0.0, 1e-13);
-        if (const Sampled there = section.at(root); returns(there, k))
-          close(there.landed, static_cast<int>(k) + 1);
-      } else if (std::min(std::abs(fa), std::abs(fb)) <
-                 0.5 * (b.angle - a.angle) * (2.0 + std::abs(a.slope[k]) + std::abs(b.slope[k]))) {
-        for (const Sampled* near : {&a, &b})  // it may turn to the diagonal and back
-          close(near->landed, static_cast<int>(k) + 1);
-      }
+  void look_for_orbits(const Section& section, const Sampled& a, const Sampled& b, std::size_t k) {
+    if (!returns(a, k) || !returns(b, k)) return;
+    const double fa = gap(a, k), fb = gap(b, k);
+    if (std::abs(fa - fb) > std::numbers::pi) return;  // the shorter way round changes there
+    if ((fa > 0.0) != (fb > 0.0)) {
+      const auto gap_at = [&](double angle) {
+        const Sampled there = section.at(angle);
+        return returns(there, k) ? Sample<double>{gap(there, k), there.slope[k] - 1.0}
+                                 : Sample<double>{nan, nan};
+      };
+      const double root = polish_root(gap_at, a.angle, b.angle, 0.5 * (a.angle + b.angle), fb > 0.0, 1e-13);
+      if (const Sampled there = section.at(root); returns(there, k))
+        close(there.landed, static_cast<int>(k) + 1);
+    } else if (std::min(std::abs(fa), std::abs(fb)) <
+               0.5 * (b.angle - a.angle) * (2.0 + std::abs(a.slope[k]) + std::abs(b.slope[k]))) {
+      for (const Sampled* near : {&a, &b})  // it may turn to the diagonal and back
+        close(near->landed, static_cast<int>(k) + 1);
     }
   }
 
   void close(const Landed& near, int period) {
     Orbit orbit;
     if (!map_.close(design_, period, near, orbit)) return;
+    // On no curve N = 0, to which Newton's iteration may come from beside it.
+    if (std::ranges::all_of(orbit.jumps, [](const Jump& jump) { return jump.time == 0.0; })) return;
     for (const Orbit& known : orbits_) {
       if (known.landings.size() != orbit.landings.size()) continue;
       for (const Landed& landing : known.landings)
@@ -218,6 +243,7 @@ class Search {
   GaitOptions options_;
   Scene scene_;
   ReturnMap map_;
+  std::map<double, Sampled> samples_;  // of one way, by angle
   std::vector<Orbit> orbits_;
   Gaits found_;
 };

@@ -80,6 +80,8 @@ void ReturnMap::next(Start start, std::span<const Design> designs, std::span<Lan
   for (std::size_t i = 0; i < designs.size(); ++i) {
     if (outcomes[i].status == Status::jumped && is_beyond(scene_, states[i]))
       outcomes[i].status = Status::no_jump;
+    if (outcomes[i].status == Status::jumped && is_of_no_flight(outcomes[i]))
+      outcomes[i].status = Status::indeterminate;
     states[i] = reduced(states[i]);
   }
 }

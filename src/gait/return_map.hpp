@@ -57,8 +57,8 @@ class ReturnMap {
   /// tolerance: relative, of times. The runway counts from each landing to the next.
   ReturnMap(const Scene& scene, double tolerance);
 
-  /// Takes designs from their landings, or releases, to their next landings, reduced; jumped[i] tells which
-  /// did.
+  /// Takes designs from their landings, or releases, to their next landings, reduced; outcomes tell which
+  /// jumped: one beyond the runway did not.
   void next(Start start, std::span<const Design> designs, std::span<Landed> states,
             std::vector<Outcome>& outcomes);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gait/settle.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace leapmap {
@@ -8,7 +9,10 @@ namespace leapmap {
 void GaitSolver::solve(std::span<const Design> designs, std::span<Outcome> outcomes) {
   settle(designs);
   look_on();
-  for (Outcome& outcome : outcomes) outcome.gait_period = 0;
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    const bool unknown = ends_[i] == Status::failed || ends_[i] == Status::indeterminate;
+    outcomes[i].gait_period = unknown ? Outcome::no_gait : 0;
+  }
   Orbit orbit;
   for (std::size_t k = 0; k < going_.size(); ++k) {
     Outcome& outcome = outcomes[going_[k]];
@@ -30,7 +34,7 @@ bool GaitSolver::orbit_of(const Design& design, Orbit& orbit) {
 
 /// Leaves those designs that go on for so many jumps.
 void GaitSolver::settle(std::span<const Design> designs) {
-  going_.clear(), states_.clear();
+  going_.clear(), states_.clear(), ends_.assign(designs.size(), Status::jumped);
   some_.assign(designs.begin(), designs.end());
   for (std::size_t i = 0; i < designs.size(); ++i)
     going_.push_back(i), states_.push_back(released<double>(designs[i]));
@@ -38,6 +42,7 @@ void GaitSolver::settle(std::span<const Design> designs) {
     map_.next(jump == 0 ? Start::release : Start::landing, some_, states_, found_);
     std::size_t kept = 0;
     for (std::size_t k = 0; k < going_.size(); ++k) {
+      ends_[going_[k]] = found_[k].status;
       if (found_[k].status != Status::jumped) continue;
       going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
       ++kept;
@@ -54,6 +59,7 @@ void GaitSolver::look_on() {
     map_.next(Start::landing, some_, states_, found_);
     std::size_t kept = 0;
     for (std::size_t k = 0; k < going_.size(); ++k) {
+      ends_[going_[k]] = found_[k].status;
       if (found_[k].status != Status::jumped) continue;
       seen_[k].push_back(states_[k]);
       going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
@@ -64,11 +70,26 @@ void GaitSolver::look_on() {
   }
 }
 
+namespace {
+
+/// Whether it comes nearer to itself by the same factor from each round to the next.
+bool shrinks(std::span<const Landed> seen, std::size_t period) {
+  constexpr double nearly = 0.1, alike = 0.02;
+  if (seen.size() <= 3 * period) return false;
+  std::array<double, 3> gaps;
+  for (std::size_t k = 0; k < 3; ++k)
+    gaps[k] = between(seen[k * period], seen[(k + 1) * period]).lpNorm<Eigen::Infinity>();
+  return gaps[0] < nearly && gaps[1] < gaps[0] && gaps[2] < gaps[1] &&
+         std::abs(gaps[1] / gaps[0] - gaps[2] / gaps[1]) < alike;
+}
+
+}  // namespace
+
 /// The orbit that it is drawn to: of the shortest period after which it is nearly where it was.
 bool GaitSolver::find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit) {
   for (std::size_t period = 1; period < seen.size(); ++period) {
     const double gap = between(seen[0], seen[period]).lpNorm<Eigen::Infinity>();
-    if (!(gap < scene_.gait_tolerance)) continue;
+    if (!(gap < scene_.gait_tolerance) && !shrinks(seen, period)) continue;
     if (!map_.close(design, static_cast<int>(period), seen[0], orbit)) continue;
     if (!(std::abs(orbit.multiplier) < 1.0)) continue;
     // What it has not yet come near by is a geometric series of gaps.

@@ -33,6 +33,7 @@ class GaitSolver {
   std::vector<Landed> states_;
   std::vector<std::vector<Landed>> seen_;  // of each of them the last landings
   std::vector<Outcome> found_;
+  std::vector<Status> ends_;  // of each design: jumped if it goes on
 };
 
 }  // namespace leapmap

@@ -40,13 +40,16 @@ struct GaitOptions {
 struct Gaits {
   std::vector<Gait> gaits;           ///< by period, then by height
   std::vector<ReturnPoint> returns;  ///< the return map where it was looked at, by angle, downhill first
+  bool is_whole =
+      true;  ///< false: the map was looked at in as many places as are, and not as finely as it needs
 };
 
-/// Every periodic orbit of the return map of one hoop that never slips, as far as a scan can tell: the map is
-/// sampled from lift-off to lift-off, more densely until a cubic between neighbours foretells what is between
-/// them; orbits narrower than 1e-7 rad may be missed. Orbits all of whose jumps begin where the one before
-/// lands are not on the map. The runway counts from each landing. Throws InputError as solve does, and with
-/// friction, where the map has more dimensions.
+/// The periodic orbits of the return map of one hoop that never slips, as far as a scan can tell: the map is
+/// sampled every sixteenth of a degree and more densely between samples that lie on other branches, or where
+/// a cubic does not foretell what is between them. A branch between two samples that are alike may be missed.
+/// Orbits all of whose jumps begin where the one before lands are not on the map. The runway counts from each
+/// landing: with a longer one there are more gaits, of ever higher jumps. Throws InputError as solve does,
+/// and with friction, where the map has more dimensions.
 Gaits find_gaits(const Design& design, const Scene& scene = {}, const GaitOptions& options = {});
 
 }  // namespace leapmap

@@ -246,7 +246,8 @@ struct ScatterTable {
       const RowTexts& text = texts.emplace_back(RowTexts{as, std::string(of ? of->unit : "1"), long_name});
       rows.push_back(Field{text.name,
                            OfMade{statistic, of ? std::get<Quantity>(of->source).member : nullptr, error},
-                           text.unit, text.long_name, 8, of ? of->only_of : std::nullopt});
+                           text.unit, text.long_name, of ? std::max(8, of->since) : 8,
+                           of ? of->only_of : std::nullopt, of && of->of_sequence, of && of->of_gait});
     };
     put(full, told, false);
     if (has_error) put(full + "_error", "standard error of " + full, true);

@@ -128,7 +128,7 @@ py::dict gaits(const py::dict& given, int most_period, double tolerance) {
   py::array_t<bool> uphill(static_cast<py::ssize_t>(found.returns.size()));
   std::ranges::transform(found.returns, uphill.mutable_data(), &ReturnPoint::uphill);
   returns["uphill"] = uphill;
-  told["gaits"] = orbits, told["returns"] = returns;
+  told["gaits"] = orbits, told["returns"] = returns, told["is_whole"] = found.is_whole;
   return told;
 }
 

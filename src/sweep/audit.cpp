@@ -17,7 +17,6 @@
 namespace leapmap {
 namespace {
 
-constexpr double audit_tolerance = 1e-13, coarser_tolerance = 1e-12;
 constexpr std::size_t usual_referee_every = 10;
 constexpr double own_error = 1e-11;  // an integration's at that tolerance, over a few revolutions
 constexpr double adaptive_slack = 100.0;

@@ -10,16 +10,14 @@
 #include "gait/return_map.hpp"
 #include "gait/settle.hpp"
 #include "model/model.hpp"
+#include "sweep/audit_judge.hpp"
 #include "trajectory/integration_options.hpp"
 
 namespace leapmap {
 namespace {
 
-constexpr double audit_tolerance = 1e-13;
-/// Beyond which an integration's own error, 1e-11, leaves fewer than six digits.
-constexpr double audited_growth = 1e5;
-/// Of a multiplier by differences, and what those of two steps differ by where there is a derivative.
-constexpr double multiplier_allowed = 1e-6, settled = 1e-4;
+/// Of a multiplier by differences, and how far those of other steps may be from them.
+constexpr double multiplier_allowed = 1e-6, settled = 1e-5;
 constexpr double step = 1e-5;  // [rad, sqrt(g/R)]
 
 /// The return map's derivative at a landing by differences. False: it does not jump on from beside it.
@@ -97,13 +95,17 @@ auto GaitAuditor::verdict_on(const Design& design, const Outcome& ours, AuditRep
   report.gait_max_error = std::max(report.gait_max_error, error);
   if (error > allowed_ * growth.back()) return Verdict::wrong;
 
+  // Of fourth order, by steps of one and two and by steps of two and four.
   const double near = work_->multiplier(design, orbit, step),
-               far = work_->multiplier(design, orbit, 2.0 * step), right = (4.0 * near - far) / 3.0,
-               size = 1.0 + std::abs(right), doubt = std::abs(near - far);
-  if (!(doubt <= settled * size)) return Verdict::undecided;
-  const double off = std::max(std::abs(ours.gait_multiplier - right) - doubt, 0.0) / size;
+               far = work_->multiplier(design, orbit, 2.0 * step),
+               farthest = work_->multiplier(design, orbit, 4.0 * step), right = (4.0 * near - far) / 3.0,
+               coarser = (4.0 * far - farthest) / 3.0, size = 1.0 + std::abs(right),
+               doubt = std::abs(right - coarser) / size;
+  if (std::isnan(ours.gait_multiplier)) return Verdict::right;  // it is not stored
+  if (!(doubt <= settled)) return Verdict::undecided;
+  const double off = std::abs(ours.gait_multiplier - right) / size;
   report.multiplier_max_error = std::max(report.multiplier_max_error, off);
-  return off <= multiplier_allowed + allowed_ ? Verdict::right : Verdict::wrong;
+  return off <= multiplier_allowed + allowed_ + doubt ? Verdict::right : Verdict::wrong;
 }
 
 void GaitAuditor::look_at(std::size_t number, const Design& design, const Outcome& ours,

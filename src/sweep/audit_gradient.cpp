@@ -57,6 +57,7 @@ void GradientAuditor::look_at(std::size_t number, const Design& design, const Ou
   const std::size_t j = number * 7 % parameters;
   const auto parameter = differentiable[wanted_.by[j]];
   if (std::isnan(design.*parameter)) return;
+  if (parameter == &Design::mu_kinetic && kinetic_follows(design)) return;  // it is not free
   ++report.gradient_designs;
   Beside beside;
   if (!look_beside(design, spec_.scene, parameter, ours, beside)) {

@@ -11,6 +11,11 @@
 
 namespace leapmap {
 
+/// Of the integrations that audit exact.
+inline constexpr double audit_tolerance = 1e-13, coarser_tolerance = 1e-12;
+/// How much errors may have grown: an integration's own, 1e-11, then leaves six digits.
+inline constexpr double audited_growth = 1e5;
+
 /// A method at a fine tolerance, and at a coarser one.
 struct Judge {
   Solver solve, coarser;

@@ -7,25 +7,36 @@
 #include <string>
 #include <vector>
 
+#include "model/model.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
 
-constexpr double audit_tolerance = 1e-13, coarser_tolerance = 1e-12;
-/// Beyond which an integration's own error, 1e-11, leaves fewer than six digits.
-constexpr double audited_growth = 1e5;
+/// An integration near Painleve's edge would take any number of steps; a long run takes a million.
+long most_steps(const Scene& scene) { return model_of(scene).slips ? 100'000 : 1'000'000; }
+
+Solver solver_of(const Scene& scene, const std::string& method, double tolerance) {
+  if (method == "exact") return model_of(scene).exact(scene, tolerance, {});
+  IntegrationOptions options = adaptive(method, tolerance);
+  options.max_steps = most_steps(scene);
+  return model_of(scene).integration(scene, options);
+}
 
 }  // namespace
 
-SequenceAuditor::SequenceAuditor(const Spec& spec, double allowed) : spec_(spec), allowed_(allowed) {
-  if (spec.scene.jumps == 1) return;
-  Spec jumps = spec;
-  jumps.scene.settle = 0;
-  const std::string method = audit_method(spec.numerics);
-  second_ = {make_solver(jumps, method, audit_tolerance), make_solver(jumps, method, coarser_tolerance)};
-  growth_ = std::make_unique<ErrorGrowth>(spec.scene, spec.numerics.tolerance);
+SequenceAuditor::SequenceAuditor(const Spec& spec, double allowed)
+    : spec_(spec), scene_(scene_asked(spec)), allowed_(allowed) {
+  if (scene_.jumps > 1) growth_ = std::make_unique<ErrorGrowth>(scene_, spec.numerics.tolerance);
+}
+
+/// The second method, for so many jumps.
+Judge SequenceAuditor::second(std::size_t jumps) const {
+  Scene scene = scene_;
+  scene.jumps = static_cast<long>(jumps);
+  const std::string method = audit_method(spec_.numerics);
+  return {solver_of(scene, method, audit_tolerance), solver_of(scene, method, coarser_tolerance)};
 }
 
 /// The larger of height's, relative to one more than its size, and time's, relative. What a sweep was not
@@ -43,10 +54,10 @@ double SequenceAuditor::error_of(const Outcome& ours, const Outcome& theirs, std
                   error("jump_time_", a.time, b.time, std::abs(b.time)));
 }
 
-std::size_t SequenceAuditor::sure_of(const Design& design, const Outcome& theirs,
+std::size_t SequenceAuditor::sure_of(const Judge& judge, const Design& design, const Outcome& theirs,
                                      std::span<const double> growth) const {
   std::size_t sure = theirs.jumps() + 1;
-  for (const Outcome& beside : outcomes_beside(second_, design, spec_, true)) {
+  for (const Outcome& beside : outcomes_beside(judge, design, spec_, true)) {
     if (beside.jumps() != theirs.jumps() || beside.sequence_end != theirs.sequence_end)
       sure = std::min({sure, beside.jumps(), theirs.jumps()});
     for (std::size_t jump = 2; jump <= std::min(sure, growth.size()); ++jump)
@@ -58,31 +69,39 @@ std::size_t SequenceAuditor::sure_of(const Design& design, const Outcome& theirs
 void SequenceAuditor::look_at(std::size_t number, const Design& design, const Outcome& ours,
                               AuditReport& report) const {
   if (!growth_ || ours.status != Status::jumped) return;
-  const Outcome theirs = solved(second_.solve, design);
-  if (theirs.status != Status::jumped) return;  // which is told of the first jump
-  const std::size_t both = std::min(ours.jumps(), theirs.jumps());
-  std::vector<double> growth = growth_->along(design, both);
+  const std::size_t made = ours.jumps();
+  std::vector<double> growth = growth_->along(design, made);
   growth.erase(std::ranges::find_if(growth, [](double g) { return !(g <= audited_growth); }), growth.end());
-  // The jumps that can be told, and the one after the last: whether there is one.
-  std::size_t sure = growth.size() < both ? growth.size() : both + 1;
-
-  std::vector<double> errors(both + 1, 0.0);
-  std::size_t first_wrong = both + 1;
-  for (std::size_t jump = std::min(sure, both); jump >= 2; --jump) {
-    errors[jump] = error_of(ours, theirs, jump, true) / growth[jump - 1];
-    if (errors[jump] > allowed_) first_wrong = jump;
+  // The jumps that can be told and, if these are all, how they end.
+  const bool whole = growth.size() == made;
+  const std::size_t told = whole ? std::min(made + 1, static_cast<std::size_t>(scene_.jumps)) : growth.size();
+  std::size_t compared = 1;
+  if (told > 1) {
+    const Judge judge = second(told);
+    const Outcome theirs = solved(judge.solve, design);
+    if (theirs.status != Status::jumped) return;  // which is told of the first jump
+    const std::size_t mine = std::min(made, told), both = std::min(mine, theirs.jumps());
+    std::vector<double> errors(both + 1, 0.0);
+    std::size_t first_wrong = both + 1;
+    for (std::size_t jump = both; jump >= 2; --jump) {
+      errors[jump] = error_of(ours, theirs, jump, true) / growth[jump - 1];
+      if (errors[jump] > allowed_) first_wrong = jump;
+    }
+    const bool gave_up = theirs.sequence_end == Status::failed || ours.sequence_end == Status::failed;
+    const bool same_end = theirs.jumps() == mine && (made > told || theirs.sequence_end == ours.sequence_end);
+    const bool wrong = first_wrong <= both || !(same_end || gave_up);
+    const std::size_t sure = wrong ? sure_of(judge, design, theirs, growth) : both + 1;
+    compared = std::min(both, sure);
+    for (std::size_t jump = 2; jump <= compared; ++jump)
+      report.jump_max_error = std::max(report.jump_max_error, errors[jump]);
+    if (wrong && first_wrong <= sure) {
+      ++report.sequences_wrong;
+      report.first_wrong_sequence = std::min(report.first_wrong_sequence.value_or(number), number);
+    }
   }
-  const bool same =
-      first_wrong > both && ours.jumps() == theirs.jumps() && ours.sequence_end == theirs.sequence_end;
-  if (!same && first_wrong <= sure) sure = std::min(sure, sure_of(design, theirs, growth));
-  const std::size_t compared = std::min(both, sure);
-  for (std::size_t jump = 2; jump <= compared; ++jump)
-    report.jump_max_error = std::max(report.jump_max_error, errors[jump]);
-  if (compared > 1) report.jumps_compared += compared - 1;
-  report.jumps_beyond += both - std::max<std::size_t>(compared, 1);
-  if (same || first_wrong > sure) return;
-  ++report.sequences_wrong;
-  report.first_wrong_sequence = std::min(report.first_wrong_sequence.value_or(number), number);
+  compared = std::max<std::size_t>(compared, 1);
+  report.jumps_compared += compared - 1;
+  report.jumps_beyond += made - compared;
 }
 
 }  // namespace leapmap

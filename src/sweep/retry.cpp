@@ -109,8 +109,10 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
   };
   for (std::size_t t = 0; t < tiling.size(); ++t) {
     const std::vector<double> statuses = map.read("status", tiling.tile(t));
+    const std::vector<double> ends =
+        map.has("sequence_end") ? map.read("sequence_end", tiling.tile(t)) : statuses;
     for (std::size_t i = 0; i < statuses.size(); ++i) {
-      if (statuses[i] == failed) {
+      if (statuses[i] == failed || ends[i] == failed) {
         waiting.push_back({t, i, {}});
       } else if (statuses[i] >= 0.0 && statuses[i] < status_count) {
         ++report.statuses[static_cast<std::size_t>(statuses[i])];

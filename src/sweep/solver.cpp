@@ -36,14 +36,6 @@ bool asks_for(const Spec& spec, bool Field::*kind) {
                              [&](const Field* field) { return field->*kind && stores(spec, *field); });
 }
 
-/// The first jump alone, where nothing is asked for of later ones.
-Scene scene_asked(const Spec& spec) {
-  Scene scene = spec.scene;
-  const bool derives = std::ranges::any_of(gradients_of(spec).of, [](const auto& of) { return of.jump > 1; });
-  if (!derives && !asks_for(spec, &Field::of_sequence)) scene.jumps = 1;
-  return scene;
-}
-
 /// Fills in what comes of whole sequences, once the designs are solved; empty: nothing is asked for.
 Solver afterwards(const Spec& spec) {
   const double tolerance = spec.numerics.tolerance;
@@ -61,6 +53,13 @@ Solver afterwards(const Spec& spec) {
 }
 
 }  // namespace
+
+Scene scene_asked(const Spec& spec) {
+  Scene scene = spec.scene;
+  const bool derives = std::ranges::any_of(gradients_of(spec).of, [](const auto& of) { return of.jump > 1; });
+  if (!derives && !asks_for(spec, &Field::of_sequence)) scene.jumps = 1;
+  return scene;
+}
 
 Solver make_solver(const Spec& spec) {
   const Scene scene = scene_asked(spec);

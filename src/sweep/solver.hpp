@@ -19,6 +19,9 @@ IntegrationOptions integration_options(const Numerics& numerics);
 /// NaN.
 Solver make_solver(const Spec& spec);
 
+/// The spec's scene; of the first jump alone, where nothing is asked for of later ones.
+Scene scene_asked(const Spec& spec);
+
 /// Which derivatives the spec asks for.
 GradientWanted gradients_of(const Spec& spec);
 

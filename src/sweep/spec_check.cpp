@@ -47,6 +47,24 @@ void check_values(const Spec& spec, const std::vector<Axis>& axes) {
   }
 }
 
+/// That nothing is named which only comes of more jumps, or of gaits, than the scene asks for.
+void check_names(const Spec& spec) {
+  const auto look_at = [&](std::string_view key, const std::string& name) {
+    const Field* field = find_field(name);
+    if (!field || has(spec.scene, *field)) return;
+    if (field->of_sequence)
+      refuse(spec, key, fmt::format("'{}' has no use with scene.jumps = {}", name, spec.scene.jumps),
+             "with as many scene.jumps");
+    if (field->of_gait)
+      refuse(spec, key, fmt::format("'{}' has no use without [gait]", name), "with gait.settle = 500, say");
+  };
+  for (const std::string& name : spec.output.gradients) look_at("gradients", name);
+  for (const std::string& name : spec.output.fields) look_at("fields", name);
+  for (const Goal& goal : spec.goals) look_at("goal", goal.field);
+  for (const std::string& name : spec.maximize) look_at("goal.maximize", name);
+  for (const std::string& name : spec.minimize) look_at("goal.minimize", name);
+}
+
 /// That there is a method that has derivatives, and that the model has what is to be differentiated.
 void check_gradients(const Spec& spec) {
   const Output& output = spec.output;
@@ -59,16 +77,6 @@ void check_gradients(const Spec& spec) {
     if (const Field* field = find_field(name); field && !has(spec.scene.friction, field->only_of))
       refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)),
              with_model(*field->only_of));
-  for (const auto& [key, names] : {std::pair{"gradients", &output.gradients}, {"fields", &output.fields}})
-    for (const std::string& name : *names) {
-      const Field* field = find_field(name);
-      if (!field || has(spec.scene, *field)) continue;
-      if (field->of_sequence)
-        refuse(spec, key, fmt::format("'{}' has no use with scene.jumps = {}", name, spec.scene.jumps),
-               "with as many scene.jumps");
-      if (field->of_gait)
-        refuse(spec, key, fmt::format("'{}' has no use without [gait]", name), "with gait.settle = 500, say");
-    }
   for (const std::string& name : output.gradients_by)
     if (const Option* option = find_option("", name); option && !has(spec.scene.friction, option->only_of))
       refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene)),
@@ -141,6 +149,7 @@ void check_spec(const Spec& spec) {
   if (spec.scene.settle > 0 && resolved_method(spec.numerics) != "exact")
     refuse(spec, "settle", fmt::format("has no use with method \"{}\"", spec.numerics.method),
            "with method = \"exact\"");
+  check_names(spec);
   check_gradients(spec);
   check_scatter(spec);
   check_count(spec);

@@ -50,6 +50,10 @@ bool is_beyond(const Scene& scene, const ContactState<S>& at) {
   return !(std::abs(at.travel) < S(2) * std::numbers::pi_v<S> * S(scene.runway));
 }
 
+/// Whether a jump is none: where hop_height is zero, a flight of no time, after which the hoop is where it
+/// was and would make it again. The plane would have to pull.
+inline bool is_of_no_flight(const Outcome& outcome) { return outcome.flight_time == 0.0; }
+
 inline Jump jump_of(const Outcome& outcome, double landing_spin) {
   return {outcome.jump_height,   outcome.jump_time,   outcome.jump_angle, outcome.jump_spin,
           outcome.jump_distance, outcome.flight_time, landing_spin};
@@ -86,6 +90,8 @@ class Sequences {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < going_.size(); ++k) {
       const std::size_t i = going_[k];
+      if (found_[k].status == Status::jumped && is_of_no_flight(found_[k]))
+        found_[k].status = Status::indeterminate;
       outcomes[i].sequence_end = found_[k].status;
       if (found_[k].status != Status::jumped) continue;
       states_[i] = some_states_[k];

@@ -183,7 +183,8 @@ LEAPMAP_EXPORT int bifurcate(int friction, double tolerance, int parameter, doub
     solve(jump == 0 ? Start::release : Start::landing, designs, states, outcomes);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < designs.size(); ++i) {
-      if (outcomes[i].status != Status::jumped || is_beyond(scene, states[i])) continue;
+      if (outcomes[i].status != Status::jumped || is_beyond(scene, states[i]) || is_of_no_flight(outcomes[i]))
+        continue;
       ++made;
       if (jump >= settle)
         page.heights[which[i] * static_cast<std::size_t>(keep) + static_cast<std::size_t>(jump - settle)] =

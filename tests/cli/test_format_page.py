@@ -39,7 +39,9 @@ def maps(tmp_path_factory):
     return [grid, sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
             sweep(folder, slipping, name="slipping.h5"),
             sweep(folder, "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n[gait]\nsettle = 50\n"
-                          "[numerics]\naudit = 1\n", name="gaits.h5")]
+                          "[numerics]\naudit = 1\n", name="gaits.h5"),
+            sweep(folder, "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n"
+                          "[output]\nfields = [\"status\", \"sequence_condition\"]\n", name="growth.h5")]
 
 
 def kind(dtype):

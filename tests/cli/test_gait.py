@@ -114,9 +114,24 @@ def test_gait_tells_every_gait_of_a_hoop_and_which_the_release_settles_on():
     assert abs(following[nearest] - angle[nearest]) < 0.02 and slope[nearest] == pytest.approx(stable[0]["multiplier"], abs=0.02)
 
 
+def test_hop_says_how_many_later_jumps_were_checked_and_how_far_to_believe_them():
+    tame = leapmap("hop", *HOOP, "--jumps", "5", "--set", "runway=20").stdout
+    assert "Later jumps: 4 of 4 again, all within" in tame
+    wild = leapmap("hop", "--slope", "0.6", "--mass-ratio", "8", "--offset-ratio", "0.9", "--jumps", "60", "--set", "runway=1000").stdout
+    line = next(line for line in wild.splitlines() if line.startswith("Later jumps: "))
+    assert 2 <= int(line.split()[2]) < 30 and "of 59 again" in line and "nothing is known" in line
+    settled = leapmap("hop", *HOOP, "--set", "gait.settle=500")
+    assert "settles on a gait of period 1" in settled.stdout
+
+
+def test_gait_does_not_depend_on_what_a_spec_stores():
+    plain, other = (leapmap("gait", *HOOP, "--most-period", "1", *more).stdout for more in ([], ["--set", 'output.fields=["jump_height"]']))
+    assert plain == other and "settles on a gait of period 1" in plain
+
+
 def test_with_friction_gait_tells_what_the_release_settles_on():
     hop = told("gait", *HOOP, "--friction", "coulomb", "--mu-static", "0.8")
-    assert hop["gaits"] == [] and 0 <= hop["gait_period"] <= 255
+    assert hop["gaits"] is None and 0 <= hop["gait_period"] <= 255
 
 
 @pytest.mark.parametrize("arguments, words", [
@@ -124,7 +139,9 @@ def test_with_friction_gait_tells_what_the_release_settles_on():
     (["gait", "--set", "gait.settle=-1"], "settle"), (["gait", "--set", "method=gsl-rk8pd"], "settle"),
     (["gait", "--set", "slope={from=0.1,to=0.2,count=3}"], "leapmap sweep"),
     (["sweep", "--set", "fields=[\"jump_height_3\"]", "--set", "jumps=2", "--dry-run"], "jump_height_3"),
-    (["sweep", "--set", "fields=[\"gait_period\"]", "--dry-run"], "gait")])
+    (["sweep", "--set", "fields=[\"gait_period\"]", "--dry-run"], "gait"), (["gait", "--set", "gait.settle=0"], "settle"),
+    (["gait", "--friction", "coulomb", "--mu-static", "0.5", "--most-period", "3"], "most-period"), (["gait", "--jumps", "3"], "jumps"),
+    (["sweep", "--set", "goal.gait_period={is=1}", "--dry-run"], "gait"), (["sweep", "--set", "gradients=[\"gait_height\"]", "--set", "settle=50", "--dry-run"], "gait_height")])
 def test_bad_input_is_one_line(tmp_path, arguments, words):
     if arguments[0] == "sweep":
         (tmp_path / "spec.toml").write_text("[design]\nslope = { values = [0.3, 0.4] }\n")

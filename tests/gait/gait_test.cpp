@@ -240,6 +240,58 @@ TEST(Gaits, AreToldFromStallsAndChaos) {
   EXPECT_GE(some, 50u);
 }
 
+TEST(Gaits, OfAPeriodDoNotDependOnTheLongestLookedFor) {
+  const Design hoop{.slope = 0.2094395102393195, .mass_ratio = 3.0, .offset_ratio = 0.5};
+  const auto multipliers = [](const Gaits& found, std::size_t period) {
+    std::vector<double> of;
+    for (const Gait& gait : found.gaits)
+      if (gait.jumps.size() == period) of.push_back(gait.multiplier);
+    return of;
+  };
+  Scene scene = unit;
+  scene.runway = 6.0;
+  const Gaits one = find_gaits(hoop, scene), two = find_gaits(hoop, scene, {.most_period = 2}),
+              three = find_gaits(hoop, scene, {.most_period = 3});
+  EXPECT_TRUE(one.is_whole && two.is_whole && three.is_whole);
+  EXPECT_GE(multipliers(one, 1).size(), 4u);
+  EXPECT_EQ(multipliers(one, 1), multipliers(two, 1));
+  EXPECT_EQ(multipliers(one, 1), multipliers(three, 1));
+  EXPECT_EQ(multipliers(two, 2), multipliers(three, 2));
+  for (const Gait& gait : three.gaits)
+    EXPECT_TRUE(std::ranges::any_of(gait.jumps, [](const Jump& jump) { return jump.time > 0.0; }));
+}
+
+TEST(Gaits, FormAFamilyWithoutGapsAsFarAsTheRunwayGoes) {
+  // Each leaps farther than the one before, and its multiplier is larger by ever the same.
+  const Design hoop{.slope = 0.2094395102393195, .mass_ratio = 3.0, .offset_ratio = 0.5};
+  const Gaits found = find_gaits(hoop, unit);
+  ASSERT_GE(found.gaits.size(), 50u);
+  for (std::size_t k = 1; k < found.gaits.size(); ++k)
+    EXPECT_NEAR(found.gaits[k].multiplier - found.gaits[k - 1].multiplier, -1.685, 0.03) << k;
+}
+
+TEST(Gaits, AreFoundThoughTheyAreCloseToLosingTheirStability) {
+  // At 11 degrees the multiplier is -0.9968: after 500 jumps the hoop is still a hundredth off.
+  Scene scene = unit;
+  scene.settle = 500;
+  const Outcome outcome =
+      solve({.slope = 0.19198621771937624, .mass_ratio = 3.0, .offset_ratio = 0.5}, scene);
+  EXPECT_EQ(outcome.gait_period, 1);
+  EXPECT_NEAR(outcome.gait_multiplier, -0.996815, 1e-6);
+}
+
+TEST(Gaits, OfHoopsThatNobodyCanFollowAreNotSaidToEnd) {
+  // Its twelfth jump runs into Painleve's edge.
+  Scene scene = gait_scene(Friction::coulomb);
+  const Design hoop{.slope = 0.4097929865924131,
+                    .mass_ratio = 188.0803499182982,
+                    .offset_ratio = 0.6728761363187696,
+                    .inertia_factor = 0.5,
+                    .mu_static = 0.7295130111149761,
+                    .mu_kinetic = 0.4};
+  EXPECT_EQ(solve(hoop, scene).gait_period, Outcome::no_gait);
+}
+
 TEST(Gaits, RefuseWhatHasNoUse) {
   Scene scene = unit;
   scene.friction = Friction::coulomb;

@@ -265,6 +265,29 @@ TEST(Sequences, DoNotDependOnWhatIsStored) {
   EXPECT_EQ(times.later_jumps[2].time, all.later_jumps[2].time);
 }
 
+TEST(Sequences, EndWhereAJumpHasNoFlight) {
+  // With hop_height = 0 a lift-off that sinks at once is a jump; the hoop is then where it was, and would
+  // make it again and again.
+  for (const Friction friction : {Friction::sticking, Friction::coulomb}) {
+    Scene scene = sequence_scene(friction, 5);
+    scene.hop_height = 0.0, scene.runway = 1000.0;
+    std::size_t ended = 0;
+    for (const Design& design : lively_designs(60, 9, friction)) {
+      for (const char* method : {"exact", "gsl-rk8pd"}) {
+        const Outcome outcome = solve(design, scene, {.method = method, .tolerance = 1e-12});
+        double last = outcome.jump_time;
+        for (const Jump& jump : outcome.later_jumps) {
+          EXPECT_GT(jump.flight_time, 0.0);
+          EXPECT_TRUE(jump.time > last || jump.height > 0.0);
+          last = jump.time;
+        }
+        ended += outcome.sequence_end == Status::indeterminate;
+      }
+    }
+    EXPECT_GE(ended, friction == Friction::sticking ? 2u : 0u);
+  }
+}
+
 TEST(Sequences, AreToldByTraces) {
   for (const Friction friction : {Friction::sticking, Friction::coulomb}) {
     Scene scene;

@@ -44,3 +44,6 @@ def test_gaits_refuse_arrays_and_periods_beyond_16():
         leapmap.gaits(slope=[0.1, 0.2])
     with pytest.raises(ValueError):
         leapmap.gaits(most_period=17)
+    for name in ("friction", "jumps", "settle", "mu_static"):
+        with pytest.raises(ValueError, match=name):
+            leapmap.gaits(**HOOP, **{name: 2})

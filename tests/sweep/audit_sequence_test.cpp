@@ -81,9 +81,34 @@ TEST(AuditOfSequences, SeesAWrongJump) {
   EXPECT_TRUE(convicted([](Outcome& outcome) { outcome.sequence_end = Status::stalled; }));
 }
 
+TEST(AuditOfSequences, ConvictsNobodyWhereTheSecondMethodGivesUp) {
+  // A heavy mass near Painleve's edge, where integration fails after the first jump and exact makes six.
+  const Spec spec =
+      read_spec("", {"friction=coulomb", "jumps=6", "runway=60", "slope={values=[0.4725855418965418]}",
+                     "mass_ratio=103.97292484129952", "offset_ratio=0.7575709330529341",
+                     "mu_static=0.5397937326782717", "inertia_factor=0.5", "audit=1"});
+  const auto samples = solved_all(spec);
+  ASSERT_EQ(samples.size(), 1u);
+  ASSERT_GE(samples[0].outcome.jumps(), 3u);
+  const AuditReport report = audit(spec, samples, 1);
+  EXPECT_EQ(report.sequences_wrong, 0u);
+  EXPECT_EQ(report.jumps_compared + report.jumps_beyond, samples[0].outcome.later_jumps.size());
+  EXPECT_GE(report.jumps_beyond, 1u);
+}
+
+TEST(AuditOfSequences, LooksAtNoJumpThatNobodyAskedFor) {
+  const Spec spec = lively_grid("sticking", {"jumps=3", "fields=[\"jump_height\"]"});
+  const auto samples = solved_all(spec);
+  for (const AuditSample& sample : samples) EXPECT_TRUE(sample.outcome.later_jumps.empty());
+  const AuditReport report = audit(spec, samples, 0);
+  EXPECT_EQ(report.jumps_compared + report.jumps_beyond + report.sequences_wrong, 0u);
+  EXPECT_FALSE(disagree(report));
+}
+
 TEST(AuditOfSequences, ComparesAsManyJumpsAsTheConditionAllows) {
   std::vector<std::string> given = chaotic;
-  given.insert(given.end(), {"jumps=100", "runway=1000", "release_angle={from=2.9,to=3.1,count=10}", "audit=1"});
+  given.insert(given.end(),
+               {"jumps=100", "runway=1000", "release_angle={from=2.9,to=3.1,count=10}", "audit=1"});
   const Spec spec = read_spec("", given);
   const auto samples = solved_all(spec);
   ASSERT_EQ(samples.size(), 10u);
@@ -92,8 +117,19 @@ TEST(AuditOfSequences, ComparesAsManyJumpsAsTheConditionAllows) {
   ASSERT_GE(later, 500u);
   const AuditReport report = audit(spec, samples, 0);
   EXPECT_EQ(report.sequences_wrong, 0u);
-  EXPECT_GE(report.jumps_compared, 50u);
-  EXPECT_GE(report.jumps_beyond, later / 2);
+  // As many as derivatives say, but for those that integration is itself unsure of.
+  std::size_t within = 0;
+  const DesignSpace space(spec);
+  for (const AuditSample& sample : samples) {
+    const auto growth = ErrorGrowth(spec.scene, 1e-10).along(space.at(sample.number), 100);
+    within += static_cast<std::size_t>(std::ranges::find_if(growth, [](double g) { return !(g <= 1e5); }) -
+                                       growth.begin()) -
+              1;
+  }
+  EXPECT_LE(report.jumps_compared, within);
+  EXPECT_GE(report.jumps_compared, within - within / 10);
+  EXPECT_EQ(report.jumps_compared + report.jumps_beyond, later);
+  EXPECT_LT(within, later / 2);
 }
 
 TEST(ErrorGrowth, IsExponentialInChaosAndBoundedOnTheWayToAStableGait) {
@@ -116,6 +152,7 @@ TEST(ErrorGrowth, IsHowFarSequencesPartThatBeginBesideEachOther) {
   scene.jumps = 12;
   constexpr double apart = 1e-9;
   std::size_t compared = 0;
+  double largest = 0.0;
   for (double angle = 2.9; angle < 3.1; angle += 0.01) {
     Design design{.slope = 0.35, .mass_ratio = 3.0, .offset_ratio = 0.8, .release_angle = angle};
     const Outcome here = solve(design, scene, {.tolerance = 1e-12});
@@ -127,12 +164,16 @@ TEST(ErrorGrowth, IsHowFarSequencesPartThatBeginBesideEachOther) {
       if (!(growth[k + 1] < 1e5)) break;
       // What began alone is no more than what began there and at every landing.
       EXPECT_LE(std::abs(there.later_jumps[k].landing_spin - here.later_jumps[k].landing_spin),
-                2.0 * apart * growth[k + 1] + 1e-9)
+                2.0 * apart * growth[k + 1] + 1e-12 * growth[k + 1])
           << "jump " << k + 2 << " from " << angle;
+      largest =
+          std::max(largest, std::abs(there.later_jumps[k].landing_spin - here.later_jumps[k].landing_spin) /
+                                (apart * growth[k + 1]));
       ++compared;
     }
   }
   EXPECT_GE(compared, 60u);
+  EXPECT_GE(largest, 0.1) << "nor is it far less";
 }
 
 TEST(AuditOfGaits, FindsThemByIntegration) {
@@ -163,7 +204,7 @@ TEST(AuditOfGaits, SeesAWrongOne) {
   EXPECT_TRUE(convicted([](Outcome& outcome) { outcome.gait_period = 2; }));
   EXPECT_TRUE(convicted([](Outcome& outcome) { outcome.gait_height += 1e-6; }));
   EXPECT_TRUE(convicted([](Outcome& outcome) { outcome.gait_speed *= 1.0 + 1e-5; }));
-  EXPECT_TRUE(convicted([](Outcome& outcome) { outcome.gait_multiplier += 1e-4; }));
+  EXPECT_TRUE(convicted([](Outcome& outcome) { outcome.gait_multiplier += 1e-5; }));
 }
 
 }  // namespace

@@ -72,8 +72,12 @@ def gaits(*, most_period=1, tolerance=1e-10, **parameters):
 
     Returns a dict: gaits, each a dict of period, multiplier (stable where below 1 in size), height [hoop diameters], speed [m/s],
     energy_lost [(m + m_p) g R, a jump] and jumps, arrays of angle, spin, height, time and distance once round; and returns, arrays
-    of angle, next, slope, height and uphill of the return map where it was looked at.
+    of angle, next, slope, height and uphill of the return map where it was looked at; and is_whole, False if the map has more folds
+    than were looked at, so that gaits may be missing.
     """
+    for name in ("friction", "mu_static", "mu_kinetic", "restitution", "jumps", "settle"):
+        if name in parameters:
+            raise ValueError(f"{name}: has no use here, where every gait of a hoop that never slips is looked for; allowed: solve(..., settle=500)")
     return _core.gaits(parameters, _whole("most_period", most_period, 1, 16), tolerance)
 
 

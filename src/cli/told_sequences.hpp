@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Later jumps and gaits, and what an audit found of them, for people.
+#pragma once
+
+#include <string>
+
+#include "leapmap/audit.hpp"
+#include "leapmap/outcome.hpp"
+
+namespace leapmap::cli {
+
+/// Prints a line of later jumps and one of gaits, where the audit looked at any.
+void say_sequences(const AuditReport& report);
+
+/// What a release comes to: its gait, after so many jumps.
+std::string settled_line(const Outcome& outcome, long settle);
+
+/// How many of a hoop's later jumps the audit has confirmed, and how far to believe them; empty: it makes
+/// none.
+std::string later_jumps_line(const AuditReport& report, const Outcome& outcome);
+
+}  // namespace leapmap::cli
