@@ -115,8 +115,9 @@ std::vector<StabilityRow> run_case(const StabilityCase& stability_case,
       const auto begin = Clock::now();
       solving.solve({&subject.design, 1}, {&outcome, 1});
       const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-      const double error =
-          same_course(outcome, expected[i].truth.outcome) ? error_of(outcome, expected[i].truth.outcome) : nan;
+      const double error = same_course(outcome, expected[i].truth.outcome)
+                               ? error_of(outcome, expected[i].truth.outcome)
+                               : nan;
       rows.push_back(
           {stability_case.name, stability_case.abscissa, contestant.method,
            contestant.fixed_step ? "step" : "tolerance", contestant.setting,

@@ -59,7 +59,8 @@ struct StabilityRow {
   std::string control;   ///< "tolerance", "step" or "rule" (landing)
   double setting = 0.0;  ///< tolerance or step; NaN for a rule
   double x = 0.0;
-  double error = 0.0;  ///< largest of heights', absolute [diameters], and of times to lift-offs, relative; NaN where the finding is failed or flags are wrong
+  double error = 0.0;  ///< largest of heights', absolute [diameters], and of times to lift-offs, relative;
+                       ///< NaN where the finding is failed or flags are wrong
   double energy_drift =
       0.0;                 ///< at the jump, over 1 + its kinetic energy; NaN without a jump or with friction
   double condition = 0.0;  ///< times that a relative change of the inputs comes back in the answer

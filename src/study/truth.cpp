@@ -65,9 +65,7 @@ std::vector<double Design::*> inputs_of(Friction friction) {
   return inputs;
 }
 
-bool same_course(const Outcome& a, const Outcome& b) {
-  return same_flags(a, b) && a.jumps() == b.jumps();
-}
+bool same_course(const Outcome& a, const Outcome& b) { return same_flags(a, b) && a.jumps() == b.jumps(); }
 
 double error_of(const Outcome& ours, const Outcome& right) {
   double error = 0.0;

@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <vector>
 
+#include "benchmarks/timing.hpp"
 #include "coulomb/model.hpp"
 #include "rolling/model.hpp"
 #include "support/designs.hpp"
@@ -17,17 +17,6 @@
 namespace {
 
 using namespace leapmap;
-
-double seconds(const auto& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 std::vector<Design> grid(std::size_t rows) {
   std::vector<Design> designs;

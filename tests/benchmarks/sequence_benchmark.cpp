@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <random>
 #include <string_view>
 #include <vector>
 
+#include "benchmarks/timing.hpp"
 #include "gait/error_growth.hpp"
 #include "gait/settle.hpp"
 #include "model/model.hpp"
@@ -21,17 +21,6 @@
 namespace {
 
 using namespace leapmap;
-
-double seconds(const auto& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 /// Of those that jump often.
 std::vector<Design> lively(std::size_t count, Friction friction) {

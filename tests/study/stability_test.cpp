@@ -64,15 +64,15 @@ TEST_P(StabilityOfTheDefault, IsFineOnTheWholeWalk) {
   for (const StabilityRow& row : rows)
     EXPECT_TRUE(row.finding == Finding::fine || row.finding == Finding::undecided)
         << row.study << " at " << row.x << ": " << name_of(row.finding) << ", error " << row.error;
-  // 1e-15 beyond the fold, some ulps of the mass ratio; jumps after which no digit is left; with friction 1e-13 and 1e-14 either side of a
-  // boundary
+  // 1e-15 beyond the fold, some ulps of the mass ratio; jumps after which no digit is left; with friction
+  // 1e-13 and 1e-14 either side of a boundary
   const bool slips = walk.subjects[0].scene.friction == Friction::coulomb;
   const long most = slips ? 4 : name == "chaos" ? 5 : 1;
   EXPECT_LE(std::ranges::count(rows, Finding::undecided, &StabilityRow::finding), most);
 }
 INSTANTIATE_TEST_SUITE_P(Walks, StabilityOfTheDefault,
-                         ::testing::Values("needle", "release", "graze", "long", "tolerance", "chaos", "painleve",
-                                           "slow", "dip", "stick", "bounces"),
+                         ::testing::Values("needle", "release", "graze", "long", "tolerance", "chaos",
+                                           "painleve", "slow", "dip", "stick", "bounces"),
                          [](const auto& walk) { return std::string(walk.param); });
 
 TEST(Stability, TheDefaultFlightIsFineWhereLandingEventsArmedTooEarlyLoseTheJump) {
