@@ -32,11 +32,11 @@ class _Parser(argparse.ArgumentParser):
         return parsed
 
 
-def parser(description, source, suffix, output="file name without ending; PNG, SVG and PDF are written (default: FILE's name{})"):
+def parser(description, source, suffix, output="file name without ending; PNG, SVG and PDF are written (default: FILE's name{})", needs_source=True):
     """The command line every chart shares. suffix: what the default output adds to FILE's name, or None; output: what -o means."""
     p = _Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.suffix = suffix
-    p.add_argument("source", metavar="FILE", help=source)
+    p.add_argument("source", metavar="FILE", help=source, nargs=None if needs_source else "?")
     p.add_argument("-o", "--output", help=output.format(f" with {suffix}" if suffix else ""))
     return p
 

@@ -94,6 +94,7 @@ function mapView(canvas, map, onPoint, onPick) {
         } else if (k >= 0 && status) {
           [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
         } else if (k >= 0) { r = g = b = 217; }
+        if (map.keeps && k >= 0 && !map.keeps(k)) { r = 255 - (255 - r) * 0.2; g = 255 - (255 - g) * 0.2; b = 255 - (255 - b) * 0.2; }
         data[at] = r; data[at + 1] = g; data[at + 2] = b; data[at + 3] = 255;
       }
     context.putImageData(image, x0, y0);

@@ -9,6 +9,16 @@ function notice(text) {
 }
 const complain = (error) => notice(`This page cannot be shown: ${error.message ?? error}`);
 
+/** Sets a field's colours and isolines for values from low to high. A few extreme designs do not set the scale: isolines that are given do. */
+function scaleField(map, field, low, high, levels) {
+  const most = high, given = levels.filter((l) => l >= low && l <= high);
+  if (field.log) high = Math.max(high, ...(field.name === "agility" ? Object.values(map.jumpers).map((v) => 1.15 * v) : []));
+  if (field.log && given.length > 2) low = Math.max(low, given[0]);
+  if (!field.log && given.length > 2) [low, high] = [Math.max(low, Math.min(given[0], low + 0.02 * (high - low))), Math.min(high, levels.find((l) => l >= high) ?? levels.at(-1))];
+  Object.assign(field, { low, high, most, levels });
+  field.place = colourScale(field, low, high);
+}
+
 /** The map as the explorer wrote it, with its numbers unpacked. */
 async function readMap() {
   const map = JSON.parse(element("data").textContent);
@@ -19,13 +29,7 @@ async function readMap() {
     field.table = Uint8Array.from(atob(field.colours), (c) => c.charCodeAt(0));
     let low = Infinity, high = -Infinity;
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
-    field.most = high;
-    if (field.log) high = Math.max(high, ...(field.name === "agility" ? Object.values(map.jumpers).map((v) => 1.15 * v) : []));
-    // A few extreme designs do not set the scale: isolines that are given do.
-    const given = field.levels.filter((l) => l >= low && l <= high);
-    if (field.log && given.length > 2) low = Math.max(low, given[0]);
-    if (!field.log && given.length > 2) [low, high] = [Math.max(low, Math.min(given[0], low + 0.02 * (high - low))), Math.min(high, field.levels.find((l) => l >= high) ?? field.levels.at(-1))];
-    Object.assign(field, { low, high, place: colourScale(field, low, high) });
+    scaleField(map, field, low, high, field.levels);
   }
   for (const code of Object.values(map.codes)) code.values = await codes(code, shape);
   if (map.codes.status)
@@ -48,14 +52,35 @@ const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : ""
   parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1).map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");
 const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI : value);
 
+/** Starts with a map that is solved as one looks. */
+function startLive(given, module, solver) {
+  const words = new URLSearchParams(location.hash.slice(1)), map = liveMap(given, solver, liveState(words, solver));
+  map.rowNames = solver.rowNames;
+  let page = null, settled = 0;
+  const engine = liveEngine(map, module, element("worker").textContent, (whole) => {
+    if (!page) page = start(map, solver);
+    page.repaint();
+    Object.assign(element("map").dataset, { whole: String(whole), generation: String(Number(element("map").dataset.generation ?? 0) + 1) });
+    if (whole) { window.explorer.timing = engine.timing(); page.again(); liveAddress(map, solver, page.view.view.picked); }
+  });
+  const begin = () => { element("map").dataset.whole = "false"; engine.begin(); };
+  settleMap(map);
+  liveControls(map, solver, (what) => {
+    cancelAnimationFrame(settled);
+    settled = requestAnimationFrame(begin);  // once a picture, however often a slider tells
+    if (what === "model" && page) page.remodel();
+  });
+  begin();
+}
+
 function start(map, solver) {
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
   element("title").textContent = map.title || map.name;
-  element("subtitle").textContent = `${map.name}: ${map.designs.toLocaleString("en")} designs` +
+  element("subtitle").textContent = map.live ? "Turn anything: the map follows. Click a design to see it jump; the address keeps what you see." : `${map.name}: ${map.designs.toLocaleString("en")} designs` +
     (map.computed < 1 ? `, INCOMPLETE: ${(100 * map.computed).toFixed(0)} % of them computed` : "") +
     `; ${map.about.join(", ")}`;
-  element("footer").textContent = `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as shown` +
+  element("footer").textContent = (map.live ? "Every number is computed by leapmap in this page" : `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as shown`) +
     (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop here by exact`) +
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
     (map.fields.some((f) => f.name === "agility") ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "") + ".";
@@ -85,14 +110,15 @@ function start(map, solver) {
     dataset.index = index.join(",");
     dataset.value = number(shown);
   };
-  const view = (map.columns ? listView : mapView)(canvas, map, told, chosen.show);
+  const view = (map.columns ? listView : mapView)(canvas, map, told, (index, byHand) => { chosen.show(index, byHand); if (map.live) liveAddress(map, solver, index); });
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value if there are others.
   const choices = map.columns ?? map.axes;  // of what may be drawn to the right
   const liked = (axis, k) => [axis.values.length > 1 ? 0 : 1, ["slope", "mass_ratio"].includes(axis.name) ? 0 : 1, axis.name === "slope" ? 0 : 1, k];
+  if (map.live) { view.view.x = 0; view.view.y = 1; }
   const order = choices.map(liked).sort((a, b) => a.reduce((sum, v, i) => sum || v - b[i], 0));
-  view.view.x = order[0][3];
-  if (!map.columns) view.view.y = order[1][3];
+  if (!map.live) view.view.x = order[0][3];
+  if (!map.live && !map.columns) view.view.y = order[1][3];
   // A front stands as it was asked for: the first objective up, the second to the right.
   if (map.columns && map.objectives.length === 2) {
     const right = map.columns.findIndex((c) => c.name === map.objectives[1]), up = map.fields.find((f) => f.name === map.objectives[0]);
@@ -100,7 +126,8 @@ function start(map, solver) {
   }
 
   const fieldSelect = element("field"), selects = map.columns ? { x: element("x-axis") } : { x: element("x-axis"), y: element("y-axis") };
-  element("y-axis").parentElement.hidden = Boolean(map.columns);
+  element("y-axis").parentElement.hidden = Boolean(map.columns) || Boolean(map.live);
+  element("x-axis").parentElement.hidden = Boolean(map.live);
   map.fields.forEach((f, k) => option(fieldSelect, k, withUnit(f.label, f.unit ? `[${f.unit}]` : "")));
   fieldSelect.value = map.fields.indexOf(view.view.field);
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
@@ -181,7 +208,29 @@ function start(map, solver) {
   view.pick();
   if (asked.paper) element("paper").click();
   if (asked.time !== undefined) chosen.stopAt(asked.time);
+  const filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; view.pick(); });
+  element("filters").hidden = Boolean(map.columns);
   window.explorer = { map, view, solver };
+  return {
+    view,
+    /** After more of a live map is there. */
+    repaint() { said = ""; filters?.tell(); view.paint(); legend(); told(view.view.index); },
+    /** The hoop shown, of the same place on another map. */
+    again() { if (view.view.picked) chosen.show(view.view.picked); },
+    /** Another model: what is told of a hoop is another. */
+    remodel() { legend(); },
+  };
+}
+
+/** The address of the live map that a file's map begins at: its two longest axes, the rest as it stands. */
+function liveFrom(map) {
+  const words = new URLSearchParams(), fit = (axis) => axis.name in LIVE_RANGES && !NO_LIVE_AXIS.includes(axis.name) && axis.values.length > 1;
+  const axes = map.columns ? [] : map.axes.filter(fit).sort((a, b) => b.values.length - a.values.length).slice(0, 2).sort((a, b) => (b.name === "slope") - (a.name === "slope"));
+  axes.forEach((axis, k) => words.set(k === 0 ? "x" : "y", `${axis.name}:${axis.values[0]}:${axis.values.at(-1)}`));
+  for (const axis of map.columns ? [] : map.axes) if (!axes.includes(axis)) words.set(axis.name, axis.values[Math.floor(axis.values.length / 2)]);
+  for (const [name, value] of Object.entries(map.fixed)) if (Number.isFinite(value)) words.set(name, value);
+  if (map.slips) words.set("friction", "coulomb");
+  return `live&${words.toString().replaceAll("%3A", ":")}`;
 }
 
 /** What the address asks for, as #design=20,30,1&time=0.5 or #paper: a design by its place along each axis, and a moment to stop at [s]. */
@@ -200,6 +249,13 @@ function addressed(map) {
   try {
     if (typeof DecompressionStream === "undefined" || typeof WebAssembly === "undefined")
       throw new Error("this browser is too old; Chrome 97, Firefox 113 and Safari 16.4 are not");
-    start(await readMap(), await loadSolver(element("module").textContent));
+    const module = await loadModule(element("module").textContent), solver = await solverOf(module), data = JSON.parse(element("data").textContent);
+    const live = data.only_live || new URLSearchParams(location.hash.slice(1)).has("live");
+    const toggle = element("live-toggle");
+    toggle.hidden = Boolean(data.only_live);
+    toggle.textContent = live ? "back to the file's map" : "compute the map here: every parameter a slider";
+    toggle.addEventListener("click", () => { location.hash = live ? "" : liveFrom(data); location.reload(); });
+    if (live) startLive(data.for_live, module, solver);
+    else start(await readMap(), solver);
   } catch (error) { complain(error); }
 })();

@@ -1,12 +1,13 @@
 // leapmap itself, compiled to WebAssembly (src/web/leapmap_wasm.cpp).
 
-async function loadSolver(text) {
+const loadModule = async (text) => WebAssembly.compile(await unpacked(text));
+
+async function solverOf(module) {
   const imports = {
     env: { emscripten_notify_memory_growth() {} },
     wasi_snapshot_preview1: { proc_exit() { throw new Error("the solver gave up"); } },
   };
-  const { instance } = await WebAssembly.instantiate(await unpacked(text), imports);
-  const leapmap = instance.exports;
+  const leapmap = (await WebAssembly.instantiate(module, imports)).exports;
   leapmap._initialize();
   const word = (pointer) => {
     if (!pointer) return null;
@@ -21,7 +22,7 @@ async function loadSolver(text) {
     return names;
   };
   const parameters = namesBy(leapmap.parameter_name), columns = namesBy(leapmap.column_name);
-  const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name);
+  const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name), rowNames = namesBy(leapmap.row_name);
   const doubles = (pointer, n) => new Float64Array(leapmap.memory.buffer, pointer, n);
   const defaults = Object.fromEntries(parameters.map((name, i) => [name, doubles(leapmap.parameter_values(), parameters.length)[i]]));
   const rows = (names, pointer, n) => {
@@ -47,6 +48,19 @@ async function loadSolver(text) {
         motion: rows(columns, leapmap.points(), leapmap.point_count()),
         liftOffs: rows(liftOffColumns, leapmap.lift_offs(), leapmap.lift_off_count()),
       };
+    },
+    /** What solvePlaces tells of a design, in order. */
+    rowNames,
+    /**
+     * Designs that differ in two parameters, in full: rows of numbers and codes of each, one after the other. places: the two numbers of
+     * each by turns.
+     */
+    solvePlaces(design, slips, tolerance, first, second, places) {
+      give(design);
+      const count = places.length / 2;
+      doubles(leapmap.places(count), places.length).set(places);
+      leapmap.solve_places(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second), count);
+      return doubles(leapmap.rows(), count * rowNames.length).slice();
     },
     /**
      * Heights of the jumps that `count` hoops go on making, which differ in one parameter: after `settle` jumps `keep` of each, hoop by

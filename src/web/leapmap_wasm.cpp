@@ -68,6 +68,8 @@ struct Page {
   std::vector<std::array<double, column_names.size()>> points;
   std::vector<std::array<double, lift_off_names.size()>> lift_offs;
   std::vector<double> heights;
+  std::vector<double> places;  // of a map: two parameters of each design
+  std::vector<double> rows;    // of a map: row_fields() of each design
 
  private:
   void fill(Design& design, Scene& scene) const {
@@ -76,6 +78,34 @@ struct Page {
   }
 };
 Page page;
+
+/// What a map computed on the page tells of each design: numbers and codes of the first jump.
+const std::vector<const Field*>& row_fields() {
+  static const std::vector<const Field*> fields = [] {
+    std::vector<const Field*> fields;
+    for (const Field& field : map_fields())
+      if (!field.of_sequence && !field.of_gait && !std::holds_alternative<Word>(field.source))
+        fields.push_back(&field);
+    return fields;
+  }();
+  return fields;
+}
+
+std::size_t status_row() {
+  const auto& fields = row_fields();
+  return static_cast<std::size_t>(
+      std::find_if(fields.begin(), fields.end(), [](const Field* field) { return field->name == "status"; }) -
+      fields.begin());
+}
+
+Solver first_jump_solver(const Scene& scene, double tolerance) {
+  if (scene.friction == Friction::coulomb)
+    return one_by_one(std::make_shared<CoulombSolver<double>>(tolerance), scene);
+  return [solver = std::make_shared<ExactSolver<Batch>>(tolerance), scene](std::span<const Design> designs,
+                                                                           std::span<Outcome> outcomes) {
+    solver->solve(designs, scene, outcomes);
+  };
+}
 
 JumpSolver<double> jump_solver(const Scene& scene, double tolerance) {
   if (scene.friction == Friction::coulomb)
@@ -211,6 +241,52 @@ LEAPMAP_EXPORT const char* field_text(int i) {
   page.text = phase_letters(page.outcome.phase_sequence);
   return page.text.c_str();
 }
+
+/// What rows() holds of each design, in this order; null after the last.
+LEAPMAP_EXPORT const char* row_name(int i) {
+  const auto& fields = row_fields();
+  return i >= 0 && static_cast<std::size_t>(i) < fields.size()
+             ? fields[static_cast<std::size_t>(i)]->name.data()
+             : nullptr;
+}
+
+/// Room for two numbers of each of so many designs, which the page fills in: first and second by turns.
+LEAPMAP_EXPORT double* places(int count) {
+  page.places.resize(2 * static_cast<std::size_t>(count));
+  return page.places.data();
+}
+
+/// Solves so many designs, the page's own but for two parameters, whose values are in places(): of each
+/// design a row of rows(), as the map stores it; NaN: does not apply. A design that nothing can be with is
+/// not_computed.
+LEAPMAP_EXPORT void solve_places(int friction, double tolerance, int first, int second, int count) {
+  Scene scene = page.scene(friction);
+  scene.jumps = 1;
+  const auto all = leapmap::parameters();
+  const Parameter &x = all[static_cast<std::size_t>(first)], &y = all[static_cast<std::size_t>(second)];
+  const auto member = [](const Parameter& parameter) {
+    return std::get_if<double Design::*>(&parameter.member);
+  };
+  const std::size_t wide = row_fields().size();
+  page.rows.assign(static_cast<std::size_t>(count) * wide, Outcome::none);
+  if (!member(x) || !member(y)) return;
+  std::vector<Design> designs;
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const double a = page.places[2 * i], b = page.places[2 * i + 1];
+    page.rows[i * wide + status_row()] = static_cast<double>(Status::not_computed);
+    if (!x.range.holds(a) || !y.range.holds(b)) continue;
+    designs.push_back(page.design());
+    designs.back().**member(x) = a, designs.back().**member(y) = b;
+    which.push_back(i);
+  }
+  std::vector<Outcome> outcomes(designs.size());
+  first_jump_solver(scene, tolerance)(designs, outcomes);
+  for (std::size_t k = 0; k < which.size(); ++k)
+    for (std::size_t f = 0; f < wide; ++f)
+      page.rows[which[k] * wide + f] = stored_number(*row_fields()[f], outcomes[k]);
+}
+LEAPMAP_EXPORT const double* rows() { return page.rows.data(); }
 
 LEAPMAP_EXPORT int point_count() { return static_cast<int>(page.points.size()); }
 LEAPMAP_EXPORT const double* points() { return page.points.empty() ? nullptr : page.points[0].data(); }

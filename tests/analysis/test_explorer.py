@@ -10,12 +10,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
+from support.browser import agrees, opened
 from support.program import PROGRAM, TOP, finished, leapmap, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
@@ -37,28 +35,6 @@ def made(path):
     done = explorer(path, "-o", path.with_suffix(".html"))
     assert done.returncode == 0, done.stderr
     return path.with_suffix(".html")
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    options = Options()
-    options.binary_location = "/usr/bin/chromium"
-    for switch in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-dev-shm-usage",
-                   "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
-                   "--window-size=1400,1300", f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
-        options.add_argument(switch)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-    yield driver
-    driver.quit()
-
-
-def opened(browser, page):
-    browser.get(page.as_uri())
-    WebDriverWait(browser, 20).until(lambda b: b.execute_script("return !!window.explorer || !document.getElementById('message').hidden"))
-    assert browser.find_element("id", "message").text == ""
-    complaints = [m for m in browser.get_log("browser") if m["level"] in ("SEVERE", "WARNING")]
-    assert not complaints, complaints
 
 
 @pytest.fixture(scope="module")
@@ -97,23 +73,6 @@ def told_by_leapmap(browser):
     words = shlex.split(browser.find_element("id", "command").text)
     assert words[:2] == ["leapmap", "hop"]
     return json.loads(leapmap(*words[1:], "--json").stdout)
-
-
-def agrees(page_numbers, told):
-    """The page's numbers against leapmap hop --json's: the same solver, compiled by another compiler for another machine."""
-    compared = 0
-    for name, text in page_numbers.items():
-        if name not in told:
-            continue
-        compared += 1
-        if isinstance(told[name], str):
-            assert text == told[name], name
-        elif told[name] is None:
-            assert text == "NaN", name
-        else:
-            # Roundings differ: this machine contracts a*b + c and has wider lanes. Times are good to the tolerance, 1e-10.
-            assert float(text) == pytest.approx(told[name], rel=1e-9, abs=1e-11), name
-    return compared
 
 
 @pytest.mark.parametrize("index", [[20, 30, 1], [40, 10, 0], [3, 2, 1]])

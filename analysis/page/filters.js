@@ -1,0 +1,70 @@
+// Questions to a map: only designs that reach every goal are shown in full, and the best of them is marked.
+
+/** Builds the goals' part; changed(): another picture is due, best(index): the best design left is to be shown. */
+function filtersPart(map, view, changed, best) {
+  const list = element("goals"), told = element("goals-told"), goals = [];
+  const real = element("goal-real"), find = element("goal-best");
+
+  function keeps(k) {
+    if (real.checked && map.codes.spurious_first_jump?.values[k] !== 0) return false;
+    return goals.every(({ field, sign, bound }) => {
+      const v = field.values[k];
+      return v === v && (sign === "most" ? v <= bound : v >= bound);
+    });
+  }
+
+  function update() {
+    const any = real.checked || goals.length > 0;
+    map.keeps = any ? keeps : null;
+    find.hidden = !any;
+    tell();
+    changed();
+  }
+
+  function tell() {
+    if (!map.keeps) { told.textContent = ""; return; }
+    const n = map.fields[0].values.length;
+    let left = 0;
+    for (let k = 0; k < n; ++k) if (keeps(k)) ++left;
+    told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs are left`;
+  }
+
+  function row() {
+    const item = document.createElement("li"), select = document.createElement("select"), sign = document.createElement("select"), number = document.createElement("input"),
+      away = document.createElement("button"), goal = { field: view.view.field, sign: "least", bound: 0 };
+    map.fields.forEach((field, k) => option(select, k, withUnit(field.label, field.unit ? `[${field.unit}]` : "")));
+    select.value = map.fields.indexOf(goal.field);
+    option(sign, "least", "at least");
+    option(sign, "most", "at most");
+    number.type = "number";
+    number.step = "any";
+    goal.bound = Number(((goal.field.low + goal.field.high) / 2).toPrecision(2));
+    number.value = goal.bound;
+    away.type = "button";
+    away.textContent = "×";
+    select.setAttribute("aria-label", "goal: which quantity");
+    sign.setAttribute("aria-label", "goal: which side");
+    number.setAttribute("aria-label", "goal: bound");
+    away.setAttribute("aria-label", "remove this goal");
+    select.addEventListener("change", () => { goal.field = map.fields[select.value]; update(); });
+    sign.addEventListener("change", () => { goal.sign = sign.value; update(); });
+    number.addEventListener("input", () => { if (number.value !== "") { goal.bound = Number(number.value); update(); } });
+    away.addEventListener("click", () => { goals.splice(goals.indexOf(goal), 1); item.remove(); update(); });
+    item.append(select, sign, number, away);
+    list.append(item);
+    goals.push(goal);
+    update();
+  }
+  element("goal-add").addEventListener("click", row);
+  real.addEventListener("change", update);
+  find.addEventListener("click", () => {
+    const { field } = view.view, n = field.values.length;
+    let at = -1;
+    for (let k = 0; k < n; ++k) if (keeps(k) && field.values[k] === field.values[k] && (at < 0 || field.values[k] > field.values[at])) at = k;
+    if (at < 0) { told.textContent = "no design on this map reaches every goal"; return; }
+    const index = [];
+    for (let k = map.axes.length - 1, rest = at; k >= 0; --k) { const length = map.axes[k].values.length; index[k] = rest % length; rest = Math.floor(rest / length); }
+    best(index);
+  });
+  return { tell };
+}

@@ -1,0 +1,142 @@
+// A live map: a grid over any two parameters, solved as one looks by leapmap itself on all cores, coarse at once and then finer.
+
+const LIVE_SHAPE = [200, 150];
+const COARSEST = 8;  // cells a side of the blocks that the first picture has
+/** What parameters can be moved between: their values as the solver takes them. */
+const LIVE_RANGES = {
+  slope: [0.02, 0.87], mass_ratio: [0.1, 20], offset_ratio: [0.05, 1], inertia_factor: [0.5, 1], release_angle: [0, 2 * Math.PI], release_spin: [-3, 6],
+  drive_torque: [-0.2, 0.5], mu_static: [0.05, 1.5], mu_kinetic: [0.05, 1.5], restitution: [0, 0.9], runway: [0.5, 10], hop_height: [0, 0.5],
+};
+const SLIPPING = ["mu_static", "mu_kinetic", "restitution"];
+const NO_LIVE_AXIS = ["runway", "hop_height"];
+
+/** A map as the explorer writes them, without a number yet. given: {looks, statuses, parameters, ...}; state: {x, y, slips, fixed}. */
+function liveMap(given, solver, state) {
+  const n = LIVE_SHAPE[0] * LIVE_SHAPE[1], rgb = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  const fields = given.looks.map((look) => ({
+    ...look, step: 1e-6, made: false, table: Uint8Array.from(atob(look.colours), (c) => c.charCodeAt(0)), values: new Float64Array(n).fill(NaN),
+    given: look.levels, low: 0, high: 1, most: 1, place: () => 0,
+  }));
+  const meanings = solver.codes.status, shown = meanings.map((word) => given.statuses[word] ?? { colour: "#ffffff", words: word });
+  const map = {
+    ...given, live: true, name: "leapmap", title: "Jumps of passive hoops, computed as you look", designs: n, computed: 1, slips: state.slips, method: "exact", tolerance: 1e-10,
+    axes: [state.x, state.y].map((axis) => liveAxis(given, axis)), fixed: { ...solver.defaults, ...state.fixed },
+    fields, curves: [], scatter: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1,
+    codes: {
+      status: { meanings, shown, rgb: shown.map(({ colour }) => rgb(colour)), values: new Uint8Array(n) },
+      spurious_first_jump: { values: new Uint8Array(n).fill(255) }, candidates: { values: new Uint8Array(n) }, cliffs: { values: new Uint8Array(n) },
+    },
+  };
+  return map;
+}
+
+/** An axis with its values, evenly from one bound to the other. */
+function liveAxis(given, { name, from, to, count }) {
+  const { label, symbol, unit } = given.parameters[name];
+  return { name, label, symbol, unit, log: false, from, to, values: Array.from({ length: count }, (_, i) => from + (to - from) * i / (count - 1)) };
+}
+
+/** Puts what rows tell of designs, cell by cell, into all fields: each in a block of `side` cells, but for cells that know better. */
+function putRows(map, rows, cells, side, level) {
+  const [nx, ny] = LIVE_SHAPE, names = map.rowNames, wide = names.length, column = (name) => names.indexOf(name), radius = map.fixed.radius;
+  const [height, time, apex] = ["jump_height", "jump_time", "apex_time"].map(column), columns = map.fields.map((field) => column(field.name));
+  const codes = [["status", 0], ["spurious_first_jump", 255], ["candidates", 0]].map(([name, none]) => ({ at: column(name), none, values: map.codes[name].values }));
+  const told = new Float64Array(map.fields.length);
+  for (let n = 0; n < cells.length; ++n) {
+    const at = cells[n], row = n * wide, i0 = Math.floor(at / ny), j0 = at % ny;
+    for (let f = 0; f < told.length; ++f)
+      told[f] = columns[f] >= 0 ? rows[row + columns[f]] : 2 * radius * rows[row + height] / (rows[row + time] + rows[row + apex]);
+    for (let i = i0; i < Math.min(nx, i0 + side); ++i)
+      for (let j = j0; j < Math.min(ny, j0 + side); ++j) {
+        const k = i * ny + j;
+        if (k !== at && level[k] <= side) continue;
+        level[k] = k === at ? 0 : side;
+        for (let f = 0; f < told.length; ++f) map.fields[f].values[k] = told[f];
+        for (const code of codes) { const v = rows[row + code.at]; code.values[k] = v === v ? v : code.none; }
+      }
+  }
+}
+
+/** Scales and isolines after the values that are there, and the cells that differ from the next: cliffs. */
+function settleMap(map) {
+  for (const field of map.fields) {
+    let low = Infinity, high = -Infinity;
+    for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
+    if (!(low <= high)) [low, high] = [0, 1];
+    scaleField(map, field, low, high, field.given ?? linearTicks(low, high, 12));
+    field.step = field.name === "candidates" ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-9) / 60000));
+  }
+  const [nx, ny] = LIVE_SHAPE, { status, spurious_first_jump: spurious, candidates, cliffs } = map.codes;
+  const differ = (a, b) => status.values[a] !== status.values[b] || spurious.values[a] !== spurious.values[b] || candidates.values[a] !== candidates.values[b];
+  for (let i = 0; i < nx; ++i)
+    for (let j = 0; j < ny; ++j) {
+      const k = i * ny + j;
+      cliffs.values[k] = (i + 1 < nx && differ(k, k + ny) ? 1 : 0) | (j + 1 < ny && differ(k, k + 1) ? 2 : 0);
+    }
+}
+
+/** Solves a live map on all cores, anew by begin(). onPicture(whole): there is more to see. */
+function liveEngine(map, module, workerText, onPicture) {
+  const [nx, ny] = LIVE_SHAPE, level = new Uint8Array(nx * ny);
+  const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
+  const now = { generation: 0, queue: [], left: [], stage: 0, begun: 0, shown: 0, timing: {}, idle: [] };
+  const count = Math.max(1, Math.min(16, navigator.hardwareConcurrency || 2));
+
+  function send(worker) {
+    const job = now.queue.shift();
+    if (!job) { now.idle.push(worker); return; }
+    const [x, y] = map.axes, places = new Float64Array(2 * job.cells.length);
+    job.cells.forEach((k, i) => { places[2 * i] = x.values[Math.floor(k / ny)]; places[2 * i + 1] = y.values[k % ny]; });
+    worker.job = job;
+    worker.postMessage({ generation: now.generation, design: map.fixed, slips: map.slips, tolerance: map.tolerance, first: x.name, second: y.name, places });
+  }
+
+  function receive(worker, { data }) {
+    if (data.ready) { send(worker); return; }
+    const { job } = worker;
+    if (data.generation === now.generation) {
+      putRows(map, data.rows, job.cells, job.side, level);
+      if (--now.left[job.stage] === 0) {
+        const whole = job.stage === now.left.length - 1, passed = performance.now() - now.begun;
+        if (job.stage === 0) now.timing = { coarse: passed };
+        if (whole) Object.assign(now.timing, { full: passed, designs: nx * ny });
+        // Pictures take longer than designs: those between the first and the last only if one has waited.
+        if (job.stage === 0 || whole || performance.now() - now.shown > 150) {
+          settleMap(map);
+          onPicture(whole);
+          now.shown = performance.now();
+        }
+      }
+    }
+    send(worker);
+  }
+
+  for (let i = 0; i < count; ++i) {
+    const worker = new Worker(url);
+    worker.onmessage = (event) => receive(worker, event);
+    worker.onerror = (event) => complain(event);
+    worker.postMessage({ module });
+  }
+
+  /** Throws away what is under way and starts again, coarse first. */
+  function begin() {
+    ++now.generation;
+    now.queue = [];
+    now.left = [];
+    now.begun = performance.now();
+    level.fill(255);
+    for (let side = COARSEST, stage = 0; side >= 1; side /= 2, ++stage) {
+      const cells = [];
+      for (let i = 0; i < nx; i += side)
+        for (let j = 0; j < ny; j += side) if (side === COARSEST || i % (2 * side) || j % (2 * side)) cells.push(i * ny + j);
+      const most = Math.min(map.slips ? 60 : 1500, Math.ceil(cells.length / count));
+      now.left.push(0);
+      for (let first = 0; first < cells.length; first += most) {
+        now.queue.push({ stage, side, cells: cells.slice(first, first + most) });
+        ++now.left[stage];
+      }
+    }
+    for (const worker of now.idle.splice(0)) send(worker);
+  }
+  return { begin, timing: () => ({ ...now.timing }) };
+}

@@ -1,0 +1,127 @@
+// What one may turn on a live map: axes with their bounds, the model, and a slider with a number for every other parameter.
+
+/** State as the address has it, x=slope:0.1:0.8&y=mass_ratio:0.5:10&friction=coulomb&mu_static=0.4, with what is missing by default. */
+function liveState(words, solver) {
+  const state = { slips: words.get("friction") === "coulomb", fixed: {} };
+  const numbers = (text) => (text ?? "").split(":").map((word, i) => (i === 0 ? word : Number(word)));
+  const axis = (key, fallback, count) => {
+    const [name, from, to] = numbers(words.get(key)), range = LIVE_RANGES[name];
+    const good = range && !NO_LIVE_AXIS.includes(name) && Number.isFinite(from) && Number.isFinite(to) && from < to;
+    return good ? { name, from, to, count } : { ...fallback, count };
+  };
+  state.x = axis("x", { name: "slope", from: 2 * Math.PI / 180, to: 50 * Math.PI / 180 }, LIVE_SHAPE[0]);
+  state.y = axis("y", { name: "mass_ratio", from: 0.1, to: 12 }, LIVE_SHAPE[1]);
+  if (state.x.name === state.y.name) state.y = { name: state.x.name === "slope" ? "mass_ratio" : "slope", from: 0.1, to: 0.8, count: LIVE_SHAPE[1] };
+  for (const name of Object.keys(solver.defaults)) {
+    const value = Number(words.get(name));
+    if (words.has(name) && Number.isFinite(value)) state.fixed[name] = value;
+  }
+  return state;
+}
+
+/** Writes it into the address, so that a link is what one sees. */
+function liveAddress(map, solver, picked) {
+  const words = new URLSearchParams(), axisText = ({ name, from, to }) => `${name}:${Number(from.toPrecision(9))}:${Number(to.toPrecision(9))}`;
+  words.set("x", axisText(map.axes[0]));
+  words.set("y", axisText(map.axes[1]));
+  if (map.slips) words.set("friction", "coulomb");
+  for (const [name, value] of Object.entries(map.fixed))
+    if (value !== solver.defaults[name] && Number.isFinite(value) && !map.axes.some((axis) => axis.name === name)) words.set(name, String(Number(value.toPrecision(12))));
+  if (picked) words.set("design", picked.join(","));
+  history.replaceState(null, "", `#live&${words.toString().replaceAll("%3A", ":").replaceAll("%2C", ",")}`);
+}
+
+/** Builds the controls. changed(what): "map" if the map is another, "model" if the model is. */
+function liveControls(map, solver, changed) {
+  const box = element("live-controls"), sliders = element("live-sliders"), model = element("live-model");
+  const axisInputs = ["x", "y"].map((key) => ({ name: element(`live-${key}`), from: element(`live-${key}-from`), to: element(`live-${key}-to`) }));
+  box.hidden = false;
+  const unitOf = (name) => map.parameters[name].unit, factor = (name) => (unitOf(name) === "°" ? 180 / Math.PI : 1);
+  const here = () => Object.keys(LIVE_RANGES).filter((name) => name in map.parameters && (map.slips || !SLIPPING.includes(name)));
+
+  function showAxes() {
+    axisInputs.forEach((inputs, k) => {
+      const axis = map.axes[k];
+      inputs.name.replaceChildren();
+      here().filter((name) => !NO_LIVE_AXIS.includes(name)).forEach((name) => option(inputs.name, name, map.parameters[name].label));
+      inputs.name.value = axis.name;
+      inputs.from.value = Number((axis.from * factor(axis.name)).toPrecision(6));
+      inputs.to.value = Number((axis.to * factor(axis.name)).toPrecision(6));
+    });
+  }
+
+  /** Takes the axes as they stand in the inputs; says so if they cannot be. */
+  function takeAxes(k) {
+    const inputs = axisInputs[k], name = inputs.name.value, [from, to] = [inputs.from, inputs.to].map((input) => Number(input.value) / factor(name));
+    const [least, most] = solver.ranges[name], good = from < to && from >= least && to <= most;
+    for (const input of [inputs.from, inputs.to]) input.setAttribute("aria-invalid", String(!good));
+    notice(good ? "" : `${map.parameters[name].label}: from must be below to, both between ${short(least * factor(name))} and ${short(most * factor(name))}.`);
+    if (!good) return;
+    Object.assign(map.axes[k], liveAxis(map, { name, from, to, count: LIVE_SHAPE[k] }));
+    changed("map");
+  }
+  axisInputs.forEach((inputs, k) => {
+    inputs.name.addEventListener("change", () => {
+      const other = map.axes[1 - k], before = { ...map.axes[k] }, name = inputs.name.value;
+      if (name === other.name) Object.assign(map.axes[1 - k], liveAxis(map, { ...before, count: LIVE_SHAPE[1 - k] }));
+      else map.fixed[before.name] = (before.from + before.to) / 2;
+      const [from, to] = name === other.name ? [other.from, other.to] : LIVE_RANGES[name];
+      Object.assign(map.axes[k], liveAxis(map, { name, from, to, count: LIVE_SHAPE[k] }));
+      showAxes();
+      showSliders();
+      changed("map");
+    });
+    for (const input of [inputs.from, inputs.to]) input.addEventListener("change", () => takeAxes(k));
+  });
+
+  function showSliders() {
+    const rows = here().filter((name) => !map.axes.some((axis) => axis.name === name)).map((name) => {
+      const { label, unit } = map.parameters[name], [low, high] = LIVE_RANGES[name];
+      const row = document.createElement("label"), words = document.createElement("span"), slider = document.createElement("input"), number = document.createElement("input");
+      words.textContent = withUnit(label, unit ? `[${unit}]` : "");
+      slider.type = "range";
+      number.type = "number";
+      number.step = slider.step = "any";
+      [slider.min, slider.max] = [low, high];
+      slider.dataset.parameter = number.dataset.parameter = name;
+      slider.setAttribute("aria-label", label);
+      number.setAttribute("aria-label", `${label}, as a number`);
+      const show = () => {
+        const value = map.fixed[name];
+        number.value = Number.isFinite(value) ? Number((value * factor(name)).toPrecision(6)) : "";
+        slider.value = Number.isFinite(value) ? value : map.fixed.mu_static;
+      };
+      const take = (value) => {
+        const [least, most] = solver.ranges[name], follows = name === "mu_kinetic" && number.value === "";
+        const good = follows || (Number.isFinite(value) && value >= least && value <= most);
+        number.setAttribute("aria-invalid", String(!good));
+        notice(good ? "" : `${label} must be between ${short(least * factor(name))} and ${short(most * factor(name))}.`);
+        if (!good) return;
+        map.fixed[name] = follows ? NaN : value;
+        changed("map");
+      };
+      slider.addEventListener("input", () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6)); take(Number(slider.value)); });
+      number.addEventListener("change", () => { take(Number(number.value) / factor(name)); if (number.getAttribute("aria-invalid") !== "true") show(); });
+      show();
+      row.append(words, slider, number);
+      return row;
+    });
+    sliders.replaceChildren(...rows);
+  }
+
+  model.value = map.slips ? "coulomb" : "sticking";
+  model.addEventListener("change", () => {
+    map.slips = model.value === "coulomb";
+    map.axes.forEach((axis, k) => {
+      if (map.slips || !SLIPPING.includes(axis.name)) return;
+      const free = ["slope", "mass_ratio", "offset_ratio"].find((name) => !map.axes.some((a) => a.name === name));
+      const [from, to] = LIVE_RANGES[free];
+      Object.assign(axis, liveAxis(map, { name: free, from, to, count: LIVE_SHAPE[k] }));
+    });
+    showAxes();
+    showSliders();
+    changed("model");
+  });
+  showAxes();
+  showSliders();
+}

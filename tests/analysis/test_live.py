@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The live map in a real browser: every number is leapmap's own, whatever one turns."""
+import json
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import Select, WebDriverWait
+from support.browser import agrees, opened
+from support.program import TOP, finished, leapmap, sweep
+
+MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
+TOLD = ("jump_height", "jump_time", "first_jump_height", "first_jump_time", "jump_angle", "jump_spin", "apex_time", "flight_time", "jump_distance", "candidates")
+
+
+def page_at(folder, *arguments):
+    done = finished("/usr/bin/python3", TOP / "analysis/explorer", *arguments, "--module", MODULE, "-o", folder / "live.html")
+    assert done.returncode == 0, done.stderr
+    return folder / "live.html"
+
+
+def settled(browser, seconds=60):
+    WebDriverWait(browser, seconds).until(lambda b: b.execute_script("return document.getElementById('map').dataset.whole") == "true")
+
+
+@pytest.fixture
+def live(browser, tmp_path):
+    browser.get("about:blank")
+    opened(browser, page_at(tmp_path))
+    settled(browser)
+    return browser
+
+
+def type_in(browser, name, text):
+    """Types a number into a parameter's field, as a person would."""
+    field = browser.find_element("css selector", f"#live-sliders input[type=number][data-parameter={name}]")
+    browser.execute_script("document.getElementById('map').dataset.whole = 'false'")
+    field.clear()
+    field.send_keys(text, Keys.TAB)
+
+
+def designs(browser, cells):
+    """The designs of some cells with all that the page tells of them."""
+    return browser.execute_script("""const { map } = window.explorer, ny = map.axes[1].values.length;
+        return arguments[0].map((k) => ({
+          design: {...map.fixed, [map.axes[0].name]: map.axes[0].values[Math.floor(k / ny)], [map.axes[1].name]: map.axes[1].values[k % ny]},
+          slips: map.slips, status: map.codes.status.meanings[map.codes.status.values[k]],
+          told: Object.fromEntries(map.fields.map((f) => [f.name, String(f.values[k])])) }))""", cells)
+
+
+def compare(browser, random, count):
+    """Some cells against leapmap hop. Returns how many of them jump."""
+    jumped = 0
+    for cell in designs(browser, [int(k) for k in random.integers(0, 30000, count)]):
+        contact = ("mu_static", "mu_kinetic", "restitution")
+        flags = [w for name, v in cell["design"].items() if v is not None and (cell["slips"] or name not in contact) and name not in ("radius", "gravity", "rest_speed")
+                 for w in ("--set", f"{name}={v!r}")]
+        told = json.loads(leapmap("hop", *flags, *(["--set", "friction=coulomb"] if cell["slips"] else []), "--json").stdout)
+        assert cell["status"] == told["status"], cell
+        numbers = {name: text for name, text in cell["told"].items() if name in TOLD}
+        if told["candidates"] == 0:
+            numbers.pop("candidates")  # of which the map has a number where hop says none
+        assert agrees(numbers, told) >= 9
+        jumped += told["status"] == "jumped"
+    return jumped
+
+
+def test_every_number_is_that_of_leapmap_hop_whatever_is_typed(live):
+    random = np.random.default_rng(5)
+    jumped = compare(live, random, 40)
+    for name, text in (("offset_ratio", "0.62"), ("release_angle", "155.5"), ("inertia_factor", "0.8"), ("hop_height", "0.02"), ("release_spin", "0.4")):
+        type_in(live, name, text)
+        settled(live)
+        assert live.find_element("id", "message").text == ""
+        jumped += compare(live, random, 24)
+    assert jumped >= 60
+
+
+def test_with_friction_too(live):
+    live.execute_script("document.getElementById('map').dataset.whole = 'false'")
+    Select(live.find_element("id", "live-model")).select_by_value("coulomb")
+    settled(live, 200)
+    type_in(live, "mu_static", "0.55")
+    settled(live, 200)
+    assert compare(live, np.random.default_rng(6), 40) >= 8
+    assert "friction=coulomb" in live.execute_script("return location.hash") and "mu_static=0.55" in live.execute_script("return location.hash")
+    assert "friction=coulomb" in live.find_element("id", "command").text
+
+
+def test_a_coarse_map_is_there_long_before_the_whole_one(live):
+    ratios = []
+    for value in ("0.9", "0.7", "0.8"):
+        type_in(live, "offset_ratio", value)
+        settled(live)
+        timing = live.execute_script("return window.explorer.timing")
+        assert timing["designs"] == 30000
+        ratios.append(timing["coarse"] / timing["full"])
+    assert np.median(ratios) < 0.5
+
+
+def test_what_is_dragged_past_is_not_what_stays(live):
+    live.execute_script("""const slider = document.querySelector("#live-sliders input[type=range][data-parameter=offset_ratio]");
+        document.getElementById('map').dataset.whole = 'false';
+        for (let k = 0; k < 40; ++k) { slider.value = 0.3 + 0.01 * k; slider.dispatchEvent(new Event('input')); }""")
+    settled(live)
+    assert live.execute_script("return window.explorer.map.fixed.offset_ratio") == pytest.approx(0.69)
+    assert compare(live, np.random.default_rng(7), 12) >= 4
+
+
+def test_axes_can_be_any_two_parameters_with_bounds_of_ones_own(live):
+    live.execute_script("document.getElementById('map').dataset.whole = 'false'")
+    Select(live.find_element("id", "live-y")).select_by_value("release_angle")
+    settled(live)
+    assert live.execute_script("return window.explorer.map.axes.map((a) => a.name)") == ["slope", "release_angle"]
+    assert live.find_elements("css selector", "#live-sliders input[data-parameter=mass_ratio]") and not live.find_elements("css selector", "#live-sliders input[data-parameter=release_angle]")
+    compare(live, np.random.default_rng(8), 12)
+    low = live.find_element("id", "live-y-from")
+    low.clear()
+    low.send_keys("500", Keys.TAB)
+    assert "below to" in live.find_element("id", "message").text and low.get_attribute("aria-invalid") == "true"
+    low.clear()
+    live.execute_script("document.getElementById('map').dataset.whole = 'false'")
+    low.send_keys("90", Keys.TAB)
+    settled(live)
+    assert live.find_element("id", "message").text == ""
+    assert live.execute_script("return window.explorer.map.axes[1].values[0]") == pytest.approx(math.pi / 2, rel=1e-12)
+
+
+def test_an_address_is_what_was_seen(live, browser, tmp_path):
+    type_in(live, "offset_ratio", "0.64")
+    settled(live)
+    address, height = live.execute_script("return [location.hash, [...window.explorer.map.fields[0].values].map(String)]")
+    assert "offset_ratio=0.64" in address
+    browser.get("about:blank")
+    browser.get(page_at(tmp_path).as_uri() + address)
+    settled(browser)
+    again = browser.execute_script("return [...window.explorer.map.fields[0].values].map(String)")
+    # Bounds in the address have nine digits.
+    assert np.allclose(np.array(height, float), np.array(again, float), rtol=0, atol=1e-6, equal_nan=True) or \
+        (np.abs(np.array(height, float) - np.array(again, float)) > 1e-6).mean() < 1e-3
+
+
+def test_goals_dim_what_fails_and_the_best_left_is_shown(live):
+    live.execute_script("document.getElementById('filters').open = true")
+    live.find_element("id", "goal-add").click()
+    bound = live.find_element("css selector", "#goals input")
+    bound.clear()
+    bound.send_keys("0.3")
+    live.find_element("id", "goal-real").click()
+    height, spurious = (np.array(v, float) for v in live.execute_script(
+        "const { map } = window.explorer; return [[...map.fields[0].values].map(String), [...map.codes.spurious_first_jump.values]]"))
+    left = (height >= 0.3) & (spurious == 0)
+    assert f"{left.sum():,} of 30,000" in live.find_element("id", "goals-told").text and 0 < left.sum() < 30000
+    live.find_element("id", "goal-best").click()
+    picked = live.execute_script("return window.explorer.view.view.picked")
+    assert height[picked[0] * 150 + picked[1]] == height[left].max()
+    assert float(live.execute_script("return document.querySelector('#numbers tr[data-name=jump_height]').dataset.value")) == pytest.approx(height[left].max(), rel=1e-9)
+    live.find_element("css selector", "#goals button").click()
+    live.find_element("id", "goal-real").click()
+    assert live.find_element("id", "goals-told").text == ""
+
+
+def test_a_file_s_map_goes_live_where_it_is_and_back(browser, tmp_path):
+    path = sweep(tmp_path, "[design]\nslope = { from = \"5 deg\", to = \"40 deg\", count = 20 }\nmass_ratio = { from = 0.5, to = 10, count = 15 }\noffset_ratio = 0.8\n")
+    html = page_at(tmp_path, path)
+    browser.get("about:blank")
+    opened(browser, html)
+    browser.find_element("id", "live-toggle").click()
+    settled(browser)
+    axes, offset = browser.execute_script("const { map } = window.explorer; return [map.axes.map((a) => [a.name, a.values[0], a.values.at(-1)]), map.fixed.offset_ratio]")
+    assert [axis[0] for axis in axes] == ["slope", "mass_ratio"] and offset == 0.8
+    assert axes[0][1:] == pytest.approx([math.radians(5), math.radians(40)]) and axes[1][1:] == pytest.approx([0.5, 10])
+    compare(browser, np.random.default_rng(9), 10)
+    browser.find_element("id", "live-toggle").click()
+    WebDriverWait(browser, 20).until(lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
+    assert browser.execute_script("return window.explorer.map.axes[0].values.length") == 20

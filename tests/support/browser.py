@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What tests of pages share."""
+import pytest
+from selenium.webdriver.support.ui import WebDriverWait
+
+
+def opened(browser, page):
+    browser.get(page.as_uri())
+    WebDriverWait(browser, 20).until(lambda b: b.execute_script("return !!window.explorer || !document.getElementById('message').hidden"))
+    assert browser.find_element("id", "message").text == ""
+    complaints = [m for m in browser.get_log("browser") if m["level"] in ("SEVERE", "WARNING")]
+    assert not complaints, complaints
+
+
+def agrees(page_numbers, told):
+    """The page's numbers against leapmap hop --json's: the same solver, compiled by another compiler for another machine."""
+    compared = 0
+    for name, text in page_numbers.items():
+        if name not in told:
+            continue
+        compared += 1
+        if isinstance(told[name], str):
+            assert text == told[name], name
+        elif told[name] is None:
+            assert text == "NaN", name
+        else:
+            # Roundings differ: this machine contracts a*b + c and has wider lanes. Times are good to the tolerance, 1e-10.
+            assert float(text) == pytest.approx(told[name], rel=1e-9, abs=1e-11), name
+    return compared
