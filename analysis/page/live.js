@@ -64,7 +64,7 @@ function settleMap(map) {
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
     if (!(low <= high)) [low, high] = [0, 1];
     scaleField(map, field, low, high, field.given ?? linearTicks(low, high, 12));
-    field.step = field.name === "candidates" ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-9) / 60000));
+    field.step = field.name === "candidates" ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-2) / 60000));
   }
   const [nx, ny] = LIVE_SHAPE, { status, spurious_first_jump: spurious, candidates, cliffs } = map.codes;
   const differ = (a, b) => status.values[a] !== status.values[b] || spurious.values[a] !== spurious.values[b] || candidates.values[a] !== candidates.values[b];

@@ -218,7 +218,7 @@ function start(map, solver) {
     /** The hoop shown, of the same place on another map. */
     again() { if (view.view.picked) chosen.show(view.view.picked); },
     /** Another model: what is told of a hoop is another. */
-    remodel() { legend(); },
+    remodel() { element("paper").hidden = map.slips; legend(); },
   };
 }
 
