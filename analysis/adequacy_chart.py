@@ -20,7 +20,7 @@ from style import plt
 ENOUGH = 0.05  # of the height
 KINDS = [(looks.STATUSES["no_jump"][0], "neither jumps"), ("#1b7837", "height within 5 %"), ("#ffdd57", "both jump, heights differ by more"),
          ("#e66101", "only one of them jumps"), ("#8c6bb1", "indeterminate or failed")]
-KEEP = ("mass_ratio", "slope")
+KEEP = ("slope", "mass_ratio")  # to the right, and up
 
 
 def kinds(sticking, coulomb, jumps_sticking, jumps_coulomb, unknown):
@@ -70,7 +70,7 @@ def chart(rigid, slipping, of_rigid, of_slipping):
     for i, (axis, mu) in enumerate(zip(axes.flat, mus)):
         here = (i,) if "mu_static" in slipping.dims else ()
         right = cliffs.Panel(grids[1], grids[1].panels[i], of_slipping if of_rigid is not None else None)
-        # Rows along the slope, pixel by pixel where there are cliffs.
+        # Rows along the mass ratio, pixel by pixel where there are cliffs.
         kind = kinds(left.field(height.T), right.field(heights[here].T), left.code(jumps.T), right.code(jump[here].T), right.code(unknown[here].T))
         axis.pcolormesh(right.edges(across), right.edges(up), kind, cmap=ListedColormap([c for c, _ in KINDS]), vmin=-0.5, vmax=len(KINDS) - 0.5,
                         shading="flat", rasterized=True)
@@ -79,16 +79,16 @@ def chart(rigid, slipping, of_rigid, of_slipping):
             differs = left.code(jumps.T) & right.code(jump[here].T) & (left.code(flag.T) != right.code(flags[here].T))
             axis.contourf(right.centres(across), right.centres(up), differs, levels=[0.5, 1.5], colors="none", hatches=["////"])
         drawn |= left.draw(axis) | right.draw(axis)
-        axis.plot(looks.PAPER["mass_ratio"], np.degrees(looks.PAPER["slope"]), "*", markersize=10, color=style.MARK, markeredgecolor="white")
+        axis.plot(np.degrees(looks.PAPER["slope"]), looks.PAPER["mass_ratio"], "*", markersize=10, color=style.MARK, markeredgecolor="white")
         both = jumps & jump[here]
         close = kinds(height, heights[here], jumps, jump[here], unknown[here]) == 1
         share = 100 * close.sum() / max(both.sum(), 1)
         axis.set_title(f"μ = {mu:g}: height agrees for {share:.0f} % of what jumps in both")
-        style.log_scale(axis.xaxis)
+        style.log_scale(axis.yaxis)
     for axis in axes[-1]:
-        axis.set_xlabel("mass ratio")
+        axis.set_xlabel("slope [degrees]")
     for axis in axes[:, 0]:
-        axis.set_ylabel("slope [°]")
+        axis.set_ylabel("mass ratio mₚ/m")
     handles = [Patch(color=c, label=text) for c, text in KINDS]
     handles += cliffs.handles(drawn)
     handles += [Patch(facecolor="none", edgecolor=style.EDGE, hatch="////", label="only one sees a spurious first lift-off"),

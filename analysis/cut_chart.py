@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws cuts through a map: quantities along one axis, a line for each of some values of a second, the others fixed.
 
-Solid where the first lift-off is the jump, dotted where it is spurious; gaps where nothing jumps, and at cliffs, where the jump
+Solid where the first lift-off is the jump, dashed where it is spurious; gaps where nothing jumps, and at cliffs, where the jump
 passes to another lift-off. Axes that are neither drawn nor fixed by --at stay at the value nearest to the paper's hoop, or in the middle.
 """
 import numpy as np
@@ -13,7 +13,8 @@ import style
 from read_map import NotAMap, read_map
 from style import plt
 
-MOST_LINES = 8
+MOST_LINES = 6
+COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9")  # told apart by everybody, and on white (Okabe and Ito)
 
 
 def chart(m, along, by, wanted, at, fields):
@@ -56,7 +57,7 @@ def chart(m, along, by, wanted, at, fields):
             raise NotAMap(f"{m.path}: --values: there is no second axis to have them")
         picked = list(dict.fromkeys(planes.fixed_at(m, [f"{by}={value}"], "--values")[by] for value in wanted.split(",")))
     figure, axes = plt.subplots(len(drawn), 1, sharex=True, squeeze=False, figsize=(6.6, 2.5 * len(drawn) + 1.4), layout="constrained")
-    colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(picked)))
+    colours = [COLOURS[i % len(COLOURS)] for i in range(len(picked))]
     course = looks.course(m)
     for axis, (field, values) in zip(axes[:, 0], drawn.items()):
         for colour, k in zip(colours, picked):
@@ -70,7 +71,7 @@ def chart(m, along, by, wanted, at, fields):
             flags = line(m.fields["spurious_first_jump"], k) if "spurious_first_jump" in m.fields else np.zeros(len(x))
             flags = np.insert(flags, np.flatnonzero(torn) + 1, 255)
             axis.plot([], [], color=colour, label=looks.titled(by, m.dims[by][k]) if by else "first lift-off is the jump")
-            for spurious, line_style, width in ((False, "-", 1.9), (True, (0, (1, 1.2)), 1.2)):
+            for spurious, line_style, width in ((False, "-", 2.0), (True, (0, (3, 1.2)), 1.1)):
                 part = np.where((flags == 1) == spurious, y, np.nan)
                 axis.plot(places, part, color=colour, linewidth=width, linestyle=line_style)
                 here = np.isfinite(np.concatenate([[np.nan], part, [np.nan]]))
@@ -83,7 +84,7 @@ def chart(m, along, by, wanted, at, fields):
     words = looks.words_of(m, looks.fixed_numbers(m) | {n: m.dims[n][index[n]] for n in names if n not in (along, by)})
     axes[-1, 0].set_xlabel(f"{planes.axis_label(along)}\n{style.wrapped(words, figure)}")
     handles = axes[0, 0].get_legend_handles_labels()[0]
-    handles += [plt.Line2D([], [], color="#404040", linestyle=(0, (1, 1.2)), label="dotted: first lift-off is spurious")]
+    handles += [plt.Line2D([], [], color="#404040", linestyle=(0, (3, 1.2)), label="dashed: first lift-off is spurious")]
     style.legend_above(figure, handles)
     return figure
 
@@ -92,7 +93,7 @@ def main():
     p = style.parser(__doc__, "a map, for example maps/slope_mass_ratio_offset.h5", "_cut")
     p.add_argument("--along", metavar="AXIS", help="the axis drawn to the right (default: slope, or the map's first)")
     p.add_argument("--by", metavar="AXIS", help="the axis that lines are drawn for (default: mass_ratio, or the map's next)")
-    p.add_argument("--values", metavar="V,V,...", help="of that axis, those nearest to these (default: eight, spread over it)")
+    p.add_argument("--values", metavar="V,V,...", help="of that axis, those nearest to these (default: six, spread over it)")
     planes.add_at(p)
     planes.add_fields(p)
     arguments = p.parse_args()

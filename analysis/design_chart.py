@@ -39,7 +39,9 @@ def scale_of(look, levels, values):
     if look.log:
         low = np.nanpercentile(values[values > 0], 1) if (values > 0).any() else levels[0]
         levels = levels[levels >= low] if (levels >= low).sum() > 2 else levels
-        norm = LogNorm(levels[0], 1.15 * max([levels[-1], *looks.JUMPERS.values()]))  # the marks must be on the bar
+        most = np.nanmax(values)
+        norm = LogNorm(levels[0], max(most, 1.01 * levels[0]))
+        levels = levels[levels <= most] if (levels <= most).sum() > 2 else levels
     elif look.exponent == 1.0:
         norm = Normalize(levels[0], levels[-1])
     else:  # a power has no colour below its least value
@@ -73,7 +75,7 @@ def draw_panel(axis, crisp, plane, flags, course, told, scale, ink):
     present = [v for v in levels if np.isfinite(torn).any() and np.nanmin(torn) < v < np.nanmax(torn)]
     if present:
         lines = axis.contour(x, y, np.ma.masked_invalid(torn), levels=present, colors=ink, linewidths=0.8)
-        axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7)
+        style.halo(axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7), "white" if ink == "black" else "#303030")
     hatched = np.ma.masked_where(~np.isfinite(plane), (flags == 1) * 1.0)
     if hatched.max() > 0:
         corners = (x, y)
@@ -111,8 +113,16 @@ def chart(grid, name, panels_of):
                           ticks=levels, shrink=0.9, pad=0.015)
     bar.ax.set_yticks(levels, [f"{v:g}" for v in levels])
     bar.ax.minorticks_off()
+    if look.log or look.exponent != 1.0:
+        bar.ax.set_title(looks.scale_words(look), fontsize=7)
     if name == "agility":
+        beyond = [f"{jumper} {agility:g}" for jumper, agility in looks.JUMPERS.items() if agility > norm.vmax]
+        if beyond:  # the scale is of the map; what is beyond it is told
+            bar.ax.annotate("beyond:\n" + "\n".join(beyond), (0.5, 0.0), xycoords="axes fraction", xytext=(0, -18), textcoords="offset points",
+                            ha="center", va="top", fontsize=7, color=style.MARK, annotation_clip=False)
         for jumper, agility in looks.JUMPERS.items():
+            if agility > norm.vmax:
+                continue
             bar.ax.axhline(agility, color=style.MARK, linewidth=1.5)
             bar.ax.annotate(f"{jumper} {agility:g}", (0.0, agility), xycoords=("axes fraction", "data"), xytext=(-3, 0),
                             textcoords="offset points", ha="right", va="center", fontsize=7, color=style.MARK, annotation_clip=False)

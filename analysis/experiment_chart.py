@@ -3,7 +3,7 @@
 """The paper's hoop with Coulomb friction over release angle and friction: where does it do what was measured?
 
 Left the jump's height with lines where apex time, flight time and height are the measured 0.129 s, 0.198 s and one diameter (if
-they are so anywhere); right the number of small hops on the way. Hatched: apex and flight within 2 % and height within 10 % of
+they are so anywhere; else the legend says how near); right the number of small hops on the way. Hatched: apex and flight within 2 % and height within 10 % of
 the measured.
 """
 import numpy as np
@@ -29,20 +29,27 @@ def chart(m):
     fits = (np.abs(fields["apex_time"] / APEX - 1) < 0.02) & (np.abs(fields["flight_time"] / FLIGHT - 1) < 0.02) & (np.abs(height - HEIGHT) < 0.1)
     if fits.any():
         left.contourf(angle, mu, fits, levels=[0.5, 1.5], colors="none", hatches=["xxx"])
-    for name, level, colour in (("apex_time", APEX, "white"), ("flight_time", FLIGHT, style.MARK), ("jump_height", HEIGHT, "black")):
-        if not np.nanmin(fields[name]) <= level <= np.nanmax(fields[name]):
-            continue  # nowhere
+    handles = []
+    for name, level, colour, words in (("apex_time", APEX, "white", "apex after 0.129 s"), ("flight_time", FLIGHT, style.MARK, "flight of 0.198 s"),
+                                       ("jump_height", HEIGHT, "black", "height of one diameter")):
+        least, most = np.nanmin(fields[name]), np.nanmax(fields[name])
+        there = least <= level <= most
+        bound = "" if there else f": nowhere, {'at most' if most < level else 'at least'} {most if most < level else least:.3g}"
+        handles.append(plt.Line2D([], [], color="#9aa4ae" if colour == "white" else colour, linestyle="-" if there else ":", label=words + bound))
+        if not there:
+            continue
         lines = left.contour(angle, mu, fields[name], levels=[level], colors=[colour], linewidths=1.4)
         left.clabel(lines, fmt={level: {"apex_time": "apex 0.129 s", "flight_time": "flight 0.198 s", "jump_height": "1 diameter"}[name]}, fontsize=7)
     left.plot(190, 0.4, "*", markersize=11, color=style.MARK, markeredgecolor="white")
-    left.set_title(f"hatched: apex and flight within 2 %, height within 10 % ({100 * fits.mean():.0f} % of the plane); star: 190°, μ 0.4")
+    left.set_title(f"hatched: apex and flight within 2 %, height within 10 % ({100 * fits.mean():.0f} % of these designs); star: 190°, μ 0.4", fontsize=8)
     hops = np.where(height > 0, fields["candidates"].astype(float) - 1, np.nan)
     drawn = right.pcolormesh(angle, mu, np.minimum(hops, 3), cmap=plt.get_cmap("Blues", 4), vmin=-0.5, vmax=3.5, shading="nearest", rasterized=True)
     bar = figure.colorbar(drawn, ax=right, ticks=[0, 1, 2, 3], label="small hops before the jump")
     bar.ax.set_yticklabels(["none", "1", "2", "3 or more"])
     for axis in (left, right):
         axis.set_facecolor(looks.STATUSES["no_jump"][0])
-    right.set_title("where the spurious jump is real: hops below 0.05 diameters on the way; grey: no jump")
+    right.set_title("where the spurious jump is real: hops below 0.05 diameters on the way; grey: no jump", fontsize=8)
+    style.legend_above(figure, handles)
     for axis in (left, right):
         axis.set_xlabel("release angle [°]")
     left.set_ylabel("friction μ")

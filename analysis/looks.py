@@ -91,6 +91,11 @@ JUMPERS = {"Salto": 1.75, "galago": 2.24}
 JUMPERS_SOURCE = "Haldane et al., Science Robotics 1 (2016) eaag2048"
 
 
+def scale_words(look):
+    """How colours go with values, where it is not evenly."""
+    return "logarithmic" if look.log else f"power {look.exponent:g}" if look.exponent != 1.0 else ""
+
+
 def is_of_made(name):
     """Whether a quantity is of hoops as made, and so smooth across the cliffs of hoops as drawn."""
     return name == "yield" or name.endswith(("_q05", "_q50", "_q95", "_mean", "_sd"))

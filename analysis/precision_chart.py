@@ -33,18 +33,23 @@ def series(t, designs, control):
         yield method, np.flatnonzero(here & (t.fields["method"] == method))
 
 
-def draw_methods(axis, t, designs, across):
-    """Error over time or work, tolerances as solid lines, fixed steps as dashed ones."""
+CONTROLS = {"tolerance": ("-", "o", "steps as a tolerance asks"), "step": (":", "s", "fixed steps")}
+
+
+def draw_methods(axis, t, designs, across, control):
+    """Error over time or work, of the methods with that control; exact beside them for comparison."""
     error = np.maximum(t.fields["max_height_error"], FLOOR)
     x = 1e6 * t.fields[across] if across == "seconds" else t.fields[across]
-    for control, line, marker in (("tolerance", "-", "o"), ("step", ":", "s")):
-        for method, rows in series(t, designs, control):
-            colour = COLOURS.get(method, "#444444")
-            label = method if control == "tolerance" else f"{method}, fixed steps"
-            axis.plot(x[rows], error[rows], linestyle=line, marker=marker, markersize=3.5, linewidth=1.2, color=colour, label=label)
-            for mark, share, size in (("o", "wrong", 9), ("x", "failed", 8)):
-                bad = rows[(t.fields[share][rows] > 0) & np.isfinite(error[rows])]
-                axis.plot(x[bad], error[bad], mark, markersize=size, markerfacecolor="none", color=style.MARK, markeredgewidth=0.9)
+    line, marker, _ = CONTROLS[control]
+    drawn = list(series(t, designs, control))
+    if control == "step":
+        drawn = [row for row in series(t, designs, "tolerance") if row[0] == "exact"] + drawn
+    for method, rows in drawn:
+        axis.plot(x[rows], error[rows], linestyle="-" if method == "exact" else line, marker=marker, markersize=3.5, linewidth=2.4 if method == "exact" else 1.3,
+                  color=COLOURS.get(method, "#444444"), label=method)
+        for mark, share, size in (("o", "wrong", 9), ("x", "failed", 8)):
+            bad = rows[(t.fields[share][rows] > 0) & np.isfinite(error[rows])]
+            axis.plot(x[bad], error[bad], mark, markersize=size, markerfacecolor="none", color=style.MARK, markeredgewidth=0.9)
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.grid(alpha=0.25)
@@ -53,21 +58,24 @@ def draw_methods(axis, t, designs, across):
 
 
 def methods_chart(t, across, label):
+    """A row for methods whose steps a tolerance sets and one for fixed steps, so that each has a dozen lines at most."""
     titles = {"random": f"{t.attributes['random_designs']} random designs (seed {t.attributes['seed']})", "paper": "the paper's hoop",
               "given": "the designs given"}
     sets = list(dict.fromkeys(t.fields["designs"]))
-    figure, axes = plt.subplots(1, len(sets), sharey=True, squeeze=False, figsize=(3.0 + 4.8 * len(sets), 6.4), layout="constrained")
-    axes = axes[0]
-    for axis, designs in zip(axes, sets):
-        draw_methods(axis, t, designs, across)
-        axis.set_title(titles[designs])
+    controls = [control for control in CONTROLS if (t.fields["control"] == control).any()]
+    figure, axes = plt.subplots(len(controls), len(sets), sharex="col", sharey=True, squeeze=False,
+                                figsize=(3.4 + 4.8 * len(sets), 1.0 + 4.3 * len(controls)), layout="constrained")
+    for k, control in enumerate(controls):
+        for axis, designs in zip(axes[k], sets):
+            draw_methods(axis, t, designs, across, control)
+            axis.set_title(f"{titles[designs]}: {CONTROLS[control][2]}")
+        handles, labels = axes[k, 0].get_legend_handles_labels()
+        handles += [plt.Line2D([], [], marker="o", linestyle="", markersize=9, markerfacecolor="none", color=style.MARK),
+                    plt.Line2D([], [], marker="x", linestyle="", markersize=8, color=style.MARK)]
+        axes[k, -1].legend(handles, labels + ["some designs wrong, without a word", "some designs failed, saying so"], loc="center left",
+                           bbox_to_anchor=(1.02, 0.5), frameon=False)
     figure.supxlabel(label, fontsize=9)
-    axes[0].set_ylabel("largest error of the jump's height [hoop diameters]")
-    handles, labels = axes[0].get_legend_handles_labels()
-    handles += [plt.Line2D([], [], marker="o", linestyle="", markersize=9, markerfacecolor="none", color=style.MARK),
-                plt.Line2D([], [], marker="x", linestyle="", markersize=8, color=style.MARK)]
-    axes[-1].legend(handles, labels + ["some designs wrong, without a word", "some designs failed, saying so"], loc="center left",
-                   bbox_to_anchor=(1.02, 0.5), frameon=False)
+    figure.supylabel("largest error of the jump's height [hoop diameters]", fontsize=9)
     return figure
 
 

@@ -10,7 +10,8 @@ import tempfile
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
+from matplotlib import patheffects  # noqa: E402
 
 EDGE = "#303030"  # outlines and hatching
 MARK = "#d62728"  # the paper's hoop
@@ -39,6 +40,12 @@ def parser(description, source, suffix, output="file name without ending; PNG, S
     p.add_argument("source", metavar="FILE", help=source, nargs=None if needs_source else "?")
     p.add_argument("-o", "--output", help=output.format(f" with {suffix}" if suffix else ""))
     return p
+
+
+def halo(texts, colour):
+    """Texts with an edge, so that they can be read on any ground."""
+    for text in texts:
+        text.set_path_effects([patheffects.withStroke(linewidth=1.6, foreground=colour)])
 
 
 def stem(output):

@@ -17,6 +17,10 @@ function hopPanel(map, solver) {
     begin({ ...now.design, [name]: value }, `One hoop: ${label.toLowerCase()} ${withUnit(short(unit === "°" ? value * 180 / Math.PI : value), unit)}`);
   });
 
+  const pins = pinsPart(map, () => { if (now.story) { haunt(); draw(); } });
+  element("pin").addEventListener("click", () => { if (now.story) pins.pin(now.design, now.story.outcome, hopCommand().join(" ")); });
+  element("pins-along").addEventListener("change", () => { if (now.story) { haunt(); draw(); } });
+
   const GHOSTS = 20, ghosts = element("ghosts");
   element("ghosts-label").hidden = map.scatter.length === 0;
 
@@ -144,6 +148,8 @@ function hopPanel(map, solver) {
     now.ghosts = !ghosts.checked ? [] : madeAfter(now.design, map.scatter, solver.ranges, GHOSTS)
       .map((design) => ({ design, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) }));
     const outcomes = now.ghosts.map(({ story }) => story.outcome);
+    if (element("pins-along").checked)
+      for (const design of pins.designs()) now.ghosts.push({ design, pinned: true, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) });
     const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, map.goals, solver.codes)).length;
     element("ghosts-told").textContent = outcomes.length === 0 ? "" : `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
     scrub.max = end();

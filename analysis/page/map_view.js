@@ -199,7 +199,12 @@ function mapView(canvas, map, onPoint, onPick) {
       last = p;
       mark(level, (level === field.high && field.most > field.high ? "≥ " : "") + short(level, 3), EDGE);
     }
+    const beyond = jumpers.filter(([, value]) => value > field.high);
     for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${value}`, MARK);
+    // What is beyond the map's own scale is told below it, and how colours go with values, where it is not evenly.
+    const notes = [...beyond.map(([name, value]) => `${name} ${value} ↑`), ...(field.log ? ["log scale"] : field.exponent !== 1 ? [`power ${field.exponent}`] : [])];
+    context.fillStyle = EDGE;
+    notes.forEach((note, k) => context.fillText(note, x, bottom + (1 + k) * font));
   }
 
   /** Where the paper's hoop is on the screen, or null. */

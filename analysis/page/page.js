@@ -12,7 +12,6 @@ const complain = (error) => notice(`This page cannot be shown: ${error.message ?
 /** Sets a field's colours and isolines for values from low to high. A few extreme designs do not set the scale: isolines that are given do. */
 function scaleField(map, field, low, high, levels) {
   const most = high, given = levels.filter((l) => l >= low && l <= high);
-  if (field.log) high = Math.max(high, ...(field.name === "agility" ? Object.values(map.jumpers).map((v) => 1.15 * v) : []));
   if (field.log && given.length > 2) low = Math.max(low, given[0]);
   if (!field.log && given.length > 2) [low, high] = [Math.max(low, Math.min(given[0], low + 0.02 * (high - low))), Math.min(high, levels.find((l) => l >= high) ?? levels.at(-1))];
   Object.assign(field, { low, high, most, levels });
@@ -87,10 +86,12 @@ function start(map, solver) {
 
   const chosen = hopPanel(map, solver);
   let said = "";
+  let drawCuts = () => {};
   const told = (index) => {
     const at = view.offset(index), shown = view.view.field, key = `${index} ${shown.name}`;
     if (key === said) return;  // the pointer moved inside a cell
     said = key;
+    drawCuts();
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
     const number = (f) => (f.values[at] === f.values[at] ? f.values[at].toFixed(decimalsOf(f.step)) : "");
     const text = (f) => (number(f) ? withUnit(number(f), f.unit) : "none");
@@ -208,6 +209,8 @@ function start(map, solver) {
   view.pick();
   if (asked.paper) element("paper").click();
   if (asked.time !== undefined) chosen.stopAt(asked.time);
+  element("cuts").hidden = Boolean(map.columns);
+  if (!map.columns) drawCuts = cutsPart(map, view);
   const filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; view.pick(); });
   element("filters").hidden = Boolean(map.columns);
   window.explorer = { map, view, solver };

@@ -100,7 +100,7 @@ def test_the_cut_chart_draws_a_line_for_each_value_with_units_and_what_is_fixed(
     done = draw("cut_chart.py", charts / "map.h5", "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "chart.svg")
-    for word in ("[hoop diameters]", "[m/s]", "slope [degrees]", "mₚ/m = 0.1", "mₚ/m = 20", "dotted: first lift-off is spurious"):
+    for word in ("[hoop diameters]", "[m/s]", "slope [degrees]", "mₚ/m = 0.1", "mₚ/m = 20", "dashed: first lift-off is spurious"):
         assert word in words, (word, words)
     assert any("L/R = 1" in w for w in words) and any("R = 41 mm" in w for w in words)
     done = draw("cut_chart.py", charts / "map.h5", "--along", "mass_ratio", "--by", "offset_ratio", "--at", "slope=30", "--fields", "dip", "-o", tmp_path / "dip")

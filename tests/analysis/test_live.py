@@ -163,6 +163,42 @@ def test_goals_dim_what_fails_and_the_best_left_is_shown(live):
     assert live.find_element("id", "goals-told").text == ""
 
 
+def test_cuts_go_through_the_design_pointed_at(live):
+    assert live.find_element("id", "cut-x").get_attribute("data-values") is None, "nothing is drawn before anybody asks"
+    live.execute_script("document.getElementById('cuts').open = true; const { view } = window.explorer.view; view.index = [100, 40]; window.explorer.view.point()")
+    height = np.array(live.execute_script("return [...window.explorer.map.fields[0].values].map(String)"), float).reshape(200, 150)
+    WebDriverWait(live, 10).until(lambda b: b.find_element("id", "cut-y").get_attribute("data-values") == str(np.isfinite(height[100]).sum()))
+    assert live.find_element("id", "cut-x").get_attribute("data-values") == str(np.isfinite(height[:, 40]).sum())
+    before = live.execute_script("return document.getElementById('cut-x').toDataURL()")
+    live.execute_script("const { view } = window.explorer.view; view.index = [100, 80]; window.explorer.view.point()")
+    assert live.execute_script("return document.getElementById('cut-x').toDataURL()") != before
+
+
+def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(live, tmp_path):
+    pin = live.find_element("id", "pin")
+    for place in ([92, 29], [120, 60], [60, 90], [150, 100], [10, 10]):
+        live.execute_script("const { view, pick } = window.explorer.view; view.index = arguments[0]; pick()", place)
+        pin.click()
+    assert "room for 4" in live.find_element("id", "message").text
+    head = live.find_elements("css selector", "#pins-table tr:first-child th")
+    assert len(head) == 5
+    (tmp_path / "pins.csv").write_text(live.execute_script("return document.getElementById('pins-csv').dataset.text") + "\n")
+    rows = [line.split(",") for line in (tmp_path / "pins.csv").read_text().splitlines()]
+    commands = live.find_element("id", "pins-commands").text.split("leapmap hop")[1:]
+    assert len(commands) == 4
+    for command, row in zip(commands, rows[1:]):
+        told = json.loads(leapmap("hop", *command.split(), "--json").stdout)
+        assert row[rows[0].index("status")] == told["status"]
+        assert float(row[rows[0].index("jump_height")]) == pytest.approx(told["jump_height"], rel=1e-9)
+    # The hoops move along: the picture is another without them.
+    live.execute_script("document.getElementById('play').click(); const s = document.getElementById('scrub'); s.value = 0.4 * s.max; s.dispatchEvent(new Event('input'))")
+    along = live.execute_script("return document.getElementById('scene').toDataURL()")
+    live.find_element("id", "pins-along").click()
+    assert live.execute_script("return document.getElementById('scene').toDataURL()") != along
+    live.find_element("css selector", "#pins-table button").click()
+    assert len(live.find_elements("css selector", "#pins-table tr:first-child th")) == 4
+
+
 def test_a_file_s_map_goes_live_where_it_is_and_back(browser, tmp_path):
     path = sweep(tmp_path, "[design]\nslope = { from = \"5 deg\", to = \"40 deg\", count = 20 }\nmass_ratio = { from = 0.5, to = 10, count = 15 }\noffset_ratio = 0.8\n")
     html = page_at(tmp_path, path)

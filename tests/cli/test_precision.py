@@ -40,7 +40,7 @@ def test_charts_show_every_method(table, tmp_path):
     done = finished("/usr/bin/python3", TOP / "analysis" / "precision_chart.py", table[0], "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     drawn = {kind: (tmp_path / f"chart_{kind}.svg").read_text() for kind in ("time", "work", "wrong", "order", "model")}
-    for method in ("exact", "gsl-rk8pd", "gsl-bsimp", "velocity-verlet, fixed steps"):
+    for method in ("exact", "gsl-rk8pd", "gsl-bsimp", "velocity-verlet"):
         assert method in drawn["time"], method
     assert "two multipliers" in drawn["model"] and "projected" in drawn["model"]
     for kind in ("time", "work"):

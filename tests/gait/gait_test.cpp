@@ -23,6 +23,11 @@ namespace {
 using State = ContactState<long double>;
 
 constexpr Scene unit{.runway = 50.0, .radius = 1.0, .gravity = 1.0};
+#ifdef __SANITIZE_ADDRESS__
+constexpr double short_runway = 5.0;  // fewer branches of a return map, and fewer gaits
+#else
+constexpr double short_runway = 50.0;
+#endif
 
 Scene gait_scene(Friction friction) {
   Scene scene = unit;
@@ -159,6 +164,7 @@ TEST(Gaits, LoseWhatTheSlopeAndTheMotorGive) {
   const Outcome outcome = solve(hoop, scene);
   ASSERT_GE(outcome.gait_period, 1);
   ASSERT_LE(outcome.gait_period, 16);
+  scene.runway = short_runway;
   const Gaits all = find_gaits(hoop, scene, {.most_period = outcome.gait_period});
   const auto same = std::ranges::find_if(all.gaits, [&](const Gait& gait) {
     return gait.jumps.size() == outcome.gait_period && std::abs(gait.height - outcome.gait_height) < 1e-10;
@@ -183,6 +189,7 @@ TEST(Gaits, LoseWhatTheSlopeAndTheMotorGive) {
 
 TEST(Gaits, ReturnToThemselvesStableOrNot) {
   Scene scene = unit;
+  scene.runway = short_runway;
   const Design hoop{.slope = 12.0 * std::numbers::pi / 180.0, .mass_ratio = 3.0, .offset_ratio = 0.5};
   const Gaits found = find_gaits(hoop, scene, {.most_period = 2});
   const JumpSolver<long double> jumps = jumps_in_long_double(scene);
@@ -264,8 +271,10 @@ TEST(Gaits, OfAPeriodDoNotDependOnTheLongestLookedFor) {
 TEST(Gaits, FormAFamilyWithoutGapsAsFarAsTheRunwayGoes) {
   // Each leaps farther than the one before, and its multiplier is larger by ever the same.
   const Design hoop{.slope = 0.2094395102393195, .mass_ratio = 3.0, .offset_ratio = 0.5};
-  const Gaits found = find_gaits(hoop, unit);
-  ASSERT_GE(found.gaits.size(), 50u);
+  Scene scene = unit;
+  scene.runway = short_runway;
+  const Gaits found = find_gaits(hoop, scene);
+  ASSERT_GE(found.gaits.size(), short_runway > 5.0 ? 50u : 5u);
   for (std::size_t k = 1; k < found.gaits.size(); ++k)
     EXPECT_NEAR(found.gaits[k].multiplier - found.gaits[k - 1].multiplier, -1.685, 0.03) << k;
 }

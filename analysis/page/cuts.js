@@ -1,0 +1,54 @@
+// Cuts through the design pointed at: the quantity shown along both axes of the map, broken at cliffs, dashed where the first lift-off is spurious.
+
+/** Draws one cut. offset(index): a design's place among the values; axis: along which. */
+function drawCut(canvas, map, view, axis, offset) {
+  const frame = fitted(canvas, 1);
+  if (!frame) return;
+  const context = canvas.getContext("2d"), { left, right, top, bottom, ratio } = frame, { field } = view, row = map.axes[axis];
+  const flags = map.codes.spurious_first_jump?.values, torn = map.codes.cliffs?.values, n = row.values.length;
+  const places = Array.from({ length: n }, (_, i) => offset(view.index.map((k, a) => (a === axis ? i : k))));
+  const sx = axisScale(row, left, right), span = field.high - field.low || 1, low = Math.min(field.low, ...places.map((k) => field.values[k]).filter((v) => v === v)),
+    high = Math.max(field.low + 1e-12, ...places.map((k) => field.values[k]).filter((v) => v === v)) + 0.04 * span;
+  const sy = { pixel: (v) => bottom - (bottom - top) * (v - low) / (high - low || 1), ticks: () => linearTicks(low, high, 4) };
+  context.fillStyle = "#ffffff";
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.lineWidth = 1.8 * ratio;
+  context.strokeStyle = "#1f4e79";
+  for (const spurious of [false, true]) {
+    context.setLineDash(spurious ? [5 * ratio, 3 * ratio] : []);
+    context.beginPath();
+    let drawing = false;
+    places.forEach((k, i) => {
+      const v = field.values[k], here = v === v && (flags?.[k] === 1) === spurious, x = sx.centre(i);
+      if (!here) { drawing = false; return; }
+      if (drawing) context.lineTo(x, sy.pixel(v)); else { context.moveTo(x - ratio, sy.pixel(v)); context.lineTo(x, sy.pixel(v)); }
+      drawing = !(torn && (torn[k] >> axis & 1));
+    });
+    context.stroke();
+  }
+  context.setLineDash([]);
+  paintAxes(context, frame, sx, sy, labelOf(row), field.label.split(":")[0].split(" of the ")[0]);
+  const here = sx.centre(view.index[axis]), value = field.values[places[view.index[axis]]];
+  context.strokeStyle = MARK;
+  context.lineWidth = 1.2 * ratio;
+  context.beginPath();
+  context.moveTo(here, top);
+  context.lineTo(here, bottom);
+  context.stroke();
+  if (value === value) {
+    context.beginPath();
+    context.arc(here, sy.pixel(value), 4 * ratio, 0, 2 * Math.PI);
+    context.fillStyle = MARK;
+    context.fill();
+  }
+  canvas.dataset.values = places.filter((k) => field.values[k] === field.values[k]).length;
+}
+
+/** Returns draw(), for whenever something else is pointed at or shown. */
+function cutsPart(map, view) {
+  const part = element("cuts"), canvases = [element("cut-x"), element("cut-y")];
+  const draw = () => { if (part.open) [view.view.x, view.view.y].forEach((axis, k) => drawCut(canvases[k], map, view.view, axis, view.offset)); };
+  part.addEventListener("toggle", draw);
+  new ResizeObserver(draw).observe(canvases[0]);
+  return draw;
+}

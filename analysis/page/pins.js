@@ -1,0 +1,51 @@
+// Up to four designs side by side: their numbers in a table, as CSV and as commands, and their hoops jumping beside the one shown.
+
+const MOST_PINS = 4;
+const PINNED = [["jump_height", "jump height", "diameters"], ["jump_time", "lift-off after", "s"], ["apex_time", "apex after lift-off", "s"], ["flight_time", "landing after lift-off", "s"],
+                ["jump_spin", "spin at lift-off", "√(g/R)"], ["jump_distance", "rolled until lift-off", "R"], ["candidates", "lift-offs looked at", ""]];
+
+/** changed(): what is pinned is another. Returns {pin(design, outcome, command), designs()}. */
+function pinsPart(map, changed) {
+  const part = element("pins"), table = element("pins-table"), pins = [];
+  const csv = element("pins-csv"), commands = element("pins-commands");
+  const cell = (kind, text) => { const made = document.createElement(kind); made.textContent = text; return made; };
+
+  function show() {
+    part.hidden = pins.length === 0;
+    const keys = [...new Set(pins.flatMap(({ design }) => Object.keys(design)))]
+      .filter((key) => key in map.parameters && new Set(pins.map(({ design }) => design[key])).size > (pins.length > 1 ? 1 : 0)).filter((key) => pins.some(({ design }) => Number.isFinite(design[key])));
+    const head = document.createElement("tr");
+    head.append(cell("th", ""), ...pins.map((pin, i) => {
+      const th = cell("th", `${i + 1} `), away = cell("button", "×");
+      away.type = "button";
+      away.setAttribute("aria-label", `unpin design ${i + 1}`);
+      away.addEventListener("click", () => { pins.splice(pins.indexOf(pin), 1); show(); changed(); });
+      th.scope = "col";
+      th.append(away);
+      return th;
+    }));
+    const row = (words, texts) => { const tr = document.createElement("tr"), th = cell("th", words); th.scope = "row"; tr.append(th, ...texts.map((text) => cell("td", text))); return tr; };
+    const rows = keys.map((key) => row(map.parameters[key].label, pins.map(({ design }) => withUnit(short(inShownUnit(map.parameters[key], design[key])), map.parameters[key].unit))));
+    rows.push(row("ends as", pins.map(({ outcome }) => outcome.status.replaceAll("_", " "))));
+    for (const [key, words, unit] of PINNED)
+      if (pins.some(({ outcome }) => Number.isFinite(outcome[key]))) rows.push(row(words, pins.map(({ outcome }) => (Number.isFinite(outcome[key]) ? withUnit(short(outcome[key], 5), unit) : ""))));
+    table.replaceChildren(head, ...rows);
+    // A list that leapmap sweep --points reads, and more.
+    const names = Object.keys(map.parameters).filter((key) => pins.some(({ design }) => Number.isFinite(design[key])));
+    const lines = [[...names, "status", ...PINNED.map(([key]) => key)], ...pins.map(({ design, outcome }) => [...names.map((key) => design[key]), outcome.status, ...PINNED.map(([key]) => outcome[key])])];
+    csv.href = URL.createObjectURL(new Blob([lines.map((line) => line.join(",")).join("\n") + "\n"], { type: "text/csv" }));
+    csv.dataset.text = lines.map((line) => line.join(",")).join("\n");
+    commands.textContent = pins.map(({ command }) => command).join("\n");
+  }
+
+  return {
+    pin(design, outcome, command) {
+      if (pins.length >= MOST_PINS) { notice(`There is room for ${MOST_PINS} designs; unpin one first.`); return; }
+      notice("");
+      pins.push({ design: { ...design }, outcome, command });
+      show();
+      changed();
+    },
+    designs: () => pins.map(({ design }) => design),
+  };
+}
