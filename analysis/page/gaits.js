@@ -24,7 +24,7 @@ function gaitsPart(map, solver, choose) {
 
   const unit = () => map.parameters[over.value];
   const factor = () => (unit().unit === "°" ? 180 / Math.PI : 1);
-  const bounds = () => [inputs.from, inputs.to].map((input) => Number(input.value) / factor());
+  const bounds = () => [inputs.from, inputs.to].map((input) => (input.value === "" ? NaN : Number(input.value) / factor()));
   function setBounds() {
     const [from, to] = OVER[over.value];
     inputs.from.value = Number((from * factor()).toPrecision(4));

@@ -157,6 +157,24 @@ function hopPanel(map, solver) {
   ghosts.addEventListener("change", () => { if (now.story) { haunt(); now.time = Math.min(now.time, end()); draw(); } });
 
   play.addEventListener("click", () => run(!now.playing));
+  const frame = (way) => { run(false); now.time = Math.min(end(), Math.max(0, now.time + way * Number(element("speed").value) / 30)); draw(); };
+  element("step-back").addEventListener("click", () => frame(-1));
+  element("step-on").addEventListener("click", () => frame(1));
+  element("film").addEventListener("click", async () => {
+    if (!now.story) return;
+    const film = element("film");
+    film.disabled = true;
+    film.textContent = "recording ...";
+    now.time = 0;
+    const blob = await recorded(scene, () => new Promise((keep) => {
+      run(true);
+      const wait = () => (now.playing ? requestAnimationFrame(wait) : keep());
+      wait();
+    }));
+    film.disabled = false;
+    film.textContent = "save as WebM";
+    if (blob) { film.dataset.bytes = blob.size; saveAs(blob, "hoop.webm"); } else notice("This browser records no films.");
+  });
   scrub.addEventListener("input", () => { run(false); now.time = Number(scrub.value); draw(); });
   element("follow").addEventListener("change", draw);
   /** Takes a number above zero; says so if it is none, and what is shown stays as it was. */

@@ -52,7 +52,7 @@ function liveControls(map, solver, changed) {
 
   /** Takes the axes as they stand in the inputs; says so if they cannot be. */
   function takeAxes(k) {
-    const inputs = axisInputs[k], name = inputs.name.value, [from, to] = [inputs.from, inputs.to].map((input) => Number(input.value) / factor(name));
+    const inputs = axisInputs[k], name = inputs.name.value, [from, to] = [inputs.from, inputs.to].map((input) => (input.value === "" ? NaN : Number(input.value) / factor(name)));
     const [least, most] = solver.ranges[name], good = from < to && from >= least && to <= most;
     for (const input of [inputs.from, inputs.to]) input.setAttribute("aria-invalid", String(!good));
     notice(good ? "" : `${map.parameters[name].label}: from must be below to, both between ${short(least * factor(name))} and ${short(most * factor(name))}.`);
@@ -101,7 +101,7 @@ function liveControls(map, solver, changed) {
         changed("map");
       };
       slider.addEventListener("input", () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6)); take(Number(slider.value)); });
-      number.addEventListener("change", () => { take(Number(number.value) / factor(name)); if (number.getAttribute("aria-invalid") !== "true") show(); });
+      number.addEventListener("change", () => { take(number.value === "" ? NaN : Number(number.value) / factor(name)); if (number.getAttribute("aria-invalid") !== "true") show(); });
       show();
       row.append(words, slider, number);
       return row;

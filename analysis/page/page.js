@@ -207,6 +207,9 @@ function start(map, solver) {
   legend();
   told(view.view.index);
   view.pick();
+  // On a phone the hoop that a link is about comes first.
+  document.body.classList.toggle("hoop-first", Boolean(asked.paper));
+  element("map-png").addEventListener("click", () => savePicture(canvas, `${map.name.replace(/\.[^.]*$/, "")}_${view.view.field.name}.png`));
   if (asked.paper) element("paper").click();
   if (asked.time !== undefined) chosen.stopAt(asked.time);
   element("cuts").hidden = Boolean(map.columns);

@@ -199,6 +199,35 @@ def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(
     assert len(live.find_elements("css selector", "#pins-table tr:first-child th")) == 4
 
 
+def test_the_animation_goes_frame_by_frame_and_is_saved_as_a_film(live):
+    play, clock = live.find_element("id", "play"), live.find_element("id", "clock")
+    if "pause" in play.text:
+        play.click()
+    live.execute_script("const s = document.getElementById('scrub'); s.value = 0.1; s.dispatchEvent(new Event('input'))")
+    live.find_element("id", "step-on").click()
+    assert float(clock.text.split()[0]) == pytest.approx(0.1 + 0.25 / 30, abs=6e-4)  # at a quarter of the speed
+    live.find_element("id", "step-back").click()
+    live.find_element("id", "step-back").click()
+    assert float(clock.text.split()[0]) == pytest.approx(0.1 - 0.25 / 30, abs=6e-4)
+    Select(live.find_element("id", "speed")).select_by_value("1")
+    live.find_element("id", "film").click()
+    WebDriverWait(live, 60).until(lambda b: int(b.find_element("id", "film").get_attribute("data-bytes") or 0) > 3000)
+
+
+def test_a_link_to_the_paper_s_hoop_shows_the_hoop_first_on_a_phone(live, tmp_path):
+    size = live.get_window_size()
+    try:
+        live.set_window_size(390, 844)
+        live.get("about:blank")
+        live.get(page_at(tmp_path).as_uri() + "#live&paper")
+        settled(live)
+        tops = live.execute_script("return ['hop-part', 'map-part'].map((id) => document.getElementById(id).getBoundingClientRect().top)")
+        assert tops[0] < tops[1] and tops[0] < 400
+        assert live.execute_script("return document.documentElement.scrollWidth") <= live.execute_script("return window.innerWidth")
+    finally:
+        live.set_window_size(size["width"], size["height"])
+
+
 def test_a_file_s_map_goes_live_where_it_is_and_back(browser, tmp_path):
     path = sweep(tmp_path, "[design]\nslope = { from = \"5 deg\", to = \"40 deg\", count = 20 }\nmass_ratio = { from = 0.5, to = 10, count = 15 }\noffset_ratio = 0.8\n")
     html = page_at(tmp_path, path)

@@ -1,0 +1,29 @@
+// What is shown, saved: a canvas as PNG, the animation as WebM.
+
+/** Offers bytes as a file. */
+function saveAs(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+/** Saves a canvas as PNG at the screen's own resolution. */
+function savePicture(canvas, name) {
+  canvas.toBlob((blob) => { if (blob) saveAs(blob, name); }, "image/png");
+}
+
+/** Records a canvas while play() runs, until the promise that it returns is kept. Returns the film, or null where the browser has no recorder. */
+async function recorded(canvas, play) {
+  const type = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((each) => window.MediaRecorder?.isTypeSupported(each));
+  if (!type || !canvas.captureStream) return null;
+  const recorder = new MediaRecorder(canvas.captureStream(60), { mimeType: type, videoBitsPerSecond: 8e6 }), parts = [];
+  recorder.ondataavailable = ({ data }) => { if (data.size > 0) parts.push(data); };
+  const stopped = new Promise((keep) => { recorder.onstop = keep; });
+  recorder.start();
+  await play();
+  recorder.stop();
+  await stopped;
+  return new Blob(parts, { type: "video/webm" });
+}
