@@ -1,7 +1,5 @@
 // What the views of a map share: colours, a frame with ticks, names with units, and how designs are pointed at.
 
-const EDGE = "#303030", MARK = "#d62728";
-
 /** The canvas at the screen's own resolution and the frame in it, or null while it is not shown. */
 function fitted(canvas, right) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect(), font = 13 * ratio;
@@ -37,7 +35,7 @@ const labelOf = (axis) => axis.label + (axis.unit === "°" ? " [degrees]" : axis
 /** A frame with ticks and names on a canvas; sx, sy: pixel(value), ticks(). */
 function paintAxes(context, frame, sx, sy, nameX, nameY) {
   const { left, top, right, bottom, font, ratio } = frame;
-  context.strokeStyle = context.fillStyle = EDGE;
+  context.strokeStyle = context.fillStyle = tones.ink;
   context.lineWidth = ratio;
   context.strokeRect(left, top, right - left, bottom - top);
   context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;

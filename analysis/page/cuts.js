@@ -10,10 +10,10 @@ function drawCut(canvas, map, view, axis, offset) {
   const sx = axisScale(row, left, right), span = field.high - field.low || 1, low = Math.min(field.low, ...places.map((k) => field.values[k]).filter((v) => v === v)),
     high = Math.max(field.low + 1e-12, ...places.map((k) => field.values[k]).filter((v) => v === v)) + 0.04 * span;
   const sy = { pixel: (v) => bottom - (bottom - top) * (v - low) / (high - low || 1), ticks: () => linearTicks(low, high, 4) };
-  context.fillStyle = "#ffffff";
+  context.fillStyle = tones.ground;
   context.fillRect(0, 0, canvas.width, canvas.height);
   context.lineWidth = 1.8 * ratio;
-  context.strokeStyle = "#1f4e79";
+  context.strokeStyle = tones.data;
   for (const spurious of [false, true]) {
     context.setLineDash(spurious ? [5 * ratio, 3 * ratio] : []);
     context.beginPath();
@@ -29,7 +29,7 @@ function drawCut(canvas, map, view, axis, offset) {
   context.setLineDash([]);
   paintAxes(context, frame, sx, sy, labelOf(row), field.label.split(":")[0].split(" of the ")[0]);
   const here = sx.centre(view.index[axis]), value = field.values[places[view.index[axis]]];
-  context.strokeStyle = MARK;
+  context.strokeStyle = tones.mark;
   context.lineWidth = 1.2 * ratio;
   context.beginPath();
   context.moveTo(here, top);
@@ -38,7 +38,7 @@ function drawCut(canvas, map, view, axis, offset) {
   if (value === value) {
     context.beginPath();
     context.arc(here, sy.pixel(value), 4 * ratio, 0, 2 * Math.PI);
-    context.fillStyle = MARK;
+    context.fillStyle = tones.mark;
     context.fill();
   }
   canvas.dataset.values = places.filter((k) => field.values[k] === field.values[k]).length;
@@ -49,6 +49,8 @@ function cutsPart(map, view) {
   const part = element("cuts"), canvases = [element("cut-x"), element("cut-y")];
   const draw = () => { if (part.open) [view.view.x, view.view.y].forEach((axis, k) => drawCut(canvases[k], map, view.view, axis, view.offset)); };
   part.addEventListener("toggle", draw);
+  for (const [k, name] of ["cut-x", "cut-y"].entries())
+    element(`${name}-svg`).addEventListener("click", () => saveSvg(canvases[k], `${name}.svg`, (like) => drawCut(like, map, view.view, [view.view.x, view.view.y][k], view.offset)));
   new ResizeObserver(draw).observe(canvases[0]);
   return draw;
 }

@@ -1,8 +1,9 @@
-// What is shown, saved: a canvas as PNG, the animation as WebM.
+// What is shown, saved: a canvas as PNG or SVG, the animation as WebM.
 
 /** Offers bytes as a file. */
 function saveAs(blob, name) {
   const link = document.createElement("a");
+  Object.assign(document.body.dataset, { saved: name, bytes: blob.size });
   link.href = URL.createObjectURL(blob);
   link.download = name;
   link.click();
@@ -12,6 +13,13 @@ function saveAs(blob, name) {
 /** Saves a canvas as PNG at the screen's own resolution. */
 function savePicture(canvas, name) {
   canvas.toBlob((blob) => { if (blob) saveAs(blob, name); }, "image/png");
+}
+
+/** Saves what draw(canvas) draws as SVG, as large as the canvas is. */
+function saveSvg(canvas, name, draw) {
+  const like = svgCanvas(canvas);
+  draw(like);
+  saveAs(new Blob([like.text()], { type: "image/svg+xml" }), name);
 }
 
 /** Records a canvas while play() runs, until the promise that it returns is kept. Returns the film, or null where the browser has no recorder. */

@@ -19,6 +19,7 @@ function filtersPart(map, view, changed, best) {
     find.hidden = !any;
     tell();
     changed();
+    noteAddress();
   }
 
   function tell() {
@@ -29,17 +30,18 @@ function filtersPart(map, view, changed, best) {
     told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs are left`;
   }
 
-  function row() {
+  function row(asked = {}) {
     const item = document.createElement("li"), select = document.createElement("select"), sign = document.createElement("select"), number = document.createElement("input"),
-      away = document.createElement("button"), goal = { field: view.view.field, sign: "least", bound: 0 };
+      away = document.createElement("button"), goal = { field: view.view.field, sign: "least", bound: NaN, ...asked };
     map.fields.forEach((field, k) => option(select, k, withUnit(field.label, field.unit ? `[${field.unit}]` : "")));
     select.value = map.fields.indexOf(goal.field);
     option(sign, "least", "at least");
     option(sign, "most", "at most");
     number.type = "number";
     number.step = "any";
-    goal.bound = Number(((goal.field.low + goal.field.high) / 2).toPrecision(2));
+    if (Number.isNaN(goal.bound)) goal.bound = Number(((goal.field.low + goal.field.high) / 2).toPrecision(2));
     number.value = goal.bound;
+    sign.value = goal.sign;
     away.type = "button";
     away.textContent = "×";
     select.setAttribute("aria-label", "goal: which quantity");
@@ -55,7 +57,7 @@ function filtersPart(map, view, changed, best) {
     goals.push(goal);
     update();
   }
-  element("goal-add").addEventListener("click", row);
+  element("goal-add").addEventListener("click", () => row());
   real.addEventListener("change", update);
   find.addEventListener("click", () => {
     const { field } = view.view, n = field.values.length;
@@ -66,5 +68,23 @@ function filtersPart(map, view, changed, best) {
     for (let k = map.axes.length - 1, rest = at; k >= 0; --k) { const length = map.axes[k].values.length; index[k] = rest % length; rest = Math.floor(rest / length); }
     best(index);
   });
-  return { tell };
+  return {
+    tell,
+    write(words) {
+      for (const { field, sign, bound } of goals) words.append("goal", `${field.name}:${sign}:${bound}`);
+      if (real.checked) words.set("real", "");
+    },
+    read(words) {
+      goals.length = 0;
+      list.replaceChildren();
+      real.checked = words.has("real");
+      for (const [name, sign, bound] of words.getAll("goal").map((text) => text.split(":"))) {
+        const field = map.fields.find((each) => each.name === name);
+        if (field && ["least", "most"].includes(sign) && bound !== "" && Number.isFinite(Number(bound))) row({ field, sign, bound: Number(bound) });
+        else notice(`The address asks for a goal that cannot be: ${name}`);
+      }
+      if (goals.length > 0 || real.checked) element("filters").open = true;
+      update();
+    },
+  };
 }

@@ -68,10 +68,10 @@ function gaitsPart(map, solver, choose) {
     ready.getContext("2d").putImageData(image, 0, 0);
     context.imageSmoothingEnabled = false;
     context.drawImage(ready, left, top, right - left, bottom - top);
-    context.strokeStyle = "#9aa4ae";
+    context.strokeStyle = tones.frame;
     context.strokeRect(left, top, right - left, bottom - top);
     context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;
-    context.fillStyle = "#303030";
+    context.fillStyle = tones.ink;
     context.textAlign = "right";
     context.textBaseline = "middle";
     for (const tick of linearTicks(0, most, 5)) context.fillText(short(tick), left - 0.4 * font, bottom - (bottom - top) * tick / most);
@@ -87,7 +87,7 @@ function gaitsPart(map, solver, choose) {
     context.restore();
     const here = now.design ? (now.design[over.value] - from) / (to - from) : NaN;
     if (here >= 0 && here <= 1) {
-      context.strokeStyle = "#d62728";
+      context.strokeStyle = tones.mark;
       context.beginPath();
       context.moveTo(left + (right - left) * here, top);
       context.lineTo(left + (right - left) * here, bottom);
@@ -137,6 +137,7 @@ function gaitsPart(map, solver, choose) {
   });
   new ResizeObserver(() => { if (part.open && now.heights.length > 0) draw(); }).observe(canvas);
   setBounds();
+  onTones(() => { if (part.open && now.heights.length > 0) draw(); });
 
   /** What the picture is of, but for the one parameter: nothing is computed anew if that alone is another. */
   const keyOf = (design) => JSON.stringify(Object.entries(design).filter(([name]) => name !== over.value && name !== "radius"));

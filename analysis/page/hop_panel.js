@@ -1,12 +1,15 @@
 // The part of the page that shows one hoop: its controls, numbers and command line.
 
-/** The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion. */
+const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20 g
+
+/** The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. */
 function hopPanel(map, solver) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
-  const now = { design: null, story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null };
-  const chosen = { radius: map.fixed.radius, mass: 0.0282, jumps: map.jumps };  // m; kg, of hoop and point mass: the paper's 8.2 g and 20 g
+  // source: where the design is from, "design" of the map, "paper" or "hoop" as typed, and which.
+  const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null };
+  const chosen = { radius: map.fixed.radius, mass: PAPER_MASS / 1000, jumps: map.jumps };  // m; kg
   radius.value = 1000 * chosen.radius;
   mass.value = 1000 * chosen.mass;
   const jumps = element("jumps");
@@ -14,15 +17,20 @@ function hopPanel(map, solver) {
 
   const showGaits = gaitsPart(map, solver, (name, value) => {
     const { label, unit } = map.parameters[name];
-    begin({ ...now.design, [name]: value }, `One hoop: ${label.toLowerCase()} ${withUnit(short(unit === "°" ? value * 180 / Math.PI : value), unit)}`);
+    typed({ ...now.design, [name]: value }, `One hoop: ${label.toLowerCase()} ${withUnit(short(unit === "°" ? value * 180 / Math.PI : value), unit)}`);
   });
+  const showInputs = hoopInputs(map, solver, (design) => typed(design)), showGradient = gradientPart(map, solver);
 
-  const pins = pinsPart(map, () => { if (now.story) { haunt(); draw(); } });
-  element("pin").addEventListener("click", () => { if (now.story) pins.pin(now.design, now.story.outcome, hopCommand().join(" ")); });
+  const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "), () => { if (now.story) { haunt(); draw(); } noteAddress(); });
+  element("pin").addEventListener("click", () => { if (now.story) pins.pin(now.design); });
   element("pins-along").addEventListener("change", () => { if (now.story) { haunt(); draw(); } });
 
   const GHOSTS = 20, ghosts = element("ghosts");
-  element("ghosts-label").hidden = map.scatter.length === 0;
+  const width = element("ghosts-width");
+  element("ghosts-label").hidden = map.scatter.length === 0 && !map.live;
+  width.parentElement.hidden = !map.live;
+  /** How hoops are made: as the map says, or on a live map as the reader does, by one standard deviation of all that a workshop makes. */
+  const scatterOf = () => (!map.live ? map.scatter : ["mass_ratio", "offset_ratio", "inertia_factor"].map((name) => ({ name, law: "normal", width: Number(width.value), percent: true })));
 
   const end = () => Math.max(now.story?.motion.t.at(-1) ?? 0, ...now.ghosts.map(({ story }) => story.motion.t.at(-1) ?? 0));
 
@@ -32,9 +40,10 @@ function hopPanel(map, solver) {
       clock.textContent = "it does not set out";
       return;
     }
-    drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts);
-    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.time, chosen.mass * now.design.gravity, now.design.radius);
-    clock.textContent = `${now.time.toFixed(3)} s`;
+    drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts, element("forces").checked);
+    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.time, measuresOf(now.design, chosen.mass).plots, now.design.radius);
+    const measured = measuresOf(now.design, chosen.mass).plots.t;
+    clock.textContent = `${(now.time * measured[0]).toFixed(3)} ${measured[1]}`;
     scrub.value = now.time;
   }
 
@@ -56,76 +65,16 @@ function hopPanel(map, solver) {
     if (now.playing) now.frame = requestAnimationFrame(tick);
   }
 
-  function row(name, words, text, value) {
-    const tr = document.createElement("tr"), th = document.createElement("th"), td = document.createElement("td");
-    th.scope = "row";
-    th.textContent = words;
-    td.textContent = text;
-    tr.dataset.name = name;
-    tr.dataset.value = String(value);
-    tr.append(th, td);
-    return tr;
-  }
-
   function tell() {
-    const { outcome } = now.story, R = now.design.radius, g = now.design.gravity, second = Math.sqrt(R / g), kg = chosen.mass;
-    const jumped = outcome.status === "jumped", rows = [];
-    const length = (metres, digits = 4) => (Math.abs(metres) >= 1 ? `${short(metres, digits)} m` : `${short(Math.abs(metres) < 1e-9 * R ? 0 : 1000 * metres, digits)} mm`);
-    const add = (name, words, text, value = outcome[name]) => rows.push(row(name, words, text, value));
-    add("status", "ends as", outcome.status.replaceAll("_", " "));
-    if (jumped) {
-      const metres = 2 * R * outcome.jump_height, speed = outcome.jump_spin / second;
-      add("jump_height", "jump height", `${length(metres)} = ${short(outcome.jump_height, 5)} diameters`);
-      add("jump_time", "lift-off after", `${short(outcome.jump_time, 5)} s`);
-      add("agility", "agility", `${short(metres / (outcome.jump_time + outcome.apex_time))} m/s`, metres / (outcome.jump_time + outcome.apex_time));
-      add("apex_time", "apex, landing after lift-off", `${short(outcome.apex_time, 4)} s, ${short(outcome.flight_time, 4)} s`);
-      add("jump_spin", "spin at lift-off", `${short(speed)} rad/s`);
-      add("jump_angle", "angle at lift-off", `${short(outcome.jump_angle * 180 / Math.PI, 5)}°`);
-      add("jump_distance", map.slips ? "travelled until lift-off" : "rolled until lift-off", length(outcome.jump_distance * R));
-      if (!map.slips) add("dip", "flight first dips", length(2 * R * outcome.dip, 3));
-    }
-    if (jumped && chosen.jumps > 1) {
-      const { height, is_jump } = now.story.liftOffs;
-      add("jumps", "jumps made", `${outcome.jumps} of ${chosen.jumps}: ${[...height].filter((_, i) => is_jump[i] === 1).map((h) => short(h)).join(", ")} diameters`);
-    }
-    if (outcome.candidates > 0) {
-      add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"
-        : outcome.first_jump_height > 0 ? `spurious: ${length(2 * R * outcome.first_jump_height, 3)} high, after ${short(outcome.first_jump_time)} s`
-        : `spurious: sinks at once, after ${short(outcome.first_jump_time)} s; rolling on without slip asks the plane to pull`);
-      add("candidates", "lift-offs looked at", String(outcome.candidates));
-    }
-    if (map.slips) {
-      add("phase_sequence", "phases", `${outcome.phase_sequence} (R rolls, S slides, F flies)`);
-      if (Number.isFinite(outcome.slip_distance)) add("slip_distance", "slid", length(R * outcome.slip_distance));
-      if (jumped) add("landing_spin", "spin after landing", `${short(outcome.landing_spin / second)} rad/s`);
-      if (jumped) add("energy_lost", "energy lost until the jump", `${short(1000 * outcome.energy_lost * kg * g * R)} mJ`);
-    }
-    const pushes = now.story.motion.normal_force;
-    if (pushes.length > 0) {
-      const most = pushes.reduce((a, b) => Math.max(a, b), 0) * kg * g;
-      add("most_normal_force", "largest normal force", `${short(most)} N`, most);
-    }
-    table.replaceChildren(...rows);
+    table.replaceChildren(...numberRows(now.story, now.design, chosen, map.slips));
     // Each flag with its value in a piece, which lines do not break.
-    command.replaceChildren(...hopCommand().flatMap((text, k) => {
+    command.replaceChildren(...commandPieces(now.design).flatMap((text, k) => {
       const piece = document.createElement("span");
       piece.textContent = text;
       return k > 0 ? [" ", piece] : [piece];
     }));
   }
-
-  /** The command line that tells the same hoop, in pieces. */
-  function hopCommand() {
-    const { design } = now, contact = ["mu_static", "mu_kinetic", "restitution"];
-    const flags = ["slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin", "drive_torque", ...(map.slips ? contact : [])];
-    const words = ["leapmap hop", ...flags.filter((k) => Number.isFinite(design[k])).map((k) => `--${k.replaceAll("_", "-")} ${design[k]}`)];
-    if (map.slips) words.push("--set friction=coulomb", `--set rest_speed=${design.rest_speed}`);
-    for (const key of ["runway", "hop_height", "radius", "gravity"])
-      if (design[key] !== solver.defaults[key]) words.push(`--set ${key}=${design[key]}`);
-    if (chosen.jumps > 1) words.push(`--jumps ${chosen.jumps}`);
-    if (map.tolerance !== 1e-10) words.push(`--set tolerance=${map.tolerance}`);
-    return words;
-  }
+  const commandPieces = (design) => hopCommand(design, map, solver.defaults, chosen.jumps);
 
   /** Solves the design anew, its motion from the start. */
   function solve() {
@@ -138,6 +87,8 @@ function hopPanel(map, solver) {
     now.story = solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps);
     haunt();
     showGaits(design);
+    showInputs(design);
+    showGradient(design);
     now.time = 0;
     tell();
     draw();
@@ -145,7 +96,7 @@ function hopPanel(map, solver) {
 
   /** Makes hoops after the design shown, if they are asked for, and says how many of them jump. */
   function haunt() {
-    now.ghosts = !ghosts.checked ? [] : madeAfter(now.design, map.scatter, solver.ranges, GHOSTS)
+    now.ghosts = !ghosts.checked ? [] : madeAfter(now.design, scatterOf(), solver.ranges, GHOSTS)
       .map((design) => ({ design, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) }));
     const outcomes = now.ghosts.map(({ story }) => story.outcome);
     if (element("pins-along").checked)
@@ -154,7 +105,8 @@ function hopPanel(map, solver) {
     element("ghosts-told").textContent = outcomes.length === 0 ? "" : `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
     scrub.max = end();
   }
-  ghosts.addEventListener("change", () => { if (now.story) { haunt(); now.time = Math.min(now.time, end()); draw(); } });
+  for (const input of [ghosts, width])
+    input.addEventListener("change", () => { if (now.story && width.checkValidity()) { haunt(); now.time = Math.min(now.time, end()); draw(); } });
 
   play.addEventListener("click", () => run(!now.playing));
   const frame = (way) => { run(false); now.time = Math.min(end(), Math.max(0, now.time + way * Number(element("speed").value) / 30)); draw(); };
@@ -176,7 +128,11 @@ function hopPanel(map, solver) {
     if (blob) { film.dataset.bytes = blob.size; saveAs(blob, "hoop.webm"); } else notice("This browser records no films.");
   });
   scrub.addEventListener("input", () => { run(false); now.time = Number(scrub.value); draw(); });
-  element("follow").addEventListener("change", draw);
+  for (const id of ["follow", "forces"]) element(id).addEventListener("change", draw);
+  element("plots-png").addEventListener("click", () => savePicture(plots, "hoop_forces.png"));
+  element("plots-svg").addEventListener("click", () => saveSvg(plots, "hoop_forces.svg", (canvas) =>
+    drawPlots(canvas, now.story.motion, now.story.liftOffs, now.time, measuresOf(now.design, chosen.mass).plots, now.design.radius)));
+  onTones(() => { if (now.story) draw(); });
   /** Takes a number above zero; says so if it is none, and what is shown stays as it was. */
   const choose = (input, name, then) => input.addEventListener("change", () => {
     const good = Number(input.value) > 0 && input.checkValidity();
@@ -186,6 +142,7 @@ function hopPanel(map, solver) {
     if (!good) return;
     chosen[name] = Number(input.value) / 1000;
     if (now.story) then();
+    noteAddress();
   });
   choose(radius, "radius", solve);
   jumps.addEventListener("change", () => {
@@ -194,6 +151,7 @@ function hopPanel(map, solver) {
     notice(good ? "" : `How many jumps must be a whole number from ${jumps.min} to ${jumps.max}.`);
     if (!good) return;
     chosen.jumps = Number(jumps.value);
+    noteAddress();
     if (now.design) { solve(); run(!still && now.story !== null); }
   });
   choose(mass, "mass", () => { tell(); draw(); });
@@ -215,26 +173,55 @@ function hopPanel(map, solver) {
   });
   new ResizeObserver(draw).observe(scene);
 
-  const begin = (design, title) => {
-    now.design = design;
+  const begin = (design, title, source) => {
+    Object.assign(now, { design, source });
     element("hop-title").textContent = title;
     solve();
     run(!still && now.story !== null);
+    noteAddress();
   };
-  if (!map.slips) {
-    element("paper").hidden = false;
-    element("paper").addEventListener("click", () => {
-      history.replaceState(null, "", "#paper");
-      begin({ ...map.fixed, ...map.paper }, "One hoop: the paper's, from rest with its mass on top");
-    });
-  }
+  /** A hoop of numbers that were typed, of which only those that differ from the map's go into the address. */
+  const typed = (design, title = "One hoop: as typed") => {
+    const numbers = Object.keys(map.parameters).filter((name) => name in solver.defaults && Number.isFinite(design[name]));
+    begin(design, title, ["hoop", numbers.map((name) => `${name}:${design[name]}`).join(",")]);
+  };
+  const paper = () => begin({ ...map.fixed, ...map.paper }, "One hoop: the paper's, from rest with its mass on top", ["paper", ""]);
+  element("paper").hidden = map.slips;
+  element("paper").addEventListener("click", paper);
   const show = (index, byHand) => {
     // On a phone the hoop is further down.
     const part = element("hop-part");
     if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight) part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
-    history.replaceState(null, "", `#design=${index.join(",")}`);
-    begin(designAt(map, index), `One hoop: ${placeText(map, index)}`);
+    begin(designAt(map, index), `One hoop: ${placeText(map, index)}`, ["design", index.join(",")]);
   };
   const stopAt = (time) => { run(false); now.time = Math.min(Math.max(0, time), end()); draw(); };
-  return { show, stopAt };
+  addressPart({
+    write(words) {
+      const [key, value] = now.source;
+      if (key) words.set(key, value);
+      for (const [name, input, fallback] of [["jumps", jumps, map.jumps], ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]])
+        if (Number(input.value) !== fallback) words.set(name === "radius" ? "hoop_radius" : name, input.value);
+      pins.write(words);
+    },
+    read(words) {
+      for (const [name, input, fallback] of [["jumps", jumps, map.jumps], ["hoop_radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]]) {
+        const value = Number(words.get(name) ?? fallback);
+        if (value > 0 && value <= Number(input.max)) input.value = value;
+      }
+      Object.assign(chosen, { radius: Number(radius.value) / 1000, mass: Number(mass.value) / 1000, jumps: Math.round(Number(jumps.value)) });
+      pins.read(words);
+      const hoop = designOf(words.get("hoop"), solver.ranges);
+      if (words.has("paper") && !map.slips) paper();
+      else if (hoop) typed({ ...map.fixed, ...hoop });
+      else if (words.has("hoop")) notice("The address asks for a hoop of numbers that no hoop has.");
+    },
+  });
+  return { show, stopAt, retell: () => { if (now.story) { tell(); draw(); } }, isOfMap: () => now.source[0] === "design" };
+}
+
+/** A design from name:value,name:value, as an address has it; null if any of it is none. */
+function designOf(text, ranges) {
+  if (!text) return null;
+  const pairs = text.split(",").map((word) => word.split(":")), good = ([name, value]) => name in ranges && value !== "" && Number(value) >= ranges[name][0] && Number(value) <= ranges[name][1];
+  return pairs.every(good) ? Object.fromEntries(pairs.map(([name, value]) => [name, Number(value)])) : null;
 }

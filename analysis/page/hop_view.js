@@ -1,6 +1,7 @@
 // One hoop on its slope, to scale, at a moment of its motion.
 
-const PHASES = { 1: ["rolls", "#1f4e79"], 2: ["slides", "#d95f02"], 3: ["flies", "#1b9e77"] };
+/** Of each phase: what the hoop does, and the tone it is drawn in. */
+const PHASES = { 1: ["rolls", "data"], 2: ["slides", "slide"], 3: ["flies", "fly"] };
 
 /** The sample before a time, and how far on to the next. */
 function sampleAt(motion, time) {
@@ -26,23 +27,55 @@ function drawGhosts(context, ghosts, time, turned, px, scale, R) {
   for (const { design, story } of ghosts) {
     if (story.motion.t.length === 0) continue;
     const [x, y, phi] = ["x", "y", "phi"].map((name) => valueAt(story.motion, name, time)), L = design.offset_ratio * R;
-    context.strokeStyle = (PHASES[story.motion.phase[sampleAt(story.motion, time).low]] ?? PHASES[1])[1];
+    context.strokeStyle = tones[(PHASES[story.motion.phase[sampleAt(story.motion, time).low]] ?? PHASES[1])[1]];
     context.beginPath();
     context.arc(...px(turned(x, y + R)), R * scale, 0, 2 * Math.PI);
     context.stroke();
     context.beginPath();
     context.arc(...px(turned(x - L * Math.sin(phi), y + R - L * Math.cos(phi))), Math.max(2, 0.1 * R * scale), 0, 2 * Math.PI);
-    context.fillStyle = "#b2182b";
+    context.fillStyle = tones.weight;
     context.fill();
   }
   context.globalAlpha = 1;
 }
 
+/** Arrows of the plane's push and friction at the contact and of the weight at the centre of mass, in one scale. */
+function drawForces(context, design, motion, time, turned, px, scale) {
+  const R = design.radius, x = valueAt(motion, "x", time), y = valueAt(motion, "y", time), phi = valueAt(motion, "phi", time), { low } = sampleAt(motion, time);
+  const most = motion.normal_force.reduce((a, b) => Math.max(a, b), 1), length = Math.min(0.8 * R, 2.4 * R / most);  // of a weight
+  const arm = design.offset_ratio * R * design.mass_ratio / (1 + design.mass_ratio), onPlane = motion.phase[low] !== 3;
+  const arrow = ([x0, y0], [dx, dy], tone, words) => {
+    const size = Math.hypot(dx, dy) * scale;
+    if (!(size > 2)) return;
+    const [ax, ay] = px(turned(x0, y0)), [bx, by] = px(turned(x0 + dx, y0 + dy)), head = Math.min(size, 0.2 * R * scale), u = (bx - ax) / size, v = (by - ay) / size;
+    context.strokeStyle = context.fillStyle = tones[tone];
+    context.lineWidth = Math.max(2, 0.05 * R * scale);
+    context.beginPath();
+    context.moveTo(ax, ay);
+    context.lineTo(bx - 0.6 * head * u, by - 0.6 * head * v);
+    context.stroke();
+    context.beginPath();
+    context.moveTo(bx, by);
+    context.lineTo(bx - head * u - 0.5 * head * v, by - head * v + 0.5 * head * u);
+    context.lineTo(bx - head * u + 0.5 * head * v, by - head * v - 0.5 * head * u);
+    context.closePath();
+    context.fill();
+    context.font = `${Math.max(11, 0.3 * R * scale)}px system-ui, "DejaVu Sans", sans-serif`;
+    context.fillText(words, bx + 0.15 * R * scale, by);
+  };
+  if (onPlane) {
+    arrow([x, y], [0, length * motion.normal_force[low]], "fly", "N");
+    arrow([x, y], [length * motion.friction[low], 0], "slide", "F");
+  }
+  // Straight down on the screen, whatever the slope.
+  arrow([x - arm * Math.sin(phi), y + R - arm * Math.cos(phi)], [length * Math.sin(design.slope), -length * Math.cos(design.slope)], "ink", "W");
+}
+
 /**
- * Draws the hoop at a time, with ghosts beside it. design: {slope, offset_ratio, radius}; closeUp: follows the hoop. x goes down the slope and y away
+ * Draws the hoop at a time, with ghosts beside it. design: {slope, offset_ratio, mass_ratio, radius}; closeUp: follows the hoop; forces: with arrows of them. x goes down the slope and y away
  * from it, on the screen turned by the slope; the point mass is at angle phi from the line to the plane, clockwise.
  */
-function drawHoop(canvas, design, motion, time, closeUp, ghosts = []) {
+function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = false) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
   canvas.width = Math.max(1, Math.round(box.width * ratio));
   canvas.height = Math.max(1, Math.round(box.height * ratio));
@@ -63,7 +96,7 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = []) {
   const scale = Math.min(canvas.width / (right - left), canvas.height / (bottom - top));
   const px = ([u, v]) => [(u - (left + right) / 2) * scale + canvas.width / 2, (v - (top + bottom) / 2) * scale + canvas.height / 2];
 
-  context.fillStyle = "#f4f6f8";
+  context.fillStyle = tones.scene;
   context.fillRect(0, 0, canvas.width, canvas.height);
   // The plane, far beyond both edges.
   const far = (canvas.width + canvas.height) / scale, here = x;
@@ -74,10 +107,10 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = []) {
   context.lineTo(b[0], b[1] + 2 * canvas.height);
   context.lineTo(a[0], a[1] + 4 * canvas.height + far * scale);
   context.closePath();
-  context.fillStyle = "#dfe3e8";
+  context.fillStyle = tones.earth;
   context.fill();
   context.lineWidth = 1.5 * ratio;
-  context.strokeStyle = "#404040";
+  context.strokeStyle = tones.ink;
   context.stroke();
 
   // A tick every radius tells how fast the slope goes by.
@@ -96,7 +129,7 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = []) {
   context.globalAlpha = 0.45;
   for (let k = 0; k < low; ++k) {
     context.beginPath();
-    context.strokeStyle = (PHASES[motion.phase[k + 1]] ?? PHASES[1])[1];
+    context.strokeStyle = tones[(PHASES[motion.phase[k + 1]] ?? PHASES[1])[1]];
     context.moveTo(...px(centre(k)));
     context.lineTo(...px(centre(k + 1)));
     context.stroke();
@@ -107,7 +140,7 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = []) {
   context.beginPath();
   context.arc(...px([cu, cv]), R * scale, 0, 2 * Math.PI);
   context.lineWidth = Math.max(2 * ratio, 0.06 * R * scale);
-  context.strokeStyle = phase[1];
+  context.strokeStyle = tones[phase[1]];
   context.stroke();
   // phi = 0: the mass is next to the plane; it goes round as the hoop rolls downhill.
   const L = design.offset_ratio * R;
@@ -119,13 +152,15 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = []) {
   context.stroke();
   context.beginPath();
   context.arc(...px(mass), Math.max(3 * ratio, 0.16 * R * scale), 0, 2 * Math.PI);
-  context.fillStyle = "#b2182b";
+  context.fillStyle = tones.weight;
   context.fill();
+
+  if (forces) drawForces(context, design, motion, time, turned, px, scale);
 
   // A ruler of a round length, and what the hoop does.
   const length = niceLength((right - left) / 5), font = 13 * ratio;
   context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;
-  context.fillStyle = context.strokeStyle = "#303030";
+  context.fillStyle = context.strokeStyle = tones.ink;
   context.lineWidth = 2 * ratio;
   const ruler = [0.8 * font, canvas.height - 1.0 * font];
   context.beginPath();
@@ -134,7 +169,7 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = []) {
   context.stroke();
   context.fillText(length >= 1 ? `${length} m` : length >= 0.01 ? `${short(100 * length)} cm` : `${short(1000 * length)} mm`, ruler[0], ruler[1] - 0.5 * font);
   context.textAlign = "right";
-  context.fillStyle = phase[1];
+  context.fillStyle = tones[phase[1]];
   context.fillText(`${phase[0]}${y > 0 ? `, ${short(1000 * y, 3)} mm above the plane` : ""}`, canvas.width - 0.8 * font, 1.5 * font);
   context.textAlign = "left";
 }

@@ -22,10 +22,15 @@ function listView(canvas, map, onPoint, onPick) {
     frame = fresh;
     background.width = canvas.width;
     background.height = canvas.height;
-    const context = background.getContext("2d"), column = map.columns[view.x], { values, log } = view.field, { font, ratio } = frame;
+    paintOn(background.getContext("2d"));
+    paintCursor();
+  }
+
+  function paintOn(context) {
+    const column = map.columns[view.x], { values, log } = view.field, { font, ratio } = frame;
     const shown = column.values.map((v) => (v === null ? NaN : column.quantity ? v : inShownUnit(column, v)));
     const sx = scale(shown, column.log, frame.left, frame.right), sy = scale([...values], log, frame.bottom - 1.5 * font, frame.top);
-    context.fillStyle = "#ffffff";
+    context.fillStyle = tones.ground;
     context.fillRect(0, 0, canvas.width, canvas.height);
     dots = shown.map((x, i) => {
       const there = Number.isFinite(values[i]) && (!log || values[i] > 0);
@@ -33,7 +38,7 @@ function listView(canvas, map, onPoint, onPick) {
     });
     context.lineWidth = 1.4 * ratio;
     dots.forEach(([x, y, there], i) => {
-      context.strokeStyle = context.fillStyle = there ? "#1f4e79" : status?.shown[status.values[i]]?.colour ?? "#888888";
+      context.strokeStyle = context.fillStyle = there ? tones.data : status?.shown[status.values[i]]?.colour ?? tones.faint;
       context.beginPath();
       if (there) context.arc(x, y, 0.3 * font, 0, 2 * Math.PI);
       else for (const s of [-1, 1]) { context.moveTo(x - 0.25 * font, y - s * 0.25 * font); context.lineTo(x + 0.25 * font, y + s * 0.25 * font); }
@@ -41,14 +46,13 @@ function listView(canvas, map, onPoint, onPick) {
       context.stroke();
     });
     paintAxes(context, frame, sx, sy, labelOf(column), view.field.label + (view.field.unit ? ` [${view.field.unit}]` : ""));
-    paintCursor();
   }
 
   function paintCursor() {
     if (!frame) return;
     const context = canvas.getContext("2d"), { font, ratio } = frame;
     context.drawImage(background, 0, 0);
-    for (const [index, colour] of [[view.picked, MARK], [view.index, "#000000"]]) {
+    for (const [index, colour] of [[view.picked, tones.mark], [view.index, tones.ink]]) {
       if (!index) continue;
       context.lineWidth = 2 * ratio;
       context.strokeStyle = colour;
@@ -84,7 +88,7 @@ function listView(canvas, map, onPoint, onPick) {
   new ResizeObserver(() => paint()).observe(canvas);
 
   return {
-    view, paint, pick, point, showsPaper: () => false, offset: (index) => index[0],
+    view, paint, paintOn, pick, point, showsPaper: () => false, offset: (index) => index[0],
     /** Where a design's dot is on the screen, for tests. */
     placeOf(index) {
       const box = canvas.getBoundingClientRect();

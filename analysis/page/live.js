@@ -7,6 +7,7 @@ const LIVE_RANGES = {
   slope: [0.02, 0.87], mass_ratio: [0.1, 20], offset_ratio: [0.05, 1], inertia_factor: [0.5, 1], release_angle: [0, 2 * Math.PI], release_spin: [-3, 6],
   drive_torque: [-0.2, 0.5], mu_static: [0.05, 1.5], mu_kinetic: [0.05, 1.5], restitution: [0, 0.9], runway: [0.5, 10], hop_height: [0, 0.5],
 };
+const OUTCOME_CODES = ["status", "spurious_first_jump", "candidates"];  // which tell one course of events from another
 const SLIPPING = ["mu_static", "mu_kinetic", "restitution"];
 const NO_LIVE_AXIS = ["runway", "hop_height"];
 
@@ -75,37 +76,59 @@ function settleMap(map) {
     }
 }
 
-/** Solves a live map on all cores, anew by begin(). onPicture(whole): there is more to see. */
+/** Solves a live map on all cores, anew by begin(). onPicture(what): there is more to see: "part" of the map, the "whole", or its "cliffs" too. */
 function liveEngine(map, module, workerText, onPicture) {
   const [nx, ny] = LIVE_SHAPE, level = new Uint8Array(nx * ny);
   const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
-  const now = { generation: 0, queue: [], left: [], stage: 0, begun: 0, shown: 0, timing: {}, idle: [] };
+  const now = { generation: 0, queue: [], left: [], stages: 0, edges: [], begun: 0, shown: 0, timing: {}, idle: [] };
   const count = Math.max(1, Math.min(16, navigator.hardwareConcurrency || 2));
 
   function send(worker) {
     const job = now.queue.shift();
     if (!job) { now.idle.push(worker); return; }
-    const [x, y] = map.axes, places = new Float64Array(2 * job.cells.length);
-    job.cells.forEach((k, i) => { places[2 * i] = x.values[Math.floor(k / ny)]; places[2 * i + 1] = y.values[k % ny]; });
+    const [x, y] = map.axes, order = { generation: now.generation, design: map.fixed, slips: map.slips, tolerance: map.tolerance, first: x.name, second: y.name };
     worker.job = job;
-    worker.postMessage({ generation: now.generation, design: map.fixed, slips: map.slips, tolerance: map.tolerance, first: x.name, second: y.name, places });
+    if (job.edges) { worker.postMessage({ ...order, ends: edgeEnds(map, job.edges), codes: OUTCOME_CODES }); return; }
+    const places = new Float64Array(2 * job.cells.length);
+    job.cells.forEach((k, i) => { places[2 * i] = x.values[Math.floor(k / ny)]; places[2 * i + 1] = y.values[k % ny]; });
+    worker.postMessage({ ...order, places });
+  }
+
+  /** The whole map is there: its cliffs are looked for. */
+  function beginCliffs() {
+    now.edges = cliffEdges(map);
+    const most = Math.min(map.slips ? 16 : 400, Math.max(1, Math.ceil(now.edges.length / count)));
+    now.left.push(Math.ceil(now.edges.length / most));
+    for (let first = 0; first < now.edges.length; first += most) now.queue.push({ stage: now.left.length - 1, edges: now.edges.slice(first, first + most) });
+    for (const worker of now.idle.splice(0)) send(worker);
+  }
+
+  function receiveCliffs(job, parts) {
+    job.edges.forEach((edge, k) => { edge.part = parts[k]; });
+    if (--now.left[job.stage] > 0) return;
+    map.curves = cliffCurves(map, now.edges);
+    now.timing.crisp = performance.now() - now.begun;
+    onPicture("cliffs");
   }
 
   function receive(worker, { data }) {
     if (data.ready) { send(worker); return; }
     const { job } = worker;
-    if (data.generation === now.generation) {
+    if (data.generation === now.generation && job.edges) {
+      receiveCliffs(job, data.rows);
+    } else if (data.generation === now.generation) {
       putRows(map, data.rows, job.cells, job.side, level);
       if (--now.left[job.stage] === 0) {
-        const whole = job.stage === now.left.length - 1, passed = performance.now() - now.begun;
+        const whole = job.stage === now.stages - 1, passed = performance.now() - now.begun;
         if (job.stage === 0) now.timing = { coarse: passed };
         if (whole) Object.assign(now.timing, { full: passed, designs: nx * ny });
         // Pictures take longer than designs: those between the first and the last only if one has waited.
         if (job.stage === 0 || whole || performance.now() - now.shown > 150) {
           settleMap(map);
-          onPicture(whole);
+          onPicture(whole ? "whole" : "part");
           now.shown = performance.now();
         }
+        if (whole) beginCliffs();
       }
     }
     send(worker);
@@ -123,6 +146,7 @@ function liveEngine(map, module, workerText, onPicture) {
     ++now.generation;
     now.queue = [];
     now.left = [];
+    map.curves = [];
     now.begun = performance.now();
     level.fill(255);
     for (let side = COARSEST, stage = 0; side >= 1; side /= 2, ++stage) {
@@ -136,6 +160,7 @@ function liveEngine(map, module, workerText, onPicture) {
         ++now.left[stage];
       }
     }
+    now.stages = now.left.length;
     for (const worker of now.idle.splice(0)) send(worker);
   }
   return { begin, timing: () => ({ ...now.timing }) };

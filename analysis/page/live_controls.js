@@ -19,19 +19,18 @@ function liveState(words, solver) {
   return state;
 }
 
-/** Writes it into the address, so that a link is what one sees. */
-function liveAddress(map, solver, picked) {
-  const words = new URLSearchParams(), axisText = ({ name, from, to }) => `${name}:${Number(from.toPrecision(9))}:${Number(to.toPrecision(9))}`;
+/** Writes it into the address. */
+function writeLive(words, map, defaults) {
+  const axisText = ({ name, from, to }) => `${name}:${Number(from.toPrecision(9))}:${Number(to.toPrecision(9))}`;
+  words.set("live", "");
   words.set("x", axisText(map.axes[0]));
   words.set("y", axisText(map.axes[1]));
   if (map.slips) words.set("friction", "coulomb");
   for (const [name, value] of Object.entries(map.fixed))
-    if (value !== solver.defaults[name] && Number.isFinite(value) && !map.axes.some((axis) => axis.name === name)) words.set(name, String(Number(value.toPrecision(12))));
-  if (picked) words.set("design", picked.join(","));
-  history.replaceState(null, "", `#live&${words.toString().replaceAll("%3A", ":").replaceAll("%2C", ",")}`);
+    if (value !== defaults[name] && Number.isFinite(value) && !map.axes.some((axis) => axis.name === name)) words.set(name, String(Number(value.toPrecision(12))));
 }
 
-/** Builds the controls. changed(what): "map" if the map is another, "model" if the model is. */
+/** Builds the controls. changed(what): "map" if the map is another, "model" if the model is. Returns what the address wants of them. */
 function liveControls(map, solver, changed) {
   const box = element("live-controls"), sliders = element("live-sliders"), model = element("live-model");
   const axisInputs = ["x", "y"].map((key) => ({ name: element(`live-${key}`), from: element(`live-${key}-from`), to: element(`live-${key}-to`) }));
@@ -124,4 +123,17 @@ function liveControls(map, solver, changed) {
   });
   showAxes();
   showSliders();
+  return {
+    write: (words) => writeLive(words, map, solver.defaults),
+    read(words, first) {
+      if (first) return;
+      const state = liveState(words, solver);
+      Object.assign(map, { slips: state.slips, fixed: { ...solver.defaults, ...state.fixed } });
+      [state.x, state.y].forEach((axis, k) => Object.assign(map.axes[k], liveAxis(map, axis)));
+      model.value = map.slips ? "coulomb" : "sticking";
+      showAxes();
+      showSliders();
+      changed("model");
+    },
+  };
 }

@@ -28,10 +28,14 @@ function mapView(canvas, map, onPoint, onPick) {
     frame = fresh;
     background.width = canvas.width;
     background.height = canvas.height;
-    const context = background.getContext("2d");
+    paintOn(background.getContext("2d"));
+    paintCursor();
+  }
+
+  function paintOn(context) {
     sx = axisScale(map.axes[view.x], frame.left, frame.right);
     sy = axisScale(map.axes[view.y], frame.bottom, frame.top);
-    context.fillStyle = "#ffffff";
+    context.fillStyle = tones.ground;
     context.fillRect(0, 0, canvas.width, canvas.height);
     const x0 = Math.round(frame.left), y0 = Math.round(frame.top);
     box = { x0, y0, w: Math.round(frame.right) - x0, h: Math.round(frame.bottom) - y0 };
@@ -43,7 +47,6 @@ function mapView(canvas, map, onPoint, onPick) {
     paintAxes(context, frame, sx, sy, labelOf(map.axes[view.x]), labelOf(map.axes[view.y]));
     paintBar(context);
     paintPaper(context);
-    paintCursor();
   }
 
   /** The curves of the plane drawn, as pixels; undefined where its axes are not those that cliffs were looked for along. */
@@ -82,11 +85,12 @@ function mapView(canvas, map, onPoint, onPick) {
   function paintCells(context) {
     const { x0, y0, w, h } = box, { value, design } = pixels;
     const image = context.createImageData(w, h), data = image.data;
+    const back = [1, 3, 5].map((at) => parseInt(tones.ground.slice(at, at + 2), 16));  // which what fails is dimmed towards
     const { table, place } = view.field, period = Math.round(9 * frame.ratio), line = Math.max(1, Math.round(frame.ratio * 0.8));
     for (let q = 0; q < h; ++q)
       for (let p = 0; p < w; ++p) {
         const pixel = q * w + p, at = 4 * pixel, k = design[pixel], shown = value[pixel];
-        let r = 255, g = 255, b = 255;
+        let [r, g, b] = back;
         if (shown === shown) {
           const c = 3 * Math.round(255 * place(shown));
           r = table[c]; g = table[c + 1]; b = table[c + 2];
@@ -94,7 +98,7 @@ function mapView(canvas, map, onPoint, onPick) {
         } else if (k >= 0 && status) {
           [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
         } else if (k >= 0) { r = g = b = 217; }
-        if (map.keeps && k >= 0 && !map.keeps(k)) { r = 255 - (255 - r) * 0.2; g = 255 - (255 - g) * 0.2; b = 255 - (255 - b) * 0.2; }
+        if (map.keeps && k >= 0 && !map.keeps(k)) { r = back[0] + (r - back[0]) * 0.2; g = back[1] + (g - back[1]) * 0.2; b = back[2] + (b - back[2]) * 0.2; }
         data[at] = r; data[at + 1] = g; data[at + 2] = b; data[at + 3] = 255;
       }
     context.putImageData(image, x0, y0);
@@ -156,7 +160,7 @@ function mapView(canvas, map, onPoint, onPick) {
     context.rect(frame.left, frame.top, frame.right - frame.left, frame.bottom - frame.top);
     context.clip();
     for (const { kind, places } of chains ?? [])
-      for (const [colour, width, dashes] of [["#ffffffa0", 2.6, []], [EDGE, 1.2, DASHES[kind] ?? []]]) {
+      for (const [colour, width, dashes] of [["#ffffffa0", 2.6, []], ["#303030", 1.2, DASHES[kind] ?? []]]) {
         context.strokeStyle = colour;
         context.lineWidth = width * frame.ratio;
         context.setLineDash(dashes.map((d) => d * frame.ratio));
@@ -197,13 +201,13 @@ function mapView(canvas, map, onPoint, onPick) {
       if (last - p < 0.95 * font && level !== field.low) continue;
       if (jumpers.some(([, v]) => Math.abs(placeOf(v) - p) < 0.9 * font)) continue;
       last = p;
-      mark(level, (level === field.high && field.most > field.high ? "≥ " : "") + short(level, 3), EDGE);
+      mark(level, (level === field.high && field.most > field.high ? "≥ " : "") + short(level, 3), tones.ink);
     }
     const beyond = jumpers.filter(([, value]) => value > field.high);
-    for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${value}`, MARK);
+    for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${value}`, tones.mark);
     // What is beyond the map's own scale is told below it, and how colours go with values, where it is not evenly.
     const notes = [...beyond.map(([name, value]) => `${name} ${value} ↑`), ...(field.log ? ["log scale"] : field.exponent !== 1 ? [`power ${field.exponent}`] : [])];
-    context.fillStyle = EDGE;
+    context.fillStyle = tones.ink;
     notes.forEach((note, k) => context.fillText(note, x, bottom + (1 + k) * font));
   }
 
@@ -230,7 +234,7 @@ function mapView(canvas, map, onPoint, onPick) {
       context.lineTo(x + r * Math.cos(a), y + r * Math.sin(a));
     }
     context.closePath();
-    context.fillStyle = MARK;
+    context.fillStyle = "#d62728";
     context.strokeStyle = "#ffffff";
     context.lineWidth = 1.4 * frame.ratio;
     context.fill();
@@ -255,7 +259,7 @@ function mapView(canvas, map, onPoint, onPick) {
     };
     if (view.picked && view.picked.every((i, k) => k === view.x || k === view.y || i === view.index[k])) {
       cross(view.picked, "#ffffff", 4);
-      cross(view.picked, MARK, 2);
+      cross(view.picked, "#d62728", 2);
     }
     cross(view.index, "#ffffff", 4);
     cross(view.index, "#000000", 1.6);
@@ -288,7 +292,7 @@ function mapView(canvas, map, onPoint, onPick) {
   new ResizeObserver(() => paint()).observe(canvas);
 
   return {
-    view, paint, pick, point, showsPaper: () => paperPlace() !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
+    view, paint, paintOn, pick, point, showsPaper: () => paperPlace() !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
     /** What the map's pixels are, for tests: the design whose codes each shows, and where its centre lies along the axes. */
     shown() {
       const { x0, y0, w, h } = box, places = (scale, first, count) => Array.from({ length: count }, (_, p) => scale.value(first + p + 0.5));

@@ -53,22 +53,25 @@ const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI
 
 /** Starts with a map that is solved as one looks. */
 function startLive(given, module, solver) {
-  const words = new URLSearchParams(location.hash.slice(1)), map = liveMap(given, solver, liveState(words, solver));
+  const map = liveMap(given, solver, liveState(addressWords(), solver));
   map.rowNames = solver.rowNames;
   let page = null, settled = 0;
-  const engine = liveEngine(map, module, element("worker").textContent, (whole) => {
+  const engine = liveEngine(map, module, element("worker").textContent, (what) => {
     if (!page) page = start(map, solver);
     page.repaint();
-    Object.assign(element("map").dataset, { whole: String(whole), generation: String(Number(element("map").dataset.generation ?? 0) + 1) });
-    if (whole) { window.explorer.timing = engine.timing(); page.again(); liveAddress(map, solver, page.view.view.picked); }
+    const { dataset } = element("map");
+    Object.assign(dataset, { whole: String(what !== "part"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
+    if (what === "cliffs") window.explorer.timing = engine.timing();
+    if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   });
   const begin = () => { element("map").dataset.whole = "false"; engine.begin(); };
   settleMap(map);
-  liveControls(map, solver, (what) => {
+  const controls = liveControls(map, solver, (what) => {
     cancelAnimationFrame(settled);
     settled = requestAnimationFrame(begin);  // once a picture, however often a slider tells
     if (what === "model" && page) page.remodel();
   });
+  addressPart(controls);
   begin();
 }
 
@@ -94,7 +97,7 @@ function start(map, solver) {
     drawCuts();
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
     const number = (f) => (f.values[at] === f.values[at] ? f.values[at].toFixed(decimalsOf(f.step)) : "");
-    const text = (f) => (number(f) ? withUnit(number(f), f.unit) : "none");
+    const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${short(map.fixed.hop_height)} diameters`]
       : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
@@ -103,7 +106,7 @@ function start(map, solver) {
     element("others").replaceChildren(...map.fields.filter((f) => f !== shown && number(f)).map((f) => {
       const pair = document.createElement("div"), name = document.createElement("dt"), value = document.createElement("dd");
       name.textContent = f.label.split(":")[0];
-      value.textContent = text(f);
+      value.textContent = alsoAs(f, f.values[at], map.fixed).slice(3) || text(f);
       pair.append(name, value);
       return pair;
     }));
@@ -111,7 +114,7 @@ function start(map, solver) {
     dataset.index = index.join(",");
     dataset.value = number(shown);
   };
-  const view = (map.columns ? listView : mapView)(canvas, map, told, (index, byHand) => { chosen.show(index, byHand); if (map.live) liveAddress(map, solver, index); });
+  const view = (map.columns ? listView : mapView)(canvas, map, told, (index, byHand) => chosen.show(index, byHand));
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value if there are others.
   const choices = map.columns ?? map.axes;  // of what may be drawn to the right
@@ -132,7 +135,18 @@ function start(map, solver) {
   map.fields.forEach((f, k) => option(fieldSelect, k, withUnit(f.label, f.unit ? `[${f.unit}]` : "")));
   fieldSelect.value = map.fields.indexOf(view.view.field);
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
-  fieldSelect.addEventListener("change", () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); told(view.view.index); });
+  const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); told(view.view.index); };
+  fieldSelect.addEventListener("change", () => { showField(); noteAddress(); });
+  const firstField = fieldSelect.value;
+  addressPart({
+    write(words) { if (fieldSelect.value !== firstField) words.set("field", view.view.field.name); },
+    read(words) {
+      const at = map.fields.findIndex((f) => f.name === words.get("field"));
+      if (words.has("field") && at < 0) notice(`The address asks for a field that is not on this map: ${words.get("field")}`);
+      fieldSelect.value = at < 0 ? firstField : at;
+      showField();
+    },
+  });
   for (const [key, select] of Object.entries(selects))
     select.addEventListener("change", () => {
       const other = key === "x" ? "y" : "x", taken = Number(select.value);
@@ -184,11 +198,11 @@ function start(map, solver) {
       item.append(mark, ` ${words}`);
       return item;
     };
-    if (flags?.values.includes(1) && map.columns) items.push(symbol("first lift-off is spurious", "○", "#1f4e79"));
-    if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", "#d62728"));
-    items.push(symbol("pointed at", "⊕", "#000"), symbol("shown beside", "⊕", "#d62728"));
+    if (flags?.values.includes(1) && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
+    if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
+    items.push(symbol("pointed at", "⊕", tones.ink), symbol("shown beside", "⊕", tones.mark));
     for (const kind of new Set(map.curves.map((curve) => curve.kind)))
-      items.push(symbol(map.cliff_words[kind], kind === "threshold" || kind === "painleve" ? "—" : "╌", EDGE));
+      items.push(symbol(map.cliff_words[kind], kind in DASHES ? "╌" : "—", tones.ink));
     element("legend").replaceChildren(...items);
   }
 
@@ -200,29 +214,45 @@ function start(map, solver) {
     view.view.index[k] = away.indexOf(Math.min(...away));
   });
   element("paper").addEventListener("click", () => { view.view.picked = null; view.point(); });
-  const asked = addressed(map);
-  if (asked.index) view.view.index = asked.index;
   arrange();
   view.paint();
   legend();
   told(view.view.index);
-  view.pick();
-  // On a phone the hoop that a link is about comes first.
-  document.body.classList.toggle("hoop-first", Boolean(asked.paper));
-  element("map-png").addEventListener("click", () => savePicture(canvas, `${map.name.replace(/\.[^.]*$/, "")}_${view.view.field.name}.png`));
-  if (asked.paper) element("paper").click();
-  if (asked.time !== undefined) chosen.stopAt(asked.time);
+  const pictureName = () => `${map.name.replace(/\.[^.]*$/, "")}_${view.view.field.name}`;
+  element("map-png").addEventListener("click", () => savePicture(canvas, `${pictureName()}.png`));
+  element("map-svg").addEventListener("click", () => saveSvg(canvas, `${pictureName()}.svg`, (like) => view.paintOn(like.getContext("2d"))));
   element("cuts").hidden = Boolean(map.columns);
   if (!map.columns) drawCuts = cutsPart(map, view);
   const filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; view.pick(); });
   element("filters").hidden = Boolean(map.columns);
+  if (filters) addressPart(filters);
+  addressPart(unitsPart(() => { said = ""; told(view.view.index); chosen.retell(); noteAddress(); }));
+  onTones(() => { view.paint(); drawCuts(); legend(); });
+  // The design that the address asks for, unless it asks for a hoop of its own.
+  const home = [...view.view.index];
+  addressPart({
+    write() {},
+    read(words) {
+      const asked = addressed(map, words);
+      if (asked.index || !(words.has("paper") || words.has("hoop"))) {
+        view.view.index = asked.index ?? [...home];
+        view.pick();
+      }
+      // On a phone the hoop that a link is about comes first.
+      document.body.classList.toggle("hoop-first", words.has("paper") || words.has("hoop"));
+      if (asked.time !== undefined) chosen.stopAt(asked.time);
+    },
+  });
   window.explorer = { map, view, solver };
+  readAddress(true);
+  addressButtons();
+  noteAddress();
   return {
     view,
     /** After more of a live map is there. */
     repaint() { said = ""; filters?.tell(); view.paint(); legend(); told(view.view.index); },
     /** The hoop shown, of the same place on another map. */
-    again() { if (view.view.picked) chosen.show(view.view.picked); },
+    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked); },
     /** Another model: what is told of a hoop is another. */
     remodel() { element("paper").hidden = map.slips; legend(); },
   };
@@ -239,10 +269,9 @@ function liveFrom(map) {
   return `live&${words.toString().replaceAll("%3A", ":")}`;
 }
 
-/** What the address asks for, as #design=20,30,1&time=0.5 or #paper: a design by its place along each axis, and a moment to stop at [s]. */
-function addressed(map) {
-  const words = new URLSearchParams(location.hash.slice(1)), asked = { paper: words.has("paper") && !map.slips };
-  const index = (words.get("design") ?? "").split(",").map((word) => (/^\d+$/.test(word) ? Number(word) : -1));
+/** What the address asks for, as #design=20,30,1&time=0.5: a design by its place along each axis, and a moment to stop at [s]. */
+function addressed(map, words) {
+  const asked = {}, index = (words.get("design") ?? "").split(",").map((word) => (/^\d+$/.test(word) ? Number(word) : -1));
   if (words.has("design") && !(index.length === map.axes.length && map.axes.every((axis, k) => index[k] >= 0 && index[k] < axis.values.length)))
     notice(`The address asks for a design that is not on this map; there are ${map.axes.map((axis) => axis.values.length).join(" x ")}.`);
   else if (words.has("design"))
@@ -256,7 +285,8 @@ function addressed(map) {
     if (typeof DecompressionStream === "undefined" || typeof WebAssembly === "undefined")
       throw new Error("this browser is too old; Chrome 97, Firefox 113 and Safari 16.4 are not");
     const module = await loadModule(element("module").textContent), solver = await solverOf(module), data = JSON.parse(element("data").textContent);
-    const live = data.only_live || new URLSearchParams(location.hash.slice(1)).has("live");
+    const live = data.only_live || addressWords().has("live");
+    tonesPart();
     const toggle = element("live-toggle");
     toggle.hidden = Boolean(data.only_live);
     toggle.textContent = live ? "back to the file's map" : "compute the map here: every parameter a slider";

@@ -4,8 +4,8 @@ const MOST_PINS = 4;
 const PINNED = [["jump_height", "jump height", "diameters"], ["jump_time", "lift-off after", "s"], ["apex_time", "apex after lift-off", "s"], ["flight_time", "landing after lift-off", "s"],
                 ["jump_spin", "spin at lift-off", "√(g/R)"], ["jump_distance", "rolled until lift-off", "R"], ["candidates", "lift-offs looked at", ""]];
 
-/** changed(): what is pinned is another. Returns {pin(design, outcome, command), designs()}. */
-function pinsPart(map, changed) {
+/** command(design): that tells it; changed(): what is pinned is another. Returns {pin(design), designs(), write, read}. */
+function pinsPart(map, solver, command, changed) {
   const part = element("pins"), table = element("pins-table"), pins = [];
   const csv = element("pins-csv"), commands = element("pins-commands");
   const cell = (kind, text) => { const made = document.createElement(kind); made.textContent = text; return made; };
@@ -38,14 +38,26 @@ function pinsPart(map, changed) {
     commands.textContent = pins.map(({ command }) => command).join("\n");
   }
 
+  const add = (design) => pins.push({ design: { ...design }, outcome: solver.solve(design, map.slips, map.tolerance).outcome, command: command(design) });
+  const names = () => Object.keys(map.parameters).filter((name) => name in solver.defaults);
+
   return {
-    pin(design, outcome, command) {
+    pin(design) {
       if (pins.length >= MOST_PINS) { notice(`There is room for ${MOST_PINS} designs; unpin one first.`); return; }
       notice("");
-      pins.push({ design: { ...design }, outcome, command });
+      add(design);
       show();
       changed();
     },
     designs: () => pins.map(({ design }) => design),
+    write(words) {
+      for (const { design } of pins) words.append("pin", names().filter((name) => Number.isFinite(design[name])).map((name) => `${name}:${design[name]}`).join(","));
+    },
+    read(words) {
+      const wanted = words.getAll("pin").slice(0, MOST_PINS).map((text) => designOf(text, solver.ranges)).filter((design) => design);
+      pins.length = 0;
+      for (const design of wanted) add({ ...map.fixed, ...design });
+      show();
+    },
   };
 }

@@ -1,13 +1,13 @@
 // Height and forces over time, one under the other, with the moment shown.
 
 const PLOTS = [
-  { label: "height [mm]", lines: [{ column: "y", factor: 1000, colour: "#1f4e79" }] },
-  { label: "force [N]", lines: [{ column: "normal_force", colour: "#1f4e79", name: "normal force", contact: true },
-                                { column: "friction", colour: "#d95f02", name: "friction, downhill", contact: true, dash: [6, 4] }] },
+  { label: "height", unit: "y", lines: [{ column: "y", tone: "data" }] },
+  { label: "force", unit: "force", lines: [{ column: "normal_force", tone: "data", name: "normal force", contact: true },
+                                { column: "friction", tone: "slide", name: "friction, downhill", contact: true, dash: [6, 4] }] },
 ];
 
-/** Draws the plots; weight: what forces are multiplied by [N]; radius: of the hoop [m]. Returns the time at a place on the screen. */
-function drawPlots(canvas, motion, liftOffs, time, weight, radius) {
+/** Draws the plots; shown: {t, y, force}, each what SI, or weights, are multiplied by, and the unit; radius: of the hoop [m]. Returns the time at a place on the screen. */
+function drawPlots(canvas, motion, liftOffs, time, shown, radius) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
   canvas.width = Math.max(1, Math.round(box.width * ratio));
   canvas.height = Math.max(1, Math.round(box.height * ratio));
@@ -20,8 +20,8 @@ function drawPlots(canvas, motion, liftOffs, time, weight, radius) {
   context.lineJoin = "round";
   PLOTS.forEach((plot, k) => {
     const top = k * height + 0.6 * font, bottom = (k + 1) * height - 0.6 * font;
-    const scaled = plot.lines.map((line) => ({ ...line, values: motion[line.column].map((v) => v * (line.factor ?? weight)) }));
-    let low = 0, high = plot.lines[0].column === "y" ? 100 * radius : 1e-9 * weight;  // a tenth of R: what is less is nothing to look at
+    const [factor, unit] = shown[plot.unit], scaled = plot.lines.map((line) => ({ ...line, values: motion[line.column].map((v) => v * factor) }));
+    let low = 0, high = factor * (plot.unit === "y" ? 0.1 * radius : 1e-9);  // a tenth of R: what is less is nothing to look at
     for (const line of scaled) for (const v of line.values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
     high += 0.05 * (high - low);
     const sy = (v) => bottom - (bottom - top) * (v - low) / (high - low);
@@ -29,13 +29,13 @@ function drawPlots(canvas, motion, liftOffs, time, weight, radius) {
     for (let i = 0; i + 1 < motion.t.length; ++i) {
       const phase = motion.phase[i + 1];
       if (phase === 1 || phase !== motion.phase[i] && phase !== 3) continue;
-      context.fillStyle = phase === 3 ? "#1b9e7722" : "#d95f0222";
+      context.fillStyle = phase === 3 ? `${tones.fly}22` : `${tones.slide}22`;
       context.fillRect(sx(motion.t[i]), top, sx(motion.t[i + 1]) - sx(motion.t[i]), bottom - top);
     }
-    context.strokeStyle = "#9aa4ae";
+    context.strokeStyle = tones.frame;
     context.lineWidth = ratio;
     context.strokeRect(left, top, right - left, bottom - top);
-    context.fillStyle = "#303030";
+    context.fillStyle = tones.ink;
     context.textAlign = "right";
     context.textBaseline = "middle";
     context.beginPath();
@@ -53,7 +53,7 @@ function drawPlots(canvas, motion, liftOffs, time, weight, radius) {
       const jump = liftOffs.is_jump[i] === 1;
       context.beginPath();
       context.setLineDash(jump ? [] : [4 * ratio, 4 * ratio]);
-      context.strokeStyle = jump ? "#d62728" : "#555555";
+      context.strokeStyle = jump ? tones.mark : tones.faint;
       context.moveTo(sx(liftOffs.time[i]), top);
       context.lineTo(sx(liftOffs.time[i]), bottom);
       context.stroke();
@@ -62,7 +62,7 @@ function drawPlots(canvas, motion, liftOffs, time, weight, radius) {
     for (const line of scaled) {
       context.beginPath();
       context.setLineDash((line.dash ?? []).map((d) => d * ratio));
-      context.strokeStyle = context.fillStyle = line.colour;
+      context.strokeStyle = context.fillStyle = tones[line.tone];
       context.lineWidth = 1.6 * ratio;
       let drawing = false;
       line.values.forEach((v, i) => {
@@ -79,14 +79,14 @@ function drawPlots(canvas, motion, liftOffs, time, weight, radius) {
         legend += context.measureText(line.name).width + font;
       }
     }
-    context.fillStyle = "#303030";
+    context.fillStyle = tones.ink;
     context.save();
     context.translate(1.0 * font, (top + bottom) / 2);
     context.rotate(-Math.PI / 2);
     context.textAlign = "center";
-    context.fillText(plot.label, 0, 0);
+    context.fillText(`${plot.label} [${unit}]`, 0, 0);
     context.restore();
-    context.strokeStyle = "#000000";
+    context.strokeStyle = tones.ink;
     context.lineWidth = 1.2 * ratio;
     context.beginPath();
     context.moveTo(sx(time), top);
@@ -95,9 +95,9 @@ function drawPlots(canvas, motion, liftOffs, time, weight, radius) {
   });
   context.textAlign = "center";
   context.textBaseline = "top";
-  context.fillStyle = "#303030";
-  for (const tick of linearTicks(0, end, 8)) context.fillText(short(tick, 12), sx(tick), PLOTS.length * height - 0.4 * font);
+  context.fillStyle = tones.ink;
+  for (const tick of linearTicks(0, end * shown.t[0], 8)) context.fillText(short(tick, 12), sx(tick / shown.t[0]), PLOTS.length * height - 0.4 * font);
   context.textBaseline = "alphabetic";
-  context.fillText("time since release [s]", (left + right) / 2, canvas.height - 0.3 * font);
+  context.fillText(`time since release [${shown.t[1]}]`, (left + right) / 2, canvas.height - 0.3 * font);
   return (clientX) => Math.min(end, Math.max(0, ((clientX - box.left) * canvas.width / box.width - left) / (right - left) * end));
 }

@@ -49,6 +49,12 @@ async function solverOf(module) {
         liftOffs: rows(liftOffColumns, leapmap.lift_offs(), leapmap.lift_off_count()),
       };
     },
+    /** The derivatives of a field by every parameter, {name: number}: in the field's unit over the parameter's; NaN where there is none. */
+    gradient(design, slips, tolerance, field) {
+      give(design);
+      const values = doubles(leapmap.gradient(slips ? 1 : 0, tolerance, fields.indexOf(field)), parameters.length);
+      return Object.fromEntries(parameters.map((name, i) => [name, values[i]]));
+    },
     /** What solvePlaces tells of a design, in order. */
     rowNames,
     /**

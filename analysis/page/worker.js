@@ -1,12 +1,31 @@
-// A thread of a live map: solves the designs that it is sent.
+// A thread of a live map: solves the designs that it is sent, and finds where outcomes change between two.
 
+const BISECTIONS = 7;  // to a hundredth of a cell
 let solver = null;
+
+/** How far along from the first end of each edge to the second its outcome changes: ends as [x, y, x, y] each. */
+function bisected({ design, slips, tolerance, first, second, ends, codes }) {
+  const count = ends.length / 4, wide = solver.rowNames.length, parts = new Float64Array(count).fill(0.5), places = new Float64Array(2 * count);
+  const columns = codes.map((name) => solver.rowNames.indexOf(name));
+  const solved = (part) => {
+    for (let k = 0; k < count; ++k)
+      for (const c of [0, 1]) places[2 * k + c] = ends[4 * k + c] + (ends[4 * k + 2 + c] - ends[4 * k + c]) * part(k);
+    return solver.solvePlaces(design, slips, tolerance, first, second, places);
+  };
+  const begins = solved(() => 0);
+  for (let step = 0.25, n = 0; n < BISECTIONS; step /= 2, ++n) {
+    const rows = solved((k) => parts[k]);
+    for (let k = 0; k < count; ++k) parts[k] += columns.every((c) => Object.is(rows[k * wide + c], begins[k * wide + c])) ? step : -step;
+  }
+  return parts;
+}
+
 onmessage = async ({ data }) => {
   if (data.module) {
     solver = await solverOf(data.module);
     postMessage({ ready: true });
     return;
   }
-  const rows = solver.solvePlaces(data.design, data.slips, data.tolerance, data.first, data.second, data.places);
-  postMessage({ generation: data.generation, job: data.job, rows }, [rows.buffer]);
+  const rows = data.ends ? bisected(data) : solver.solvePlaces(data.design, data.slips, data.tolerance, data.first, data.second, data.places);
+  postMessage({ generation: data.generation, rows }, [rows.buffer]);
 };

@@ -110,13 +110,14 @@ class Chain {
  private:
   /// Takes the plain solver's values, if the chain came to the same.
   bool agrees(const ContactState<double>& there) {
-    const auto same = [](D& value, double number) {
-      const bool near = std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
+    bool near = true;
+    const auto take = [&](D& value, double number) {
+      near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
       value.value = number;
-      return near;
     };
-    return same(at_.time, there.time) & same(at_.travel, there.travel) & same(at_.angle, there.angle) &
-           same(at_.spin, there.spin) & same(at_.slip, there.slip) & same(at_.normal, there.normal);
+    take(at_.time, there.time), take(at_.travel, there.travel), take(at_.angle, there.angle);
+    take(at_.spin, there.spin), take(at_.slip, there.slip), take(at_.normal, there.normal);
+    return near;
   }
 
   bool roll(const Recorded::Begun& begun, const ContactState<double>& to) {

@@ -56,7 +56,7 @@ RollingGradients::RollingGradients(double tolerance, const Wanted& wanted, const
               }()),
       teller_(tolerance, {.first_jump_time = false, .jump_time = false, .descent = false}),
       clock_(finest) {
-  of_jump_ = std::ranges::any_of(gradients.of, [](const OutcomeNumber& quantity) {
+  of_jump_ = std::any_of(gradients.of.begin(), gradients.of.end(), [](const OutcomeNumber& quantity) {
     return quantity != &Outcome::first_jump_height && quantity != &Outcome::first_jump_time;
   });
 }
@@ -90,10 +90,10 @@ void RollingGradients::solve(std::span<const Design> designs, const Scene& scene
       if (!same && of_first_) lift_offs.push_back({i, found.first_angle, false, true});
     }
     // Those that have about as far to roll side by side: they have the quadrature's panels in common.
+    const auto half_turns = [](const LiftOffAt& at) { return std::floor(at.angle * (1.0 / pi_of<double>)); };
     if (of_time_ || of_first_time_)
-      std::ranges::stable_sort(lift_offs, {}, [](const LiftOffAt& at) {
-        return static_cast<long>(std::floor(at.angle * (1.0 / pi_of<double>)));
-      });
+      std::stable_sort(lift_offs.begin(), lift_offs.end(),
+                       [&](const LiftOffAt& a, const LiftOffAt& b) { return half_turns(a) < half_turns(b); });
     for (std::size_t i = 0; i < lift_offs.size(); i += Lanes<T>::count)
       in_lanes(lot, std::span(lift_offs).subspan(i, std::min(Lanes<T>::count, lift_offs.size() - i)));
     for (const LiftOffAt& lift_off : hard) alone(lot, lift_off);

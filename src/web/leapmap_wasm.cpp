@@ -14,10 +14,12 @@
 #include <vector>
 
 #include "coulomb/coulomb.hpp"
+#include "coulomb/gradient.hpp"
 #include "coulomb/model.hpp"
 #include "model/fields.hpp"
 #include "model/parameters.hpp"
 #include "rolling/exact.hpp"
+#include "rolling/gradient.hpp"
 #include "rolling/model.hpp"
 
 namespace leapmap {
@@ -68,8 +70,9 @@ struct Page {
   std::vector<std::array<double, column_names.size()>> points;
   std::vector<std::array<double, lift_off_names.size()>> lift_offs;
   std::vector<double> heights;
-  std::vector<double> places;  // of a map: two parameters of each design
-  std::vector<double> rows;    // of a map: row_fields() of each design
+  std::vector<double> places;    // of a map: two parameters of each design
+  std::vector<double> rows;      // of a map: row_fields() of each design
+  std::vector<double> gradient;  // by each of parameters
 
  private:
   void fill(Design& design, Scene& scene) const {
@@ -240,6 +243,34 @@ LEAPMAP_EXPORT const char* field_text(int i) {
   if (!std::holds_alternative<Word>(field.source)) return nullptr;
   page.text = phase_letters(page.outcome.phase_sequence);
   return page.text.c_str();
+}
+
+/// The derivatives of a field of the first jump by each parameter, in parameters' order and both in their
+/// units; NaN: there is none, as leapmap/gradient.hpp says. The field is a quantity.
+LEAPMAP_EXPORT const double* gradient(int friction, double tolerance, int field) {
+  Scene scene = page.scene(friction);
+  scene.jumps = 1;
+  const auto all = leapmap::parameters();
+  page.gradient.assign(all.size(), Outcome::none);
+  const auto of = number_of(map_fields()[static_cast<std::size_t>(field)]);
+  if (!of) return page.gradient.data();
+  GradientWanted wanted{{*of}, {}};
+  for (std::size_t k = 0; k < (scene.friction == Friction::coulomb ? differentiable.size() : without_slip);
+       ++k)
+    wanted.by.push_back(k);
+  Gradients gradients(wanted);
+  const Design design = page.design();
+  Outcome outcome;
+  if (scene.friction == Friction::coulomb)
+    CoulombGradients(tolerance).solve({&design, 1}, scene, {&outcome, 1}, gradients);
+  else
+    RollingGradients(tolerance, {}, wanted).solve({&design, 1}, scene, {&outcome, 1}, gradients);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const std::size_t k : wanted.by)
+      if (const auto* member = std::get_if<double Design::*>(&all[i].member);
+          member && *member == differentiable[k])
+        page.gradient[i] = gradients.column(*of, differentiable[k])[0];
+  return page.gradient.data();
 }
 
 /// What rows() holds of each design, in this order; null after the last.

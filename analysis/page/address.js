@@ -1,0 +1,56 @@
+// The address keeps what one sees: each part of the page writes its own words into it and reads them back, so that a link is a finding,
+// and the browser's history undoes.
+
+const ADDRESS_PAUSE = 500;  // ms between two changes that are undone one by one
+const address = { parts: [], steps: 0, at: 0, last: 0, reading: false };
+
+const addressWords = () => new URLSearchParams(location.hash.slice(1));
+
+/** A part of the page with write(words) and read(words). */
+function addressPart(part) { address.parts.push(part); }
+
+/** Something else is seen: the address says so. What follows at once is undone with it. */
+function noteAddress() {
+  if (address.reading) return;
+  const words = new URLSearchParams();
+  for (const part of address.parts) part.write(words);
+  const hash = [...words].map(([key, value]) => (value === "" ? key : `${key}=${encodeURIComponent(value).replaceAll("%3A", ":").replaceAll("%2C", ",")}`)).join("&");
+  if (`#${hash}` === location.hash) return;
+  const passed = performance.now() - address.last;
+  address.last = performance.now();
+  if (address.steps > 0 && passed > ADDRESS_PAUSE) {
+    ++address.at;
+    history.pushState({ step: address.at }, "", `#${hash}`);
+  } else {
+    history.replaceState({ step: address.at }, "", `#${hash}`);
+  }
+  address.steps = Math.max(address.at + 1, 1);
+  showSteps();
+}
+
+/** first: the page has only just begun, and with this address. */
+function readAddress(first = false) {
+  address.reading = true;
+  try { for (const part of address.parts) part.read(addressWords(), first); } finally { address.reading = false; }
+}
+
+function showSteps() {
+  element("undo").disabled = address.at === 0;
+  element("redo").disabled = address.at + 1 >= address.steps;
+}
+
+/** Undo and redo: buttons, keys and the browser's own. */
+function addressButtons() {
+  window.addEventListener("popstate", (event) => {
+    address.at = event.state?.step ?? 0;
+    showSteps();
+    readAddress();
+  });
+  element("undo").addEventListener("click", () => history.back());
+  element("redo").addEventListener("click", () => history.forward());
+  document.addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.matches("input[type=number], input[type=text]")) return;
+    if (event.shiftKey ? !element("redo").disabled : !element("undo").disabled) { event.preventDefault(); event.shiftKey ? history.forward() : history.back(); }
+  });
+  showSteps();
+}
