@@ -2,7 +2,8 @@
 // and the browser's history undoes.
 
 const ADDRESS_PAUSE = 500;  // ms between two changes that are undone one by one
-const address = { parts: [], steps: 0, at: 0, last: 0, reading: false };
+const ADDRESS_REST = 120;   // ms at least between two writings, of which browsers allow so many
+const address = { parts: [], steps: 0, at: 0, last: -Infinity, later: 0, reading: false };
 
 const addressWords = () => new URLSearchParams(location.hash.slice(1));
 
@@ -12,11 +13,13 @@ function addressPart(part) { address.parts.push(part); }
 /** Something else is seen: the address says so. What follows at once is undone with it. */
 function noteAddress() {
   if (address.reading) return;
+  clearTimeout(address.later);
+  const passed = performance.now() - address.last;
+  if (passed < ADDRESS_REST) { address.later = setTimeout(noteAddress, ADDRESS_REST - passed); return; }
   const words = new URLSearchParams();
   for (const part of address.parts) part.write(words);
   const hash = [...words].map(([key, value]) => (value === "" ? key : `${key}=${encodeURIComponent(value).replaceAll("%3A", ":").replaceAll("%2C", ",")}`)).join("&");
   if (`#${hash}` === location.hash) return;
-  const passed = performance.now() - address.last;
   address.last = performance.now();
   if (address.steps > 0 && passed > ADDRESS_PAUSE) {
     ++address.at;

@@ -2,8 +2,11 @@
 
 const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20 g
 
-/** The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. */
-function hopPanel(map, solver) {
+/**
+ * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome):
+ * a hoop is shown that is none of the map's designs.
+ */
+function hopPanel(map, solver, ofItsOwn) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
@@ -151,6 +154,7 @@ function hopPanel(map, solver) {
     notice(good ? "" : `How many jumps must be a whole number from ${jumps.min} to ${jumps.max}.`);
     if (!good) return;
     chosen.jumps = Number(jumps.value);
+    pins.show();
     noteAddress();
     if (now.design) { solve(); run(!still && now.story !== null); }
   });
@@ -178,6 +182,7 @@ function hopPanel(map, solver) {
     element("hop-title").textContent = title;
     solve();
     run(!still && now.story !== null);
+    if (source[0] !== "design" && now.story) ofItsOwn(title, { ...now.story.outcome, agility: 2 * design.radius * now.story.outcome.jump_height / (now.story.outcome.jump_time + now.story.outcome.apex_time) });
     noteAddress();
   };
   /** A hoop of numbers that were typed, of which only those that differ from the map's go into the address. */

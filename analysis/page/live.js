@@ -2,6 +2,7 @@
 
 const LIVE_SHAPE = [200, 150];
 const COARSEST = 8;  // cells a side of the blocks that the first picture has
+const REST = 150;    // ms without a change after which cliffs are looked for
 /** What parameters can be moved between: their values as the solver takes them. */
 const LIVE_RANGES = {
   slope: [0.02, 0.87], mass_ratio: [0.1, 20], offset_ratio: [0.05, 1], inertia_factor: [0.5, 1], release_angle: [0, 2 * Math.PI], release_spin: [-3, 6],
@@ -80,14 +81,21 @@ function settleMap(map) {
 function liveEngine(map, module, workerText, onPicture) {
   const [nx, ny] = LIVE_SHAPE, level = new Uint8Array(nx * ny);
   const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
-  const now = { generation: 0, queue: [], left: [], stages: 0, edges: [], begun: 0, shown: 0, timing: {}, idle: [] };
+  const now = { generation: 0, queue: [], left: [], edges: [], begun: 0, resting: 0, shown: 0, cost: 0, timing: {} }, workers = [];
   const count = Math.max(1, Math.min(16, navigator.hardwareConcurrency || 2));
 
-  function send(worker) {
-    const job = now.queue.shift();
-    if (!job) { now.idle.push(worker); return; }
+  /** Keeps two jobs with a worker, so that it never waits for this thread to paint. */
+  function feed(worker) {
+    while (worker.jobs.length < 2 && now.queue.length > 0) send(worker, now.queue.shift());
+  }
+  function feedAll() {
+    for (const round of [0, 1])
+      for (const worker of workers) if (worker.ready && worker.jobs.length <= round && now.queue.length > 0) send(worker, now.queue.shift());
+  }
+
+  function send(worker, job) {
     const [x, y] = map.axes, order = { generation: now.generation, design: map.fixed, slips: map.slips, tolerance: map.tolerance, first: x.name, second: y.name };
-    worker.job = job;
+    worker.jobs.push(job);
     if (job.edges) { worker.postMessage({ ...order, ends: edgeEnds(map, job.edges), codes: OUTCOME_CODES }); return; }
     const places = new Float64Array(2 * job.cells.length);
     job.cells.forEach((k, i) => { places[2 * i] = x.values[Math.floor(k / ny)]; places[2 * i + 1] = y.values[k % ny]; });
@@ -100,7 +108,7 @@ function liveEngine(map, module, workerText, onPicture) {
     const most = Math.min(map.slips ? 16 : 400, Math.max(1, Math.ceil(now.edges.length / count)));
     now.left.push(Math.ceil(now.edges.length / most));
     for (let first = 0; first < now.edges.length; first += most) now.queue.push({ stage: now.left.length - 1, edges: now.edges.slice(first, first + most) });
-    for (const worker of now.idle.splice(0)) send(worker);
+    feedAll();
   }
 
   function receiveCliffs(job, parts) {
@@ -112,30 +120,32 @@ function liveEngine(map, module, workerText, onPicture) {
   }
 
   function receive(worker, { data }) {
-    if (data.ready) { send(worker); return; }
-    const { job } = worker;
+    if (data.ready) { worker.ready = true; feed(worker); return; }
+    const job = worker.jobs.shift();
+    feed(worker);
     if (data.generation === now.generation && job.edges) {
       receiveCliffs(job, data.rows);
     } else if (data.generation === now.generation) {
       putRows(map, data.rows, job.cells, job.side, level);
-      if (--now.left[job.stage] === 0) {
-        const whole = job.stage === now.stages - 1, passed = performance.now() - now.begun;
-        if (job.stage === 0) now.timing = { coarse: passed };
-        if (whole) Object.assign(now.timing, { full: passed, designs: nx * ny });
-        // Pictures take longer than designs: those between the first and the last only if one has waited.
-        if (job.stage === 0 || whole || performance.now() - now.shown > 150) {
-          settleMap(map);
-          onPicture(whole ? "whole" : "part");
-          now.shown = performance.now();
-        }
-        if (whole) beginCliffs();
+      const last = --now.left[job.stage] === 0, coarse = last && job.stage === 0, whole = last && now.left.every((left) => left === 0), passed = performance.now() - now.begun;
+      if (coarse) now.timing = { coarse: passed };
+      if (whole) Object.assign(now.timing, { full: passed, designs: nx * ny });
+      // Pictures take longer than designs: of those between the first and the last no more than take a fifth of the time.
+      if (coarse || whole || performance.now() - now.shown > Math.max(250, 5 * now.cost)) {
+        const begun = performance.now();
+        settleMap(map);
+        onPicture(whole ? "whole" : "part");
+        now.shown = performance.now();
+        now.cost = now.shown - begun;
       }
+      if (whole) now.resting = setTimeout(beginCliffs, REST);
     }
-    send(worker);
   }
 
   for (let i = 0; i < count; ++i) {
     const worker = new Worker(url);
+    Object.assign(worker, { jobs: [], ready: false });
+    workers.push(worker);
     worker.onmessage = (event) => receive(worker, event);
     worker.onerror = (event) => complain(event);
     worker.postMessage({ module });
@@ -144,6 +154,7 @@ function liveEngine(map, module, workerText, onPicture) {
   /** Throws away what is under way and starts again, coarse first. */
   function begin() {
     ++now.generation;
+    clearTimeout(now.resting);
     now.queue = [];
     now.left = [];
     map.curves = [];
@@ -153,15 +164,14 @@ function liveEngine(map, module, workerText, onPicture) {
       const cells = [];
       for (let i = 0; i < nx; i += side)
         for (let j = 0; j < ny; j += side) if (side === COARSEST || i % (2 * side) || j % (2 * side)) cells.push(i * ny + j);
-      const most = Math.min(map.slips ? 60 : 1500, Math.ceil(cells.length / count));
+      const most = Math.min(map.slips ? 200 : 2000, Math.ceil(cells.length / count));
       now.left.push(0);
       for (let first = 0; first < cells.length; first += most) {
         now.queue.push({ stage, side, cells: cells.slice(first, first + most) });
         ++now.left[stage];
       }
     }
-    now.stages = now.left.length;
-    for (const worker of now.idle.splice(0)) send(worker);
+    feedAll();
   }
   return { begin, timing: () => ({ ...now.timing }) };
 }

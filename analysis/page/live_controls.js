@@ -77,7 +77,8 @@ function liveControls(map, solver, changed) {
     const rows = here().filter((name) => !map.axes.some((axis) => axis.name === name)).map((name) => {
       const { label, unit } = map.parameters[name], [low, high] = LIVE_RANGES[name];
       const row = document.createElement("label"), words = document.createElement("span"), slider = document.createElement("input"), number = document.createElement("input");
-      words.textContent = withUnit(label, unit ? `[${unit}]` : "");
+      words.textContent = withUnit(label.split(" [")[0], unit ? `[${unit}]` : "");
+      row.title = label;
       slider.type = "range";
       number.type = "number";
       number.step = slider.step = "any";

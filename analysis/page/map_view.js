@@ -21,18 +21,18 @@ function mapView(canvas, map, onPoint, onPick) {
     return at;
   };
 
-  /** Everything but the cursor, at the screen's own resolution. */
-  function paint() {
+  /** Everything but the cursor, at the screen's own resolution. rough: without isolines, of a map that is about to be another. */
+  function paint(rough = false) {
     const fresh = fitted(canvas, 7);
     if (!fresh) return;
     frame = fresh;
     background.width = canvas.width;
     background.height = canvas.height;
-    paintOn(background.getContext("2d"));
+    paintOn(background.getContext("2d"), rough);
     paintCursor();
   }
 
-  function paintOn(context) {
+  function paintOn(context, rough = false) {
     sx = axisScale(map.axes[view.x], frame.left, frame.right);
     sy = axisScale(map.axes[view.y], frame.bottom, frame.top);
     context.fillStyle = tones.ground;
@@ -40,9 +40,8 @@ function mapView(canvas, map, onPoint, onPick) {
     const x0 = Math.round(frame.left), y0 = Math.round(frame.top);
     box = { x0, y0, w: Math.round(frame.right) - x0, h: Math.round(frame.bottom) - y0 };
     chains = chainsHere();
-    pixels = pixelsOf(box);
     paintCells(context);
-    paintIsolines(context);
+    if (!rough) paintIsolines(context);
     paintCliffs(context);
     paintAxes(context, frame, sx, sy, labelOf(map.axes[view.x]), labelOf(map.axes[view.y]));
     paintBar(context);
@@ -64,43 +63,51 @@ function mapView(canvas, map, onPoint, onPick) {
     return looked ? chains : undefined;
   }
 
-  /** What every pixel shows: within the curves of its cell, or its cell's. As crispPlane. */
-  function pixelsOf(box) {
-    const { values } = view.field;
-    // Of hoops as made values are smooth across the cliffs of hoops as drawn.
-    if (chains) return crispPlane(values, offset, sx, sy, box, view.field.made ? [] : chains.map((chain) => chain.places));
-    const { x0, y0, w, h } = box, value = new Float64Array(w * h), design = new Int32Array(w * h);
-    const columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5));
-    for (let q = 0; q < h; ++q) {
-      const j = sy.index(y0 + q + 0.5);
-      for (let p = 0; p < w; ++p) {
-        const k = columns[p] >= 0 && j >= 0 ? offset(columns[p], j) : -1;
-        design[q * w + p] = k;
-        value[q * w + p] = k >= 0 ? values[k] : NaN;
-      }
-    }
-    return { value, design };
+  /** A colour as canvases store it, red first in memory: of a design, and of it where the hatching of spurious lift-offs is. */
+  function colourOf(shown, k, back) {
+    const { table, place } = view.field;
+    let [r, g, b] = back, part = 1;
+    if (shown === shown) {
+      const c = 3 * Math.round(255 * place(shown));
+      r = table[c]; g = table[c + 1]; b = table[c + 2];
+      if (flags && !view.field.made && flags.values[k] === 1) part = 0.45;
+    } else if (status) {
+      [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
+    } else { r = g = b = 217; }
+    const dim = map.keeps && !map.keeps(k) ? 0.2 : 1, mixed = (v, at, dark) => back[at] + (v * dark - back[at]) * dim;
+    const word = (dark) => (255 << 24 | mixed(b, 2, dark) << 16 | mixed(g, 1, dark) << 8 | mixed(r, 0, dark)) >>> 0;
+    return [word(1), part < 1 ? word(part) : word(1)];
   }
 
+  /** Fills the frame; pixels is then what every pixel shows: within the curves of its cell, or its cell's. */
   function paintCells(context) {
-    const { x0, y0, w, h } = box, { value, design } = pixels;
-    const image = context.createImageData(w, h), data = image.data;
+    const { x0, y0, w, h } = box, image = context.createImageData(w, h), data = new Uint32Array(image.data.buffer), { values } = view.field;
     const back = [1, 3, 5].map((at) => parseInt(tones.ground.slice(at, at + 2), 16));  // which what fails is dimmed towards
-    const { table, place } = view.field, period = Math.round(9 * frame.ratio), line = Math.max(1, Math.round(frame.ratio * 0.8));
-    for (let q = 0; q < h; ++q)
-      for (let p = 0; p < w; ++p) {
-        const pixel = q * w + p, at = 4 * pixel, k = design[pixel], shown = value[pixel];
-        let [r, g, b] = back;
-        if (shown === shown) {
-          const c = 3 * Math.round(255 * place(shown));
-          r = table[c]; g = table[c + 1]; b = table[c + 2];
-          if (flags && !view.field.made && flags.values[k] === 1 && (p + q) % period < line) { r *= 0.45; g *= 0.45; b *= 0.45; }
-        } else if (k >= 0 && status) {
-          [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
-        } else if (k >= 0) { r = g = b = 217; }
-        if (map.keeps && k >= 0 && !map.keeps(k)) { r = back[0] + (r - back[0]) * 0.2; g = back[1] + (g - back[1]) * 0.2; b = back[2] + (b - back[2]) * 0.2; }
-        data[at] = r; data[at + 1] = g; data[at + 2] = b; data[at + 3] = 255;
+    const period = Math.round(9 * frame.ratio), line = Math.max(1, Math.round(frame.ratio * 0.8));
+    if (chains) {
+      // Of hoops as made values are smooth across the cliffs of hoops as drawn.
+      pixels = crispPlane(values, offset, sx, sy, box, view.field.made ? [] : chains.map((chain) => chain.places));
+      for (let q = 0, pixel = 0; q < h; ++q)
+        for (let p = 0; p < w; ++p, ++pixel) data[pixel] = colourOf(pixels.value[pixel], pixels.design[pixel], back)[(p + q) % period < line ? 1 : 0];
+    } else {
+      // One colour a design, of which there are fewer than pixels.
+      const design = new Int32Array(w * h), columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5)), plain = new Uint32Array(sx.n), hatched = new Uint32Array(sx.n);
+      const at = new Int32Array(sx.n), none = (255 << 24 | back[2] << 16 | back[1] << 8 | back[0]) >>> 0;
+      let done = -1;
+      for (let q = 0, pixel = 0; q < h; ++q) {
+        const j = sy.index(y0 + q + 0.5);
+        if (j >= 0 && j !== done) {
+          for (let i = 0; i < sx.n; ++i) { at[i] = offset(i, j); [plain[i], hatched[i]] = colourOf(values[at[i]], at[i], back); }
+          done = j;
+        }
+        for (let p = 0; p < w; ++p, ++pixel) {
+          const i = columns[p];
+          design[pixel] = i >= 0 && j >= 0 ? at[i] : -1;
+          data[pixel] = design[pixel] < 0 ? none : (p + q) % period < line ? hatched[i] : plain[i];
+        }
       }
+      pixels = { design };
+    }
     context.putImageData(image, x0, y0);
   }
 

@@ -55,21 +55,27 @@ const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI
 function startLive(given, module, solver) {
   const map = liveMap(given, solver, liveState(addressWords(), solver));
   map.rowNames = solver.rowNames;
-  let page = null, settled = 0;
+  let page = null, settled = 0, again = false;
   const engine = liveEngine(map, module, element("worker").textContent, (what) => {
     if (!page) page = start(map, solver);
-    page.repaint();
+    page.repaint(what === "part");
     const { dataset } = element("map");
     Object.assign(dataset, { whole: String(what !== "part"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   });
-  const begin = () => { element("map").dataset.whole = "false"; engine.begin(); };
+  const begin = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
   settleMap(map);
   const controls = liveControls(map, solver, (what) => {
-    cancelAnimationFrame(settled);
-    settled = requestAnimationFrame(begin);  // once a picture, however often a slider tells
     if (what === "model" && page) page.remodel();
+    // At once, and then once a picture, however often a slider tells.
+    if (settled) { again = true; return; }
+    begin();
+    settled = requestAnimationFrame(function next() {
+      settled = again ? requestAnimationFrame(next) : 0;
+      if (again) begin();
+      again = false;
+    });
   });
   addressPart(controls);
   begin();
@@ -87,8 +93,16 @@ function start(map, solver) {
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
     (map.fields.some((f) => f.name === "agility") ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "") + ".";
 
-  const chosen = hopPanel(map, solver);
-  let said = "";
+  let said = "", own = null;  // what the readout tells; the hoop beside, if it is none of the map's
+  const tellOwn = () => {
+    const { outcome, title } = own, { field } = view.view, v = outcome[field.name];
+    said = "";
+    element("place").textContent = title;
+    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, map.fixed) : outcome.status.replaceAll("_", " ")}`;
+    element("others").replaceChildren();
+    Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });
+  };
+  const chosen = hopPanel(map, solver, (title, outcome) => { own = { title, outcome }; view.view.picked = null; view.paint(); tellOwn(); });
   let drawCuts = () => {};
   const told = (index) => {
     const at = view.offset(index), shown = view.view.field, key = `${index} ${shown.name}`;
@@ -114,7 +128,8 @@ function start(map, solver) {
     dataset.index = index.join(",");
     dataset.value = number(shown);
   };
-  const view = (map.columns ? listView : mapView)(canvas, map, told, (index, byHand) => chosen.show(index, byHand));
+  const view = (map.columns ? listView : mapView)(canvas, map, told, (index, byHand) => { own = null; chosen.show(index, byHand); });
+  canvas.addEventListener("pointerleave", () => { if (own) tellOwn(); });
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value if there are others.
   const choices = map.columns ?? map.axes;  // of what may be drawn to the right
@@ -135,7 +150,8 @@ function start(map, solver) {
   map.fields.forEach((f, k) => option(fieldSelect, k, withUnit(f.label, f.unit ? `[${f.unit}]` : "")));
   fieldSelect.value = map.fields.indexOf(view.view.field);
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
-  const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); told(view.view.index); };
+  const tellShown = () => (own ? tellOwn() : told(view.view.index));
+  const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); tellShown(); };
   fieldSelect.addEventListener("change", () => { showField(); noteAddress(); });
   const firstField = fieldSelect.value;
   addressPart({
@@ -213,7 +229,6 @@ function start(map, solver) {
     const away = axis.values.map((v) => Math.abs(v - wanted));
     view.view.index[k] = away.indexOf(Math.min(...away));
   });
-  element("paper").addEventListener("click", () => { view.view.picked = null; view.point(); });
   arrange();
   view.paint();
   legend();
@@ -226,7 +241,7 @@ function start(map, solver) {
   const filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; view.pick(); });
   element("filters").hidden = Boolean(map.columns);
   if (filters) addressPart(filters);
-  addressPart(unitsPart(() => { said = ""; told(view.view.index); chosen.retell(); noteAddress(); }));
+  addressPart(unitsPart(() => { said = ""; tellShown(); chosen.retell(); noteAddress(); }));
   onTones(() => { view.paint(); drawCuts(); legend(); });
   // The design that the address asks for, unless it asks for a hoop of its own.
   const home = [...view.view.index];
@@ -250,7 +265,14 @@ function start(map, solver) {
   return {
     view,
     /** After more of a live map is there. */
-    repaint() { said = ""; filters?.tell(); view.paint(); legend(); told(view.view.index); },
+    repaint(rough) {
+      said = "";
+      view.paint(rough);
+      if (rough) return;
+      filters?.tell();
+      legend();
+      tellShown();
+    },
     /** The hoop shown, of the same place on another map. */
     again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked); },
     /** Another model: what is told of a hoop is another. */

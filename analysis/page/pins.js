@@ -4,7 +4,7 @@ const MOST_PINS = 4;
 const PINNED = [["jump_height", "jump height", "diameters"], ["jump_time", "lift-off after", "s"], ["apex_time", "apex after lift-off", "s"], ["flight_time", "landing after lift-off", "s"],
                 ["jump_spin", "spin at lift-off", "√(g/R)"], ["jump_distance", "rolled until lift-off", "R"], ["candidates", "lift-offs looked at", ""]];
 
-/** command(design): that tells it; changed(): what is pinned is another. Returns {pin(design), designs(), write, read}. */
+/** command(design): that tells it; changed(): what is pinned is another. Returns {pin(design), designs(), show(), write, read}. */
 function pinsPart(map, solver, command, changed) {
   const part = element("pins"), table = element("pins-table"), pins = [];
   const csv = element("pins-csv"), commands = element("pins-commands");
@@ -35,10 +35,10 @@ function pinsPart(map, solver, command, changed) {
     const lines = [[...names, "status", ...PINNED.map(([key]) => key)], ...pins.map(({ design, outcome }) => [...names.map((key) => design[key]), outcome.status, ...PINNED.map(([key]) => outcome[key])])];
     csv.href = URL.createObjectURL(new Blob([lines.map((line) => line.join(",")).join("\n") + "\n"], { type: "text/csv" }));
     csv.dataset.text = lines.map((line) => line.join(",")).join("\n");
-    commands.textContent = pins.map(({ command }) => command).join("\n");
+    commands.textContent = pins.map(({ design }) => command(design)).join("\n");
   }
 
-  const add = (design) => pins.push({ design: { ...design }, outcome: solver.solve(design, map.slips, map.tolerance).outcome, command: command(design) });
+  const add = (design) => pins.push({ design: { ...design }, outcome: solver.solve(design, map.slips, map.tolerance).outcome });
   const names = () => Object.keys(map.parameters).filter((name) => name in solver.defaults);
 
   return {
@@ -49,6 +49,7 @@ function pinsPart(map, solver, command, changed) {
       show();
       changed();
     },
+    show,
     designs: () => pins.map(({ design }) => design),
     write(words) {
       for (const { design } of pins) words.append("pin", names().filter((name) => Number.isFinite(design[name])).map((name) => `${name}:${design[name]}`).join(","));

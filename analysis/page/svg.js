@@ -11,7 +11,7 @@ function svgCanvas(canvas) {
   const stroke = () => `fill="none" stroke="${escaped(context.strokeStyle)}" stroke-width="${number(context.lineWidth)}"${dashes.length ? ` stroke-dasharray="${dashes.map(number).join(" ")}"` : ""} stroke-opacity="${context.globalAlpha}"`;
   const fill = () => `fill="${escaped(context.fillStyle)}" fill-opacity="${context.globalAlpha}"`;
   const group = (attribute) => { parts.push(`<g ${attribute}>`); ++open; };
-  const picture = (source, x, y, w, h) => parts.push(`<image x="${number(x)}" y="${number(y)}" width="${number(w)}" height="${number(h)}" preserveAspectRatio="none" style="image-rendering:pixelated" href="${source.toDataURL("image/png")}"/>`);
+  const picture = (source, x, y, w, h) => parts.push(`<image x="${number(x)}" y="${number(y)}" width="${number(w)}" height="${number(h)}" preserveAspectRatio="none" image-rendering="pixelated" href="${source.toDataURL("image/png")}"/>`);
   const context = {
     ...style, canvas: null,
     save() { stack.push({ dashes, open, ...Object.fromEntries(Object.keys(style).map((key) => [key, context[key]])) }); },

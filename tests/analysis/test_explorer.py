@@ -13,7 +13,7 @@ import pytest
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
-from support.browser import agrees, opened
+from support.browser import agrees, numbers, opened, told_by_leapmap
 from support.program import PROGRAM, TOP, finished, leapmap, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
@@ -62,17 +62,6 @@ def point(browser, index, click=False):
 
 def readout(browser):
     return browser.execute_script("return {...document.getElementById('readout').dataset}")
-
-
-def numbers(browser):
-    return browser.execute_script(
-        "return Object.fromEntries([...document.querySelectorAll('#numbers tr')].map(r => [r.dataset.name, r.dataset.value]))")
-
-
-def told_by_leapmap(browser):
-    words = shlex.split(browser.find_element("id", "command").text)
-    assert words[:2] == ["leapmap", "hop"]
-    return json.loads(leapmap(*words[1:], "--json").stdout)
 
 
 @pytest.mark.parametrize("index", [[20, 30, 1], [40, 10, 0], [3, 2, 1]])

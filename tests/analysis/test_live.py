@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
-from support.browser import agrees, opened
+from support.browser import agrees, opened, settled
 from support.program import TOP, finished, leapmap, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
@@ -20,10 +20,6 @@ def page_at(folder, *arguments):
     done = finished("/usr/bin/python3", TOP / "analysis/explorer", *arguments, "--module", MODULE, "-o", folder / "live.html")
     assert done.returncode == 0, done.stderr
     return folder / "live.html"
-
-
-def settled(browser, seconds=60):
-    WebDriverWait(browser, seconds).until(lambda b: b.execute_script("return document.getElementById('map').dataset.whole") == "true")
 
 
 @pytest.fixture

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What tests of pages share."""
+import json
+import shlex
+
 import pytest
 from selenium.webdriver.support.ui import WebDriverWait
+
+from support.program import leapmap
 
 
 def opened(browser, page):
@@ -27,3 +32,21 @@ def agrees(page_numbers, told):
             # Roundings differ: this machine contracts a*b + c and has wider lanes. Times are good to the tolerance, 1e-10.
             assert float(text) == pytest.approx(told[name], rel=1e-9, abs=1e-11), name
     return compared
+
+
+def numbers(browser):
+    """The table of the hoop shown, as numbers."""
+    return browser.execute_script(
+        "return Object.fromEntries([...document.querySelectorAll('#numbers tr')].map(r => [r.dataset.name, r.dataset.value]))")
+
+
+def told_by_leapmap(browser):
+    """What the command that the page shows tells."""
+    words = shlex.split(browser.find_element("id", "command").text)
+    assert words[:2] == ["leapmap", "hop"]
+    return json.loads(leapmap(*words[1:], "--json").stdout)
+
+
+def settled(browser, seconds=60, what="whole"):
+    """Waits for a live map: all of it, or its "cliffs" too."""
+    WebDriverWait(browser, seconds).until(lambda b: b.execute_script("return document.getElementById('map').dataset[arguments[0]]", what) == "true")

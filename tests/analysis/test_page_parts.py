@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page's single hoop, its address, its pictures and its looks, on a page that computes all it shows."""
+import base64
+import hashlib
+import io
+import math
+import os
+import tarfile
+import urllib.request
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import Select, WebDriverWait
+from support.browser import agrees, numbers, opened, settled, told_by_leapmap
+from support.program import TOP, finished, sweep
+
+BUILD = Path(os.environ["LEAPMAP_BUILD"])
+ANGLES = ("slope", "release_angle")
+AXE = ("https://registry.npmjs.org/axe-core/-/axe-core-4.14.1.tgz",
+       "FHfa+lmNjQZfJz1q8wKqIDwC6DExcHt/pkjNQb09a3NPjCKg2rhu5qb2S4r76ASyFNNtuFooJpZe37OgudVGtQ==")
+
+
+@pytest.fixture(scope="module")
+def html(tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "leapmap.html"
+    done = finished("/usr/bin/python3", TOP / "analysis/explorer", "--module", BUILD / "leapmap.wasm", "-o", path)
+    assert done.returncode == 0, done.stderr
+    return path
+
+
+@pytest.fixture
+def page(browser, html):
+    browser.get("about:blank")
+    opened(browser, html)
+    settled(browser)
+    return browser
+
+
+def at(browser, html, address):
+    browser.get("about:blank")
+    browser.get(html.as_uri() + address)
+    WebDriverWait(browser, 30).until(lambda b: b.execute_script("return !!window.explorer"))
+    settled(browser, 120)
+
+
+def give(browser, selector, value, event="change"):
+    browser.execute_script("const input = document.querySelector(arguments[0]); input.value = arguments[1]; input.dispatchEvent(new Event(arguments[2]))", selector, value, event)
+
+
+def show(browser, index):
+    browser.execute_script("const { view, pick } = window.explorer.view; view.index = arguments[0]; pick()", index)
+
+
+def pixels(browser, canvas):
+    return browser.execute_script("return document.getElementById(arguments[0]).toDataURL()", canvas)
+
+
+@pytest.mark.parametrize(("friction", "count", "most_slow"), [(False, 120, 0), (True, 80, 2)])
+def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, count, most_slow, page):
+    if friction:
+        page.execute_script("document.getElementById('map').dataset.whole = 'false'")
+        Select(page.find_element("id", "live-model")).select_by_value("coulomb")
+    random, jumped, turned = np.random.default_rng(23), 0, 0
+    for _ in range(count):
+        design = {"slope": random.uniform(0.05, 0.85), "mass_ratio": random.uniform(0.2, 15), "offset_ratio": random.uniform(0.1, 1), "inertia_factor": random.uniform(0.5, 1),
+                  "release_angle": random.uniform(0, 2 * math.pi), "release_spin": random.choice([0, random.uniform(-2, 3)]), "drive_torque": random.choice([0, random.uniform(0, 0.2)])}
+        if friction:
+            design |= {"mu_static": random.uniform(0.1, 1.2), "mu_kinetic": random.uniform(0.05, 0.1), "restitution": random.uniform(0, 0.6)}
+        page.execute_script("""for (const [name, text] of Object.entries(arguments[0])) {
+            const input = document.querySelector(`#hoop-inputs input[data-parameter=${name}]`); input.value = text; input.dispatchEvent(new Event('change')); }""",
+                            {name: repr(math.degrees(v) if name in ANGLES else float(v)) for name, v in design.items()})
+        assert page.find_element("id", "message").text == ""
+        told = told_by_leapmap(page)
+        for name, value in design.items():
+            assert told["design"][name] == pytest.approx(value, rel=1e-14, abs=1e-300), name
+        assert agrees(numbers(page), told) >= (9 if told["status"] == "jumped" else 1)
+        jumped += told["status"] == "jumped"
+        turned += design["release_spin"] < 0
+    assert jumped >= 0.4 * count and turned >= count // 20
+    WebDriverWait(page, 5).until(lambda b: "hoop=slope:" in b.execute_script("return location.hash"))
+
+
+def test_a_number_that_no_hoop_has_is_refused_and_changes_nothing(page):
+    before = numbers(page)
+    give(page, "#hoop-inputs input[data-parameter=offset_ratio]", "1.5")
+    assert "offset ratio" in page.find_element("id", "message").text and numbers(page) == before
+    assert page.find_element("css selector", "#hoop-inputs input[data-parameter=offset_ratio]").get_attribute("aria-invalid") == "true"
+
+
+def test_derivatives_are_those_that_leapmap_stores(page, tmp_path):
+    """The table's own numbers against a map's gradients, which are to rounding: a hoop without slip and one with."""
+    for friction, parameters in (("never", 7), ("coulomb", 10)):
+        spec = f"""[scene]\nfriction = "{friction}"\nmu_static = 0.6\nmu_kinetic = 0.5\nrestitution = 0.2
+[design]\nslope = {{ values = [0.3, 0.42] }}\nmass_ratio = 3.0\noffset_ratio = 0.9\ninertia_factor = 0.9\nrelease_angle = 3.0\nrelease_spin = 0.1\ndrive_torque = 0.01
+[numerics]\ntolerance = 1e-10\naudit = 0
+[output]\ngradients = ["jump_height", "jump_time"]\n"""
+        if friction == "never":
+            spec = spec.replace('friction = "never"\nmu_static = 0.6\nmu_kinetic = 0.5\nrestitution = 0.2\n', "")
+        with h5py.File(sweep(tmp_path, spec, name=f"{friction}.h5")) as file:
+            stored = {name: float(file[name][1]) for name in file if "_by_" in name}
+        page.execute_script("document.getElementById('gradient').open = true")
+        if friction == "coulomb":
+            Select(page.find_element("id", "live-model")).select_by_value("coulomb")
+        page.execute_script("""for (const [name, text] of Object.entries(arguments[0])) {
+            const input = document.querySelector(`#hoop-inputs input[data-parameter=${name}]`);
+            if (input) { input.value = text; input.dispatchEvent(new Event('change')); } }""",
+                            {"slope": repr(math.degrees(0.42)), "mass_ratio": "3", "offset_ratio": "0.9", "inertia_factor": "0.9", "release_angle": repr(math.degrees(3.0)), "release_spin": "0.1",
+                             "drive_torque": "0.01", "mu_static": "0.6", "mu_kinetic": "0.5", "restitution": "0.2"})
+        shown = page.execute_script("""return Object.fromEntries([...document.querySelectorAll('#gradient-table tr[data-name]')].flatMap((row) =>
+            [...row.querySelectorAll('td')].map((td) => [`${td.dataset.of}_by_${row.dataset.name}`, td.dataset.value])))""")
+        finite = {name: value for name, value in stored.items() if math.isfinite(value)}
+        assert len(finite) >= 2 * (parameters - 1)
+        for name, value in finite.items():
+            # Both to rounding, of compilers of their own; a design typed in degrees is a rounding off.
+            assert float(shown[name]) == pytest.approx(value, rel=1e-9, abs=1e-9), name
+
+
+def test_what_was_done_is_undone_and_done_again(page):
+    undo, redo, state = page.find_element("id", "undo"), page.find_element("id", "redo"), "return [location.hash, window.explorer.map.fixed.offset_ratio]"
+    first = page.execute_script(state)
+    assert not undo.is_enabled() and not redo.is_enabled()
+    WebDriverWait(page, 5).until(lambda b: b.execute_script("return performance.now() > 1500"))  # well after the page began
+    page.execute_script("document.getElementById('map').dataset.whole = 'false'")
+    give(page, "#live-sliders input[type=number][data-parameter=offset_ratio]", "0.7")
+    settled(page)
+    second = page.execute_script(state)
+    assert second[1] == 0.7 and second[0] != first[0] and undo.is_enabled()
+    page.execute_script("document.getElementById('map').dataset.whole = 'false'")
+    undo.click()
+    WebDriverWait(page, 10).until(lambda b: b.execute_script(state) == first)
+    settled(page)
+    assert redo.is_enabled() and not undo.is_enabled()
+    assert page.find_element("css selector", "#live-sliders input[type=number][data-parameter=offset_ratio]").get_attribute("value") == "1"
+    page.find_element("tag name", "body").send_keys(Keys.CONTROL + Keys.SHIFT + "z")
+    WebDriverWait(page, 10).until(lambda b: b.execute_script(state) == second)
+
+
+def test_a_link_is_all_that_was_found(page, html):
+    """Field, goals, pins, a hoop typed in, its jumps, its mass and the units, as the address has them."""
+    Select(page.find_element("id", "field")).select_by_visible_text("agility: height over time from release to apex [m/s]")
+    page.execute_script("document.getElementById('filters').open = true")
+    page.find_element("id", "goal-add").click()
+    give(page, "#goals input", "0.11", "input")
+    page.find_element("id", "goal-real").click()
+    show(page, [120, 60])
+    page.find_element("id", "pin").click()
+    give(page, "#hoop-inputs input[data-parameter=mass_ratio]", "3.3")
+    page.find_element("id", "pin").click()
+    give(page, "#jumps", "3")
+    give(page, "#mass", "31")
+    Select(page.find_element("id", "units")).select_by_value("pure")
+
+    def seen():
+        return page.execute_script("""return { goals: document.getElementById('goals-told').textContent, field: window.explorer.view.view.field.name, units: document.getElementById('units').value,
+            pins: document.getElementById('pins-csv').dataset.text, commands: document.getElementById('pins-commands').textContent, command: document.getElementById('command').textContent,
+            numbers: document.getElementById('numbers').textContent, mass: document.getElementById('mass').value, title: document.getElementById('hop-title').textContent }""")
+    WebDriverWait(page, 5).until(lambda b: "units=pure" in b.execute_script("return location.hash"))
+    before, address = seen(), page.execute_script("return location.hash")
+    assert before["field"] == "agility" and "of 30,000" in before["goals"] and before["commands"].count("leapmap hop") == 2 and "--jumps 3" in before["command"] and "√(R/g)" in before["numbers"]
+    at(page, html, address)
+    assert seen() == before
+    assert page.execute_script("return location.hash") == address
+
+
+@pytest.mark.parametrize(("address", "words"), [("#goal=nonsense:least:1", "nonsense"), ("#goal=jump_height:least:", "jump_height"), ("#field=nonsense", "nonsense"),
+                                                ("#hoop=slope:99", "no hoop has"), ("#hoop=<img src=x onerror=alert(1)>:1", "no hoop has"), ("#design=1,2,3", "not on this map")])
+def test_an_address_that_asks_for_what_cannot_be_says_so(address, words, browser, html):
+    at(browser, html, address)
+    assert words in browser.find_element("id", "message").text
+    assert not browser.find_elements("css selector", "img")
+
+
+def test_cliffs_lie_where_what_becomes_of_a_hoop_changes(page):
+    settled(page, what="cliffs")
+    sides = page.execute_script("""const { map, solver } = window.explorer, [x, y] = map.axes, step = [x, y].map((a) => a.values[1] - a.values[0]), found = [];
+        const place = (axis, v, k) => (v - axis.values[0]) / step[k], course = (u, v) => { const { outcome: o } = solver.solve({ ...map.fixed, [x.name]: u, [y.name]: v }, false, 1e-10);
+          return `${o.status} ${o.spurious_first_jump} ${o.candidates}`; };
+        for (const curve of map.curves) for (let k = 0; k < curve.x.length; k += 5) {
+          const i = place(x, curve.x[k], 0), j = place(y, curve.y[k], 1), right = Math.abs(j - Math.round(j)) < 1e-6, up = Math.abs(i - Math.round(i)) < 1e-6;
+          if (right === up) continue;  // a middle of a square, or a corner
+          const [dx, dy] = right ? [step[0] / 64, 0] : [0, step[1] / 64];
+          found.push(course(curve.x[k] - dx, curve.y[k] - dy) !== course(curve.x[k] + dx, curve.y[k] + dy));
+        }
+        return found""")
+    # A row of the solver's and one of its whole story may count a lift-off at its very edge differently, and a third outcome may lie between two.
+    assert len(sides) > 300 and np.mean(sides) > 0.99
+
+
+def test_forces_are_drawn_at_the_contact_and_may_be_left_out(page):
+    show(page, [87, 29])
+    page.execute_script("document.getElementById('play').click()") if "pause" in page.find_element("id", "play").text else None
+    give(page, "#scrub", "0.28", "input")
+    drawn = pixels(page, "scene")
+    page.find_element("id", "forces").click()
+    assert pixels(page, "scene") != drawn
+    page.find_element("id", "forces").click()
+    assert pixels(page, "scene") == drawn
+
+
+def test_hoops_as_made_jump_along_on_a_live_map(page):
+    show(page, [87, 29])
+    page.find_element("id", "ghosts").click()
+    told = page.find_element("id", "ghosts-told").text
+    assert "of 20 jump" in told
+    give(page, "#ghosts-width", "20")
+    assert "of 20 jump" in page.find_element("id", "ghosts-told").text
+    page.find_element("id", "ghosts").click()
+    assert page.find_element("id", "ghosts-told").text == ""
+
+
+def saved(page, button):
+    """The text of the file that a button offers."""
+    page.execute_script("""window.offered = null; const make = URL.createObjectURL;
+        URL.createObjectURL = (blob) => { window.offered = blob; URL.createObjectURL = make; return make.call(URL, blob); }""")
+    page.find_element("id", button).click()
+    return page.execute_async_script("const done = arguments[arguments.length - 1]; window.offered.text().then(done)")
+
+
+@pytest.mark.parametrize(("button", "words", "images"), [("map-svg", ["slope [degrees]", "mass ratio", "power 0.6"], 1), ("plots-svg", ["height [mm]", "force [N]", "time since release [s]"], 0),
+                                                         ("cut-x-svg", ["slope [degrees]"], 0)])
+def test_charts_are_saved_as_svg_with_texts_that_are_texts(button, words, images, page):
+    page.execute_script("document.getElementById('cuts').open = true")
+    WebDriverWait(page, 10).until(lambda b: b.find_element("id", "cut-x").get_attribute("data-values"))
+    root = ElementTree.fromstring(saved(page, button))
+    named = lambda kind: root.findall(f".//{{http://www.w3.org/2000/svg}}{kind}")
+    texts = [text.text for text in named("text")]
+    assert root.tag == "{http://www.w3.org/2000/svg}svg" and len(named("path")) > 3 and len(named("image")) == images
+    for word in words:
+        assert any(word in text for text in texts), word
+
+
+def test_a_picture_is_saved_as_png(page):
+    page.find_element("id", "map-png").click()
+    WebDriverWait(page, 10).until(lambda b: int(b.execute_script("return document.body.dataset.bytes ?? 0")) > 10000)
+
+
+def test_nothing_moves_when_numbers_change(page):
+    """Controls stay where they are, whatever design is pointed at and while the hoop moves."""
+    places = lambda: page.execute_script("""return ['field', 'map', 'map-png', 'play', 'scrub', 'step-on', 'speed', 'film', 'radius'].map((id) => {
+        const { left, top } = document.getElementById(id).getBoundingClientRect(); return [left + scrollX, top + scrollY]; })""")
+    show(page, [87, 29])
+    before = places()
+    for index in ([0, 0], [199, 149], [30, 100]):
+        page.execute_script("const { view, point } = window.explorer.view; view.index = arguments[0]; point()", index)
+        assert places() == before
+    for part in (0, 0.3, 1):
+        page.execute_script("const s = document.getElementById('scrub'); s.value = arguments[0] * s.max; s.dispatchEvent(new Event('input'))", part)
+        assert places() == before
+
+
+@pytest.fixture(scope="module")
+def axe():
+    """axe-core, fetched once for a build."""
+    path = BUILD / "axe-core-4.14.1.min.js"
+    if not path.exists():
+        try:
+            packed = urllib.request.urlopen(AXE[0], timeout=30).read()
+        except OSError as error:
+            pytest.skip(f"axe-core cannot be fetched from npm: {error}")
+        assert base64.b64encode(hashlib.sha512(packed).digest()).decode() == AXE[1]
+        with tarfile.open(fileobj=io.BytesIO(packed)) as archive:
+            path.write_bytes(archive.extractfile("package/axe.min.js").read())
+    return path.read_text()
+
+
+@pytest.mark.parametrize("tone", ["light", "dark"])
+def test_axe_finds_nothing_serious(tone, page, axe):
+    assert page.execute_script("return getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    if tone == "dark":
+        before = pixels(page, "scene")
+        page.find_element("id", "tone").click()
+        assert page.execute_script("return getComputedStyle(document.body).backgroundColor") == "rgb(20, 24, 29)" and pixels(page, "scene") != before
+    page.execute_script("for (const part of document.querySelectorAll('details')) part.open = true; document.getElementById('goal-add').click(); document.getElementById('pin').click()")
+    page.execute_script(axe)
+    found = page.execute_async_script("const done = arguments[arguments.length - 1]; axe.run(document).then(({ violations, passes }) => done({ violations, passes: passes.length }))")
+    serious = [(v["id"], v["help"], [node["html"][:120] for node in v["nodes"]]) for v in found["violations"] if v["impact"] in ("serious", "critical")]
+    assert not serious, serious
+    assert found["passes"] > 15
+
+
+def test_one_hoop_has_one_answer_left_and_right(browser, html):
+    """A hoop that is none of the map's designs, the paper's say, is told by its own numbers until one points at the map again."""
+    at(browser, html, "#live&paper")
+    right = float(numbers(browser)["jump_height"])
+    assert right == pytest.approx(0.98280096607, abs=1e-10)
+    assert browser.find_element("id", "place").text == browser.find_element("id", "hop-title").text
+    assert float(browser.execute_script("return document.getElementById('readout').dataset.value")) == right
+    browser.execute_script("const { view, point } = window.explorer.view; view.index = [100, 100]; point()")
+    assert browser.find_element("id", "place").text != browser.find_element("id", "hop-title").text
+    browser.execute_script("document.getElementById('map').dispatchEvent(new PointerEvent('pointerleave'))")
+    assert float(browser.execute_script("return document.getElementById('readout').dataset.value")) == right
