@@ -30,5 +30,5 @@ if(TARGET leapmap-python)
   math(EXPR next "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, python3-h5py, python3-matplotlib, python3-xarray")
 endif()
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libgsl-dev, libhdf5-dev, libfmt-dev, libdeflate-dev, libpagmo-dev, libnlopt-dev")  # to link the library
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libgsl-dev, libhdf5-dev, libfmt-dev, libdeflate-dev, zlib1g-dev, libpagmo-dev, libnlopt-dev")  # to link the library
 include(CPack)

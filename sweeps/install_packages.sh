@@ -5,7 +5,7 @@
 #   install_packages.sh tests   for the tests and benchmarks as well
 set -eu
 packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev libcli11-dev libxsimd-dev
-  libdeflate-dev libeigen3-dev libpagmo-dev libnlopt-cxx-dev emscripten
+  libdeflate-dev zlib1g-dev libeigen3-dev libpagmo-dev libnlopt-cxx-dev emscripten
   pybind11-dev python3-dev python3 python3-numpy python3-h5py python3-matplotlib python3-xarray"
 if [ "${1:-main}" = tests ]; then
   packages="$packages libgtest-dev libbenchmark-dev clang-format clang libclang-rt-14-dev libomp-dev hdf5-tools netcdf-bin

@@ -19,6 +19,7 @@ void add_boundaries(CLI::App& app, int& status);
 void add_design(CLI::App& app, int& status);
 void add_fit(CLI::App& app, int& status);
 void add_gait(CLI::App& app, int& status);
+void add_join(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 
 /// Refuses an empty file name.

@@ -66,6 +66,7 @@ int run(int argc, char** argv) {
   leapmap::cli::add_design(app, status);
   leapmap::cli::add_fit(app, status);
   leapmap::cli::add_gait(app, status);
+  leapmap::cli::add_join(app, status);
   leapmap::cli::add_check(app, status);
   leapmap::cli::add_precision(app, status);
   leapmap::cli::add_stability(app, status);

@@ -20,6 +20,7 @@
 #include "sweep/designs.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
+#include "sweep/shard.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -29,6 +30,7 @@ SweepOptions options_of(const SweepArguments& arguments) {
   options.resume = arguments.resume, options.overwrite = arguments.overwrite;
   options.threads = arguments.threads;
   options.commit_interval = arguments.commit_interval;
+  options.shard = arguments.shard;
   options.lock = arguments.locking == Locking::required;
   options.stop_requested = [] { return noted_signal() != 0; };
   return options;
@@ -46,7 +48,8 @@ int tell_report(const SweepArguments& arguments, const Spec& spec, const std::st
                 const Report& report) {
   if (!report.whole) {
     tell(fmt::format("interrupted after {} of {} designs, which {} keeps; go on by: {}", grouped(report.done),
-                     grouped(report.designs), part_of(map), sweep_command(arguments, map, "--resume")));
+                     grouped(report.designs), part_of(map),
+                     sweep_command(arguments, arguments.shard ? arguments.map : map, "--resume")));
     return 128 + noted_signal();
   }
   if (!report.durable) tell_of_folder(map);
@@ -74,12 +77,13 @@ int run(const SweepArguments& arguments) {
     return 0;
   }
   if (arguments.retry_failed && !map.empty()) return retry_sweep(arguments, spec, map);
+  const std::string file = arguments.shard && !map.empty() ? shard_path(map, *arguments.shard) : map;
   SweepOptions options = options_of(arguments);
   std::optional<Progress> progress;
   options.progress = [&](std::size_t done, std::size_t total) {
     if (!progress) {  // the map is open, and the first design not yet solved
       note_signals();
-      if (arguments.resume && !arguments.quiet) tell_resumed(map, done, total);
+      if (arguments.resume && !arguments.quiet) tell_resumed(file, done, total);
       progress.emplace(total, done, arguments.quiet);
     }
     progress->update(done);
@@ -87,7 +91,7 @@ int run(const SweepArguments& arguments) {
   try {
     const Report report = sweep(spec, map, options);
     progress.reset();
-    return tell_report(arguments, spec, map, report);
+    return tell_report(arguments, spec, file, report);
   } catch (const KeptError& error) {
     throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by: {}",
                               error.what(), grouped(error.kept), grouped(error.designs),
@@ -101,6 +105,7 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
   std::string command = "leapmap sweep";
   if (!arguments.spec.empty()) command += " " + shell_quoted(arguments.spec);
   command += fmt::format(" -o {} {}", shell_quoted(map), how);
+  if (arguments.shard) command += " --shard " + text_of(*arguments.shard);
   for (const std::string& set : arguments.overrides) command += " --set " + shell_quoted(set);
   if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
   if (arguments.commit_interval != SweepArguments{}.commit_interval)
@@ -111,7 +116,8 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
     command += " --instruction-set " + set.substr(0, set.find(','));
   }
   std::error_code ignored;
-  if (how == "--resume" && std::filesystem::exists(map, ignored))
+  if (how == "--resume" &&
+      std::filesystem::exists(arguments.shard ? shard_path(map, *arguments.shard) : map, ignored))
     command += " --overwrite";  // the older map, once the new one is whole
   return command;
 }
@@ -196,9 +202,24 @@ void add_sweep(CLI::App& app, int& status) {
                    "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
                    "hand; default: 1")
       ->check(CLI::Range(0.0, 86400.0));
+  command
+      ->add_option_function<std::string>(
+          "--shard", [arguments](const std::string& text) { arguments->shard = parse_shard(text); },
+          "I/N: solve part I of N of the map only, into a file of its own beside it, MAP.I-of-N.h5; leapmap "
+          "join "
+          "MAP makes one of all. Parts are whole tiles, each as much work as the others")
+      ->excludes(command->get_option("--retry-failed"));
   add_no_lock(*command, arguments->locking);
-  command->add_flag("--dry-run", arguments->dry_run,
-                    "tell designs, memory, file size and time, and compute nothing else");
+  CLI::Option* dry = command->add_flag("--dry-run", arguments->dry_run,
+                                       "tell designs, memory, file size and time, and compute nothing else");
+  command->add_option("--shards", arguments->shards, "of --dry-run: how each of so many parts would fare")
+      ->needs(dry)
+      ->check(CLI::Range(std::size_t{1}, most_shards));
+  command
+      ->add_option("--time-limit", arguments->time_limit,
+                   "of --dry-run: hours that a job may take, which tells how many parts there must be")
+      ->needs(dry)
+      ->check(CLI::Range(1e-3, 1e4));
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->footer(
       "Examples:\n"

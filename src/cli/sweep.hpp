@@ -2,11 +2,13 @@
 /// The parts of leapmap sweep.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "leapmap/sweep.hpp"
 #include "map/writer.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/spec.hpp"
@@ -15,6 +17,9 @@ namespace leapmap::cli {
 
 struct SweepArguments {
   std::string spec, map;
+  std::optional<Shard> shard{};
+  std::size_t shards = 0;   ///< of --dry-run: how many are planned; 0: none
+  double time_limit = 0.0;  ///< of a job [s]; 0: none
   std::vector<std::string> overrides;
   int threads = 0;
   double commit_interval = 1.0;  ///< [s]

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "cli/output.hpp"
 #include "cli/spoken.hpp"
@@ -12,6 +14,7 @@
 #include "sweep/engine.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/parallel.hpp"
+#include "sweep/shard.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -47,7 +50,7 @@ std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling&
   const double held =
       40.0 * axis_values + (spec.axes.empty() ? 72.0 * static_cast<double>(spec.list.count) : 0.0);
   const double structure = std::min(0.01 * file, most_structure);
-  const double tile = static_cast<double>(tiling.tile(0).count) * (sizeof(Outcome) + sizeof(Design));
+  const double tile = static_cast<double>(tiling.largest_tile()) * (sizeof(Outcome) + sizeof(Design));
   const double samples = static_cast<double>(spec.scatter.samples),
                spreads = static_cast<double>(spec.scatter.spreads.size());
   const double made =
@@ -64,6 +67,49 @@ std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling&
                 : fmt::format("; {} for the explorer",
                               spoken_bytes(python + file + explorer_per_design * designs));
   return line;
+}
+
+/// Of parts for jobs of their own: how long the longest takes and how large its file is, and how many of them
+/// a time limit asks for. seconds: of the whole map.
+void print_shards(const SweepArguments& arguments, const Spec& spec, const std::string& map,
+                  const MapLayout& layout, const Tiling& tiling, double seconds) {
+  constexpr double spare = 0.8;  // of the time limit: machines differ, and jobs start and end
+  const std::vector<double> efforts = tile_efforts(spec, tiling, std::max<std::size_t>(arguments.shards, 1));
+  const double all = std::accumulate(efforts.begin(), efforts.end(), 0.0);
+  const auto longest = [&](std::size_t shards) {  // of the whole
+    double most = 0.0;
+    for (const std::vector<std::size_t>& share : share_tiles(efforts, shards)) {
+      double sum = 0.0;
+      for (const std::size_t t : share) sum += efforts[t];
+      most = std::max(most, sum);
+    }
+    return most / all;
+  };
+  std::size_t shards = arguments.shards;
+  if (arguments.time_limit > 0.0) {
+    const double limit = spare * 3600.0 * arguments.time_limit;
+    std::size_t fits =
+        std::min(static_cast<std::size_t>(std::ceil(seconds / limit)), std::min(tiling.size(), most_shards));
+    fits = std::max(fits, std::size_t{1});
+    while (fits < std::min(tiling.size(), most_shards) && seconds * longest(fits) > limit)
+      fits += 1 + fits / 16;
+    fits = std::min(fits, std::min(tiling.size(), most_shards));
+    const bool good = seconds * longest(fits) <= limit;
+    say("limit    {} a job: {} shards{}\n", spoken_duration(3600.0 * arguments.time_limit), grouped(fits),
+        good ? "" : ", and even then the longest takes more");
+    if (shards == 0) shards = fits;
+  }
+  if (shards > tiling.size()) {
+    say("shards   {} are more than its {} tiles, which are not cut\n", grouped(shards),
+        grouped(tiling.size()));
+    return;
+  }
+  const double part = longest(shards), even = 1.0 / static_cast<double>(shards);
+  say("shards   {}: the longest takes about {} on {} threads, {:.2f} times the mean, and {} on disk\n",
+      grouped(shards), spoken_duration(seconds * part), thread_count(arguments.threads), part / even,
+      spoken_bytes(file_bytes(layout, tiling) * even));
+  if (!map.empty())
+    say("         leapmap sweep ... --shard 1/{0} to --shard {0}/{0}, then leapmap join {1}\n", shards, map);
 }
 
 }  // namespace
@@ -99,6 +145,8 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   const double seconds = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already) /
                          static_cast<double>(std::min(static_cast<std::size_t>(threads), tiling.size()));
   say("time     about {} on {} threads\n", spoken_duration(seconds), threads);
+  if (arguments.shards > 0 || arguments.time_limit > 0.0)
+    print_shards(arguments, spec, map, layout, tiling, seconds);
 }
 
 }  // namespace leapmap::cli

@@ -3,6 +3,8 @@
 /// until a flight reaches hop_height (contact_phases.hpp).
 #pragma once
 
+#include <functional>
+
 #include "leapmap/motion.hpp"
 #include "trajectory/gradient.hpp"
 #include "trajectory/sequence_gradient.hpp"
@@ -23,6 +25,9 @@ GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wan
 
 /// One jump after the other with derivatives.
 DualJumpSolver dual_jumps(const Scene& scene, double tolerance);
+
+/// A design's share of the work (model/model.hpp).
+std::function<double(const Design&)> effort(const Scene& scene);
 
 /// By integration in time (coulomb_integration.hpp).
 Solver integration(const Scene& scene, const IntegrationOptions& options);

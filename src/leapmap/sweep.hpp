@@ -14,7 +14,13 @@
 
 namespace leapmap {
 
+/// Part `number`, from 1, of so many parts of a map.
+struct Shard {
+  std::size_t number = 1, of = 1;
+};
+
 struct SweepOptions {
+  std::optional<Shard> shard{};  ///< only this part of the map, into a file of its own beside it (shard_path)
   bool resume = false;           ///< go on with the MAP.part that an earlier sweep left, if there is one
   bool overwrite = false;        ///< replace an existing map; without resume its .part as well
   int threads = 0;               ///< 0: as many as OpenMP offers

@@ -139,7 +139,7 @@ std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
 }
 
 void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling) {
-  std::vector<Handle> scales = write_scales(file, layout, tiling.designs());
+  std::vector<Handle> scales = write_scales(file, layout, tiling.whole_designs());
   for (const MapAxis& column : layout.columns)
     write_axis(file, column, &scales[0]).close("writing " + column.name);
   if (!layout.labels.empty())
@@ -169,7 +169,7 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling) {
   for (const auto* axes : {&layout.axes, &layout.columns})
     for (const MapAxis& axis : *axes) check_one(axis.name, axis.unit, axis.long_name, axis.values);
   if (layout.axes.empty()) {
-    std::vector<double> numbers(tiling.designs());
+    std::vector<double> numbers(tiling.whole_designs());
     std::iota(numbers.begin(), numbers.end(), 0.0);
     check_one("design", "1", design_long_name, numbers);
     if (!layout.labels.empty() && !hdf5::holds(file, label_name, layout.labels))

@@ -54,15 +54,22 @@ MapReader::Dimension read_dimension(hid_t dataset, const std::string& name) {
 
 }  // namespace
 
-MapReader::MapReader(const std::string& path, Locking locking)
+MapReader::MapReader(const std::string& path, Locking locking, Accept accept)
     : path_(path), own_(hdf5::File::open(path, locking)), file_(own_) {
-  survey();
+  survey(accept);
 }
 
-MapReader::MapReader(const std::string& path, hid_t file) : path_(path), file_(file) { survey(); }
+MapReader::MapReader(const std::string& path, hid_t file, Accept accept) : path_(path), file_(file) {
+  survey(accept);
+}
 
-void MapReader::survey() {
-  if (!hdf5::has_attribute(file_, "filetype") || hdf5::read_text(file_, "filetype") != map_filetype)
+void MapReader::survey(Accept accept) {
+  const std::string filetype =
+      hdf5::has_attribute(file_, "filetype") ? hdf5::read_text(file_, "filetype") : "";
+  if (filetype == shard_filetype && accept == Accept::maps)
+    throw InputError(fmt::format("{}: is shard {} of a map; allowed: the map that leapmap join makes of all",
+                                 path_, attribute(shard_attribute)));
+  if (filetype != map_filetype && filetype != shard_filetype)
     throw IoError(
         fmt::format("{}: is not a leapmap map (its attribute filetype is not \"{}\")", path_, map_filetype));
   if (const std::int64_t major = hdf5::read_integers(file_, "version")[0]; major > format_major)

@@ -14,13 +14,17 @@
 
 namespace leapmap {
 
+/// Whether a shard of a map, most of which is holes, is read as well.
+enum class Accept { maps, shards_too };
+
 class MapReader {
  public:
   /// Opens a map (or the .part of one). Throws IoError if it is no leapmap map, of a newer major version, or
-  /// holds what no map does (hdf5_trust.hpp), InputError while a sweep is writing it.
-  explicit MapReader(const std::string& path, Locking locking = Locking::required);
+  /// holds what no map does (hdf5_trust.hpp), InputError while a sweep is writing it, or if it is a shard.
+  explicit MapReader(const std::string& path, Locking locking = Locking::required,
+                     Accept accept = Accept::maps);
   /// Reads a file that is open already and stays so; path is for messages.
-  MapReader(const std::string& path, hid_t file);
+  MapReader(const std::string& path, hid_t file, Accept accept = Accept::maps);
 
   /// A dimension: its name, unit and length, and the values of an axis. A list's one dimension, `design`,
   /// counts from 0 and has no values here.
@@ -64,7 +68,7 @@ class MapReader {
   hdf5::Handle open(const std::string& dataset) const;
 
  private:
-  void survey();
+  void survey(Accept accept);
 
   std::string path_;
   hdf5::File own_;

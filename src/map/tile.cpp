@@ -34,7 +34,10 @@ std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, st
 }  // namespace
 
 Tiling::Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_shape)
-    : shape_(std::move(shape)), tile_shape_(std::move(tile_shape)), designs_(product(shape_)) {
+    : shape_(std::move(shape)),
+      tile_shape_(std::move(tile_shape)),
+      designs_(product(shape_)),
+      whole_designs_(designs_) {
   assert(shape_.size() == tile_shape_.size());
   for (std::size_t i = 0; i < shape_.size(); ++i) {
     assert(tile_shape_[i] > 0 && tile_shape_[i] <= shape_[i]);
@@ -46,9 +49,21 @@ Tiling::Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_sha
 Tiling::Tiling(std::vector<std::size_t> shape, std::size_t most)
     : Tiling(shape, balanced_tile(shape, most)) {}
 
+Tiling Tiling::part(std::vector<std::size_t> numbers) const {
+  assert(!is_part_);
+  Tiling some = *this;
+  some.is_part_ = true;
+  some.chosen_ = std::move(numbers);
+  some.designs_ = 0;
+  for (std::size_t k = 0; k < some.chosen_.size(); ++k) some.designs_ += some.tile(k).count;
+  return some;
+}
+
+std::size_t Tiling::largest_tile() const { return product(tile_shape_); }
+
 Tile Tiling::tile(std::size_t number) const {
   Tile tile;
-  unravel(number, tiles_along_, tile.start);
+  unravel(is_part_ ? chosen_[number] : number, tiles_along_, tile.start);
   tile.extent.resize(shape_.size());
   for (std::size_t i = 0; i < shape_.size(); ++i) {
     tile.start[i] *= tile_shape_[i];
@@ -68,7 +83,7 @@ std::size_t Tiling::number(const Tile& tile, std::size_t index) const {
 
 std::size_t Tiling::designs_before(const Tile& tile) const {
   // Along each dimension: all tiles that start earlier there, and at the same place along those before it.
-  std::size_t before = 0, same = 1, beyond = designs_;
+  std::size_t before = 0, same = 1, beyond = whole_designs_;
   for (std::size_t i = 0; i < shape_.size(); ++i) {
     beyond /= shape_[i];
     before += same * tile.start[i] * beyond;

@@ -14,7 +14,8 @@ struct Tile {
   std::size_t count = 0;  ///< designs in it
 };
 
-/// How a map is cut into tiles, numbered in C order. The last tiles of a dimension may be cut short.
+/// How a map is cut into tiles, numbered in C order. The last tiles of a dimension may be cut short. Part of
+/// a map is some of its tiles, counted through: tile(k) is the k-th of them.
 class Tiling {
  public:
   /// tile_shape 0 along no dimension, and no longer than shape.
@@ -24,19 +25,29 @@ class Tiling {
   /// these only, never on the machine.
   explicit Tiling(std::vector<std::size_t> shape, std::size_t most = 16384);
 
-  std::size_t size() const { return tiles_; }
+  /// The same map with these of its tiles only, in this order.
+  Tiling part(std::vector<std::size_t> numbers) const;
+  bool is_part() const { return is_part_; }
+
+  std::size_t size() const { return is_part_ ? chosen_.size() : tiles_; }
   Tile tile(std::size_t number) const;
+  /// The numbers of a part's tiles in the whole map.
+  const std::vector<std::size_t>& chosen() const { return chosen_; }
+  std::size_t largest_tile() const;
   /// The number in the whole map, C order, of a tile's design `index`.
   std::size_t number(const Tile& tile, std::size_t index) const;
-  /// How many designs the tiles before this one hold.
+  /// How many designs the tiles of the whole map before this one hold.
   std::size_t designs_before(const Tile& tile) const;
   const std::vector<std::size_t>& shape() const { return shape_; }
   const std::vector<std::size_t>& tile_shape() const { return tile_shape_; }
+  /// Of its tiles, and of the whole map.
   std::size_t designs() const { return designs_; }
+  std::size_t whole_designs() const { return whole_designs_; }
 
  private:
-  std::vector<std::size_t> shape_, tile_shape_, tiles_along_;
-  std::size_t tiles_ = 1, designs_ = 1;
+  std::vector<std::size_t> shape_, tile_shape_, tiles_along_, chosen_;
+  std::size_t tiles_ = 1, designs_ = 1, whole_designs_ = 1;
+  bool is_part_ = false;
 };
 
 /// The position of design `index` of a block (in C order) along each of its dimensions.

@@ -20,22 +20,26 @@ using hdf5::check;
 constexpr const char *tiles_attribute = "tiles_done", *checksum_attribute = "tiles_checksum",
                      *statuses_attribute = "status_counts", *seconds_attribute = "wall_time";
 
-void refuse_existing_map(const std::string& path, bool overwrite, Locking locking) {
+std::string_view filetype_of(const Tiling& tiling) {
+  return tiling.is_part() ? shard_filetype : map_filetype;
+}
+
+void refuse_existing_map(const std::string& path, const Tiling& tiling, bool overwrite, Locking locking) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
-  hdf5::refuse_other_file(path, map_filetype, locking);
+  hdf5::refuse_other_file(path, filetype_of(tiling), locking);
   if (!overwrite) throw InputError(path + ": exists already; allowed: another -o, or --overwrite");
 }
+
+std::vector<hsize_t> place_of(const Tile& tile) { return {tile.start.begin(), tile.start.end()}; }
+
+}  // namespace
 
 std::uint32_t checksum_of(std::uint32_t before, std::span<const std::byte> bytes,
                           std::uint32_t skipped_filters) {
   const std::uint32_t sum = libdeflate_crc32(before, bytes.data(), bytes.size());
   return libdeflate_crc32(sum, &skipped_filters, sizeof skipped_filters);
 }
-
-std::vector<hsize_t> place_of(const Tile& tile) { return {tile.start.begin(), tile.start.end()}; }
-
-}  // namespace
 
 bool has_part(const std::string& path, Locking locking) {
   std::error_code ignored;  // of a folder that may not be entered: creating the file there tells
@@ -79,18 +83,18 @@ MapWriter::MapWriter(const std::string& path, const MapLayout& layout, const Til
 
 MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, const Tiling& tiling,
                            std::span<const hdf5::Attribute> attributes, bool overwrite, Locking locking) {
-  refuse_existing_map(path, overwrite, locking);
+  refuse_existing_map(path, tiling, overwrite, locking);
   MapWriter writer(path, layout, tiling);
-  hdf5::refuse_other_unfinished(writer.part_, map_filetype, locking);
+  hdf5::refuse_other_unfinished(writer.part_, filetype_of(tiling), locking);
   if (!overwrite && has_part(path, locking))
     throw InputError(fmt::format(
         "{}: is what an interrupted sweep left; allowed: --resume to go on with it, another -o, or "
         "--overwrite to start anew",
         writer.part_));
-  writer.file_ = hdf5::File::create(writer.part_, map_filetype, locking);
+  writer.file_ = hdf5::File::create(writer.part_, filetype_of(tiling), locking);
   writer.begun_ = true;
   writer.replace_ = overwrite;
-  refuse_existing_map(path, overwrite, locking);  // again, now that nobody else can make it
+  refuse_existing_map(path, tiling, overwrite, locking);  // again, now that nobody else can make it
   hdf5::annotate(writer.file_, attributes);
   lay_out(writer.file_, layout, tiling);
   writer.datasets_ = open_fields(writer.file_, layout);
@@ -101,10 +105,10 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
 
 MapWriter MapWriter::resume(const std::string& path, const MapLayout& layout, const Tiling& tiling,
                             bool overwrite, Locking locking) {
-  refuse_existing_map(path, overwrite, locking);
+  refuse_existing_map(path, tiling, overwrite, locking);
   MapWriter writer(path, layout, tiling);
   writer.replace_ = overwrite;
-  hdf5::refuse_other_unfinished(writer.part_, map_filetype, locking);
+  hdf5::refuse_other_unfinished(writer.part_, filetype_of(tiling), locking);
   writer.file_ = hdf5::File::change(writer.part_, locking);
   return writer;
 }
@@ -141,17 +145,27 @@ void MapWriter::verify() {
 
 void MapWriter::write(const EncodedTile& tile) {
   assert(tile.number == progress_.tiles && tile.chunks.size() == datasets_.size());
-  hdf5::initialise();
-  const std::vector<hsize_t> place = place_of(tiling_->tile(tile.number));
+  const Tile here = tiling_->tile(tile.number);
   for (std::size_t i = 0; i < datasets_.size(); ++i) {
     const auto& [bytes, skipped_filters] = tile.chunks[i];
-    check(
-        H5Dwrite_chunk(datasets_[i], H5P_DEFAULT, skipped_filters, place.data(), bytes.size(), bytes.data()),
-        part_ + ": cannot be written");
+    put(here, i, tile.chunks[i]);
     checksum_ = checksum_of(checksum_, bytes, skipped_filters);
   }
   ++progress_.tiles;
   for (std::size_t s = 0; s < status_count; ++s) progress_.statuses[s] += tile.statuses[s];
+}
+
+void MapWriter::put(const Tile& tile, std::size_t field, const EncodedChunk& chunk) {
+  const std::vector<hsize_t> place = place_of(tile);
+  hdf5::initialise();
+  check(H5Dwrite_chunk(datasets_[field], H5P_DEFAULT, chunk.skipped_filters, place.data(), chunk.bytes.size(),
+                       chunk.bytes.data()),
+        part_ + ": cannot be written");
+}
+
+void MapWriter::take_over(const MapProgress& progress, std::uint32_t checksum) {
+  progress_ = progress;
+  checksum_ = checksum;
 }
 
 void MapWriter::write_progress() {

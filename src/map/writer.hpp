@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Writes a map tile by tile. Until it is whole it is called FILE.part, which survives whatever stops the
-/// program and can be gone on with; FILE itself is only ever a whole map.
+/// Writes a map, or a shard of one, tile by tile: a shard's file is the whole map's with holes. Until it is
+/// whole it is called FILE.part, which survives whatever stops the program and can be gone on with; FILE
+/// itself is only ever a whole map.
 #pragma once
 
 #include <array>
@@ -46,6 +47,9 @@ class MapWriter {
   void verify();
   /// Stores the next tile. One thread at a time.
   void write(const EncodedTile& tile);
+  /// Stores a field's chunk of any tile, encoded elsewhere; take_over then says what the file holds.
+  void put(const Tile& tile, std::size_t field, const EncodedChunk& chunk);
+  void take_over(const MapProgress& progress, std::uint32_t checksum);
   /// Brings all tiles so far to disk at once, and attributes of the root that go with them. Throws IoError if
   /// the disk is full: what was committed stays.
   void commit(std::span<const hdf5::Attribute> attributes = {});
@@ -62,7 +66,7 @@ class MapWriter {
   void keep();
 
   /// The unfinished file, to be read while this writer lives.
-  MapReader reader() const { return MapReader(part_, file_); }
+  MapReader reader() const { return MapReader(part_, file_, Accept::shards_too); }
 
  private:
   MapWriter(const std::string& path, const MapLayout& layout, const Tiling& tiling);
@@ -87,6 +91,10 @@ inline std::string part_of(const std::string& path) { return path + ".part"; }
 /// Whether FILE.part is there with something in it: what an interrupted sweep left. Throws InputError while a
 /// sweep is writing it.
 bool has_part(const std::string& path, Locking locking = Locking::required);
+
+/// The CRC-32 of chunks so far, and of one more and the mask of the filters skipped for it.
+std::uint32_t checksum_of(std::uint32_t before, std::span<const std::byte> bytes,
+                          std::uint32_t skipped_filters);
 
 /// Whether the first `tiles` tiles are as they were written: a CRC-32 of them as stored, by tile and then by
 /// field, each chunk followed by the mask of the filters skipped for it, is the one that the map tells. True

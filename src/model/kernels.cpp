@@ -20,10 +20,11 @@ constinit const std::array list{
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
             return rolling::tell_by_integration(design, scene, options, interval);
           },
-          rolling::solving},
+          rolling::solving, rolling::effort},
     Model{Friction::coulomb, "coulomb", "slips, lands and hops on", true, coulomb::exact, coulomb::jumps,
           coulomb::gradients, coulomb::dual_jumps, coulomb::integration, coulomb::integrated_jumps,
-          coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving}};
+          coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving,
+          coulomb::effort}};
 
 constinit const Kernels of_this_set{list, static_cast<int>(Lanes<Batch>::count)};
 

@@ -3,6 +3,7 @@
 /// list; nothing else asks which model a scene names.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -14,6 +15,10 @@
 #include "trajectory/solver.hpp"
 
 namespace leapmap {
+
+/// What it takes to solve a design, in units of its model's own: counted, so that every machine finds the
+/// same.
+using DesignEffort = std::function<double(const Design&)>;
 
 /// How designs of a scene are solved: each of these takes the scene it was chosen for.
 struct Model {
@@ -40,6 +45,8 @@ struct Model {
   Motion (*tell_by_integration)(const Design&, const Scene&, const IntegrationOptions&, double interval);
   /// By a method at a setting, for studies.
   Solving (*solving)(const Contestant&, const Scene&, long max_steps);
+  /// By the exact solver.
+  DesignEffort (*effort)(const Scene&);
 };
 
 /// Every model.

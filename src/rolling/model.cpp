@@ -20,6 +20,15 @@ JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wan
              std::span<Outcome> outcomes) { solver->solve(start, designs, states, scene, outcomes); };
 }
 
+std::function<double(const Design&)> effort(const Scene& scene) {
+  if (scene.jumps == 1) return [](const Design&) { return 1.0; };
+  return [solve = exact(scene, 1e-6, {})](const Design& design) {
+    Outcome outcome;
+    solve({&design, 1}, {&outcome, 1});
+    return 1.0 + static_cast<double>(outcome.jumps());
+  };
+}
+
 Solver integration(const Scene& scene, const IntegrationOptions& options) {
   if (scene.jumps > 1) return in_sequence(integrated_jumps(scene, options), scene);
   return one_by_one(std::make_shared<RollingIntegration>(options), scene);

@@ -3,6 +3,8 @@
 /// from there. A lift-off that stays below hop_height is counted, and the hoop taken to roll on.
 #pragma once
 
+#include <functional>
+
 #include "leapmap/motion.hpp"
 #include "trajectory/gradient.hpp"
 #include "trajectory/sequence_gradient.hpp"
@@ -22,6 +24,9 @@ GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wan
 
 /// One jump after the other with derivatives.
 DualJumpSolver dual_jumps(const Scene& scene, double tolerance);
+
+/// A design's share of the work (model/model.hpp).
+std::function<double(const Design&)> effort(const Scene& scene);
 
 /// By integration in time (rolling_integration.hpp).
 Solver integration(const Scene& scene, const IntegrationOptions& options);

@@ -26,7 +26,12 @@ void refuse_other_beginning(const MapReader& part, const std::string& name, cons
   if (hdf5::read_integers(part.file(), "version") != std::vector<std::int64_t>{format_major, format_minor})
     throw InputError(fmt::format("{}: has another format version; allowed: {}", name, allowed));
   for (const auto& [key, value] : now)
-    if (key == "program_version" || key == "git_revision" || key == "instruction_set")
+    if (key == shard_tiles_attribute &&
+        hdf5::read_integers(part.file(), key) != std::get<std::vector<std::int64_t>>(value))
+      throw InputError(fmt::format("{}: was begun with other tiles of the map; allowed: {}", name, allowed));
+  for (const auto& [key, value] : now)
+    if (key == "program_version" || key == "git_revision" || key == "instruction_set" ||
+        key == shard_attribute)
       if (part.attribute(key) != std::get<std::string>(value))
         throw InputError(fmt::format(
             "{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one{}, {}", name,
@@ -78,7 +83,8 @@ void refuse_own_input(const Spec& spec, const std::string& map) {
 
 bool is_done(const std::string& map, const Spec& spec, const SweepOptions& options, Locking locking) {
   if (!options.resume || options.overwrite || exists(part_of(map)) || !exists(map)) return false;
-  if (const auto difference = first_difference(spec_of(MapReader(map, locking), map), spec))
+  if (const auto difference =
+          first_difference(spec_of(MapReader(map, locking, Accept::shards_too), map), spec))
     throw InputError(fmt::format(
         "{}: exists already, of another spec: {}; allowed: another -o, or --overwrite", map, *difference));
   return true;

@@ -10,9 +10,11 @@
 #include "leapmap/errors.hpp"
 #include "map/layout.hpp"
 #include "map/reader.hpp"
+#include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
+#include "sweep/shard.hpp"
 #include "sweep/solver.hpp"
 
 namespace leapmap {
@@ -135,7 +137,12 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   const Spec spec = spec_of(map, path);
   const MapLayout layout = layout_of(spec);
   if (shape_of(spec) != map.shape()) throw BrokenFile(path + ": its spec is of other designs than it holds");
-  const Tiling tiling = tiling_of(spec);
+  const Tiling whole =
+      map.blocks(std::string(layout.fields.front()->name));  // as it was cut by whoever wrote it
+  const bool is_shard = hdf5::has_attribute(map.file(), shard_tiles_attribute);
+  const Tiling tiling =
+      is_shard ? whole.part(tiles_in(hdf5::read_integers(map.file(), shard_tiles_attribute), whole.size()))
+               : whole;
   report.whole = map.is_whole();
   report.tiles = tiles_of(map, tiling);
   report.designs = designs_in(map.status_counts());
@@ -168,7 +175,7 @@ CheckReport check_map(const std::string& path, const CheckOptions& options) {
     return report;
   }
   try {
-    check_content(file.bytes(), MapReader(path, file), path, options, report);
+    check_content(file.bytes(), MapReader(path, file, Accept::shards_too), path, options, report);
   } catch (const InputError& error) {  // of its spec
     report.findings.push_back(error.what());
   } catch (const IoError& error) {

@@ -21,10 +21,15 @@ std::vector<std::size_t> shape_of(const Spec& spec) {
 }
 
 Tiling tiling_of(const Spec& spec) {
-  if (spec.scatter.spreads.empty()) return Tiling(shape_of(spec));
+  const std::vector<std::size_t> shape = shape_of(spec);
+  if (spec.scatter.spreads.empty() && !model_of(spec.scene).slips) return Tiling(shape);
+  if (spec.scatter.spreads.empty()) {
+    // Some hoops take a hundred times as long as others: small enough that shards come out even.
+    const std::size_t designs = Tiling(shape).designs();
+    return Tiling(shape, std::clamp<std::size_t>(designs / 512, 128, 2048));
+  }
   constexpr std::size_t most_hoops = 1 << 20;  // of a tile: some tenths of a second, with friction seconds
-  return Tiling(shape_of(spec),
-                std::max<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1));
+  return Tiling(shape, std::max<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1));
 }
 
 DesignSpace::DesignSpace(const Spec& spec) : spec_(spec) {

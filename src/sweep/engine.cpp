@@ -79,8 +79,7 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
       },
       most_waiting_bytes);
 
-  const std::size_t piece =
-      std::min(piece_of(spec), tiling.tile(0).count);  // no tile is larger than the first
+  const std::size_t piece = std::min(piece_of(spec), tiling.largest_tile());
   const auto points = points_of(spec.scatter);
   const bool scattered = !spec.scatter.spreads.empty();
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());

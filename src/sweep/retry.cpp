@@ -88,8 +88,9 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
   if (!map.is_whole()) throw InputError(path + ": is not whole; allowed: a whole map, by sweep --resume");
   if (!stores(spec.output, "status"))
     throw InputError(path + ": holds no status; allowed: a map with that field");
-  const Tiling tiling = tiling_of(spec);
   const MapLayout layout = layout_of(spec);
+  const Tiling tiling =
+      map.blocks(std::string(layout.fields.front()->name));  // as whoever wrote it has cut it
   check_layout(file, layout, tiling);
   if (!tiles_are_as_written(file, layout, tiling, tiling.size(), path))
     throw BrokenFile(path + ": is damaged: its tiles are not what was written; leapmap check tells where");
@@ -160,8 +161,8 @@ std::optional<RetryReport> retry_with(const std::string& path, const Spec& spec,
     if (!original.is_named(path))
       throw IoError(path + ": another program has replaced or removed it meanwhile");
     report->durable = file->finish(path, true, [&](hid_t written) {
-      const Tiling tiling = tiling_of(spec);
       const MapLayout layout = layout_of(spec);
+      const Tiling tiling = MapReader(path, written).blocks(std::string(layout.fields.front()->name));
       check_layout(written, layout, tiling);
       if (!tiles_are_as_written(written, layout, tiling, tiling.size(), path))
         throw BrokenFile(path + ".retry: its tiles are not what was written");

@@ -18,6 +18,7 @@
 #include "sweep/map_layout.hpp"
 #include "sweep/parallel.hpp"
 #include "sweep/provenance.hpp"
+#include "sweep/shard.hpp"
 
 namespace leapmap {
 namespace {
@@ -130,9 +131,9 @@ class Sweeping {
 };
 
 /// The report on a map that is whole already.
-Report report_on(const std::string& map, const Spec& spec, Locking locking) {
-  const MapReader whole(map, locking);
-  Report report{.whole = true, .was_whole = true, .designs = Tiling(shape_of(spec)).designs()};
+Report report_on(const std::string& map, const Tiling& tiling, Locking locking) {
+  const MapReader whole(map, locking, Accept::shards_too);
+  Report report{.whole = true, .was_whole = true, .designs = tiling.designs()};
   report.done = report.designs;
   if (hdf5::has_attribute(whole.file(), "status_counts")) report.statuses = whole.status_counts();
   if (hdf5::has_attribute(whole.file(), "audit_first_mismatch")) report.audit = read_audit(whole);
@@ -170,14 +171,19 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
   options.stop_requested = latched(asked.stop_requested);
   if (path.empty())
     throw InputError(origin_of(spec) + ": output.file is not set; allowed: a file's name there or with -o");
-  const std::string map = behind_links(path);
+  const std::string map = behind_links(asked.shard ? shard_path(path, *asked.shard) : path);
   const Locking locking = options.lock ? Locking::required : Locking::if_possible;
-  const Tiling tiling = tiling_of(spec);
+  const Tiling whole = tiling_of(spec), tiling = asked.shard ? shard_of(spec, whole, *asked.shard) : whole;
   const MapLayout layout = layout_of(spec);
   refuse_own_input(spec, map);
-  if (is_done(map, spec, options, locking)) return report_on(map, spec, locking);
+  if (is_done(map, spec, options, locking)) return report_on(map, tiling, locking);
 
-  std::vector<hdf5::Attribute> opening = provenance(spec, map_filetype, title_of(spec));
+  std::vector<hdf5::Attribute> opening =
+      provenance(spec, asked.shard ? shard_filetype : map_filetype, title_of(spec));
+  if (asked.shard) {
+    opening.emplace_back(shard_attribute, text_of(*asked.shard));
+    opening.emplace_back(shard_tiles_attribute, bits_of(tiling.chosen(), whole.size()));
+  }
   opening.emplace_back("threads", std::int64_t{thread_count(options.threads)});
   if (spec.numerics.audit > 0.0) opening.emplace_back("audit_method", audit_method(spec.numerics));
   MapWriter writer = begin_map(map, spec, layout, tiling, opening, options, locking);

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap join: one map of all its shards.
+#include "leapmap/join.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/spoken.hpp"
+#include "cli/sweep.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct JoinArguments {
+  std::string map;
+  JoinOptions options;
+  Locking locking = Locking::required;
+  bool quiet = false;
+};
+
+int run(JoinArguments& arguments) {
+  JoinOptions& options = arguments.options;
+  options.lock = arguments.locking == Locking::required;
+  options.stop_requested = [] { return noted_signal() != 0; };
+  std::optional<Progress> progress;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    if (!progress) progress.emplace(total, 0, arguments.quiet);
+    progress->update(done);
+  };
+  note_signals();
+  const std::optional<JoinReport> report = join(arguments.map, options);
+  progress.reset();
+  if (!report) {
+    tell("interrupted; nothing is kept, and the shards are as they were");
+    return 128 + noted_signal();
+  }
+  if (!report->durable) tell_of_folder(arguments.map);
+  if (arguments.quiet) return 0;
+  say("joined   {} shards: {} designs in {} tiles\n", report->shards, grouped(report->designs),
+      grouped(report->tiles));
+  if (report->audit)
+    say("audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
+        "differ\n",
+        grouped(report->audit->designs), report->audit->method, report->audit->max_abs_height_error,
+        report->audit->max_rel_time_error, report->audit->flag_mismatches);
+  print_totals(report->statuses);
+  say("map      {}\n", arguments.map);
+  return report->audit && disagree(*report->audit) ? 1 : 0;
+}
+
+}  // namespace
+
+void add_join(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("join", "make one map of the shards that sweeps with --shard I/N left beside it");
+  auto arguments = std::make_shared<JoinArguments>();
+  command
+      ->add_option("MAP", arguments->map, "the map to make; its shards are MAP.1-of-N.h5 and so on, and stay")
+      ->required()
+      ->check(named_file());
+  command
+      ->add_option("--shards", arguments->options.shards,
+                   "how many shards it has; default: as many as their names say")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{10'000}));
+  command->add_flag("--overwrite", arguments->options.overwrite, "replace an existing map");
+  add_no_lock(*command, arguments->locking);
+  command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
+  command->footer(
+      "Examples:\n"
+      "  for i in 1 2 3; do leapmap sweep s.toml -o m.h5 --shard $i/3; done     on one machine or many\n"
+      "  leapmap join m.h5                                                      the map of one sweep, bit "
+      "for bit\n"
+      "On a cluster: sweeps/cluster/README.md.");
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli

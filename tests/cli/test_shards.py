@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shards: a map in parts for jobs of their own, and leapmap join."""
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+import pytest
+from support.program import PROGRAM, SMALL, finished, leapmap, sweep
+
+COULOMB = """
+[scene]
+friction = "coulomb"
+restitution = 0.3
+mu_static = { from = 0.05, to = 1.2, count = 12 }
+[design]
+slope = { from = "2 deg", to = "45 deg", count = 30 }
+mass_ratio = { from = 0.2, to = 12, count = 20, scale = "log" }
+[numerics]
+audit = 0.01
+"""
+
+
+def shards(folder, spec, count, *arguments, which=None, name="map.h5"):
+    """Sweeps shards of a spec's text, whose map's path is returned."""
+    (folder / "shards.toml").write_text(spec)
+    for i in which or range(1, count + 1):
+        done = leapmap("sweep", folder / "shards.toml", "-o", folder / name, "--quiet", "--shard", f"{i}/{count}", *arguments)
+        assert done.returncode == 0, done.stderr
+    return folder / name
+
+
+def shard(map_path, i, count):
+    return map_path.with_name(f"{map_path.stem}.{i}-of-{count}{map_path.suffix}")
+
+
+def same_datasets(one, other):
+    with h5py.File(one) as a, h5py.File(other) as b:
+        names = [name for name in a if isinstance(a[name], h5py.Dataset)]
+        assert names == [name for name in b if isinstance(b[name], h5py.Dataset)] and len(names) > 5
+        for name in names:
+            assert a[name].chunks == b[name].chunks and a[name].dtype == b[name].dtype, name
+            if a[name].dtype.kind == "O":
+                assert list(a[name][()]) == list(b[name][()]), name
+            else:
+                assert a[name][()].tobytes() == b[name][()].tobytes(), name
+        ignored = {"date", "host", "threads", "wall_time", "shards"}
+        for name in set(a.attrs) - ignored:
+            assert np.array_equal(a.attrs[name], b.attrs[name]), name
+        assert set(b.attrs) - set(a.attrs) == {"shards"}
+
+
+@pytest.mark.parametrize(("spec", "count"), [(SMALL, 3), (COULOMB, 5), (SMALL + '[output]\ngradients = ["jump_height"]\nprecision = "f4"\ncompression = 4\n', 2),
+                                             (SMALL + "[scene]\njumps = 3\n", 4), (SMALL, 1)])
+def test_the_map_of_all_shards_is_that_of_one_sweep_bit_for_bit(spec, count, tmp_path):
+    joined = shards(tmp_path, spec, count)
+    done = leapmap("join", joined)
+    assert done.returncode == 0 and f"{count} shards" in done.stdout, done.stderr
+    same_datasets(sweep(tmp_path, spec, name="one.h5"), joined)
+    assert leapmap("check", joined).returncode == 0
+    assert all(shard(joined, i, count).exists() for i in range(1, count + 1)), "the shards stay"
+
+
+def test_a_list_has_shards_too(tmp_path):
+    (tmp_path / "list.csv").write_text("label,slope,mass_ratio\n" + "".join(f"hoop {i},{0.1 + 0.003 * i!r},{1 + 0.02 * i!r}\n" for i in range(200)))
+    spec = f"[design]\npoints = \"{tmp_path / 'list.csv'}\"\n"
+    joined = shards(tmp_path, spec, 2)
+    assert leapmap("join", joined).returncode == 0
+    same_datasets(sweep(tmp_path, spec, name="one.h5"), joined)
+
+
+def test_shards_hold_every_tile_once_and_as_much_work_as_the_others(tmp_path):
+    count = 6
+    joined = shards(tmp_path, COULOMB, count, "--set", "audit=0")
+    designs = []
+    for i in range(1, count + 1):
+        with h5py.File(shard(joined, i, count)) as file:
+            assert file.attrs["filetype"] == "leapmap shard" and file.attrs["shard"] == f"{i}/{count}"
+            designs.append(int((file["status"][()] != 255).sum()) if file["status"].fillvalue == 255 else int(sum(file.attrs["status_counts"])))
+    assert sum(designs) == 12 * 30 * 20 and min(designs) > 0.2 * sum(designs) / count
+    planned = leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--dry-run", "--shards", count, "--time-limit", 1).stdout
+    ratio = float(planned.split(" times the mean")[0].split()[-1])
+    assert 1.0 <= ratio <= 1.25 and "limit" in planned and f"--shard 1/{count}" in planned
+
+
+def test_a_shard_is_no_map_to_anything_else(tmp_path):
+    joined = shards(tmp_path, SMALL, 2, which=[1])
+    for command in (("info",), ("boundaries",)):
+        done = leapmap(*command, shard(joined, 1, 2))
+        assert done.returncode == 2 and "shard 1/2" in done.stderr and "join" in done.stderr, command
+    checked = leapmap("check", shard(joined, 1, 2))
+    assert checked.returncode == 0 and "every one is what was written" in checked.stdout, checked
+
+
+def test_a_shard_that_was_killed_is_gone_on_with(tmp_path):
+    spec = COULOMB.replace("count = 30", "count = 300").replace("count = 20", "count = 60").replace("audit = 0.01", "audit = 0.02")
+    (tmp_path / "shards.toml").write_text(spec)
+    command = [PROGRAM, "sweep", tmp_path / "shards.toml", "-o", tmp_path / "map.h5", "--quiet", "--threads", "1", "--commit-interval", "0"]
+    for i, sign in ((1, signal.SIGKILL), (2, signal.SIGTERM)):
+        part = tmp_path / f"map.{i}-of-3.h5.part"
+        process = subprocess.Popen([str(word) for word in [*command, "--shard", f"{i}/3"]], stderr=subprocess.PIPE, text=True)
+        end = time.monotonic() + 60
+        while time.monotonic() < end and not (part.exists() and part.stat().st_size > 300_000):
+            time.sleep(0.02)
+        process.send_signal(sign)
+        said = process.communicate(timeout=60)[1]
+        assert process.returncode == (-9 if sign == signal.SIGKILL else 143) and part.exists()
+        if sign == signal.SIGTERM:
+            assert f"--shard {i}/3" in said and "--resume" in said
+    missing = leapmap("join", tmp_path / "map.h5")
+    assert missing.returncode == 2 and "--array=1-3" in missing.stderr and "2 of them unfinished" in missing.stderr
+    joined = shards(tmp_path, spec, 3, "--resume")
+    assert leapmap("join", joined).returncode == 0
+    same_datasets(sweep(tmp_path, spec, name="one.h5"), joined)
+
+
+def refused(map_path, *words, status=2):
+    """leapmap join says what is wrong in one line, and leaves nothing."""
+    done = leapmap("join", map_path)
+    assert done.returncode == status and len(done.stderr.splitlines()) == 1, done
+    for word in words:
+        assert word in done.stderr
+    assert not map_path.exists() and not map_path.with_name(map_path.name + ".part").exists()
+
+
+def test_what_is_missing_is_named_as_an_array_of_slurm(tmp_path):
+    joined = shards(tmp_path, SMALL, 8, which=[2, 5, 8])
+    refused(joined, "5 of its 8 shards", "--array=1,3-4,6-7")
+    refused(tmp_path / "other.h5", "no shard")
+
+
+@pytest.mark.parametrize("harm", ["torn", "flipped", "renamed", "doubled", "foreign spec", "foreign program", "two sets", "whole map", "unreadable"])
+def test_a_shard_that_cannot_be_right_is_named_and_nothing_is_written(harm, tmp_path):
+    joined = shards(tmp_path, SMALL, 3)
+    path = shard(joined, 2, 3)
+    if harm == "torn":
+        os.truncate(path, path.stat().st_size // 2)
+        refused(joined, path.name, status=3)
+    elif harm == "flipped":
+        with h5py.File(path) as file:
+            dataset = file["jump_height"]
+            at = next(dataset.id.get_chunk_info(k) for k in range(dataset.id.get_num_chunks())).byte_offset
+        raw = bytearray(path.read_bytes())
+        raw[at + 40] ^= 1
+        path.write_bytes(raw)
+        refused(joined, path.name, status=3)
+    elif harm == "renamed":
+        path.rename(tmp_path / "kept")
+        shard(joined, 1, 3).rename(path)
+        (tmp_path / "kept").rename(shard(joined, 1, 3))
+        refused(joined, "is shard 2/3", "whatever its name says")
+    elif harm == "doubled":
+        shutil.copy(shard(joined, 1, 3), path)
+        refused(joined, path.name, "is shard 1/3")
+    elif harm == "foreign spec":
+        path.unlink()
+        shards(tmp_path, SMALL.replace("0.6, 1.0", "0.6, 0.9"), 3, which=[2])
+        refused(joined, path.name, "another spec", "offset_ratio")
+    elif harm == "foreign program":
+        with h5py.File(path, "r+") as file:
+            file.attrs["instruction_set"] = "pdp11"
+        refused(joined, path.name, "pdp11", "--instruction-set")
+    elif harm == "two sets":
+        shards(tmp_path, SMALL, 2)
+        refused(joined, "of 2 and of 3", "--shards")
+        assert leapmap("join", joined, "--shards", 3).returncode == 0
+    elif harm == "whole map":
+        path.unlink()
+        sweep(tmp_path, SMALL, name=path.name)
+        refused(joined, path.name, "no shard")
+    elif harm == "unreadable":
+        path.write_text("no HDF5 at all")
+        refused(joined, path.name, status=3)
+
+
+def test_a_map_that_is_there_stays_unless_it_may_be_replaced(tmp_path):
+    joined = shards(tmp_path, SMALL, 2)
+    joined.write_bytes(sweep(tmp_path, SMALL, name="one.h5").read_bytes())
+    before = joined.read_bytes()
+    assert leapmap("join", joined).returncode == 2 and joined.read_bytes() == before
+    assert leapmap("join", joined, "--overwrite").returncode == 0
+    same_datasets(tmp_path / "one.h5", joined)
+
+
+@pytest.mark.parametrize("text", ["0/3", "4/3", "3", "a/b", "1/0", "1/99999", "1/3/5", "-1/3"])
+def test_what_is_no_part_of_a_whole_is_refused(text, tmp_path):
+    done = leapmap("sweep", "-o", tmp_path / "m.h5", f"--shard={text}")
+    assert done.returncode == 2 and "--shard" in done.stderr and not list(tmp_path.iterdir())
+
+
+def test_shards_for_which_there_is_no_tile_left_are_empty(tmp_path):
+    joined = shards(tmp_path, SMALL, 9)
+    assert leapmap("join", joined).returncode == 0
+    same_datasets(sweep(tmp_path, SMALL, name="one.h5"), joined)
+
+
+def test_a_plan_of_shards_wants_a_dry_run():
+    done = finished(PROGRAM, "sweep", "--shards", "4")
+    assert done.returncode == 2 and "--dry-run" in done.stderr
