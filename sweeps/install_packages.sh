@@ -10,7 +10,7 @@ packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-
 if [ "${1:-main}" = tests ]; then
   packages="$packages libgtest-dev libbenchmark-dev clang-format clang libclang-rt-14-dev libomp-dev hdf5-tools netcdf-bin
     libboost-dev python3-scipy python3-openturns python3-pytest python3-netcdf4 python3-h5netcdf python3-selenium
-    chromium chromium-driver poppler-utils qemu-user"
+    chromium chromium-driver poppler-utils qemu-user slurm-wlm munge parallel"
 fi
 missing=""
 for package in $packages; do

@@ -14,6 +14,7 @@
 #include "sweep/engine.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/parallel.hpp"
+#include "sweep/places.hpp"
 #include "sweep/shard.hpp"
 
 namespace leapmap::cli {
@@ -144,6 +145,7 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
       layout.compression > 0 ? " before compression" : "");
   const double seconds = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already) /
                          static_cast<double>(std::min(static_cast<std::size_t>(threads), tiling.size()));
+  if (const std::string places = told_places(); !places.empty()) say("places   {}\n", places);
   say("time     about {} on {} threads\n", spoken_duration(seconds), threads);
   if (arguments.shards > 0 || arguments.time_limit > 0.0)
     print_shards(arguments, spec, map, layout, tiling, seconds);

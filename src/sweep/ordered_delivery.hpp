@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "sweep/places.hpp"
+
 namespace leapmap {
 
 /// Holds at most `most_bytes` of items that wait for their turn or for the taker; a thread that brings more
@@ -69,6 +71,7 @@ class OrderedDelivery {
   };
 
   void run() {
+    leave_place();
     std::unique_lock lock(mutex_);
     for (;;) {
       const auto due = [&] { return !waiting_.empty() && waiting_.begin()->first == next_; };

@@ -9,7 +9,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from support.program import PROGRAM, SMALL, finished, leapmap, sweep
+from support.program import PROGRAM, SMALL, TOP, finished, leapmap, sweep
 
 COULOMB = """
 [scene]
@@ -200,3 +200,28 @@ def test_shards_for_which_there_is_no_tile_left_are_empty(tmp_path):
 def test_a_plan_of_shards_wants_a_dry_run():
     done = finished(PROGRAM, "sweep", "--shards", "4")
     assert done.returncode == 2 and "--dry-run" in done.stderr
+
+
+def test_the_plan_tells_places_that_threads_are_bound_to(tmp_path):
+    told = subprocess.run([PROGRAM, "sweep", "-o", tmp_path / "m.h5", "--set", "slope={from=0.1,to=0.8,count=50}", "--dry-run"], capture_output=True, text=True,
+                          env={**os.environ, "OMP_PLACES": "threads", "OMP_PROC_BIND": "close"})
+    assert told.returncode == 0 and "places " in told.stdout and "bound" in told.stdout
+    assert "places " not in leapmap("sweep", "-o", tmp_path / "m.h5", "--set", "slope={from=0.1,to=0.8,count=50}", "--dry-run").stdout
+
+
+def test_bound_threads_make_the_same_map(tmp_path):
+    sweep(tmp_path, SMALL)
+    bound = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "bound.h5", "--quiet"], env={**os.environ, "OMP_PLACES": "threads", "OMP_PROC_BIND": "spread"})
+    assert bound.returncode == 0
+    with h5py.File(tmp_path / "map.h5") as a, h5py.File(tmp_path / "bound.h5") as b:
+        assert a.attrs["tiles_checksum"] == b.attrs["tiles_checksum"]
+
+
+def test_gnu_parallel_runs_all_shards_and_joins_them(tmp_path):
+    if not shutil.which("parallel"):
+        pytest.skip("GNU parallel is missing")
+    sweep(tmp_path, SMALL, name="one.h5")
+    done = subprocess.run(["sh", TOP / "sweeps" / "cluster" / "parallel.sh", "3", tmp_path / "spec.toml", tmp_path / "all" / "map.h5"], capture_output=True, text=True,
+                          env={**os.environ, "LEAPMAP": PROGRAM})
+    assert done.returncode == 0, done.stderr
+    same_datasets(tmp_path / "one.h5", tmp_path / "all" / "map.h5")
