@@ -2,8 +2,8 @@
 /// Shards: parts of a map for jobs of their own, each as much work as the others, of whole tiles.
 ///
 /// Which tiles a shard has follows from the spec and the number of shards alone: a sample of each tile's
-/// designs tells what it takes, counted (DesignEffort) and not timed, so that jobs on any machine share the map
-/// alike.
+/// designs tells what it takes, counted (DesignEffort) and not timed, so that jobs on any machine share the
+/// map alike.
 #pragma once
 
 #include <cstddef>
