@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The machine of contact_phases.hpp, for any way of rolling and sliding.
+/// The machine of contact_phases.hpp, for any way of rolling and sliding: it tells which phase comes next, is
+/// told how that ended, and flies and lands by itself.
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include "coulomb/coulomb.hpp"
 #include "leapmap/design.hpp"
@@ -44,18 +46,21 @@ ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const
                                                      : ContactPhase::slides_forwards;
 }
 
-/// Goes through the phases until the design ends. roll(hoop, contact, state, runway) and slide(...,
-/// direction) move the state to their phase's end, or as far as they came; direction is 1 or -1.
-template <class S, class Roll, class Slide>
+/// A contact that goes on: what rolls or slides next, and which way it slides (1, -1; 0: it rolls).
+struct NextPhase {
+  Phase phase;
+  int direction;
+};
+
+/// One design on its way through its phases. Nothing for a next phase: it has ended.
+template <class S>
 class PhaseMachine {
  public:
-  /// from: the release, or a state just after a landing.
+  /// from: the release, or a state just after a landing. Scene and observer have to outlive the machine.
   PhaseMachine(const Design& design, const ContactState<S>& from, const Scene& scene,
-               const CoulombObserver& observer, const Roll& roll, const Slide& slide)
-      : scene_(scene),
-        observer_(observer),
-        roll_(roll),
-        slide_(slide),
+               const CoulombObserver& observer)
+      : scene_(&scene),
+        observer_(&observer),
         hoop_(derive<S>(design)),
         contact_(contact_of<S>(design, scene)),
         runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
@@ -63,44 +68,50 @@ class PhaseMachine {
     released_ = contact_energy(hoop_, at_);
   }
 
-  Outcome run(Start start) {
-    ContactPhase next = start == Start::landing
-                            ? phase_after_landing(Leaving::always)
-                            : contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
-    if (start == Start::release && next == ContactPhase::leaves) return ended_as(Status::airborne_at_release);
-    while (sequence_.count() < most_phases) {
-      const PhaseEnd end = next == ContactPhase::leaves ? PhaseEnd::lifts_off : stay_in_contact(next);
-      switch (end) {
-        case PhaseEnd::slips_forwards:
-        case PhaseEnd::slips_backwards:
-          next = free_normal_force(hoop_, trig(at_.angle), S(at_.spin * at_.spin)) <= S(0)
-                     ? ContactPhase::leaves
-                 : end == PhaseEnd::slips_forwards ? ContactPhase::slides_forwards
-                                                   : ContactPhase::slides_backwards;
-          break;
-        case PhaseEnd::slip_ends:
-          next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
-          break;
-        case PhaseEnd::lifts_off:
-          if (const Status status = fly_and_land(next); status != Status::not_computed)
-            return ended_as(status);
-          break;
-        case PhaseEnd::stalls:
-          return ended_as(Status::stalled);
-        case PhaseEnd::runway_ends:
-          return ended_as(Status::no_jump);
-        case PhaseEnd::indeterminate:
-          return ended_as(Status::indeterminate);
-        case PhaseEnd::too_long:
-          return ended_as(Status::failed, "it slides on for longer than is followed");
-        case PhaseEnd::failed:
-          return ended_as(Status::failed, "a phase could not be solved to the tolerance");
-      }
-    }
-    return ended_as(Status::failed, "more phases than a design may go through");
+  std::optional<NextPhase> begin(Start start) {
+    if (start == Start::landing) return go_on(phase_after_landing(Leaving::always));
+    const ContactPhase next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
+    return next == ContactPhase::leaves ? ended_as(Status::airborne_at_release) : go_on(next);
   }
 
-  /// Where the design ended: of one that jumps just after the landing.
+  /// On from the end of the phase that was told last, in which the hoop moved `to` there.
+  std::optional<NextPhase> after(PhaseEnd end, const ContactState<S>& to) {
+    using std::abs;
+    driven_ += hoop_.drive * (to.angle - at_.angle);
+    if (slides_) slipped_ += abs((to.travel - at_.travel) - (to.angle - at_.angle));
+    at_ = to;
+    switch (end) {
+      case PhaseEnd::slips_forwards:
+      case PhaseEnd::slips_backwards:
+        return go_on(free_normal_force(hoop_, trig(at_.angle), S(at_.spin * at_.spin)) <= S(0)
+                         ? ContactPhase::leaves
+                     : end == PhaseEnd::slips_forwards ? ContactPhase::slides_forwards
+                                                       : ContactPhase::slides_backwards);
+      case PhaseEnd::slip_ends:
+        return go_on(contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks));
+      case PhaseEnd::lifts_off:
+        return go_on(ContactPhase::leaves);
+      case PhaseEnd::stalls:
+        return ended_as(Status::stalled);
+      case PhaseEnd::runway_ends:
+        return ended_as(Status::no_jump);
+      case PhaseEnd::indeterminate:
+        return ended_as(Status::indeterminate);
+      case PhaseEnd::too_long:
+        return ended_as(Status::failed, "it slides on for longer than is followed");
+      case PhaseEnd::failed:
+        break;
+    }
+    return ended_as(Status::failed, "a phase could not be solved to the tolerance");
+  }
+
+  const Hoop<S>& hoop() const { return hoop_; }
+  const Contact<S>& contact() const { return contact_; }
+  /// How far the centre may travel.
+  const S& runway() const { return runway_; }
+  /// Once it has ended.
+  const Outcome& outcome() const { return outcome_; }
+  /// Where the phase told last begins, or where the design ended: of one that jumps just after the landing.
   const ContactState<S>& at() const { return at_; }
 
  private:
@@ -108,42 +119,44 @@ class PhaseMachine {
     return at_.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
   }
 
+  /// Flies and lands, as often as it leaves, up to the next phase of contact.
+  std::optional<NextPhase> go_on(ContactPhase next) {
+    while (sequence_.count() < most_phases) {
+      if (next != ContactPhase::leaves) {
+        slides_ = next != ContactPhase::rolls;
+        const NextPhase phase{slides_ ? Phase::sliding : Phase::rolling,
+                              !slides_                                ? 0
+                              : next == ContactPhase::slides_forwards ? 1
+                                                                      : -1};
+        if (begin_phase(phase.phase, phase.direction)) return ended_as(Status::stalled);
+        return phase;
+      }
+      if (const Status status = fly_and_land(next); status != Status::not_computed) return ended_as(status);
+    }
+    return ended_as(Status::failed, "more phases than a design may go through");
+  }
+
   /// Returns whether the hoop rocks to rest: the phase is then its last.
-  bool begin(Phase phase, int direction) {
+  bool begin_phase(Phase phase, int direction) {
     const ContactState<double> state = in_double(at_);
     sequence_.append(phase);
-    if (observer_.phase) observer_.phase(phase, state, direction);
+    if (observer_->phase) observer_->phase(phase, state, direction);
     return rocking_.settles(phase, direction, state.travel, state.angle, state.spin);
   }
 
   /// What is not known of a design that has no answer is not told.
-  Outcome ended_as(Status status, const char* reason = nullptr) {
-    if (observer_.end) observer_.end(in_double(at_));
+  std::nullopt_t ended_as(Status status, const char* reason = nullptr) {
+    if (observer_->end) observer_->end(in_double(at_));
     if (status == Status::failed || status == Status::indeterminate) {
       outcome_ = {};
     } else {
       outcome_.slip_distance = static_cast<double>(slipped_);
-      to_seconds(outcome_, time_unit(scene_));
+      to_seconds(outcome_, time_unit(*scene_));
     }
     outcome_.status = status;
     outcome_.failure = reason;
     outcome_.phase_sequence = sequence_.code();
-    return outcome_;
-  }
-
-  /// Rolls or slides to the phase's end.
-  PhaseEnd stay_in_contact(ContactPhase phase) {
-    using std::abs;
-    const ContactState<S> from = at_;
-    const bool rolls = phase == ContactPhase::rolls;
-    const int direction = rolls ? 0 : phase == ContactPhase::slides_forwards ? 1 : -1;
-    if (begin(rolls ? Phase::rolling : Phase::sliding, direction)) return PhaseEnd::stalls;
-    const PhaseEnd end =
-        rolls ? roll_(hoop_, contact_, at_, runway_) : slide_(hoop_, contact_, at_, runway_, direction);
-    driven_ += hoop_.drive * (at_.angle - from.angle);
-    if (rolls) return end;
-    slipped_ += abs((at_.travel - from.travel) - (at_.angle - from.angle));
-    return end;
+    return std::nullopt;
   }
 
   /// Flies, and lands unless that was it. Returns how the design ends, or not_computed if it goes on as
@@ -153,7 +166,7 @@ class PhaseMachine {
     const Flight<S> flight = at_.normal > S(0) ? fly_off(hoop_, lift_off, at_.normal) : fly(hoop_, lift_off);
     const Trig<S> phi = trig(at_.angle);
     if (sinks_without_motor(flight, phi)) return Status::indeterminate;
-    begin(Phase::flight, 0);
+    begin_phase(Phase::flight, 0);
     const bool jumps = look_at(lift_off, flight);
     at_ = after_flight(hoop_, at_, flight.flight_time);
     if (!jumps && !(std::abs(at_.travel) < runway_)) return Status::no_jump;
@@ -183,35 +196,43 @@ class PhaseMachine {
                                static_cast<double>(lift_off.spin)};
     const Flight<double> flown{static_cast<double>(flight.height), static_cast<double>(flight.apex_time),
                                static_cast<double>(flight.flight_time), static_cast<double>(flight.dip)};
-    const bool jumps = consider(outcome_, scene_, told, flown, static_cast<double>(at_.travel));
-    if (observer_.lift_off) observer_.lift_off(told, flown);
+    const bool jumps = consider(outcome_, *scene_, told, flown, static_cast<double>(at_.travel));
+    if (observer_->lift_off) observer_->lift_off(told, flown);
     if (jumps) {
       outcome_.energy_lost = static_cast<double>(released_ + driven_ - contact_energy(hoop_, at_));
     }
     return jumps;
   }
 
-  const Scene& scene_;
-  const CoulombObserver& observer_;
-  const Roll& roll_;
-  const Slide& slide_;
+  const Scene* scene_;
+  const CoulombObserver* observer_;
   Hoop<S> hoop_;
   Contact<S> contact_;
   S runway_, released_{0}, slipped_{0};
-  S driven_{0};  // work of the motor
-  ContactState<S> at_;
+  S driven_{0};          // work of the motor
+  ContactState<S> at_;   // where the last phase began, or where all ended
+  bool slides_ = false;  // in the phase told last
   PhaseSequence sequence_;
   Rocking rocking_;
   Outcome outcome_;
 };
 
+/// Goes through the phases until the design ends. roll(hoop, contact, state, runway) and slide(...,
+/// direction) move the state to their phase's end, or as far as they came; direction is 1 or -1.
 template <class S, class Roll, class Slide>
 Outcome go_through_phases(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
                           const CoulombObserver& observer, const Roll& roll, const Slide& slide) {
-  PhaseMachine<S, Roll, Slide> machine(design, from, scene, observer, roll, slide);
-  const Outcome outcome = machine.run(start);
-  if (outcome.status == Status::jumped) from = machine.at();
-  return outcome;
+  PhaseMachine<S> machine(design, from, scene, observer);
+  for (auto next = machine.begin(start); next;) {
+    ContactState<S> at = machine.at();
+    const PhaseEnd end =
+        next->phase == Phase::rolling
+            ? roll(machine.hoop(), machine.contact(), at, machine.runway())
+            : slide(machine.hoop(), machine.contact(), at, machine.runway(), next->direction);
+    next = machine.after(end, at);
+  }
+  if (machine.outcome().status == Status::jumped) from = machine.at();
+  return machine.outcome();
 }
 
 }  // namespace leapmap

@@ -7,17 +7,23 @@
 
 #include "coulomb/coulomb.hpp"
 #include "coulomb/coulomb_integration.hpp"
+#include "coulomb/coulomb_lanes.hpp"
 
 namespace leapmap::coulomb {
 
 /// Everything comes with the phases, wanted or not.
 Solver exact(const Scene& scene, double tolerance, const Wanted& wanted) {
   if (scene.jumps > 1) return in_sequence(jumps(scene, tolerance, wanted), scene);
-  return one_by_one(std::make_shared<CoulombSolver<double>>(tolerance), scene);
+  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance), scene](std::span<const Design> designs,
+                                                                           std::span<Outcome> outcomes) {
+    lanes->solve(designs, scene, outcomes);
+  };
 }
 
 JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted&) {
-  return jumps_one_by_one<double>(std::make_shared<CoulombSolver<double>>(tolerance), scene);
+  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance), scene](
+             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+             std::span<Outcome> outcomes) { lanes->solve(start, designs, states, scene, outcomes); };
 }
 
 std::function<double(const Design&)> effort(const Scene& scene) {

@@ -6,121 +6,10 @@
 #include <limits>
 #include <numbers>
 
-#include "numerics/first_fall.hpp"
-
 namespace leapmap {
 template <class S>
 RollingLeg<S>::RollingLeg(double tolerance)
-    : tolerance_(std::max(S(tolerance) * S(0.1), S(1000) * std::numeric_limits<S>::epsilon())) {
-  for (std::size_t k = 0; k < grid_.sin.size(); ++k) {
-    const Trig<S> phi = trig(S(2) * std::numbers::pi_v<S> * S(k % nodes_a_turn) / S(nodes_a_turn));
-    grid_.sin[k] = phi.sin, grid_.cos[k] = phi.cos, grid_.versine[k] = phi.versine;
-  }
-}
-
-namespace {
-
-/// E and the guards of sticking at an angle of a leg.
-template <class S>
-struct Look {
-  S angle;
-  Sample<S> vis_viva;
-  StickGuards<S> guards;
-};
-
-/// Looks at neighbouring angles, one after the other: the last one of the lanes before, then one a lane.
-template <class T>
-struct Looks {
-  using S = ScalarOf<T>;
-  using Numbers = std::array<S, Lanes<T>::count + 1>;
-  struct Samples {
-    Numbers value, rate;
-
-    void put_lanes(const Sample<T>& lanes) {
-      Lanes<T>::store(lanes.value, value.data() + 1), Lanes<T>::store(lanes.rate, rate.data() + 1);
-    }
-    void put(std::size_t k, const Sample<S>& sample) { value[k] = sample.value, rate[k] = sample.rate; }
-    Sample<S> at(std::size_t k) const { return {value[k], rate[k]}; }
-
-    /// Between which of the neighbours, `apart` from each other, it surely does not fall to zero.
-    MaskOf<T> clear(const T& apart) const {
-      const Sample<T> a{Lanes<T>::load(value.data()), Lanes<T>::load(rate.data())},
-          b{Lanes<T>::load(value.data() + 1), Lanes<T>::load(rate.data() + 1)};
-      return (smaller(a.value, b.value) > T(S(0))) & stays_above(a, b, apart);
-    }
-  };
-  Numbers angle;
-  Samples vis_viva, downhill, uphill;
-
-  void put(std::size_t k, const Look<S>& look) {
-    angle[k] = look.angle, vis_viva.put(k, look.vis_viva);
-    downhill.put(k, look.guards.downhill), uphill.put(k, look.guards.uphill);
-  }
-  void put_lanes(const Sample<T>& E, const StickGuards<T>& guards) {
-    vis_viva.put_lanes(E), downhill.put_lanes(guards.downhill), uphill.put_lanes(guards.uphill);
-  }
-  Look<S> at(std::size_t k) const { return {angle[k], vis_viva.at(k), {downhill.at(k), uphill.at(k)}}; }
-
-  /// Between which neighbours neither spin nor friction is used up, a bit for each two.
-  unsigned clear_of_ends() const {
-    const T apart = Lanes<T>::load(angle.data() + 1) - Lanes<T>::load(angle.data());
-    return Lanes<T>::bits(vis_viva.clear(apart) & downhill.clear(apart) & uphill.clear(apart));
-  }
-};
-
-/// What a leg looks like at its angles. roll: of the phase's beginning, near which E is known best, as seen
-/// on the leg; begin: of the leg's.
-template <class S>
-class LegView {
- public:
-  LegView(const Roll<S>& roll, const Roll<S>& begin, const S& mu_static)
-      : roll_(roll), begin_(begin), mu_static_(mu_static) {}
-
-  Look<S> at(const S& angle) const {
-    const Trig<S> phi = trig(angle);
-    const S E = vis_viva(roll_, angle, phi);
-    return {angle, {E, S(2) * torque(roll_.hoop, phi)}, stick_guards(roll_.hoop, phi, E, mu_static_)};
-  }
-
-  /// From rest E's first zero is the beginning itself, known by its push.
-  Look<S> at_begin() const {
-    Look<S> look = at(begin_.release);
-    look.vis_viva = {begin_.released, S(2) * begin_.push};
-    return look;
-  }
-
-  /// Whichever comes first between two angles near each other: friction used up either way, or the spin.
-  LegEnd<S> first_end(const Look<S>& left, const Look<S>& right) const {
-    const auto fall_of = [&](Sample<S> StickGuards<S>::*guard) {
-      return first_fall([&](const S& x) { return at(x).guards.*guard; }, left.angle, right.angle,
-                        left.guards.*guard, right.guards.*guard);
-    };
-    const auto vis_viva_at = [&](const S& x) {
-      return Sample<S>{vis_viva_past_release(roll_, S(x - roll_.release)),
-                       S(2) * torque(roll_.hoop, trig(x))};
-    };
-    const S backwards = fall_of(&StickGuards<S>::downhill), forwards = fall_of(&StickGuards<S>::uphill);
-    const S stall = first_fall(vis_viva_at, left.angle, right.angle, left.vis_viva, right.vis_viva);
-    // NaN is never before anything.
-    if (!std::isnan(stall) && !(backwards <= stall) && !(forwards <= stall)) return {PhaseEnd::stalls, stall};
-    if (!std::isnan(backwards) && !(forwards < backwards)) return {PhaseEnd::slips_backwards, backwards};
-    return {PhaseEnd::slips_forwards, forwards};
-  }
-
- private:
-  const Roll<S>& roll_;
-  const Roll<S>& begin_;
-  S mu_static_;
-};
-
-/// The leg's end as it is, when it was seen from the other side.
-PhaseEnd turned_over(PhaseEnd end) {
-  return end == PhaseEnd::slips_backwards  ? PhaseEnd::slips_forwards
-         : end == PhaseEnd::slips_forwards ? PhaseEnd::slips_backwards
-                                           : end;
-}
-
-}  // namespace
+    : tolerance_(std::max(S(tolerance) * S(0.1), S(1000) * std::numeric_limits<S>::epsilon())) {}
 
 template <class S>
 PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at, const S& runway,
@@ -161,40 +50,18 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
   }
 }
 
-/// Walks from node to node, so many at once as there are lanes; the end of the runway, `last`, comes as a
-/// node of its own.
 template <class S>
 LegEnd<S> RollingLeg<S>::first_end(const Roll<S>& roll, const Roll<S>& begin, const S& mu_static,
                                    const S& last) const {
-  using T = typename SpectralPanel<S, nodes>::T;
-  constexpr std::size_t width = Lanes<T>::count;
-  constexpr long turn = nodes_a_turn;
-  const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
   const LegView<S> view(roll, begin, mu_static);
-  const Roll<T> rolls = widened<T>(roll);
-  Looks<T> looks;
-  looks.put(0, view.at_begin());
-  for (long node = static_cast<long>(std::floor(begin.release / step)) + 1;; node += width) {
-    const auto first = static_cast<std::size_t>((node % turn + turn) % turn);
-    const Trig<T> phi{Lanes<T>::load(grid_.sin.data() + first), Lanes<T>::load(grid_.cos.data() + first),
-                      Lanes<T>::load(grid_.versine.data() + first)};
-    for (std::size_t k = 0; k < width; ++k) looks.angle[k + 1] = S(node + static_cast<long>(k)) * step;
-    const T E = vis_viva(rolls, Lanes<T>::load(looks.angle.data() + 1), phi);
-    looks.put_lanes({E, T(S(2)) * torque(rolls.hoop, phi)}, stick_guards(rolls.hoop, phi, E, T(mu_static)));
-    const unsigned clear = looks.clear_of_ends();
-    std::size_t left = 0;
-    for (std::size_t k = 1; k <= width; ++k) {
-      const bool ends = !(looks.angle[k] < last);
-      if (!ends && looks.angle[k] <= looks.angle[left]) continue;
-      if (ends || left != k - 1 || !(clear >> left & 1u)) {
-        const LegEnd<S> found = view.first_end(looks.at(left), ends ? view.at(last) : looks.at(k));
-        if (!std::isnan(found.angle)) return found;
-        if (ends) return {PhaseEnd::runway_ends, last};
-      }
-      left = k;
-    }
-    looks.put(0, looks.at(left));
-  }
+  LegEnd<S> end{PhaseEnd::runway_ends, last};
+  walk_.run(view, last, [&](const Look<S>& left, const Look<S>& right) {
+    const LegEnd<S> found = view.first_end(left, right);
+    if (std::isnan(found.angle)) return false;
+    end = found;
+    return true;
+  });
+  return end;
 }
 
 /// Both halves from the ends, as E vanishes at the far one too.

@@ -3,21 +3,12 @@
 /// turns round on the way.
 #pragma once
 
-#include <array>
 #include <functional>
 
-#include "coulomb/contact_phases.hpp"
+#include "coulomb/rolling_walk.hpp"
 #include "numerics/spectral.hpp"
-#include "physics/stick.hpp"
 
 namespace leapmap {
-
-/// How a leg ends, and at what angle.
-template <class S>
-struct LegEnd {
-  PhaseEnd end;
-  S angle;  ///< NaN: it goes on
-};
 
 template <class S>
 class RollingLeg {
@@ -33,7 +24,6 @@ class RollingLeg {
                const Told& turns = {}) const;
 
  private:
-  static constexpr std::size_t nodes_a_turn = 48;
   static constexpr std::size_t nodes = 24;
 
   LegEnd<S> first_end(const Roll<S>& roll, const Roll<S>& begin, const S& mu_static, const S& last) const;
@@ -46,10 +36,7 @@ class RollingLeg {
 
   S tolerance_;
   SpectralPanel<S, nodes> panel_;
-  /// One turn, and as many nodes more as there may be lanes.
-  struct Grid {
-    std::array<S, nodes_a_turn + 16> sin, cos, versine;
-  } grid_;
+  RollingWalk<S> walk_;
 };
 
 }  // namespace leapmap

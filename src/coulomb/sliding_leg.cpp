@@ -8,18 +8,15 @@
 #include "numerics/panel_fall.hpp"
 
 namespace leapmap {
+
+using namespace panel_lengths;
+
 namespace {
 
-constexpr double longest_angle = 2.0, first_angle = 1.2;  // of a panel by angle [rad]
-constexpr double shortest_angle = 1e-12;                  // of 1 + |angle|
-constexpr double vanishing_angle = 0.05;  // where the spin vanishes within less than this, panels are by time
-constexpr double longest_time = 1.0, first_time = 0.25,
-                 shortest_time = 1e-12;  // of a panel by time [sqrt(R/g)]
 constexpr double near_edge = 0.3;        // the edge matters for rounding from here on [rad]
 constexpr double share_of_edge = 0.6;    // a panel goes over so much of the way to the edge
 constexpr double at_edge = 1e-13;        // what is left changes nothing that is bounded [rad]
 constexpr double nearest_edge = 1e-290;  // nor anything else
-constexpr double least_place = 0.02;     // of an event in its panel
 constexpr int most_shortened = 40;
 constexpr int most_panels = 100'000;  // some slides rock against the edge, some 1e-100 deep
 
@@ -132,13 +129,8 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   EdgesAround<S> edges;
   Panel panel;
   S length(first_angle), duration(first_time);
-  // The tails go about with the length's power `nodes`: a length that just meets the tolerance, with some
-  // slack.
-  const auto change = [](const Panel& tried, const S& most) {
-    return std::clamp(S(0.85) * std::pow(tried.excess, S(-1) / S(Panels::nodes)), S(0.3), most);
-  };
   const auto shrink = [&](const Panel& tried) {
-    return std::isfinite(tried.excess) ? change(tried, S(0.85)) : S(0.5);
+    return std::isfinite(tried.excess) ? change(tried.excess, Panels::nodes, S(0.85)) : S(0.5);
   };
   int refined = 0, shortened = 0;
   for (int tried = 0; tried < most_panels; ++tried) {
@@ -209,14 +201,14 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       at = panel.end;
       slide.free_force = panel.free_force.end.value;
       (by_angle ? length : duration) *=
-          std::max(change(panel, S(2)), S(1));  // roundings do not shrink with it
+          std::max(change(panel.excess, Panels::nodes, S(2)), S(1));  // roundings do not shrink with it
       length = std::min(length, S(longest_angle)), duration = std::min(duration, S(longest_time));
       continue;
     }
-    std::optional<ContactState<S>> inside;
+    typename Panels::Inside inside{{}, false};
     if (by_angle) inside = panels_.state_at(slide, at, stretch, panel, event.place);
-    if (inside) {
-      at = *inside;
+    if (inside.is_sharp) {
+      at = inside.state;
     } else {  // the panel once more, ending there
       if (by_angle) {
         stretch.span *= event.place;

@@ -8,6 +8,28 @@
 
 namespace leapmap {
 
+/// How long the panels of a slide may be.
+namespace panel_lengths {
+
+inline constexpr double longest_angle = 2.0, first_angle = 1.2;  ///< of a panel by angle [rad]
+inline constexpr double shortest_angle = 1e-12;                  ///< of 1 + |angle|
+/// Where the spin vanishes within less than this, panels are by time.
+inline constexpr double vanishing_angle = 0.05;
+inline constexpr double longest_time = 1.0, first_time = 0.25, shortest_time = 1e-12;  ///< [sqrt(R/g)]
+inline constexpr double least_place = 0.02;  ///< of an event in a panel that lasts longer than longest_time
+
+/// The share of a panel's length for the next, or for the same once more: the tails go about with the
+/// length's power `nodes`, so that this one just meets the tolerance, with some slack. excess: of the panel.
+template <class T>
+T change(const T& excess, std::size_t nodes, ScalarOf<T> most) {
+  using S = ScalarOf<T>;
+  using std::exp, std::log;
+  const T share = T(S(0.85)) * exp(log(excess) * T(S(-1) / static_cast<S>(nodes)));
+  return larger(T(S(0.3)), smaller(share, T(most)));
+}
+
+}  // namespace panel_lengths
+
 template <class S>
 class SlidingLeg {
  public:

@@ -14,11 +14,33 @@ namespace {
 constexpr int most_iterations = 60;
 
 /// The largest, and infinity if any is no number: such a panel is not resolved.
-template <class Number>
-Number largest(std::initializer_list<Number> values) {
-  Number most(0);
-  for (const Number& value : values) most = std::isfinite(value) ? std::max(most, value) : Number(HUGE_VAL);
+template <class Value>
+Value largest(std::initializer_list<Value> values) {
+  using Number = ScalarOf<Value>;
+  Value most(Number(0));
+  for (const Value& value : values)
+    most = select(value - value == Value(Number(0)), larger(most, value), Value(Number(HUGE_VAL)));
   return most;
+}
+
+/// Of a T that holds nodes of an S, or one node of each of its lanes: whether any node is marked, and the
+/// least of their values.
+template <class S, class T>
+MaskOf<S> any_node(const MaskOf<T>& marked) {
+  if constexpr (std::is_same_v<S, T>) {
+    return marked;
+  } else {
+    return any(marked);
+  }
+}
+template <class S, class T>
+ValueOf<S> least_node(const T& values) {
+  if constexpr (std::is_same_v<S, T>) {
+    return value_of(values);
+  } else {
+    const auto lanes = lanes_of(values);
+    return *std::min_element(lanes.begin(), lanes.end());
+  }
 }
 
 /// The same hoop for the nodes, one or many at once.
@@ -43,7 +65,7 @@ template <class S>
 auto SlidingPanels<S>::stretch_of(const S& spin, const S& rise, const S& length) -> Stretch {
   // x = shift + q^2 takes out u's zero just before the start, where the spin is small and grows.
   using std::sqrt;
-  const S shift = rise > S(0) ? std::max(-spin * spin / (S(2) * rise), -length) : -length;
+  const S shift = select(rise > S(0), larger(S(-spin * spin / (S(2) * rise)), S(-length)), S(-length));
   const S begin = sqrt(-shift);
   return {shift, begin, sqrt(length - shift) - begin};
 }
@@ -51,42 +73,46 @@ auto SlidingPanels<S>::stretch_of(const S& spin, const S& rise, const S& length)
 template <class S>
 void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                                       Panel& panel) const {
-  // The nodes in lanes.
+  // The nodes in lanes, or each lane a panel.
   using T = typename Grid::T;
   using std::abs, std::exp, std::sqrt;
-  constexpr std::size_t width = Lanes<T>::count;
-  const auto get = [](const Values& values, std::size_t i) { return Lanes<T>::load(values.data() + i); };
-  const auto put = [](const T& value, Values& values, std::size_t i) {
-    Lanes<T>::store(value, values.data() + i);
-  };
+  constexpr std::size_t width = Grid::width;
+  const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
+  const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
   const Hoop<S>& hoop = slide.hoop;
   const S& friction = slide.friction;
   const Hoop<T> hoops = at_nodes<T>(hoop);
   const T m(friction);
-  const S way = from.spin < S(0) ? S(-1) : S(1), length = stretch.length();
-  panel.indeterminate = panel.spin_vanishes = false;
-  panel.excess = std::numeric_limits<Number>::infinity();
+  const Trig<S> start_phi = trig(from.angle);
+  const SlidingCoefficients<S> start = slide.coefficients(hoop, start_phi, S(0));
+  const S start_angular = start.turn * slide.free_force + hoop.drive / hoop.Ic;
+  const S way = select((from.spin < S(0)) | ((from.spin == S(0)) & (start_angular < S(0))), S(-1), S(1));
+  const S length = stretch.length();
+  const Mask rests = stretch.begin + stretch.span == S(0);  // at its end
+  panel.spin_vanishes = Mask(false);
+  panel.excess = Value(std::numeric_limits<Number>::infinity());
   panel.turned = way * length;
   panel.end.angle = from.angle + panel.turned;
-  const Trig<S> start_phi = trig(from.angle), end_phi = trig(panel.end.angle);
+  const Trig<S> end_phi = trig(panel.end.angle);
 
   const SlidingCoefficients<S> end = slide.coefficients(hoop, end_phi, S(way * length));
-  panel.indeterminate = !(end.pivot > S(0));
+  T least_pivot(smaller(start.pivot, end.pivot));
   // With n0 in place of u, where it is the one that vanishes, and the cosine stays away from zero.
   const S farthest = S(-0.2);
-  const bool by_force = panel.by_force = slide.edge && slide.free_force < S(0.5) * hoop.cos_slope &&
-                                         start_phi.cos < farthest && end_phi.cos < farthest;
+  const bool by_force = panel.by_force =
+      slide.edge && all((slide.free_force < S(0.5) * hoop.cos_slope) & (start_phi.cos < farthest) &
+                        (end_phi.cos < farthest));
 
   Values a, b, weight, angle;
   std::array<Trig<T>, nodes / width> phi;
   std::array<SlidingCoefficients<T>, nodes / width> coefficients;
   for (std::size_t i = 0; i < nodes; i += width) {
-    const T q = T(stretch.begin) + T(stretch.span) * Lanes<T>::load(grid_.node.data() + i);
-    const T w = q * T(S(2) * stretch.span), x = T(stretch.shift) + q * q;
+    const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
+    const T w = q * T(S(2) * stretch.curve * stretch.span), x = T(stretch.shift) + T(stretch.curve) * q * q;
     const Trig<T> at_node = phi[i / width] = trig(T(from.angle) + T(way) * x);
     const SlidingCoefficients<T> at = coefficients[i / width] =
         slide.coefficients(hoops, at_node, T(way) * x);
-    panel.indeterminate = panel.indeterminate || !all(at.pivot > T(S(0)));
+    least_pivot = smaller(least_pivot, at.pivot);
     const T idle = free_normal_force(hoops, at_node, T(S(0))), torque = hoops.drive / hoops.Ic;
     const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoops.rho * at_node.cos;
     if (by_force) {
@@ -100,19 +126,23 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     put(w, weight, i);
     put(x, angle, i);
   }
-  if (panel.indeterminate) return;
+  panel.least_pivot = least_node<S, T>(least_pivot);
+  panel.indeterminate = !(panel.least_pivot > Value(Number(0)));
+  if (all(panel.indeterminate)) return;
 
   panel.growth = grid_.integrals(a);
-  Values grown_by, driven;
+  Values grown_by;
+  Values& driven = panel.driven_rate;
   for (std::size_t i = 0; i < nodes; i += width) {
     const T grown = exp(get(panel.growth, i));
     put(grown, grown_by, i);
-    put(get(b, i) / grown, driven, i);
+    put(get(b, i) * reciprocal(grown), driven, i);
   }
   panel.driven = grid_.integrals(driven);
   const S start_u = from.spin * from.spin, start_force = slide.free_force;
   const S start_y = panel.start_y = by_force ? start_force : start_u;
-  const S end_y = exp(grid_.integral(a)) * (start_y + grid_.integral(driven));
+  const S end_growth = exp(grid_.integral(a)), end_driven = grid_.integral(driven);
+  const S end_y = end_growth * (start_y + end_driven);
   const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
     return by_force ? y : free_normal_force(hoop_at, at, y);
   };
@@ -120,8 +150,10 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
                                        const R& turn) {
     return free_normal_force_rate(hoop_at, at, u, R(turn * n0 + hoop_at.drive / hoop_at.Ic));
   };
-  const S end_u = spin_squared(hoop, end_phi, end_y, by_force);
-  T least_u(std::min(start_u > S(0) ? start_u : end_u, end_u));
+  const S end_u = select(rests, S(0), spin_squared(hoop, end_phi, end_y, by_force));
+  // Where it is at rest at an end, the nodes tell.
+  const S fast(std::numeric_limits<Number>::max());
+  T least_u(smaller(select(start_u > S(0), start_u, fast), select(rests, fast, end_u)));
   Values& time_rate = panel.time_rate;
   for (std::size_t i = 0; i < nodes; i += width) {
     const Trig<T>& at = phi[i / width];
@@ -129,29 +161,37 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
     const T u = spin_squared(hoops, at, y, by_force), n0 = force(hoops, at, y);
     least_u = smaller(least_u, u);
-    const T w = get(weight, i), rate = w / sqrt(u);
+    const T w = get(weight, i), rate = w * reciprocal_sqrt(u);
     put(rate, time_rate, i);
     put(sliding_motion(hoops, at, u, m, there, n0).slip * rate, panel.slip.rate, i);
     put(n0, panel.free_force.value, i);
     put(T(way) * w * force_rate(hoops, at, u, n0, there.turn), panel.free_force.rate, i);
   }
-  const auto least = lanes_of(least_u);
-  const Number slowest = *std::min_element(least.begin(), least.end());
-  panel.spin_vanishes = !(slowest > Number(0));
-  if (panel.spin_vanishes) return;
+  const Value slowest = least_node<S, T>(least_u);
+  panel.spin_vanishes = !(slowest > Value(Number(0)));
+  const S end_weight = S(2) * stretch.curve * stretch.span * (stretch.begin + stretch.span);
+  const S start_weight = S(2) * stretch.curve * stretch.span * stretch.begin;
+  const Value of_one = by_force ? Value(Number(1)) : largest_part(S(S(1) + start_u));
+  const Value spin_tail = largest<Value>({grid_.tail(a), grid_.tail(driven) / of_one});
+  const Value roundings = slide.rounding_at_end(end.pivot);
+  panel.spin_excess =
+      select(panel.indeterminate, panel.excess, Value(spin_tail / (Value(tolerance_) + roundings)));
+  const auto driven_by = [&](const Trig<S>& at, const SlidingCoefficients<S>& there, const S& w) {
+    return way * w * S(2) * (there.turn * free_normal_force(hoop, at, S(0)) + hoop.drive / hoop.Ic);
+  };
+  panel.driven_start = {S(0), driven_by(start_phi, start, start_weight)};
+  panel.driven_end = {end_driven, driven_by(end_phi, end, end_weight) / end_growth};
+  if (all(panel.spin_vanishes)) return;
 
   const S end_force = force(hoop, end_phi, end_y);
-  const S end_weight = S(2) * stretch.span * (stretch.begin + stretch.span),
-          end_rate = end_weight / sqrt(end_u);
-  const S start_weight = S(2) * stretch.span * stretch.begin;
-  const SlidingCoefficients<S> start = slide.coefficients(hoop, start_phi, S(0));
+  // At rest weight over spin has a limit.
+  const S end_rate = select(rests, time_rate[nodes - 1], S(end_weight / sqrt(end_u)));
   panel.end.spin = way * sqrt(end_u);
   panel.free_force.end = {end_force,
                           way * end_weight * force_rate(hoop, end_phi, end_u, end_force, end.turn)};
   panel.free_force.start = {
       start_force, way * start_weight * force_rate(hoop, start_phi, start_u, start_force, start.turn)};
-  // At rest weight over spin has a limit.
-  const S start_rate = start_u > S(0) ? S(start_weight / sqrt(start_u)) : time_rate[0];
+  const S start_rate = select(start_u > S(0), S(start_weight / sqrt(start_u)), time_rate[0]);
   panel.slip.start = {
       from.slip, start_rate * sliding_motion(hoop, start_phi, start_u, friction, start, start_force).slip};
 
@@ -172,40 +212,46 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.slip.end = {panel.end.slip,
                     end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
   panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
-  const Number noise =
-      slide.rounding_at_end(end.pivot) + Number(16) * std::numeric_limits<Number>::epsilon() *
-                                             std::min(value_of(start_u) / slowest, Number(1e6));
-  const Number of_one = by_force ? Number(1) : largest_part(S(S(1) + start_u));
-  panel.excess = largest<Number>({grid_.tail(a), grid_.tail(driven) / of_one,
-                                  Number(0.1) * grid_.tail(time_rate) / largest_part(duration),
-                                  grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
-                 (tolerance_ + noise);
+  // Beside the end at rest w^2 has few digits, and little weight.
+  const Value lost =
+      select(rests, Value(Number(1)), smaller(Value(value_of(start_u) / slowest), Value(Number(1e6))));
+  const Value noise = roundings + Value(Number(16) * std::numeric_limits<Number>::epsilon()) * lost;
+  const Value excess =
+      largest<Value>({spin_tail, Value(Number(0.1)) * grid_.tail(time_rate) / largest_part(duration),
+                      grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
+      (Value(tolerance_) + noise);
+  panel.excess = select(panel.indeterminate | panel.spin_vanishes, panel.excess, excess);
 }
 
 template <class S>
 auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
-                                const Panel& panel, const S& place) const -> std::optional<ContactState<S>> {
+                                const Panel& panel, const S& place) const -> Inside {
   using std::exp, std::sqrt;
   const S beside(0.1), small(0.01);
-  if (!(place > beside)) return {};
-  const S way = panel.turned < S(0) ? S(-1) : S(1);
-  ContactState<S> at = from;
+  Inside inside{from, place > beside};
+  if (!any(inside.is_sharp)) return inside;
+  ContactState<S>& at = inside.state;
+  const S way = select(panel.turned < S(0), S(-1), S(1));
   at.angle += way * stretch.angle(place);
-  const S y = exp(grid_.value(panel.growth, place)) * (panel.start_y + grid_.value(panel.driven, place));
+  const Values times = grid_.integrals(panel.time_rate);
+  const auto [growth, driven, taken, slip, travel] = grid_.template values<5>(
+      {&panel.growth, &panel.driven, &times, &panel.slip.value, &panel.travel.value}, place);
+  const S y = exp(growth) * (panel.start_y + driven);
   const S u = spin_squared(slide.hoop, trig(at.angle), y, panel.by_force);
-  if (!(u > small * std::max(from.spin * from.spin, panel.end.spin * panel.end.spin))) return {};
+  inside.is_sharp =
+      inside.is_sharp & (u > small * larger(S(from.spin * from.spin), S(panel.end.spin * panel.end.spin)));
   at.spin = way * sqrt(u);
-  at.time += grid_.value(grid_.integrals(panel.time_rate), place);
-  at.slip = grid_.value(panel.slip.value, place);
-  at.travel = grid_.value(panel.travel.value, place);
-  return at;
+  at.time += taken;
+  at.slip = slip;
+  at.travel = travel;
+  return inside;
 }
 
 template <class S>
 void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration,
                                      Panel& panel) const {
   using T = typename Grid::T;
-  constexpr std::size_t width = Lanes<T>::count;
+  constexpr std::size_t width = Grid::width;
   using std::abs;
   const Hoop<S>& hoop = slide.hoop;
   const S& friction = slide.friction;
@@ -295,6 +341,11 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
 
 #ifdef LEAPMAP_KERNELS
 template class SlidingPanels<double>;
+template auto SlidingPanels<Batch>::stretch_of(const Batch&, const Batch&, const Batch&) -> Stretch;
+template void SlidingPanels<Batch>::solve_by_angle(const Slide&, const ContactState<Batch>&, const Stretch&,
+                                                   Panel&) const;
+template auto SlidingPanels<Batch>::state_at(const Slide&, const ContactState<Batch>&, const Stretch&,
+                                             const Panel&, const Batch&) const -> Inside;
 template class SlidingPanels<DesignDual>;
 #endif
 #ifdef LEAPMAP_SCALARS

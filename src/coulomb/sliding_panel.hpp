@@ -6,7 +6,8 @@
 /// integral of a; time, slip and travel are integrals over u's root. Near Painleve's edge n0 takes the place
 /// of u: it obeys an equation of the same kind, with -tan(phi) + 2 rho c turn and
 /// tan(phi) n1 + 3 rho c tau / Ic, and keeps its digits where it vanishes with the pivot. Where the spin goes
-/// through zero panels are in time: angle and spin at their nodes by Picard's iteration.
+/// through zero panels are in time, angle and spin at their nodes by Picard's iteration; or, as u is smooth
+/// there, one by angle ends where u is zero.
 #pragma once
 
 #include <optional>
@@ -17,11 +18,14 @@
 
 namespace leapmap {
 
-/// S: a number, or a dual, whose derivatives panels of given lengths carry along.
+/// S: a number; a dual, whose derivatives panels of given lengths carry along; or a batch, the panels of as
+/// many slides at once, by angle and far from any edge.
 template <class S>
 class SlidingPanels {
  public:
   using Number = ScalarOf<S>;
+  using Value = ValueOf<S>;
+  using Mask = MaskOf<S>;
   static constexpr std::size_t nodes = 24;
   using Grid = SpectralPanel<S, nodes>;
   using Values = typename Grid::Values;
@@ -36,18 +40,22 @@ class SlidingPanels {
   struct Panel {
     Course slip, travel, free_force;
     // Of a panel by angle: y = e^growth (start_y + driven) is w^2 or, where it says so, n0.
-    Values growth, driven, time_rate;
+    Values growth, driven, driven_rate, time_rate;
+    Sample<S> driven_start, driven_end;
     S start_y;
     bool by_force;
+    Value least_pivot;
+    Value spin_excess;  ///< the nodes resolve y if at most 1, also where the spin vanishes
     ContactState<S> end;
-    S turned;       ///< from start to end
-    Number excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
-    bool indeterminate, spin_vanishes;
+    S turned;      ///< from start to end
+    Value excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    Mask indeterminate, spin_vanishes;
   };
-  /// A panel by angle: |phi - from| = shift + q^2, q from begin to begin + span.
+  /// A panel by angle: |phi - from| = shift + curve q^2, q from begin to begin + span.
   struct Stretch {
     S shift, begin, span;
-    S angle(const S& place) const { return shift + (begin + span * place) * (begin + span * place); }
+    S curve = S(1);  ///< or -1: the spin vanishes where q is zero, at the panel's end or beyond
+    S angle(const S& place) const { return shift + curve * (begin + span * place) * (begin + span * place); }
     S length() const { return angle(S(1)); }
   };
   /// A panel as a slide took it: a stretch by angle, or else a duration.
@@ -71,13 +79,16 @@ class SlidingPanels {
       return sliding_coefficients(hoops, phi, m, edge->pivot(hoops, m, T(left) - T(edge->way) * turned));
     }
     /// Relative rounding of the accelerations where the pivot is so large: it comes of terms that may cancel.
-    Number rounding(Number pivot) const {
-      const Number Ic = value_of(hoop.Ic), rho = value_of(hoop.rho);
-      return Number(16) * std::numeric_limits<Number>::epsilon() *
-             (Ic + rho * (rho + Number(2) * std::abs(value_of(friction)))) / pivot;
+    Value rounding(const Value& pivot) const {
+      using std::abs;
+      const Value Ic = value_of(hoop.Ic), rho = value_of(hoop.rho);
+      return Value(Number(16) * std::numeric_limits<Number>::epsilon()) *
+             (Ic + rho * (rho + Value(Number(2)) * Value(abs(value_of(friction))))) / pivot;
     }
     /// The same at a panel's end: near the edge the pivot comes without cancellation.
-    Number rounding_at_end(const S& pivot) const { return rounding(edge ? Number(1) : value_of(pivot)); }
+    Value rounding_at_end(const S& pivot) const {
+      return rounding(edge ? Value(Number(1)) : value_of(pivot));
+    }
   };
 
   explicit SlidingPanels(Number tolerance) : tolerance_(tolerance) {}
@@ -85,12 +96,23 @@ class SlidingPanels {
   /// The stretch of that length, its nodes closer where the spin is small and grows. rise: of w^2 / 2, an
   /// angle.
   static Stretch stretch_of(const S& spin, const S& rise, const S& length);
+  /// The stretch of that length to where the spin vanishes.
+  static Stretch stretch_to_rest(const S& length) {
+    using std::sqrt;
+    const S root = sqrt(length);
+    return {length, -root, root, S(-1)};
+  }
   void solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                       Panel& panel) const;
-  /// The state at a place in (0, 1] of a panel by angle that is solved, or nothing where that has lost
-  /// digits: beside the panel's start, or where the spin is small against those at its ends.
-  std::optional<ContactState<S>> state_at(const Slide& slide, const ContactState<S>& from,
-                                          const Stretch& stretch, const Panel& panel, const S& place) const;
+  /// A state inside a panel, and whether it has kept its digits.
+  struct Inside {
+    ContactState<S> state;
+    Mask is_sharp;
+  };
+  /// The state at a place in (0, 1] of a panel by angle that is solved. It loses digits beside the panel's
+  /// start, and where the spin is small against those at its ends.
+  Inside state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const Panel& panel,
+                  const S& place) const;
   void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
 
   const Grid& grid() const { return grid_; }

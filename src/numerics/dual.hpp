@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 #include "numerics/lanes.hpp"
 
@@ -201,6 +202,9 @@ template <class T, std::size_t N>
 const T& value_of(const Dual<T, N>& dual) {
   return dual.value;
 }
+
+template <class T>
+using ValueOf = std::decay_t<decltype(value_of(std::declval<const T&>()))>;
 
 /// The size of a number, and of a dual the largest among those of its value and its derivatives.
 template <class T>

@@ -151,6 +151,23 @@ ScalarOf<T> largest_lane(const T& numbers) {
   return most;
 }
 
+/// 1 / x, to a few roundings.
+template <class T>
+T reciprocal(const T& x) {
+  return T(ScalarOf<T>(1)) / x;
+}
+#ifdef __AVX512F__
+/// From the instruction's 14 bits by two of Newton's steps: a third of the time of a division.
+template <class A>
+xsimd::batch<double, A> reciprocal(const xsimd::batch<double, A>& x) requires(
+    xsimd::batch<double, A>::size == 8) {
+  using T = xsimd::batch<double, A>;
+  T y = _mm512_rcp14_pd(x);
+  y = xsimd::fma(y, xsimd::fnma(x, y, T(1.0)), y);
+  return xsimd::fma(y, xsimd::fnma(x, y, T(1.0)), y);
+}
+#endif
+
 /// 1 / sqrt(x) for x > 0, to a few roundings.
 template <class T>
 T reciprocal_sqrt(const T& x) {

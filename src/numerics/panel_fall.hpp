@@ -25,8 +25,8 @@ struct PanelExtent {
 
   /// Of offset + factor times the function, factor 1 or -1.
   PanelExtent of(const S& offset, const S& factor) const {
-    return factor > S(0) ? PanelExtent{offset + least, offset + most, steepest}
-                         : PanelExtent{offset - most, offset - least, steepest};
+    const S a = offset + factor * least, b = offset + factor * most;
+    return {smaller(a, b), larger(a, b), steepest};
   }
 };
 
@@ -34,25 +34,28 @@ template <class S, std::size_t n>
 PanelExtent<S> extent_of(const typename SpectralPanel<S, n>::Values& values,
                          const typename SpectralPanel<S, n>::Values& rates, const Sample<S>& first,
                          const Sample<S>& last) {
-  using T = typename SpectralPanel<S, n>::T;
-  using std::abs, std::max, std::min;
-  T least(min(first.value, last.value)), most(max(first.value, last.value)),
-      steepest(max(abs(first.rate), abs(last.rate)));
-  for (std::size_t i = 0; i < n; i += Lanes<T>::count) {
-    const T value = Lanes<T>::load(values.data() + i), rate = Lanes<T>::load(rates.data() + i);
+  using Panel = SpectralPanel<S, n>;
+  using T = typename Panel::T;
+  using std::abs;
+  T least(smaller(first.value, last.value)), most(larger(first.value, last.value)),
+      steepest(larger(S(abs(first.rate)), S(abs(last.rate))));
+  for (std::size_t i = 0; i < n; i += Panel::width) {
+    const T value = Panel::at(values, i), rate = Panel::at(rates, i);
     least = smaller(least, value), most = larger(most, value), steepest = larger(steepest, T(abs(rate)));
   }
-  const auto least_of = lanes_of(least), most_of = lanes_of(most), steepest_of = lanes_of(steepest);
-  return {*std::min_element(least_of.begin(), least_of.end()),
-          *std::max_element(most_of.begin(), most_of.end()),
-          *std::max_element(steepest_of.begin(), steepest_of.end())};
+  if constexpr (Panel::width == 1) {
+    return {least, most, steepest};
+  } else {
+    const auto least_of = lanes_of(least);
+    return {*std::min_element(least_of.begin(), least_of.end()), largest_lane(most), largest_lane(steepest)};
+  }
 }
 
 /// Well above zero everywhere: a third of a spacing on, the tangent of no node comes down to a thousandth,
 /// which is more than the cubics are off by where the nodes resolve the function.
 template <class S, std::size_t n>
-bool is_clear_of_zero(const SpectralPanel<S, n>& panel, const PanelExtent<S>& extent) {
-  return extent.least - extent.steepest * panel.longest_spacing() / S(3) > S(1e-3) * extent.most;
+MaskOf<S> is_clear_of_zero(const SpectralPanel<S, n>& panel, const PanelExtent<S>& extent) {
+  return extent.least - extent.steepest * S(panel.longest_spacing() / 3) > S(ScalarOf<S>(1e-3)) * extent.most;
 }
 
 /// A function at a panel's start, nodes and end, knot after knot.
@@ -99,7 +102,10 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
                         const Sample<S>& last, const S& slack) {
   using std::min;
   constexpr S none(2), shortest(1e-9);
-  const auto at = [&](const S& x) { return Sample<S>{panel.value(values, x), panel.value(rates, x)}; };
+  const auto at = [&](const S& x) {
+    const auto [value, rate] = panel.template values<2>({&values, &rates}, x);
+    return Sample<S>{value, rate};
+  };
   const auto polish = [&](const S& a, const S& b, const S& guess) {
     return polish_root(at, a, b, guess, false, S(4) * std::numeric_limits<S>::epsilon());
   };
@@ -160,6 +166,64 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
     if (place < none) return {place, unsure};
   }
   return {none, unsure};
+}
+
+/// The first falls of as many functions as T has lanes, each on a panel of its own.
+template <class T>
+struct PlainFall {
+  T place;             ///< in (0, 1]; 2: it does not fall
+  MaskOf<T> is_plain;  ///< else first_fall has to look: at a dip, or at a start that is no rise from zero
+};
+
+/// The same as first_fall, of lanes where the first interval in which the cubic comes near zero holds a plain
+/// fall through it. Lanes outside `asked` return anything.
+template <class T, std::size_t n>
+PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename SpectralPanel<T, n>::Values& values,
+                        const typename SpectralPanel<T, n>::Values& rates, const Sample<T>& first,
+                        const Sample<T>& last, const T& slack, const MaskOf<T>& asked) {
+  using S = ScalarOf<T>;
+  const T zero(S(0)), third(S(1) / S(3)), bend = panel.fourth_derivative_bound(values) * T(S(1) / S(288));
+  const MaskOf<T> starts_at_zero = !(first.value > zero);
+  const MaskOf<T> odd = starts_at_zero & !((first.rate > zero) & (values[0] > zero));
+  MaskOf<T> looking = asked & !odd;
+  MaskOf<T> monotone = !looking & looking;  // and all that is found below: of the interval found
+  T from(S(0)), to(S(1));
+  Sample<T> at_from = first, at_to = last;
+  for (std::size_t i = 0; i <= n && any(looking); ++i) {
+    const T a(i == 0 ? S(0) : panel.node[i - 1]), b(i == n ? S(1) : panel.node[i]), h = b - a;
+    const Sample<T> at_a = i == 0 ? first : Sample<T>{values[i - 1], rates[i - 1]},
+                    at_b = i == n ? last : Sample<T>{values[i], rates[i]};
+    const T inner_a = at_a.value + h * at_a.rate * third, inner_b = at_b.value - h * at_b.rate * third;
+    const T square = h * h, error = bend * square * square;
+    MaskOf<T> near = looking & !((at_b.value > zero) & (smaller(inner_a, inner_b) > error + slack));
+    if (i == 0) near = near & !starts_at_zero;
+    if (!any(near)) continue;
+    looking = looking & !near;
+    from = select(near, a, from), to = select(near, b, to);
+    at_from = {select(near, at_a.value, at_from.value), select(near, at_a.rate, at_from.rate)};
+    at_to = {select(near, at_b.value, at_to.value), select(near, at_b.rate, at_to.rate)};
+    const T least_fall = smaller(smaller(at_a.value - inner_a, inner_a - inner_b), inner_b - at_b.value);
+    monotone = monotone | (near & (least_fall > T(S(2)) * error));
+  }
+  const MaskOf<T> falls = monotone & (at_from.value > zero) & !(at_to.value > -slack);
+  PlainFall<T> fall{T(S(2)), asked & (looking | falls)};
+  if (!any(falls)) return fall;
+  // From where the cubic falls, which two steps from the chain tell well enough.
+  const T h = to - from;
+  T x = at_from.value / (at_from.value - at_to.value);
+  const T d = at_to.value - at_from.value, m_from = h * at_from.rate, m_to = h * at_to.rate;
+  const T c2 = T(S(3)) * d - T(S(2)) * m_from - m_to, c3 = m_from + m_to - T(S(2)) * d;
+  for (int k = 0; k < 2; ++k)
+    x = x -
+        (at_from.value + x * (m_from + x * (c2 + x * c3))) / (m_from + x * (T(S(2)) * c2 + x * T(S(3)) * c3));
+  const auto at = [&](const T& place) {
+    const auto [value, rate] = panel.template values<2>({&values, &rates}, place);
+    return Sample<T>{value, rate};
+  };
+  const T place = polish_root(at, from, to, T(from + h * x), falls & !falls,
+                              T(S(4) * std::numeric_limits<S>::epsilon()), falls);
+  fall.place = select(falls, place, fall.place);
+  return fall;
 }
 
 }  // namespace leapmap

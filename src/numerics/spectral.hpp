@@ -23,7 +23,8 @@ struct SpectralPanel {
   using Numbers = std::array<Number, n>;
   using Values = std::array<S, n>;
   using T = std::conditional_t<std::is_same_v<S, double>, Batch, S>;  ///< nodes in lanes
-  static constexpr std::size_t width = Lanes<T>::count;
+  /// Nodes in a T; one where its lanes are panels of their own.
+  static constexpr std::size_t width = std::is_same_v<T, S> ? 1 : Lanes<T>::count;
   static_assert(n % width == 0);
   Numbers node, weight;
   std::array<Numbers, n>
@@ -73,19 +74,48 @@ struct SpectralPanel {
   Values integrals(const Values& f) const { return product(running, f); }
   /// Integral of f over the panel.
   S integral(const Values& f) const { return dot(weight, f); }
-  /// f at x in [0, 1], by the barycentric formula.
-  S value(const Values& f, const S& x) const {
-    T above(S(0)), below(S(0));
-    for (std::size_t i = 0; i < n; i += width) {
-      const T away = T(x) - Lanes<T>::load(node.data() + i);
-      if (any(away == T(S(0)))) {
-        for (std::size_t k = i;; ++k)
-          if (node[k] == value_of(x)) return f[k];
-      }
-      const T share = Lanes<T>::load(barycentric.data() + i) / away;
-      above += share * Lanes<T>::load(f.data() + i), below += share;
+  /// f's values at node i and at as many after it as a T holds.
+  static T at(const Values& f, std::size_t i) {
+    if constexpr (width == 1) {
+      return f[i];
+    } else {
+      return Lanes<T>::load(f.data() + i);
     }
-    return sum(above) / sum(below);
+  }
+  static void put(const T& value, Values& f, std::size_t i) {
+    if constexpr (width == 1) {
+      f[i] = value;
+    } else {
+      Lanes<T>::store(value, f.data() + i);
+    }
+  }
+  /// The same of numbers that all panels share.
+  static T shared(const Numbers& numbers, std::size_t i) {
+    if constexpr (width == 1) {
+      return T(numbers[i]);
+    } else {
+      return Lanes<T>::load(numbers.data() + i);
+    }
+  }
+  /// f at x in [0, 1], by the barycentric formula.
+  S value(const Values& f, const S& x) const { return values<1>({&f}, x)[0]; }
+  /// The same of several functions, for little more than one of them costs.
+  template <std::size_t count>
+  std::array<S, count> values(const std::array<const Values*, count>& functions, const S& x) const {
+    std::array<T, count> above;
+    above.fill(T(Number(0)));
+    T below(Number(0));
+    for (std::size_t i = 0; i < n; i += width) {
+      const T away = T(x) - shared(node, i);
+      // On a node its share is all but the whole.
+      const T share =
+          shared(barycentric, i) * reciprocal(select(away == T(Number(0)), T(Number(1e-290)), away));
+      for (std::size_t k = 0; k < count; ++k) above[k] += share * at(*functions[k], i);
+      below += share;
+    }
+    std::array<S, count> told;
+    for (std::size_t k = 0; k < count; ++k) told[k] = sum(above[k]) / sum(below);
+    return told;
   }
   /// The longest way between neighbours among the nodes and both ends.
   Number longest_spacing() const { return node[n / 2] - node[n / 2 - 1]; }
@@ -93,26 +123,31 @@ struct SpectralPanel {
   S fourth_derivative_bound(const Values& f) const {
     using std::abs;
     const Values coefficients = product(expansion, f);
-    T bound(S(0));
-    for (std::size_t k = 0; k < n; k += width)
-      bound += T(abs(Lanes<T>::load(coefficients.data() + k))) * Lanes<T>::load(fourth.data() + k);
+    T bound(Number(0));
+    for (std::size_t k = 0; k < n; k += width) bound += times(fourth.data() + k, T(abs(at(coefficients, k))));
     return sum(bound);
   }
   /// The larger of f's last two Legendre coefficients: about the error of values between the nodes, and the
   /// square root of that of the integral, both where f is of size 1. Of duals, of all derivatives too.
-  Number tail(const Values& f) const {
-    return std::max(largest_part(dot(last_but_one, f)), largest_part(dot(last, f)));
+  ValueOf<S> tail(const Values& f) const {
+    return larger(largest_part(dot(last_but_one, f)), largest_part(dot(last, f)));
   }
 
  private:
   /// The sum of the matrix's columns, column j times f[j].
   static Values product(const std::array<Numbers, n>& columns, const Values& f) {
-    std::array<T, n / width> sums;
-    sums.fill(T(S(0)));
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = 0; i < n / width; ++i) sums[i] += times(columns[j].data() + i * width, T(f[j]));
+    // So many rows at once that their sums stay in registers.
+    constexpr std::size_t rows = std::min<std::size_t>(n / width, 8);
+    static_assert(n / width % rows == 0);
     Values values;
-    for (std::size_t i = 0; i < n / width; ++i) Lanes<T>::store(sums[i], values.data() + i * width);
+    for (std::size_t first = 0; first < n / width; first += rows) {
+      std::array<T, rows> sums;
+      sums.fill(T(Number(0)));
+      for (std::size_t j = 0; j < n; ++j)
+        for (std::size_t i = 0; i < rows; ++i)
+          sums[i] += times(columns[j].data() + (first + i) * width, T(f[j]));
+      for (std::size_t i = 0; i < rows; ++i) put(sums[i], values, (first + i) * width);
+    }
     return values;
   }
   static S sum(const T& value) {
@@ -126,13 +161,15 @@ struct SpectralPanel {
   static T times(const Number* factors, const T& values) {
     if constexpr (has_derivatives<S>) {
       return values * *factors;
+    } else if constexpr (width == 1) {
+      return T(*factors) * values;
     } else {
       return Lanes<T>::load(factors) * values;
     }
   }
   static S dot(const Numbers& a, const Values& b) {
-    T products(S(0));
-    for (std::size_t i = 0; i < n; i += width) products += times(a.data() + i, Lanes<T>::load(b.data() + i));
+    T products(Number(0));
+    for (std::size_t i = 0; i < n; i += width) products += times(a.data() + i, at(b, i));
     return sum(products);
   }
 };

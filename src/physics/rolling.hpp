@@ -41,10 +41,11 @@ T x_minus_sin(const T& x, const Trig<T>& turned) {
   } else {
     const auto small = abs(x) < T(0.7);
     if (!any(small)) return x - turned.sin;
+    using S = ScalarOf<T>;
     const T square = x * x;
     T sum(1);
-    for (int k = 18; k >= 4; k -= 2) sum = T(1) - sum * square / T(k * (k + 1));
-    return select(small, x * square * sum / T(6), x - turned.sin);
+    for (int k = 18; k >= 4; k -= 2) sum = T(1) - sum * square * T(S(1) / S(k * (k + 1)));
+    return select(small, x * square * sum * T(S(1) / S(6)), x - turned.sin);
   }
 }
 

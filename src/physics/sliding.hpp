@@ -32,7 +32,8 @@ T sliding_lever(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction) {
 template <class T>
 SlidingCoefficients<T> sliding_coefficients(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction,
                                             const T& pivot) {
-  return {pivot, -sliding_lever(hoop, phi, friction) / pivot, hoop.Ic / pivot};
+  const T inverse = reciprocal(pivot);
+  return {pivot, -sliding_lever(hoop, phi, friction) * inverse, hoop.Ic * inverse};
 }
 template <class T>
 SlidingCoefficients<T> sliding_coefficients(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction) {

@@ -10,6 +10,7 @@
 
 #include "benchmarks/tell_errors.hpp"
 #include "coulomb/coulomb_integration.hpp"
+#include "coulomb/coulomb_lanes.hpp"
 #include "study/precision.hpp"
 
 namespace leapmap {
@@ -28,23 +29,34 @@ const std::vector<Design>& designs() {
   return designs;
 }
 
-template <class Method>
-void solve_all(benchmark::State& state, Method& method) {
+const std::vector<Outcome>& truths() {
   static const std::vector<Outcome> truths = [] {
     std::vector<Outcome> outcomes;
     CoulombSolver<long double> wide(1e-15);
     for (const Design& design : designs()) outcomes.push_back(wide.solve(design, scene));
     return outcomes;
   }();
+  return truths;
+}
+
+template <class Method>
+void solve_all(benchmark::State& state, Method& method) {
   std::vector<Outcome> outcomes(count);
   for (auto _ : state)
     for (std::size_t i = 0; i < count; ++i) outcomes[i] = method.solve(designs()[i], scene);
-  tell_errors(state, outcomes, truths);
+  tell_errors(state, outcomes, truths());
 }
 
 void Quadratures(benchmark::State& state) {
   CoulombSolver<double> exact(tolerance(state));
   solve_all(state, exact);
+}
+
+void InLanes(benchmark::State& state) {
+  CoulombLanes<Batch> lanes(tolerance(state));
+  std::vector<Outcome> outcomes(count);
+  for (auto _ : state) lanes.solve(designs(), scene, outcomes);
+  tell_errors(state, outcomes, truths());
 }
 
 void GslRk8pd(benchmark::State& state) {
@@ -83,6 +95,7 @@ void Phases(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
 }
 
+BENCHMARK(InLanes)->Arg(9)->Arg(12)->Unit(benchmark::kMillisecond);
 BENCHMARK(Quadratures)->Arg(9)->Arg(12)->Unit(benchmark::kMillisecond);
 BENCHMARK(GslRk8pd)->Arg(9)->Arg(12)->Unit(benchmark::kMillisecond);
 BENCHMARK(Phases)->Arg(9)->Unit(benchmark::kMillisecond);

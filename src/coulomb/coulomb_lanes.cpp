@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coulomb/coulomb_lanes.hpp"
+
+namespace leapmap {
+
+template <class T>
+void CoulombLanes<T>::solve(std::span<const Design> designs, const Scene& scene,
+                            std::span<Outcome> outcomes) {
+  releases_.clear();
+  for (const Design& design : designs) releases_.push_back(released<S>(design));
+  solve(Start::release, designs, releases_, scene, outcomes);
+}
+
+template <class T>
+void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
+                            const Scene& scene, std::span<Outcome> outcomes) {
+  const CoulombObserver nobody;
+  constexpr std::size_t width = Lanes<T>::count;
+  free_.clear();
+  for (std::size_t place = most_on_their_way; place-- > 0;)
+    free_.push_back(static_cast<std::uint32_t>(place));
+  const auto settle = [&](std::uint32_t place, const std::optional<NextPhase>& next) {
+    if (next) return go_on(place, *next);
+    auto& [design, machine] = on_their_way_[place];
+    outcomes[design] = machine->outcome();
+    if (outcomes[design].status == Status::jumped) states[design] = machine->at();
+    free_.push_back(place);
+  };
+  for (std::size_t unbegun = 0; unbegun < designs.size() || free_.size() < most_on_their_way;) {
+    while (unbegun < designs.size() && !free_.empty()) {
+      const std::uint32_t place = free_.back();
+      free_.pop_back();
+      auto& [design, machine] = on_their_way_[place];
+      design = unbegun++;
+      machine.emplace(designs[design], states[design], scene, nobody);
+      settle(place, machine->begin(start));
+    }
+    ended_.clear();
+    if (sliding_.waiting() >= width || rolling_.waiting() == 0)
+      sliding_.pass(ended_);
+    else
+      rolling_.pass(ended_);
+    for (const EndedPhase<S>& phase : ended_)
+      settle(phase.place, on_their_way_[phase.place].machine->after(phase.end, phase.at));
+  }
+}
+
+template <class T>
+void CoulombLanes<T>::go_on(std::uint32_t place, const NextPhase& next) {
+  const PhaseMachine<S>& machine = *on_their_way_[place].machine;
+  const Contact<S>& contact = machine.contact();
+  if (next.phase == Phase::rolling)
+    rolling_.begin(place, machine.hoop(), contact.mu_static, machine.at(), machine.runway());
+  else
+    sliding_.begin(place, machine.hoop(), contact.mu_kinetic, machine.at(), machine.runway(), next.direction);
+}
+
+#ifdef LEAPMAP_KERNELS
+template class CoulombLanes<Batch>;
+#endif
+
+}  // namespace leapmap

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Many designs with Coulomb friction at once: each goes through its phases (coulomb_automaton.hpp), and
+/// those that slide, or roll, do so side by side in lanes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "coulomb/coulomb_automaton.hpp"
+#include "coulomb/rolling_lanes.hpp"
+#include "coulomb/sliding_lanes.hpp"
+
+namespace leapmap {
+
+/// A thread's own workspace. An outcome depends on the design and the scene alone.
+template <class T>
+class CoulombLanes {
+ public:
+  using S = ScalarOf<T>;
+
+  /// tolerance: relative, of times; angles, spins and heights follow.
+  explicit CoulombLanes(double tolerance) : rolling_(tolerance), sliding_(tolerance, most_on_their_way) {}
+
+  /// Solves designs[i] into outcomes[i].
+  void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
+  /// The same from where states[i] have designs[i], which have just landed there or are released; moves each
+  /// to just after the landing of its jump.
+  void solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
+             const Scene& scene, std::span<Outcome> outcomes);
+
+ private:
+  static constexpr std::size_t most_on_their_way = 64;
+
+  struct OnItsWay {
+    std::size_t design;
+    std::optional<PhaseMachine<S>> machine;
+  };
+  void go_on(std::uint32_t place, const NextPhase& next);
+
+  RollingLanes<T> rolling_;
+  SlidingLanes<T> sliding_;
+  std::vector<OnItsWay> on_their_way_ = std::vector<OnItsWay>(most_on_their_way);
+  std::vector<std::uint32_t> free_;
+  std::vector<EndedPhase<S>> ended_;
+  std::vector<ContactState<S>> releases_;
+};
+
+}  // namespace leapmap

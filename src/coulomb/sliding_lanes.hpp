@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The slides of many designs, a panel of as many at once as there are lanes.
+///
+/// A lane takes plain panels: by angle, far from Painleve's edge, with falls through zero that the panel's
+/// cubics tell (numerics/panel_fall.hpp). A slide that meets anything else goes on by itself from there
+/// (coulomb/sliding_leg.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "coulomb/ended_phase.hpp"
+#include "coulomb/sliding_leg.hpp"
+#include "numerics/rows.hpp"
+
+namespace leapmap {
+
+template <class T>
+class SlidingLanes {
+ public:
+  using S = ScalarOf<T>;
+
+  /// tolerance: as of SlidingLeg. most: designs on their way at once.
+  SlidingLanes(double tolerance, std::size_t most);
+
+  /// Begins a slide, which the passes to come take on.
+  void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic, const ContactState<S>& at,
+             const S& runway, int direction);
+  std::size_t waiting() const { return waiting_.size(); }
+  /// Takes some slides a panel further, and adds those that end to `ended`.
+  void pass(std::vector<EndedPhase<S>>& ended);
+
+ private:
+  using Panels = SlidingPanels<T>;
+  using Panel = typename Panels::Panel;
+  static constexpr std::size_t width = Lanes<T>::count;
+
+  /// What is not a number in the lanes.
+  struct Slide {
+    S runway, mu_kinetic;
+    S least_pivot;  ///< a panel comes no nearer to Painleve's edge
+    int direction;
+    bool is_given;  ///< the next panel's stretch is: it ends where the spin vanishes, or the slide does
+    bool ends;      ///< there, by `end`
+    PhaseEnd end;
+    int panels;
+  };
+  /// The first event of each panel.
+  struct Events {
+    T place;  ///< in (0, 1]; 2: none
+    std::array<PhaseEnd, width> end;
+    MaskOf<T> plain;  ///< else the slide has to look for it by itself
+  };
+  Events first_events(const Panel& panel, const T& runway, const T& direction, const MaskOf<T>& asked) const;
+  /// Where the spin vanishes on panels on which it does.
+  struct Rest {
+    MaskOf<T> is_known;
+    T length;
+  };
+  Rest rest(const typename Panels::Stretch& stretch, const Panel& panel, const MaskOf<T>& asked) const;
+  S least_pivot(const Hoop<S>& hoop, const S& friction) const;
+  ContactState<S> state_of(std::uint32_t place) const;
+  void alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended);
+
+  static constexpr std::size_t looks = 48;
+
+  Panels panels_;
+  SlidingLeg<S> leg_;
+  std::array<S, looks> sin_, cos_;  // of one turn
+  std::vector<Slide> slides_;
+  PackedRows<S, 8> hoops_, states_;  // states: time, travel, angle, spin, slip; n0, friction, panel's length
+  PackedRows<S, 4> stretches_;       // where given
+  std::vector<std::uint32_t> waiting_;
+  Panel panel_;
+};
+
+}  // namespace leapmap
