@@ -159,8 +159,8 @@ T reciprocal(const T& x) {
 #ifdef __AVX512F__
 /// From the instruction's 14 bits by two of Newton's steps: a third of the time of a division.
 template <class A>
-xsimd::batch<double, A> reciprocal(const xsimd::batch<double, A>& x) requires(
-    xsimd::batch<double, A>::size == 8) {
+xsimd::batch<double, A> reciprocal(const xsimd::batch<double, A>& x) requires(xsimd::batch<double, A>::size ==
+                                                                              8) {
   using T = xsimd::batch<double, A>;
   T y = _mm512_rcp14_pd(x);
   y = xsimd::fma(y, xsimd::fnma(x, y, T(1.0)), y);

@@ -184,8 +184,8 @@ PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename Spectra
   using S = ScalarOf<T>;
   const T zero(S(0)), third(S(1) / S(3)), bend = panel.fourth_derivative_bound(values) * T(S(1) / S(288));
   const MaskOf<T> starts_at_zero = !(first.value > zero);
-  const MaskOf<T> odd = starts_at_zero & !((first.rate > zero) & (values[0] > zero));
-  MaskOf<T> looking = asked & !odd;
+  const MaskOf<T> rises = (first.rate > zero) & (values[0] > zero);
+  MaskOf<T> looking = asked & ((first.value > zero) | rises);
   MaskOf<T> monotone = !looking & looking;  // and all that is found below: of the interval found
   T from(S(0)), to(S(1));
   Sample<T> at_from = first, at_to = last;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "coulomb/coulomb_integration.hpp"
+#include "coulomb/coulomb_lanes.hpp"
 #include "physics/landing.hpp"
 #include "rolling/exact.hpp"
 #include "support/designs.hpp"
@@ -41,14 +42,30 @@ Design any_design(std::mt19937_64& random) {
   return design;
 }
 
+void compare_with(const std::string& table, const Scene& scene, bool in_lanes);
 void compare_with(const std::string& table, const Scene& scene) {
-  CoulombSolver<double> solver(1e-10);
-  for (std::size_t i = 0; const auto& row : testing::read_reference(table)) {
-    const std::string where = table + " row " + std::to_string(++i);
-    Design design = row.design();
-    design.mu_static = row.number("mu_static"), design.mu_kinetic = row.number("mu_kinetic");
-    design.restitution = row.number("restitution");
-    const Outcome outcome = solver.solve(design, scene);
+  for (const bool in_lanes : {false, true}) compare_with(table, scene, in_lanes);
+}
+
+/// As a table's rows say: all of them in lanes, or one after the other.
+void compare_with(const std::string& table, const Scene& scene, bool in_lanes) {
+  const auto rows = testing::read_reference(table);
+  std::vector<Design> designs;
+  for (const auto& row : rows) {
+    designs.push_back(row.design());
+    designs.back().mu_static = row.number("mu_static"), designs.back().mu_kinetic = row.number("mu_kinetic");
+    designs.back().restitution = row.number("restitution");
+  }
+  std::vector<Outcome> outcomes(rows.size());
+  if (in_lanes) {
+    CoulombLanes<Batch>(1e-10).solve(designs, scene, outcomes);
+  } else {
+    CoulombSolver<double> solver(1e-10);
+    for (std::size_t i = 0; i < rows.size(); ++i) outcomes[i] = solver.solve(designs[i], scene);
+  }
+  for (std::size_t i = 0; const auto& row : rows) {
+    const Outcome& outcome = outcomes[i];
+    const std::string where = table + " row " + std::to_string(++i) + (in_lanes ? ", in lanes" : "");
     EXPECT_EQ(name_of(outcome.status), row.cells.at("status")) << where;
     // Row 70: n0 dips to -5.5e-4 for 0.07 sqrt(R/g) near the end of its runway, which scipy's DOP853 at 1e-12
     // sees as well; the table has no flight there.

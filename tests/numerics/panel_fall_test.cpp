@@ -88,5 +88,53 @@ TEST(Spectral, TheFourthDerivativeIsBounded) {
   }
 }
 
+TEST(PlainFall, InLanesItIsWhereOnePanelAloneHasIt) {
+  using Wide = SpectralPanel<Batch, n>;
+  const Wide wide;
+  constexpr std::size_t width = Lanes<Batch>::count;
+  std::mt19937_64 random(3);
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  int plain = 0, falls = 0, all = 0;
+  for (int round = 0; round < 300; ++round) {
+    std::array<std::array<double, 4>, width> waves;  // some begin at zero
+    for (auto& [height, speed, phase, level] : waves) {
+      height = uniform(0.1, 1.0), speed = uniform(0.5, 4.0), phase = uniform(0.0, 6.28);
+      level = random() % 2 ? -height * std::sin(phase) : uniform(-1.0, 1.0);
+    }
+    const auto at = [&](std::size_t lane, double x) {
+      const auto [height, speed, phase, level] = waves[lane];
+      const double start = height * std::sin(phase) + level;
+      const double up = start < 0.0 ? -1.0 : 1.0;  // it does not begin below zero
+      return Sample<double>{up * (height * std::sin(phase + speed * x) + level),
+                            up * height * speed * std::cos(phase + speed * x)};
+    };
+    const auto in_lanes = [&](double x) {
+      LaneArray<Batch> value, rate;
+      for (std::size_t lane = 0; lane < width; ++lane)
+        value[lane] = at(lane, x).value, rate[lane] = at(lane, x).rate;
+      return Sample<Batch>{Lanes<Batch>::load(value.data()), Lanes<Batch>::load(rate.data())};
+    };
+    Wide::Values values, rates;
+    for (std::size_t i = 0; i < n; ++i)
+      values[i] = in_lanes(wide.node[i]).value, rates[i] = in_lanes(wide.node[i]).rate;
+    const auto told =
+        plain_fall(wide, values, rates, in_lanes(0.0), in_lanes(1.0), Batch(1e-12), Batch(0.0) == Batch(0.0));
+    const unsigned is_plain = Lanes<Batch>::bits(told.is_plain);
+    const auto places = lanes_of(told.place);
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      ++all;
+      if (!(is_plain >> lane & 1u)) continue;
+      ++plain;
+      const double place = fall_of([&](double x) { return at(lane, x); }, 1e-12).place;
+      falls += place <= 1.0;
+      EXPECT_NEAR(places[lane], place, 1e-13) << round << " " << lane;  // roundings over slopes above 0.01
+    }
+  }
+  EXPECT_GT(plain, all * 7 / 10);
+  EXPECT_GT(falls, all / 5);
+}
+
 }  // namespace
 }  // namespace leapmap
