@@ -16,6 +16,7 @@
 #include "cli/spoken.hpp"
 #include "leapmap/errors.hpp"
 #include "map/reader.hpp"
+#include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "model/fields.hpp"
 #include "support/printable.hpp"
@@ -190,8 +191,11 @@ int run(const InfoArguments& arguments) {
   };
   std::size_t designs = 1;
   say("{}\n", told("title"));
-  say("made {} on {} by leapmap {} (git {}), {} threads, {} s\n", told("date"), told("host"),
-      told("program_version"), told("git_revision"), told("threads"), short_form("wall_time", ".3g"));
+  const std::string shards = map.attribute(shards_attribute);
+  say("made {} on {} by leapmap {} (git {}), {} threads{}, {} s{}\n", told("date"), told("host"),
+      told("program_version"), told("git_revision"), told("threads"), shards.empty() ? "" : " at most",
+      short_form("wall_time", ".3g"),
+      shards.empty() ? "" : fmt::format(" in all, in {} shards", printable(shards)));
   if (!map.is_whole()) print_incomplete(map, arguments.path);
   say("method {}, tolerance {}\n", told("method"), told("tolerance"));
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())

@@ -11,6 +11,7 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "sweep/shard.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -39,17 +40,16 @@ int run(JoinArguments& arguments) {
     return 128 + noted_signal();
   }
   if (!report->durable) tell_of_folder(arguments.map);
-  if (arguments.quiet) return 0;
-  say("joined   {} shards: {} designs in {} tiles\n", report->shards, grouped(report->designs),
-      grouped(report->tiles));
-  if (report->audit)
-    say("audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, {} flags "
-        "differ\n",
-        grouped(report->audit->designs), report->audit->method, report->audit->max_abs_height_error,
-        report->audit->max_rel_time_error, report->audit->flag_mismatches);
+  if (!arguments.quiet)
+    say("joined   {} shards: {} designs in {} tiles\n", report->shards, grouped(report->designs),
+        grouped(report->tiles));
+  SweepArguments told;
+  told.quiet = arguments.quiet;
+  const int status = report->audit ? tell_audit(told, report->spec, *report->audit) : 0;
+  if (arguments.quiet) return status;
   print_totals(report->statuses);
   say("map      {}\n", arguments.map);
-  return report->audit && disagree(*report->audit) ? 1 : 0;
+  return status;
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ void add_join(CLI::App& app, int& status) {
   command
       ->add_option("--shards", arguments->options.shards,
                    "how many shards it has; default: as many as their names say")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{10'000}));
+      ->check(CLI::Range(std::size_t{1}, most_shards));
   command->add_flag("--overwrite", arguments->options.overwrite, "replace an existing map");
   add_no_lock(*command, arguments->locking);
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");

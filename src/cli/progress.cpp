@@ -16,9 +16,11 @@ namespace {
 volatile std::sig_atomic_t signal_noted = 0;  // a signal handler can reach nothing but a global
 
 extern "C" void note_signal(int signal) {
+  // After Ctrl-C a second signal, whichever, ends the program; after SIGTERM only Ctrl-C does: batch systems
+  // send SIGTERM to a job's script and to its processes, and the script sends it on.
   signal_noted = signal;
-  std::signal(SIGINT, SIG_DFL);  // a second one, whichever, ends the program
-  std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGINT, SIG_DFL);
+  if (signal == SIGINT) std::signal(SIGTERM, SIG_DFL);
 }
 
 }  // namespace

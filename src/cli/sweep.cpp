@@ -54,14 +54,21 @@ int tell_report(const SweepArguments& arguments, const Spec& spec, const std::st
   }
   if (!report.durable) tell_of_folder(map);
   if (report.was_whole && !arguments.quiet) say("map      {} is whole already\n", map);
-  if (!report.was_whole && !arguments.quiet)
+  if (arguments.shard && report.designs == 0 && !arguments.quiet) {
+    say("solved   nothing: there are fewer tiles than shards, and shard {} has none\n",
+        text_of(*arguments.shard));
+  } else if (!report.was_whole && !arguments.quiet) {
     say("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(report.solved),
         spoken_duration(report.seconds), static_cast<double>(report.solved) / report.seconds,
         thread_count(arguments.threads), resolved_method(spec.numerics));
+  }
   const int status = report.audit ? tell_audit(arguments, spec, *report.audit) : 0;
   if (arguments.quiet || report.was_whole) return status;
   print_totals(report.statuses);
-  if (report.statuses[static_cast<std::size_t>(Status::failed)] > 0)
+  if (const bool failed = report.statuses[static_cast<std::size_t>(Status::failed)] > 0;
+      failed && arguments.shard)
+    say("failed   they are told, and solved again by --retry-failed, once the shards are joined\n");
+  else if (failed)
     say("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", shell_quoted(map),
         sweep_command(arguments, map, "--retry-failed"));
   say("map      {}\n", map);
@@ -73,7 +80,12 @@ int run(const SweepArguments& arguments) {
   const std::string map = behind_links(arguments.map.empty() ? spec.output.file : arguments.map);
   if (arguments.dry_run) {
     check_spec(spec);
-    print_plan(arguments, spec, map, tiling_of(spec));
+    const Tiling whole = tiling_of(spec);
+    if (arguments.shard)
+      print_plan(arguments, spec, map.empty() ? map : shard_path(map, *arguments.shard),
+                 shard_of(spec, whole, *arguments.shard, arguments.threads));
+    else
+      print_plan(arguments, spec, map, whole);
     return 0;
   }
   if (arguments.retry_failed && !map.empty()) return retry_sweep(arguments, spec, map);
@@ -214,11 +226,15 @@ void add_sweep(CLI::App& app, int& status) {
                                        "tell designs, memory, file size and time, and compute nothing else");
   command->add_option("--shards", arguments->shards, "of --dry-run: how each of so many parts would fare")
       ->needs(dry)
+      ->excludes(command->get_option("--shard"))
+      ->excludes(command->get_option("--retry-failed"))
       ->check(CLI::Range(std::size_t{1}, most_shards));
   command
       ->add_option("--time-limit", arguments->time_limit,
                    "of --dry-run: hours that a job may take, which tells how many parts there must be")
       ->needs(dry)
+      ->excludes(command->get_option("--shard"))
+      ->excludes(command->get_option("--retry-failed"))
       ->check(CLI::Range(1e-3, 1e4));
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->footer(

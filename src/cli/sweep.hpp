@@ -19,7 +19,7 @@ struct SweepArguments {
   std::string spec, map;
   std::optional<Shard> shard{};
   std::size_t shards = 0;   ///< of --dry-run: how many are planned; 0: none
-  double time_limit = 0.0;  ///< of a job [s]; 0: none
+  double time_limit = 0.0;  ///< of a job [h]; 0: none
   std::vector<std::string> overrides;
   int threads = 0;
   double commit_interval = 1.0;  ///< [s]

@@ -72,32 +72,41 @@ std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling&
 
 /// Of parts for jobs of their own: how long the longest takes and how large its file is, and how many of them
 /// a time limit asks for. seconds: of the whole map.
+/// seconds: of the whole map on one thread.
 void print_shards(const SweepArguments& arguments, const Spec& spec, const std::string& map,
                   const MapLayout& layout, const Tiling& tiling, double seconds) {
   constexpr double spare = 0.8;  // of the time limit: machines differ, and jobs start and end
-  const std::vector<double> efforts = tile_efforts(spec, tiling, std::max<std::size_t>(arguments.shards, 1));
+  const auto threads = static_cast<std::size_t>(thread_count(arguments.threads));
+  const std::vector<double> efforts =
+      tile_efforts(spec, tiling, std::max<std::size_t>(arguments.shards, 1), arguments.threads);
   const double all = std::accumulate(efforts.begin(), efforts.end(), 0.0);
-  const auto longest = [&](std::size_t shards) {  // of the whole
+  const auto sums_of = [](const std::vector<double>& tiles, std::size_t parts) {
+    std::vector<double> sums;
+    for (const std::vector<std::size_t>& share : share_tiles(tiles, parts)) {
+      sums.push_back(0.0);
+      for (const std::size_t t : share) sums.back() += tiles[t];
+    }
+    return sums;
+  };
+  // What the slowest shard takes, whose tiles are shared by threads in turn.
+  const auto longest = [&](std::size_t shards) {
     double most = 0.0;
     for (const std::vector<std::size_t>& share : share_tiles(efforts, shards)) {
-      double sum = 0.0;
-      for (const std::size_t t : share) sum += efforts[t];
-      most = std::max(most, sum);
+      std::vector<double> tiles;
+      for (const std::size_t t : share) tiles.push_back(efforts[t]);
+      most = std::max(most, std::ranges::max(sums_of(tiles, threads)));
     }
-    return most / all;
+    return seconds * most / all;
   };
   std::size_t shards = arguments.shards;
+  const std::size_t most = std::min(tiling.size(), most_shards);
   if (arguments.time_limit > 0.0) {
     const double limit = spare * 3600.0 * arguments.time_limit;
-    std::size_t fits =
-        std::min(static_cast<std::size_t>(std::ceil(seconds / limit)), std::min(tiling.size(), most_shards));
-    fits = std::max(fits, std::size_t{1});
-    while (fits < std::min(tiling.size(), most_shards) && seconds * longest(fits) > limit)
-      fits += 1 + fits / 16;
-    fits = std::min(fits, std::min(tiling.size(), most_shards));
-    const bool good = seconds * longest(fits) <= limit;
+    const double least = std::ceil(seconds / static_cast<double>(threads) / limit);
+    std::size_t fits = std::clamp<std::size_t>(static_cast<std::size_t>(std::min(least, 1e9)), 1, most);
+    while (fits < most && longest(fits) > limit) fits = std::min(most, fits + 1 + fits / 64);
     say("limit    {} a job: {} shards{}\n", spoken_duration(3600.0 * arguments.time_limit), grouped(fits),
-        good ? "" : ", and even then the longest takes more");
+        longest(fits) <= limit ? "" : ", and even then the longest takes more");
     if (shards == 0) shards = fits;
   }
   if (shards > tiling.size()) {
@@ -105,9 +114,13 @@ void print_shards(const SweepArguments& arguments, const Spec& spec, const std::
         grouped(tiling.size()));
     return;
   }
-  const double part = longest(shards), even = 1.0 / static_cast<double>(shards);
-  say("shards   {}: the longest takes about {} on {} threads, {:.2f} times the mean, and {} on disk\n",
-      grouped(shards), spoken_duration(seconds * part), thread_count(arguments.threads), part / even,
+  const double even = 1.0 / static_cast<double>(shards);
+  say("shards   {}: about {} designs each, the longest {} on {} threads, {:.2f} times the mean, and {} on "
+      "disk; "
+      "memory as above\n",
+      grouped(shards),
+      grouped(static_cast<std::size_t>(std::ceil(static_cast<double>(tiling.designs()) * even))),
+      spoken_duration(longest(shards)), threads, std::ranges::max(sums_of(efforts, shards)) / (all * even),
       spoken_bytes(file_bytes(layout, tiling) * even));
   if (!map.empty())
     say("         leapmap sweep ... --shard 1/{0} to --shard {0}/{0}, then leapmap join {1}\n", shards, map);
@@ -143,12 +156,13 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   say("memory   {}\n", memory_line(spec, layout, tiling, threads));
   say("file     about {}{}\n", spoken_bytes(file_bytes(layout, tiling)),
       layout.compression > 0 ? " before compression" : "");
-  const double seconds = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already) /
-                         static_cast<double>(std::min(static_cast<std::size_t>(threads), tiling.size()));
+  const double alone = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already);
+  const double seconds = alone / static_cast<double>(std::clamp<std::size_t>(
+                                     tiling.size(), 1, static_cast<std::size_t>(threads)));
   if (const std::string places = told_places(); !places.empty()) say("places   {}\n", places);
   say("time     about {} on {} threads\n", spoken_duration(seconds), threads);
   if (arguments.shards > 0 || arguments.time_limit > 0.0)
-    print_shards(arguments, spec, map, layout, tiling, seconds);
+    print_shards(arguments, spec, map, layout, tiling, alone);
 }
 
 }  // namespace leapmap::cli

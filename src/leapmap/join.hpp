@@ -10,6 +10,7 @@
 #include "leapmap/audit.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/outcome.hpp"
+#include "leapmap/spec.hpp"
 
 namespace leapmap {
 
@@ -28,12 +29,14 @@ struct JoinReport {
   StatusCounts statuses{};
   bool durable = true;                 ///< false: a power cut may undo the map's taking its place
   std::optional<AuditReport> audit{};  ///< of the whole map; unset: it had none
+  Spec spec{};                         ///< of the map
 };
 
 /// Joins the shards of the map `path`, which lie beside it: every chunk is copied as it is stored, so that
 /// the map's datasets are those of one sweep bit for bit. The shards stay. Returns nullopt if stopped. Throws
 /// InputError, which says which to make again, if a shard is missing, unfinished, doubled or of another spec
-/// or program, BrokenFile if one is not what was written, IoError. Nothing is left of the map then.
+/// or program, BrokenFile, which says so too, if some are not what was written, IoError. Nothing is left of
+/// the map then.
 std::optional<JoinReport> join(const std::string& path, const JoinOptions& options = {});
 
 }  // namespace leapmap

@@ -293,12 +293,12 @@ double read_number(hid_t object, const std::string& name) {
   return value;
 }
 
-std::vector<std::int64_t> read_integers(hid_t object, const std::string& name) {
-  constexpr hssize_t most = 64;
+std::vector<std::int64_t> read_integers(hid_t object, const std::string& name, std::size_t most) {
   const std::string what = fmt::format("reading attribute {}", name);
   const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, what);
   const hssize_t count = points_of(attribute, what);
-  if (count < 1 || count > most) throw IoError(what + ": it is not a few numbers");
+  if (count < 1 || static_cast<std::size_t>(count) > most)
+    throw IoError(fmt::format("{}: it is not 1 to {} numbers", what, most));
   std::vector<std::int64_t> values(static_cast<std::size_t>(count));
   check(H5Aread(attribute, H5T_NATIVE_INT64, values.data()), what);
   return values;
@@ -348,6 +348,16 @@ std::uint64_t file_bytes(hid_t object) {
   hsize_t bytes = 0;
   check(H5Fget_filesize(file, &bytes), "looking at a file");
   return bytes;
+}
+
+std::vector<hsize_t> chunk_of(hid_t dataset) {
+  const Handle plan(H5Dget_create_plist(dataset), H5Pclose, "looking at chunks");
+  if (H5Pget_layout(plan) != H5D_CHUNKED) return {};
+  std::vector<hsize_t> chunk(H5S_MAX_RANK);
+  const int rank = H5Pget_chunk(plan, H5S_MAX_RANK, chunk.data());
+  if (rank < 0) fail("looking at chunks");
+  chunk.resize(static_cast<std::size_t>(rank));
+  return chunk;
 }
 
 std::vector<hsize_t> shape_of(hid_t dataset) {

@@ -111,7 +111,8 @@ bool has_attribute(hid_t object, const std::string& name);
 /// Each throws IoError if there is no such attribute, or it is of another kind.
 std::string read_text(hid_t object, const std::string& name);
 double read_number(hid_t object, const std::string& name);
-std::vector<std::int64_t> read_integers(hid_t object, const std::string& name);
+/// most: numbers that there may be.
+std::vector<std::int64_t> read_integers(hid_t object, const std::string& name, std::size_t most = 64);
 
 /// The raw bytes of a chunk as stored, and which filters were skipped for it. Throws IoError.
 std::uint32_t read_chunk(hid_t dataset, const std::vector<hsize_t>& place, std::vector<std::byte>& bytes,
@@ -131,6 +132,9 @@ void write_words(hid_t dataset, const std::vector<std::size_t>& start, const std
 
 /// How long the file of an object is. Throws IoError.
 std::uint64_t file_bytes(hid_t object);
+
+/// The shape of a dataset's chunks; empty: it has none.
+std::vector<hsize_t> chunk_of(hid_t dataset);
 
 /// A dataset's number of values along each dimension.
 std::vector<hsize_t> shape_of(hid_t dataset);

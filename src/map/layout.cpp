@@ -175,8 +175,13 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling) {
     if (!layout.labels.empty() && !hdf5::holds(file, label_name, layout.labels))
       throw BrokenFile("label is not what was written");
   }
-  for (const Field* field : layout.fields)
+  for (const Field* field : layout.fields) {
     check_one(std::string(field->name), std::string(field->unit), std::string(field->long_name), {});
+    const Handle dataset(H5Dopen2(file, std::string(field->name).c_str(), H5P_DEFAULT), H5Dclose,
+                         fmt::format("opening {}", field->name));
+    if (hdf5::chunk_of(dataset) != to_hsize(tiling.tile_shape()))
+      throw BrokenFile(fmt::format("{} is stored in other tiles", field->name));
+  }
 }
 
 std::vector<Handle> open_fields(hid_t file, const MapLayout& layout) {

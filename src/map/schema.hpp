@@ -13,6 +13,8 @@ inline constexpr std::string_view trace_filetype = "leapmap trace";
 inline constexpr const char* shard_attribute = "shard";  ///< of a shard: which of how many, "3/16"
 /// Of a shard: which tiles of the map it holds, a bit each, the first tile's the lowest of the first number.
 inline constexpr const char* shard_tiles_attribute = "shard_tiles";
+/// Of a joined map: how many it was joined of.
+inline constexpr const char* shards_attribute = "shards";
 inline constexpr int format_major = 1;  ///< readers refuse a newer one
 /// 1: f4; 2: compression, status_counts, the NeXus group; 3: Coulomb friction's fields; 4: a checksum of each
 /// chunk and of the file, the audit's state; 5: the referee; 6: labels of a list; 7: derivatives; 8: hoops as

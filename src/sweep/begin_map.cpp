@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "leapmap/errors.hpp"
@@ -18,29 +19,44 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path, ignored);
 }
 
-/// What a resumed sweep has to share with the one that began: the spec, the format, and the program, as far
-/// as numbers depend on it.
+/// What a sweep that goes on, or finds its map whole, has to share with the one that began: the format, the
+/// program, as far as numbers depend on it, the spec, and of a shard its tiles.
 void refuse_other_beginning(const MapReader& part, const std::string& name, const Spec& spec,
                             std::span<const hdf5::Attribute> now) {
   constexpr std::string_view allowed = "another -o, or --overwrite without --resume to start anew";
+  const auto value_now = [&](std::string_view key) {
+    const auto found = std::ranges::find(now, key, &hdf5::Attribute::first);
+    return found == now.end() ? nullptr : &found->second;
+  };
+  const auto text_now = [&](std::string_view key) {
+    const auto* value = value_now(key);
+    return value ? std::get<std::string>(*value) : std::string();
+  };
+  if (hdf5::has_attribute(part.file(), shards_attribute))
+    throw InputError(fmt::format("{}: leapmap join made it, of {} shards; allowed: leapmap join, {}", name,
+                                 part.attribute(shards_attribute), allowed));
   if (hdf5::read_integers(part.file(), "version") != std::vector<std::int64_t>{format_major, format_minor})
     throw InputError(fmt::format("{}: has another format version; allowed: {}", name, allowed));
-  for (const auto& [key, value] : now)
-    if (key == shard_tiles_attribute &&
-        hdf5::read_integers(part.file(), key) != std::get<std::vector<std::int64_t>>(value))
-      throw InputError(fmt::format("{}: was begun with other tiles of the map; allowed: {}", name, allowed));
-  for (const auto& [key, value] : now)
-    if (key == "program_version" || key == "git_revision" || key == "instruction_set" ||
-        key == shard_attribute)
-      if (part.attribute(key) != std::get<std::string>(value))
-        throw InputError(fmt::format(
-            "{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one{}, {}", name,
-            key, part.attribute(key), std::get<std::string>(value),
-            key == "instruction_set" ? " by --instruction-set" : "", allowed));
+  const std::string shard = part.attribute(shard_attribute), shard_now = text_now(shard_attribute);
+  if (shard != shard_now)
+    throw InputError(fmt::format("{}: is {}; allowed here: {}, or {}", name,
+                                 shard.empty() ? "a whole map" : "shard " + shard,
+                                 shard_now.empty() ? "a whole map" : "shard " + shard_now, allowed));
+  for (const std::string key : {"program_version", "git_revision", "instruction_set"})
+    if (part.attribute(key) != text_now(key))
+      throw InputError(
+          fmt::format("{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one{}, {}",
+                      name, key, part.attribute(key), text_now(key),
+                      key == "instruction_set" ? " by --instruction-set" : "", allowed));
   if (const auto difference = first_difference(spec_of(part, name), spec))
-    throw InputError(
-        fmt::format("{}: was begun with another spec: {}; allowed: that spec (leapmap info --spec {}), {}",
-                    name, *difference, shell_quoted(name), allowed));
+    throw InputError(fmt::format(
+        "{}: was begun with another spec: {}; allowed: that spec{}, {}", name, *difference,
+        shard.empty() ? fmt::format(" (leapmap info --spec {})", shell_quoted(name)) : "", allowed));
+  if (const auto* tiles = value_now(shard_tiles_attribute)) {
+    const auto& bits = std::get<std::vector<std::int64_t>>(*tiles);
+    if (hdf5::read_integers(part.file(), shard_tiles_attribute, bits.size()) != bits)
+      throw InputError(fmt::format("{}: was begun with other tiles of the map; allowed: {}", name, allowed));
+  }
 }
 
 }  // namespace
@@ -81,12 +97,17 @@ void refuse_own_input(const Spec& spec, const std::string& map) {
     }
 }
 
-bool is_done(const std::string& map, const Spec& spec, const SweepOptions& options, Locking locking) {
+bool is_done(const std::string& map, const Spec& spec, std::span<const hdf5::Attribute> opening,
+             const SweepOptions& options, Locking locking) {
   if (!options.resume || options.overwrite || exists(part_of(map)) || !exists(map)) return false;
-  if (const auto difference =
-          first_difference(spec_of(MapReader(map, locking, Accept::shards_too), map), spec))
+  const MapReader whole(map, locking, Accept::shards_too);
+  // Shards are joined, so that all of it has to be right; a map of another program is a map.
+  if (options.shard || hdf5::has_attribute(whole.file(), shard_attribute)) {
+    refuse_other_beginning(whole, map, spec, opening);
+  } else if (const auto difference = first_difference(spec_of(whole, map), spec)) {
     throw InputError(fmt::format(
         "{}: exists already, of another spec: {}; allowed: another -o, or --overwrite", map, *difference));
+  }
   return true;
 }
 

@@ -140,9 +140,7 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   const Tiling whole =
       map.blocks(std::string(layout.fields.front()->name));  // as it was cut by whoever wrote it
   const bool is_shard = hdf5::has_attribute(map.file(), shard_tiles_attribute);
-  const Tiling tiling =
-      is_shard ? whole.part(tiles_in(hdf5::read_integers(map.file(), shard_tiles_attribute), whole.size()))
-               : whole;
+  const Tiling tiling = is_shard ? whole.part(tiles_held(map.file(), whole.size())) : whole;
   report.whole = map.is_whole();
   report.tiles = tiles_of(map, tiling);
   report.designs = designs_in(map.status_counts());

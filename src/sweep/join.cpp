@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -42,28 +41,12 @@ std::string array_of(const std::vector<std::size_t>& numbers) {
 /// The numbers of shards that files beside the map say by their names, whole or not.
 std::set<std::size_t> totals_beside(const std::string& map) {
   const fs::path path(map), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const std::string stem = path.stem().string() + ".", extension = path.extension().string();
   std::set<std::size_t> totals;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::string name = entry->path().filename().string();
     if (name.ends_with(".part")) name.resize(name.size() - 5);
-    if (!name.starts_with(stem) || !name.ends_with(extension) ||
-        name.size() <= stem.size() + extension.size())
-      continue;
-    const std::string middle = name.substr(stem.size(), name.size() - stem.size() - extension.size());
-    const auto dash = middle.find("-of-");
-    if (dash == std::string::npos) continue;
-    std::array<std::size_t, 2> numbers{};
-    const std::array<std::string, 2> digits{middle.substr(0, dash), middle.substr(dash + 4)};
-    bool good = true;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const char *first = digits[i].data(), *last = first + digits[i].size();
-      const auto [stop, wrong] = std::from_chars(first, last, numbers[i]);
-      good = good && wrong == std::errc() && stop == last;
-    }
-    if (good && numbers[0] >= 1 && numbers[0] <= numbers[1] && numbers[1] <= most_shards)
-      totals.insert(numbers[1]);
+    if (const auto shard = shard_by_name(path.filename().string(), name)) totals.insert(shard->of);
   }
   if (error) throw IoError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
   return totals;
@@ -84,21 +67,58 @@ std::size_t shards_of(const std::string& map, std::size_t asked) {
   return *totals.begin();
 }
 
-/// All shards are there and whole.
-void refuse_missing(const std::string& map, std::size_t shards) {
-  std::vector<std::size_t> again, unfinished;
-  for (std::size_t i = 1; i <= shards; ++i) {
-    const std::string path = shard_path(map, {i, shards});
-    std::error_code ignored;
-    if (fs::exists(path, ignored)) continue;
-    again.push_back(i);
-    if (fs::exists(part_of(path), ignored)) unfinished.push_back(i);
+/// What is wrong with shards, all of them told at once.
+class Faults {
+ public:
+  explicit Faults(std::string map, std::size_t shards) : map_(std::move(map)), shards_(shards) {}
+
+  /// broken: the file is there, and has to go before it is made again.
+  void note(std::size_t shard, std::string what, bool broken = false) {
+    again_.push_back(shard);
+    if (broken) {
+      broken_.push_back(shard_path(map_, {shard, shards_}));
+      if (reasons_.size() < 3) reasons_.push_back(std::move(what));
+    } else {
+      unfinished_ += !what.empty();
+    }
   }
-  if (again.empty()) return;
-  throw InputError(fmt::format(
-      "{}: {} of its {} shards {} not there{}; run them again, with --resume: --array={}", map, again.size(),
-      shards, again.size() == 1 ? "is" : "are",
-      unfinished.empty() ? "" : fmt::format(", {} of them unfinished", unfinished.size()), array_of(again)));
+  /// Throws what was noted, as one line that says which to run again.
+  void tell() const {
+    if (again_.empty()) return;
+    std::string text = fmt::format("{}: ", map_);
+    if (const std::size_t missing = again_.size() - broken_.size(); missing > 0)
+      text +=
+          fmt::format("{} of its {} shards {} not there{}; ", missing, shards_, missing == 1 ? "is" : "are",
+                      unfinished_ > 0 ? fmt::format(", {} of them unfinished", unfinished_) : "");
+    for (const std::string& reason : reasons_) text += reason + "; ";
+    if (broken_.size() > reasons_.size())
+      text += fmt::format("and {} more; ", broken_.size() - reasons_.size());
+    if (!broken_.empty()) text += "remove what is broken, then ";
+    text += fmt::format("run them again, with --resume: --array={}", array_of(again_));
+    if (broken_.empty()) throw InputError(text);
+    throw BrokenFile(text);
+  }
+
+ private:
+  std::string map_;
+  std::size_t shards_, unfinished_ = 0;
+  std::vector<std::size_t> again_;
+  std::vector<std::string> broken_, reasons_;
+};
+
+/// What an interrupted join has left is of no use to anybody.
+void remove_unfinished(const std::string& map, Locking locking) {
+  if (!has_part(map, locking)) return;
+  const std::string part = part_of(map);
+  try {
+    if (!hdf5::has_attribute(MapReader(part, locking, Accept::shards_too).file(), shards_attribute)) return;
+  } catch (const BrokenFile&) {
+    return;  // whoever made it, it is refused
+  }
+  std::error_code error;
+  if (!fs::remove(part, error) && error)
+    throw IoError(
+        fmt::format("{}: what an interrupted join left cannot be removed: {}", part, error.message()));
 }
 
 /// What all shards have to share, and what they add up to.
@@ -121,7 +141,7 @@ class Joining {
       checksum =
           static_cast<std::uint32_t>(crc32_combine(checksum, sum.checksum, static_cast<z_off_t>(sum.bytes)));
     writer.take_over(progress_, checksum);
-    JoinReport report{shards_, tiling_->size(), tiling_->designs(), progress_.statuses, true, audit_};
+    JoinReport report{shards_, tiling_->size(), tiling_->designs(), progress_.statuses, true, audit_, spec_};
     std::vector<hdf5::Attribute> closing;
     if (audit_) closing = audit_attributes(*audit_);
     report.durable = writer.finish(closing);
@@ -138,44 +158,60 @@ class Joining {
 
   /// Reads what every shard says of itself, before anything is written.
   void survey() {
-    std::vector<std::size_t> holder;  // of each tile: the shard that has it
+    Faults faults(map_, shards_);
+    std::vector<std::size_t> there;
     for (std::size_t i = 1; i <= shards_; ++i) {
-      const std::string path = path_of(i);
-      const MapReader shard(path, locking_, Accept::shards_too);
-      if (!hdf5::has_attribute(shard.file(), shard_attribute))
-        throw InputError(fmt::format("{}: is a whole map and no shard; allowed: what --shard {}/{} makes",
-                                     path, i, shards_));
-      if (const std::string told = shard.attribute(shard_attribute); told != text_of(Shard{i, shards_}))
-        throw InputError(
-            fmt::format("{}: is shard {}, whatever its name says; allowed: shard {}/{} under that name", path,
-                        told, i, shards_));
-      if (!shard.is_whole())
-        throw InputError(fmt::format("{}: is not whole; run it again, with --resume: --array={}", path, i));
-      const Spec spec = spec_of(shard, path);
-      if (i == 1) {
-        spec_ = spec;
-        layout_ = layout_of(spec_);
-        tiling_.emplace(tiling_of(spec_));
-        for (const char* name : same_everywhere) same_.emplace_back(name, shard.attribute(name));
-        holder.resize(tiling_->size());
-      } else if (const auto difference = first_difference(spec_, spec)) {
-        throw InputError(fmt::format("{}: is of another spec than {}: {}; allowed: shards of one spec", path,
-                                     path_of(1), *difference));
-      }
-      refuse_other_program(shard, path);
-      add_up(shard);
-      for (const std::size_t t :
-           tiles_in(hdf5::read_integers(shard.file(), shard_tiles_attribute), tiling_->size())) {
-        if (holder[t] != 0)
-          throw InputError(
-              fmt::format("{}: holds tile {} as {} does; allowed: shards that one program has cut", path, t,
-                          path_of(holder[t])));
-        holder[t] = i;
+      std::error_code ignored;
+      if (fs::exists(path_of(i), ignored))
+        there.push_back(i);
+      else
+        faults.note(i, fs::exists(part_of(path_of(i)), ignored) ? "unfinished" : "");
+    }
+    std::vector<std::size_t> holder;  // of each tile: the shard that has it
+    for (const std::size_t i : there) {
+      try {
+        look_at(i, holder);
+      } catch (const IoError& error) {
+        faults.note(i, fmt::format("{} cannot be read: {}", path_of(i), error.what()), true);
       }
     }
+    faults.tell();
     if (const auto hole = std::ranges::find(holder, 0u); hole != holder.end())
       throw InputError(fmt::format("{}: no shard holds tile {}; allowed: shards that one program has cut",
                                    map_, hole - holder.begin()));
+  }
+
+  void look_at(std::size_t i, std::vector<std::size_t>& holder) {
+    const std::string path = path_of(i);
+    const MapReader shard(path, locking_, Accept::shards_too);
+    if (!hdf5::has_attribute(shard.file(), shard_attribute))
+      throw InputError(fmt::format("{}: is a whole map and no shard; allowed: what --shard {}/{} makes", path,
+                                   i, shards_));
+    if (const std::string told = shard.attribute(shard_attribute); told != text_of(Shard{i, shards_}))
+      throw InputError(
+          fmt::format("{}: is shard {}, whatever its name says; allowed: shard {}/{} under that name", path,
+                      told, i, shards_));
+    if (!shard.is_whole()) throw BrokenFile("it is not whole");
+    const Spec spec = spec_of(shard, path);
+    if (!tiling_) {
+      spec_ = spec;
+      first_ = path;
+      layout_ = layout_of(spec_);
+      tiling_.emplace(tiling_of(spec_));
+      for (const char* name : same_everywhere) same_.emplace_back(name, shard.attribute(name));
+      holder.resize(tiling_->size());
+    } else if (const auto difference = first_difference(spec_, spec)) {
+      throw InputError(fmt::format("{}: is of another spec than {}: {}; allowed: shards of one spec", path,
+                                   first_, *difference));
+    }
+    refuse_other_program(shard, path);
+    add_up(shard);
+    for (const std::size_t t : tiles_held(shard.file(), tiling_->size())) {
+      if (holder[t] != 0)
+        throw InputError(fmt::format("{}: holds tile {} as {} does; allowed: shards that one program has cut",
+                                     path, t, path_of(holder[t])));
+      holder[t] = i;
+    }
   }
 
   void refuse_other_program(const MapReader& shard, const std::string& path) const {
@@ -187,13 +223,14 @@ class Joining {
         throw InputError(fmt::format(
             "{}: was made by another leapmap: {} is {} there and {} in {}, which may change bits; "
             "allowed: shards of one program and instruction set (leapmap --instruction-set)",
-            path, name, shard.attribute(name), value, path_of(1)));
+            path, name, shard.attribute(name), value, first_));
   }
 
   void add_up(const MapReader& shard) {
     const StatusCounts counts = shard.status_counts();
     for (std::size_t s = 0; s < counts.size(); ++s) progress_.statuses[s] += counts[s];
     progress_.seconds += hdf5::read_number(shard.file(), "wall_time");
+    threads_ = std::max(threads_, hdf5::read_integers(shard.file(), "threads")[0]);
     if (!hdf5::has_attribute(shard.file(), "audit_first_mismatch")) return;
     const AuditReport audit = read_audit(shard);
     if (!audit_) {
@@ -208,7 +245,8 @@ class Joining {
     for (const auto& [name, value] : same_)
       std::ranges::find(attributes, name, &hdf5::Attribute::first)->second =
           value;  // who solved it, not who joins
-    attributes.emplace_back("shards", static_cast<std::int64_t>(shards_));
+    attributes.emplace_back(shards_attribute, static_cast<std::int64_t>(shards_));
+    attributes.emplace_back("threads", threads_);
     if (audit_) attributes.emplace_back("audit_method", audit_method_);
     return attributes;
   }
@@ -217,8 +255,7 @@ class Joining {
   bool copy(std::size_t number, MapWriter& writer) {
     const std::string path = path_of(number);
     const MapReader shard(path, locking_, Accept::shards_too);
-    const std::vector<std::size_t> tiles =
-        tiles_in(hdf5::read_integers(shard.file(), shard_tiles_attribute), tiling_->size());
+    const std::vector<std::size_t> tiles = tiles_held(shard.file(), tiling_->size());
     check_layout(shard.file(), layout_, *tiling_);
     const std::vector<hdf5::Handle> fields = open_fields(shard.file(), layout_);
     EncodedChunk chunk;
@@ -240,9 +277,8 @@ class Joining {
     }
     const std::vector<std::int64_t> told = hdf5::read_integers(shard.file(), "tiles_checksum");
     if (told.size() != 1 || told[0] != checksum)
-      throw BrokenFile(
-          fmt::format("{}: its tiles are not what was written; run it again, with --overwrite: --array={}",
-                      path, number));
+      throw BrokenFile(fmt::format(
+          "{}: its tiles are not what was written; remove it, then run it again: --array={}", path, number));
     return true;
   }
 
@@ -255,7 +291,9 @@ class Joining {
   Spec spec_;
   MapLayout layout_;
   std::optional<Tiling> tiling_;
+  std::string first_;  ///< the shard that the others are compared with
   std::vector<std::pair<std::string, std::string>> same_;
+  std::int64_t threads_ = 1;  ///< the most that a shard had
   MapProgress progress_;
   std::optional<AuditReport> audit_;
   std::string audit_method_;
@@ -272,7 +310,7 @@ std::optional<JoinReport> join(const std::string& path, const JoinOptions& optio
     throw InputError(map +
                      ": exists already; allowed: another name for the shards and the map, or --overwrite");
   const std::size_t shards = shards_of(map, options.shards);
-  refuse_missing(map, shards);
+  remove_unfinished(map, options.lock ? Locking::required : Locking::if_possible);
   return Joining(map, shards, options).run();
 }
 

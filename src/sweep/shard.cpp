@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "leapmap/errors.hpp"
+#include "map/schema.hpp"
 #include "model/model.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/parallel.hpp"
@@ -22,8 +23,8 @@
 namespace leapmap {
 namespace {
 
-/// What looking at the map may cost each shard, as a share of its own work, but for small maps; twice, at
-/// most.
+/// How many designs each shard looks at to share the map, as a share of its own; but at least so many, which
+/// take a tenth of a second. Twice, where tiles are uneven.
 constexpr double most_share = 0.005;
 constexpr std::size_t least_samples = 8'192, most_of_tile = 32, most_tiles = 32'768;
 
@@ -40,10 +41,10 @@ struct Sampled {
 
 /// Counts the efforts of so many designs of each tile, one of each of as many pieces of it.
 std::vector<Sampled> sample_tiles(const Spec& spec, const Tiling& tiling, std::size_t stride,
-                                  const std::vector<std::size_t>& wanted) {
+                                  const std::vector<std::size_t>& wanted, int threads) {
   const DesignSpace space(spec);
   std::vector<Sampled> sampled(wanted.size());
-  parallel_for_each(wanted.size(), thread_count(0), [&] {
+  parallel_for_each(wanted.size(), thread_count(threads), [&] {
     return [&, effort = model_of(spec.scene).effort(scene_asked(spec))](std::size_t t) {
       const Tile tile = tiling.tile(stride * t);
       const std::size_t designs = std::min(wanted[t], tile.count);
@@ -62,20 +63,38 @@ std::vector<Sampled> sample_tiles(const Spec& spec, const Tiling& tiling, std::s
 
 }  // namespace
 
-Shard parse_shard(std::string_view text) {
+namespace {
+
+/// Two whole numbers I and N, 1 <= I <= N, with something between them.
+std::optional<Shard> shard_in(std::string_view text, std::string_view between) {
   Shard shard{0, 0};
-  const auto bar = text.find('/');
+  const auto middle = text.find(between);
   const auto number = [&](std::string_view digits, std::size_t& into) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), into);
     return error == std::errc() && end == digits.data() + digits.size();
   };
-  if (bar == text.npos || !number(text.substr(0, bar), shard.number) ||
-      !number(text.substr(bar + 1), shard.of) || shard.number < 1 || shard.number > shard.of ||
-      shard.of > most_shards)
-    throw InputError(
-        fmt::format("--shard {}: is no part of a whole; allowed: I/N with I from 1 to N, N at most {}", text,
-                    most_shards));
+  if (middle == text.npos || !number(text.substr(0, middle), shard.number) ||
+      !number(text.substr(middle + between.size()), shard.of) || shard.number < 1 ||
+      shard.number > shard.of || shard.of > most_shards)
+    return std::nullopt;
   return shard;
+}
+
+}  // namespace
+
+Shard parse_shard(std::string_view text) {
+  if (const auto shard = shard_in(text, "/")) return *shard;
+  throw InputError(fmt::format(
+      "--shard {}: is no part of a whole; allowed: I/N with I from 1 to N, N at most {}", text, most_shards));
+}
+
+std::optional<Shard> shard_by_name(const std::string& map, const std::string& name) {
+  const std::filesystem::path path(map);
+  const std::string begin = path.stem().string() + ".", end = path.extension().string();
+  if (!name.starts_with(begin) || !name.ends_with(end) || name.size() <= begin.size() + end.size())
+    return std::nullopt;
+  return shard_in(std::string_view(name).substr(begin.size(), name.size() - begin.size() - end.size()),
+                  "-of-");
 }
 
 std::string text_of(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.of); }
@@ -87,19 +106,20 @@ std::string shard_path(const std::string& map, const Shard& shard) {
       .string();
 }
 
-std::vector<double> tile_efforts(const Spec& spec, const Tiling& tiling, std::size_t shards) {
-  const std::size_t stride = (tiling.size() + most_tiles - 1) / most_tiles,
+std::vector<double> tile_efforts(const Spec& spec, const Tiling& tiling, std::size_t shards, int threads) {
+  const double samples =
+      std::max(most_share * static_cast<double>(tiling.designs()) / static_cast<double>(shards),
+               static_cast<double>(least_samples));
+  const std::size_t most_groups = std::min(static_cast<std::size_t>(samples), most_tiles);
+  const std::size_t stride = (tiling.size() + most_groups - 1) / most_groups,
                     groups = (tiling.size() + stride - 1) / stride;
   const auto count = [&](std::size_t group) {
     return static_cast<double>(tiling.tile(stride * group).count);
   };
-  const double samples =
-      std::max(most_share * static_cast<double>(tiling.designs()) / static_cast<double>(shards),
-               static_cast<double>(least_samples));
   const std::size_t each =
       std::clamp<std::size_t>(static_cast<std::size_t>(samples) / groups, 1, most_of_tile);
   std::vector<std::size_t> wanted(groups, each);
-  std::vector<Sampled> sampled = sample_tiles(spec, tiling, stride, wanted);
+  std::vector<Sampled> sampled = sample_tiles(spec, tiling, stride, wanted, threads);
   // A few designs that rock to rest may be most of a tile's work. More are looked at where that tells most
   // for what it takes: Neyman's allocation.
   const auto worth = [&](std::size_t g) {
@@ -113,7 +133,7 @@ std::vector<double> tile_efforts(const Spec& spec, const Tiling& tiling, std::si
   if (price > 0.0) {
     for (std::size_t g = 0; g < groups; ++g)
       wanted[g] = std::max(each, static_cast<std::size_t>(worth(g) * samples * mean / price));
-    sampled = sample_tiles(spec, tiling, stride, wanted);
+    sampled = sample_tiles(spec, tiling, stride, wanted, threads);
   }
   std::vector<double> efforts;
   for (std::size_t t = 0; t < tiling.size(); ++t)
@@ -139,14 +159,18 @@ std::vector<std::vector<std::size_t>> share_tiles(const std::vector<double>& eff
   return shares;
 }
 
-Tiling shard_of(const Spec& spec, const Tiling& tiling, const Shard& shard) {
-  return tiling.part(share_tiles(tile_efforts(spec, tiling, shard.of), shard.of)[shard.number - 1]);
+Tiling shard_of(const Spec& spec, const Tiling& tiling, const Shard& shard, int threads) {
+  return tiling.part(share_tiles(tile_efforts(spec, tiling, shard.of, threads), shard.of)[shard.number - 1]);
 }
 
 std::vector<std::int64_t> bits_of(const std::vector<std::size_t>& tiles, std::size_t count) {
   std::vector<std::uint64_t> words((count + 63) / 64);
   for (const std::size_t t : tiles) words[t / 64] |= std::uint64_t{1} << (t % 64);
   return {words.begin(), words.end()};
+}
+
+std::vector<std::size_t> tiles_held(hid_t shard, std::size_t count) {
+  return tiles_in(hdf5::read_integers(shard, shard_tiles_attribute, (count + 63) / 64), count);
 }
 
 std::vector<std::size_t> tiles_in(const std::vector<std::int64_t>& bits, std::size_t count) {

@@ -28,19 +28,25 @@ std::string text_of(const Shard& shard);
 /// The file of a shard, beside the map that it is part of: MAP.3-of-16.h5 of MAP.h5.
 std::string shard_path(const std::string& map, const Shard& shard);
 
+/// Which shard of a map a file says to be by its name alone; nothing: none of it. Both without folders.
+std::optional<Shard> shard_by_name(const std::string& map, const std::string& name);
+
 /// What each tile takes, all of them together the whole map's work, as it is told for so many shards.
-std::vector<double> tile_efforts(const Spec& spec, const Tiling& tiling, std::size_t shards);
+std::vector<double> tile_efforts(const Spec& spec, const Tiling& tiling, std::size_t shards, int threads = 0);
 
 /// The numbers of the tiles of each of so many shards, ascending: the hardest tiles first, each to the shard
 /// that has least to do.
 std::vector<std::vector<std::size_t>> share_tiles(const std::vector<double>& efforts, std::size_t shards);
 
 /// A shard's part of the tiling: nothing, for some, if there are fewer tiles than shards.
-Tiling shard_of(const Spec& spec, const Tiling& tiling, const Shard& shard);
+/// threads: to look at the map with; 0: all.
+Tiling shard_of(const Spec& spec, const Tiling& tiling, const Shard& shard, int threads = 0);
 
-/// A shard's tiles as its file tells them, and back. The latter throws BrokenFile for numbers that no tiling
-/// has.
+/// A shard's tiles, of so many that the map has, as its file tells them, and back. The latter throws
+/// BrokenFile for numbers that no tiling has.
 std::vector<std::int64_t> bits_of(const std::vector<std::size_t>& tiles, std::size_t count);
 std::vector<std::size_t> tiles_in(const std::vector<std::int64_t>& bits, std::size_t count);
+/// The same of a shard's file. Throws IoError if it does not tell.
+std::vector<std::size_t> tiles_held(hid_t shard, std::size_t count);
 
 }  // namespace leapmap

@@ -62,6 +62,7 @@ class Sweeping {
   /// Of this call, less what the audit took of the threads.
   double solving_seconds() const {
     const auto threads = static_cast<std::size_t>(thread_count(options_.threads));
+    if (tiling_.size() == 0) return 0.0;
     return seconds_ - audit_seconds_ / static_cast<double>(std::min(threads, tiling_.size()));
   }
 
@@ -173,11 +174,10 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
     throw InputError(origin_of(spec) + ": output.file is not set; allowed: a file's name there or with -o");
   const std::string map = behind_links(asked.shard ? shard_path(path, *asked.shard) : path);
   const Locking locking = options.lock ? Locking::required : Locking::if_possible;
-  const Tiling whole = tiling_of(spec), tiling = asked.shard ? shard_of(spec, whole, *asked.shard) : whole;
+  const Tiling whole = tiling_of(spec),
+               tiling = asked.shard ? shard_of(spec, whole, *asked.shard, options.threads) : whole;
   const MapLayout layout = layout_of(spec);
   refuse_own_input(spec, map);
-  if (is_done(map, spec, options, locking)) return report_on(map, tiling, locking);
-
   std::vector<hdf5::Attribute> opening =
       provenance(spec, asked.shard ? shard_filetype : map_filetype, title_of(spec));
   if (asked.shard) {
@@ -186,6 +186,7 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
   }
   opening.emplace_back("threads", std::int64_t{thread_count(options.threads)});
   if (spec.numerics.audit > 0.0) opening.emplace_back("audit_method", audit_method(spec.numerics));
+  if (is_done(map, spec, opening, options, locking)) return report_on(map, tiling, locking);
   MapWriter writer = begin_map(map, spec, layout, tiling, opening, options, locking);
   try {
     return fill(spec, layout, tiling, options, writer);

@@ -7,6 +7,10 @@ set -eu
 shards=$1 spec=$(realpath "$2") map=$(realpath -m "$3")
 shift 3
 mkdir -p "$(dirname "$map")"
-seq "$shards" | parallel ${HOSTS:+--sshloginfile "$HOSTS" --workdir "$PWD"} --jobs "${JOBS:-1}" --retries 3 --halt soon,fail=1 \
+if "${LEAPMAP:-leapmap}" info "$map" > /dev/null 2>&1; then
+  echo "$map is whole already"
+  exit
+fi
+seq "$shards" | parallel --quote ${HOSTS:+--sshloginfile "$HOSTS" --workdir "$PWD"} --jobs "${JOBS:-1}" --retries 3 --halt soon,fail=1 \
   "${LEAPMAP:-leapmap}" sweep "$spec" -o "$map" --shard "{}/$shards" --resume "$@"
 "${LEAPMAP:-leapmap}" join "$map" --shards "$shards"

@@ -1,12 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A map by a Slurm array and a join that waits for it:
-#   sh submit.sh SHARDS SPEC MAP.h5 [options of sbatch, such as --cpus-per-task=32 --time=4:00:00]
+#   sh submit.sh SHARDS SPEC MAP.h5 [options of sbatch, such as --cpus-per-task=32 --time=4:00:00 --account=ME]
+# The join has the same options, but one processor.
 # AGAIN=3,5-7 runs these shards only, as leapmap join names them.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 shards=$1 spec=$2 map=$3
 shift 3
 array=$(sbatch --parsable --array="${AGAIN:-1-$shards}" "$@" "$here/shards.sbatch" "$shards" "$spec" "$map")
-join=$(sbatch --parsable --dependency="afterany:$array" "$here/join.sbatch" "$shards" "$map")
+array=${array%%;*}  # where there are several clusters, which one
+join=$(sbatch --parsable --dependency="afterany:$array" "$@" --cpus-per-task=1 "$here/join.sbatch" "$shards" "$map")
 echo "array $array of $shards shards, then join $join; squeue tells how far they are"

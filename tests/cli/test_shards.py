@@ -176,6 +176,68 @@ def test_a_shard_that_cannot_be_right_is_named_and_nothing_is_written(harm, tmp_
         refused(joined, path.name, status=3)
 
 
+def test_all_that_is_wrong_is_told_at_once_and_mended_by_removing_what_is_broken(tmp_path):
+    joined = shards(tmp_path, SMALL, 5, which=[1, 2, 3, 5])
+    broken = [shard(joined, i, 5) for i in (2, 3)]
+    for path in broken:
+        os.truncate(path, path.stat().st_size // 2)
+    refused(joined, "1 of its 5 shards is not there", broken[0].name, broken[1].name, "--array=2-4", status=3)
+    for path in broken:
+        path.unlink()
+    shards(tmp_path, SMALL, 5, "--resume", which=[2, 3, 4])
+    assert leapmap("join", joined).returncode == 0
+    same_datasets(sweep(tmp_path, SMALL, name="one.h5"), joined)
+
+
+def test_what_a_killed_join_left_is_in_nobodys_way(tmp_path):
+    joined = shards(tmp_path, SMALL, 2)
+    assert leapmap("join", joined).returncode == 0
+    part = joined.with_name(joined.name + ".part")
+    joined.rename(part)
+    resumed = leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--resume")
+    assert resumed.returncode == 2 and "leapmap join" in resumed.stderr and part.exists()
+    assert leapmap("join", joined).returncode == 0 and not part.exists()
+    same_datasets(sweep(tmp_path, SMALL, name="one.h5"), joined)
+
+
+def test_a_file_under_anothers_name_is_not_whole_already(tmp_path):
+    joined = shards(tmp_path, SMALL, 2)
+    first, second = (shard(joined, i, 2) for i in (1, 2))
+    spec = tmp_path / "shards.toml"
+    for path, words, said in ((joined, (), "shard 1/2"), (second, ("--shard", "2/2"), "shard 1/2")):
+        path.write_bytes(first.read_bytes())
+        done = leapmap("sweep", spec, "-o", joined, "--resume", *words)
+        assert done.returncode == 2 and said in done.stderr, done
+    joined.unlink()
+    first.write_bytes(sweep(tmp_path, SMALL, name="one.h5").read_bytes())
+    done = leapmap("sweep", spec, "-o", joined, "--resume", "--shard", "1/2")
+    assert done.returncode == 2 and "a whole map" in done.stderr
+
+
+def test_a_map_of_thousands_of_tiles_has_shards_that_are_resumed_checked_and_joined(tmp_path):
+    axes = {"mu_static": (0.3, 0.9), "mu_kinetic": (0.2, 0.3), "restitution": (0, 0.4)}
+    design = {"slope": (0.2, 0.6), "mass_ratio": (1, 4), "offset_ratio": (0.6, 1), "inertia_factor": (0.8, 1), "release_angle": (3, 3.3)}
+    said = lambda parts: "".join(f"{name} = {{ from = {a}, to = {b}, count = 5 }}\n" for name, (a, b) in parts.items())
+    spec = f'[scene]\nfriction = "coulomb"\nrunway = 1\n{said(axes)}[design]\n{said(design)}[numerics]\naudit = 0\n[output]\nfields = ["status"]\n'
+    joined = shards(tmp_path, spec, 2)
+    assert leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--resume", "--shard", "2/2").returncode == 0
+    assert leapmap("check", shard(joined, 1, 2)).returncode == 0
+    done = leapmap("join", joined)
+    tiles = int(done.stdout.split(" tiles")[0].split()[-1].replace(",", ""))
+    assert done.returncode == 0 and tiles > 64 * 64, done
+    with h5py.File(sweep(tmp_path, spec, name="one.h5")) as a, h5py.File(joined) as b:
+        assert a.attrs["tiles_checksum"] == b.attrs["tiles_checksum"]
+    assert "in 2 shards" in leapmap("info", joined).stdout
+
+
+def test_an_audit_that_disagrees_is_told_by_the_exit_status_quiet_or_not(tmp_path):
+    joined = shards(tmp_path, SMALL, 2, "--set", "audit=0.1")
+    with h5py.File(shard(joined, 2, 2), "r+") as file:
+        file.attrs["audit_flag_mismatches"] = np.int64(1)
+    for words in ((), ("--quiet",)):
+        assert leapmap("join", joined, "--overwrite", *words).returncode == 1
+
+
 def test_a_map_that_is_there_stays_unless_it_may_be_replaced(tmp_path):
     joined = shards(tmp_path, SMALL, 2)
     joined.write_bytes(sweep(tmp_path, SMALL, name="one.h5").read_bytes())
@@ -193,6 +255,9 @@ def test_what_is_no_part_of_a_whole_is_refused(text, tmp_path):
 
 def test_shards_for_which_there_is_no_tile_left_are_empty(tmp_path):
     joined = shards(tmp_path, SMALL, 9)
+    shard(joined, 9, 9).unlink()
+    told = leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--shard", "9/9").stdout
+    assert "shard 9/9 has none" in told and "nan" not in told
     assert leapmap("join", joined).returncode == 0
     same_datasets(sweep(tmp_path, SMALL, name="one.h5"), joined)
 
