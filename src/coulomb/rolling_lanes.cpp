@@ -125,7 +125,7 @@ void RollingLanes<T>::roll(std::span<const Bracketed> phases, std::vector<EndedP
   const T resolution = T(S(2) * std::numeric_limits<S>::epsilon()) * (T(abs(from)) + T(abs(to)));
   const T guess = from + (to - from) * from_value / (from_value - to_value);
   const T angle =
-      select(falls, polish_root(guard_at, from, to, guess, falls & !falls, resolution, falls), to);
+      select(falls, polish_root(guard_at, from, to, guess, MaskOf<T>(false), resolution, falls), to);
   const T x = angle - roll.release, taken = duration(roll, x);
   const T spin =
       way * sqrt(larger(vis_viva_past_release(roll, x), zero) / contact_inertia(roll.hoop, trig(angle)));

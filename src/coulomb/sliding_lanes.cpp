@@ -33,8 +33,8 @@ SlidingLanes<T>::SlidingLanes(double tolerance, std::size_t most)
       hoops_(most),
       states_(most),
       stretches_(most) {
-  for (std::size_t k = 0; k < looks; ++k) {
-    const Trig<S> phi = trig(S(2) * pi_of<S> * S(k) / S(looks));
+  for (std::size_t k = 0; k < looks_a_turn; ++k) {
+    const Trig<S> phi = trig(S(2) * pi_of<S> * S(k) / S(looks_a_turn));
     sin_[k] = phi.sin, cos_[k] = phi.cos;
   }
 }
@@ -46,12 +46,12 @@ template <class T>
 ScalarOf<T> SlidingLanes<T>::least_pivot(const Hoop<S>& hoop, const S& friction) const {
   const T rho(hoop.rho), m(friction), one(S(1));
   T least(std::numeric_limits<S>::max());
-  for (std::size_t k = 0; k < looks; k += width) {
+  for (std::size_t k = 0; k < looks_a_turn; k += width) {
     const T s = rho * Lanes<T>::load(sin_.data() + k), c = Lanes<T>::load(cos_.data() + k);
     least = smaller(least, s * (s - m * (one - rho * c)));
   }
   const auto lanes = lanes_of(least);
-  const S step = S(2) * pi_of<S> / S(looks), size = std::abs(friction) * hoop.rho;
+  const S step = S(2) * pi_of<S> / S(looks_a_turn), size = std::abs(friction) * hoop.rho;
   const S off = step * step / S(8) * (S(2) * hoop.rho * hoop.rho + size * (S(1) + S(2) * hoop.rho));
   if (hoop.Ic + *std::min_element(lanes.begin(), lanes.end()) > off) return S(0);
   return S(near_edge) * (hoop.rho * hoop.rho + size * (S(1) + hoop.rho));
@@ -97,7 +97,7 @@ auto SlidingLanes<T>::first_events(const Panel& panel, const T& runway, const T&
   using std::abs;
   constexpr std::size_t nodes = Panels::nodes;
   const typename Panels::Grid& grid = panels_.grid();
-  Events events{T(S(2)), {}, asked | !asked};
+  Events events{T(S(2)), {}, MaskOf<T>(true)};
   const T zero(S(0)), one(S(1));
   const std::array<const typename Panels::Course*, 4> courses{&panel.free_force, &panel.slip, &panel.travel,
                                                               &panel.travel};
@@ -195,7 +195,7 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
   const MaskOf<T> too_long =
       comes & (panel_.end.time - time > T(S(longest_time))) & (events.place < T(S(least_place)));
   const MaskOf<T> goes_on = looks & events.plain & !comes;
-  typename Panels::Inside inside{from, comes & !comes};
+  typename Panels::Inside inside{from, MaskOf<T>(false)};
   if (any(comes)) inside = panels_.state_at(slide, from, stretch, panel_, smaller(events.place, one));
   const MaskOf<T> sharp = comes & inside.is_sharp;
 

@@ -63,11 +63,11 @@ class SlidingLanes {
   ContactState<S> state_of(std::uint32_t place) const;
   void alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended);
 
-  static constexpr std::size_t looks = 48;
+  static constexpr std::size_t looks_a_turn = 48;
 
   Panels panels_;
   SlidingLeg<S> leg_;
-  std::array<S, looks> sin_, cos_;  // of one turn
+  std::array<S, looks_a_turn> sin_, cos_;  // of one turn
   std::vector<Slide> slides_;
   PackedRows<S, 8> hoops_, states_;  // states: time, travel, angle, spin, slip; n0, friction, panel's length
   PackedRows<S, 4> stretches_;       // where given

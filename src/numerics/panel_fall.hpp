@@ -186,7 +186,7 @@ PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename Spectra
   const MaskOf<T> starts_at_zero = !(first.value > zero);
   const MaskOf<T> rises = (first.rate > zero) & (values[0] > zero);
   MaskOf<T> looking = asked & ((first.value > zero) | rises);
-  MaskOf<T> monotone = !looking & looking;  // and all that is found below: of the interval found
+  MaskOf<T> monotone(false);  // and all that is found below: of the interval found
   T from(S(0)), to(S(1));
   Sample<T> at_from = first, at_to = last;
   for (std::size_t i = 0; i <= n && any(looking); ++i) {
@@ -220,7 +220,7 @@ PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename Spectra
     const auto [value, rate] = panel.template values<2>({&values, &rates}, place);
     return Sample<T>{value, rate};
   };
-  const T place = polish_root(at, from, to, T(from + h * x), falls & !falls,
+  const T place = polish_root(at, from, to, T(from + h * x), MaskOf<T>(false),
                               T(S(4) * std::numeric_limits<S>::epsilon()), falls);
   fall.place = select(falls, place, fall.place);
   return fall;

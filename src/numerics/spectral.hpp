@@ -137,10 +137,10 @@ struct SpectralPanel {
   /// The sum of the matrix's columns, column j times f[j].
   static Values product(const std::array<Numbers, n>& columns, const Values& f) {
     // So many rows at once that their sums stay in registers.
-    constexpr std::size_t rows = std::min<std::size_t>(n / width, 8);
-    static_assert(n / width % rows == 0);
+    constexpr std::size_t all = n / width, rows = all <= 8 ? all : all % 8 == 0 ? 8 : 6;
+    static_assert(all % rows == 0);
     Values values;
-    for (std::size_t first = 0; first < n / width; first += rows) {
+    for (std::size_t first = 0; first < all; first += rows) {
       std::array<T, rows> sums;
       sums.fill(T(Number(0)));
       for (std::size_t j = 0; j < n; ++j)
