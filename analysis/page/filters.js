@@ -1,5 +1,7 @@
 // Questions to a map: only designs that reach every goal are shown in full, and the best of them is marked.
 
+const LOWER_IS_BETTER = ["jump_time", "first_jump_time", "jump_distance", "energy_lost", "slip_distance", "candidates"];
+
 /** Builds the goals' part; changed(): another picture is due, best(index): the best design left is to be shown. */
 function filtersPart(map, view, changed, best) {
   const list = element("goals"), told = element("goals-told"), goals = [];
@@ -22,7 +24,10 @@ function filtersPart(map, view, changed, best) {
     noteAddress();
   }
 
+  const better = (a, b) => (LOWER_IS_BETTER.includes(view.view.field.name) ? a < b : a > b);
+
   function tell() {
+    find.textContent = `show the ${better(0, 1) ? "lowest" : "highest"} left`;
     if (!map.keeps) { told.textContent = ""; return; }
     const n = map.fields[0].values.length;
     let left = 0;
@@ -62,7 +67,7 @@ function filtersPart(map, view, changed, best) {
   find.addEventListener("click", () => {
     const { field } = view.view, n = field.values.length;
     let at = -1;
-    for (let k = 0; k < n; ++k) if (keeps(k) && field.values[k] === field.values[k] && (at < 0 || field.values[k] > field.values[at])) at = k;
+    for (let k = 0; k < n; ++k) if (keeps(k) && field.values[k] === field.values[k] && (at < 0 || better(field.values[k], field.values[at]))) at = k;
     if (at < 0) { told.textContent = "no design on this map reaches every goal"; return; }
     const index = [];
     for (let k = map.axes.length - 1, rest = at; k >= 0; --k) { const length = map.axes[k].values.length; index[k] = rest % length; rest = Math.floor(rest / length); }

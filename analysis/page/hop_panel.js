@@ -147,7 +147,10 @@ function hopPanel(map, solver, ofItsOwn) {
     if (now.story) then();
     noteAddress();
   });
-  choose(radius, "radius", solve);
+  choose(radius, "radius", () => {
+    if (map.live) { map.fixed.radius = chosen.radius; map.refresh(); }  // the whole map is of that size
+    solve();
+  });
   jumps.addEventListener("change", () => {
     const good = jumps.value !== "" && jumps.checkValidity();
     jumps.setAttribute("aria-invalid", String(!good));
@@ -177,11 +180,14 @@ function hopPanel(map, solver, ofItsOwn) {
   });
   new ResizeObserver(draw).observe(scene);
 
-  const begin = (design, title, source) => {
+  /** goesOn: the hoop of the same place, on which a reader who stopped it wants to see the same moment. */
+  const begin = (design, title, source, goesOn = false) => {
+    const stopped = goesOn && now.story && !now.playing && now.time > 0, { time } = now;
     Object.assign(now, { design, source });
     element("hop-title").textContent = title;
     solve();
-    run(!still && now.story !== null);
+    if (stopped && now.story) stopAt(time);
+    else run(!still && now.story !== null);
     if (source[0] !== "design" && now.story) ofItsOwn(title, { ...now.story.outcome, agility: 2 * design.radius * now.story.outcome.jump_height / (now.story.outcome.jump_time + now.story.outcome.apex_time) });
     noteAddress();
   };
@@ -190,14 +196,16 @@ function hopPanel(map, solver, ofItsOwn) {
     const numbers = Object.keys(map.parameters).filter((name) => name in solver.defaults && Number.isFinite(design[name]));
     begin(design, title, ["hoop", numbers.map((name) => `${name}:${design[name]}`).join(",")]);
   };
-  const paper = () => begin({ ...map.fixed, ...map.paper }, "One hoop: the paper's, from rest with its mass on top", ["paper", ""]);
+  const PAPERS = "One hoop: the paper's, from rest with its mass on top";
+  // In a model that slips it is a hoop of numbers: the paper's has no friction to name.
+  const paper = () => (map.slips ? typed({ ...map.fixed, ...map.paper }, PAPERS) : begin({ ...map.fixed, ...map.paper }, PAPERS, ["paper", ""]));
   element("paper").hidden = map.slips;
   element("paper").addEventListener("click", paper);
-  const show = (index, byHand) => {
+  const show = (index, byHand, goesOn = false) => {
     // On a phone the hoop is further down.
     const part = element("hop-part");
     if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight) part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
-    begin(designAt(map, index), `One hoop: ${placeText(map, index)}`, ["design", index.join(",")]);
+    begin(designAt(map, index), `One hoop: ${placeText(map, index)}`, ["design", index.join(",")], goesOn);
   };
   const stopAt = (time) => { run(false); now.time = Math.min(Math.max(0, time), end()); draw(); };
   addressPart({
@@ -216,12 +224,19 @@ function hopPanel(map, solver, ofItsOwn) {
       Object.assign(chosen, { radius: Number(radius.value) / 1000, mass: Number(mass.value) / 1000, jumps: Math.round(Number(jumps.value)) });
       pins.read(words);
       const hoop = designOf(words.get("hoop"), solver.ranges);
-      if (words.has("paper") && !map.slips) paper();
+      if (words.has("paper")) paper();
       else if (hoop) typed({ ...map.fixed, ...hoop });
       else if (words.has("hoop")) notice("The address asks for a hoop of numbers that no hoop has.");
     },
   });
-  return { show, stopAt, retell: () => { if (now.story) { tell(); draw(); } }, isOfMap: () => now.source[0] === "design" };
+  /** The model is another: a hoop that is none of the map's, and what is pinned, are solved anew; the map's own follow the map. */
+  const remodel = () => {
+    pins.show();
+    if (!now.design || now.source[0] === "design") return;
+    const title = element("hop-title").textContent;
+    title === PAPERS ? paper() : typed(now.design, title);
+  };
+  return { show, stopAt, remodel, retell: () => { if (now.story) { tell(); draw(); } }, isOfMap: () => now.source[0] === "design" };
 }
 
 /** A design from name:value,name:value, as an address has it; null if any of it is none. */

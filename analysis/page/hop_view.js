@@ -39,10 +39,10 @@ function drawGhosts(context, ghosts, time, turned, px, scale, R) {
   context.globalAlpha = 1;
 }
 
-/** Arrows of the plane's push and friction at the contact and of the weight at the centre of mass, in one scale. */
+/** Arrows of the plane's push and friction at the contact and of the weight at the centre of mass, in one scale: lengths as the square roots of forces, so that small ones are seen beside large. */
 function drawForces(context, design, motion, time, turned, px, scale) {
   const R = design.radius, x = valueAt(motion, "x", time), y = valueAt(motion, "y", time), phi = valueAt(motion, "phi", time), { low } = sampleAt(motion, time);
-  const most = motion.normal_force.reduce((a, b) => Math.max(a, b), 1), length = Math.min(0.8 * R, 2.4 * R / most);  // of a weight
+  const most = motion.normal_force.reduce((a, b) => Math.max(a, b), 1), length = Math.min(0.9 * R, 2.4 * R / Math.sqrt(most)), along = (force) => length * Math.sign(force) * Math.sqrt(Math.abs(force));  // 1: a weight
   const arm = design.offset_ratio * R * design.mass_ratio / (1 + design.mass_ratio), onPlane = motion.phase[low] !== 3;
   const arrow = ([x0, y0], [dx, dy], tone, words) => {
     const size = Math.hypot(dx, dy) * scale;
@@ -64,8 +64,8 @@ function drawForces(context, design, motion, time, turned, px, scale) {
     context.fillText(words, bx + 0.15 * R * scale, by);
   };
   if (onPlane) {
-    arrow([x, y], [0, length * motion.normal_force[low]], "fly", "N");
-    arrow([x, y], [length * motion.friction[low], 0], "slide", "F");
+    arrow([x, y], [0, along(motion.normal_force[low])], "fly", "N");
+    arrow([x, y], [along(motion.friction[low]), 0], "slide", "F");
   }
   // Straight down on the screen, whatever the slope.
   arrow([x - arm * Math.sin(phi), y + R - arm * Math.cos(phi)], [length * Math.sin(design.slope), -length * Math.cos(design.slope)], "ink", "W");

@@ -120,6 +120,7 @@ function liveEngine(map, module, workerText, onPicture) {
   }
 
   function receive(worker, { data }) {
+    if (data.error) { complain(data.error); return; }
     if (data.ready) { worker.ready = true; feed(worker); return; }
     const job = worker.jobs.shift();
     feed(worker);

@@ -4,17 +4,22 @@
 function liveState(words, solver) {
   const state = { slips: words.get("friction") === "coulomb", fixed: {} };
   const numbers = (text) => (text ?? "").split(":").map((word, i) => (i === 0 ? word : Number(word)));
+  const refuse = (key) => notice(`The address asks for ${key}=${words.get(key)}, which cannot be, and is left out.`);
   const axis = (key, fallback, count) => {
-    const [name, from, to] = numbers(words.get(key)), range = LIVE_RANGES[name];
-    const good = range && !NO_LIVE_AXIS.includes(name) && Number.isFinite(from) && Number.isFinite(to) && from < to;
+    const [name, from, to] = numbers(words.get(key)), known = name in LIVE_RANGES && !NO_LIVE_AXIS.includes(name), [least, most] = known ? solver.ranges[name] : [NaN, NaN];
+    const good = known && from >= least && to <= most && from < to;
+    if (!good && words.has(key)) refuse(key);
     return good ? { name, from, to, count } : { ...fallback, count };
   };
   state.x = axis("x", { name: "slope", from: 2 * Math.PI / 180, to: 50 * Math.PI / 180 }, LIVE_SHAPE[0]);
   state.y = axis("y", { name: "mass_ratio", from: 0.1, to: 12 }, LIVE_SHAPE[1]);
+  if (state.x.name === state.y.name && words.has("y")) refuse("y");
   if (state.x.name === state.y.name) state.y = { name: state.x.name === "slope" ? "mass_ratio" : "slope", from: 0.1, to: 0.8, count: LIVE_SHAPE[1] };
   for (const name of Object.keys(solver.defaults)) {
-    const value = Number(words.get(name));
-    if (words.has(name) && Number.isFinite(value)) state.fixed[name] = value;
+    if (!words.has(name)) continue;
+    const value = Number(words.get(name)), [least, most] = solver.ranges[name];
+    if (words.get(name) !== "" && value >= least && value <= most) state.fixed[name] = value;
+    else refuse(name);
   }
   return state;
 }

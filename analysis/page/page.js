@@ -64,7 +64,7 @@ function startLive(given, module, solver) {
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   });
-  const begin = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
+  const begin = map.refresh = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
   settleMap(map);
   const controls = liveControls(map, solver, (what) => {
     if (what === "model" && page) page.remodel();
@@ -93,7 +93,7 @@ function start(map, solver) {
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
     (map.fields.some((f) => f.name === "agility") ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "") + ".";
 
-  let said = "", own = null;  // what the readout tells; the hoop beside, if it is none of the map's
+  let said = "", own = null, points = false;  // what the readout tells; the hoop beside, if it is none of the map's; whether one points at the map
   const tellOwn = () => {
     const { outcome, title } = own, { field } = view.view, v = outcome[field.name];
     said = "";
@@ -102,8 +102,8 @@ function start(map, solver) {
     element("others").replaceChildren();
     Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });
   };
-  const chosen = hopPanel(map, solver, (title, outcome) => { own = { title, outcome }; view.view.picked = null; view.paint(); tellOwn(); });
-  let drawCuts = () => {};
+  const chosen = hopPanel(map, solver, (title, outcome) => { own = { title, outcome }; points = false; view.view.picked = null; view.paint(); tellOwn(); });
+  let drawCuts = () => {}, filters = null;
   const told = (index) => {
     const at = view.offset(index), shown = view.view.field, key = `${index} ${shown.name}`;
     if (key === said) return;  // the pointer moved inside a cell
@@ -128,8 +128,9 @@ function start(map, solver) {
     dataset.index = index.join(",");
     dataset.value = number(shown);
   };
-  const view = (map.columns ? listView : mapView)(canvas, map, told, (index, byHand) => { own = null; chosen.show(index, byHand); });
-  canvas.addEventListener("pointerleave", () => { if (own) tellOwn(); });
+  const pointed = (index) => { points = true; told(index); };
+  const view = (map.columns ? listView : mapView)(canvas, map, pointed, (index, byHand) => { own = null; chosen.show(index, byHand); });
+  canvas.addEventListener("pointerleave", () => { points = false; if (own) tellOwn(); });
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value if there are others.
   const choices = map.columns ?? map.axes;  // of what may be drawn to the right
@@ -150,8 +151,8 @@ function start(map, solver) {
   map.fields.forEach((f, k) => option(fieldSelect, k, withUnit(f.label, f.unit ? `[${f.unit}]` : "")));
   fieldSelect.value = map.fields.indexOf(view.view.field);
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
-  const tellShown = () => (own ? tellOwn() : told(view.view.index));
-  const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); tellShown(); };
+  const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
+  const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); tellShown(); filters?.tell(); };
   fieldSelect.addEventListener("change", () => { showField(); noteAddress(); });
   const firstField = fieldSelect.value;
   addressPart({
@@ -238,7 +239,7 @@ function start(map, solver) {
   element("map-svg").addEventListener("click", () => saveSvg(canvas, `${pictureName()}.svg`, (like) => view.paintOn(like.getContext("2d"))));
   element("cuts").hidden = Boolean(map.columns);
   if (!map.columns) drawCuts = cutsPart(map, view);
-  const filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; view.pick(); });
+  filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; view.pick(); });
   element("filters").hidden = Boolean(map.columns);
   if (filters) addressPart(filters);
   addressPart(unitsPart(() => { said = ""; tellShown(); chosen.retell(); noteAddress(); }));
@@ -274,9 +275,9 @@ function start(map, solver) {
       tellShown();
     },
     /** The hoop shown, of the same place on another map. */
-    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked); },
+    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true); },
     /** Another model: what is told of a hoop is another. */
-    remodel() { element("paper").hidden = map.slips; legend(); },
+    remodel() { element("paper").hidden = map.slips; chosen.remodel(); legend(); },
   };
 }
 

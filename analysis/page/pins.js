@@ -12,6 +12,7 @@ function pinsPart(map, solver, command, changed) {
 
   function show() {
     part.hidden = pins.length === 0;
+    for (const pin of pins) pin.outcome = solver.solve(pin.design, map.slips, map.tolerance).outcome;  // the model may be another now
     const keys = [...new Set(pins.flatMap(({ design }) => Object.keys(design)))]
       .filter((key) => key in map.parameters && new Set(pins.map(({ design }) => design[key])).size > (pins.length > 1 ? 1 : 0)).filter((key) => pins.some(({ design }) => Number.isFinite(design[key])));
     const head = document.createElement("tr");
@@ -30,16 +31,15 @@ function pinsPart(map, solver, command, changed) {
     for (const [key, words, unit] of PINNED)
       if (pins.some(({ outcome }) => Number.isFinite(outcome[key]))) rows.push(row(words, pins.map(({ outcome }) => (Number.isFinite(outcome[key]) ? withUnit(short(outcome[key], 5), unit) : ""))));
     table.replaceChildren(head, ...rows);
-    // A list that leapmap sweep --points reads, and more.
-    const names = Object.keys(map.parameters).filter((key) => pins.some(({ design }) => Number.isFinite(design[key])));
-    const lines = [[...names, "status", ...PINNED.map(([key]) => key)], ...pins.map(({ design, outcome }) => [...names.map((key) => design[key]), outcome.status, ...PINNED.map(([key]) => outcome[key])])];
+    // A list that leapmap sweep --points reads: parameters that may differ from design to design, angles in radians.
+    const listed = Object.keys(map.parameters).filter((key) => !NO_LIVE_AXIS.includes(key) && (map.slips || !SLIPPING.includes(key)) && pins.every(({ design }) => Number.isFinite(design[key])));
+    const lines = [["label", ...listed], ...pins.map(({ design }, i) => [`pin ${i + 1}`, ...listed.map((key) => design[key])])];
     csv.href = URL.createObjectURL(new Blob([lines.map((line) => line.join(",")).join("\n") + "\n"], { type: "text/csv" }));
     csv.dataset.text = lines.map((line) => line.join(",")).join("\n");
     commands.textContent = pins.map(({ design }) => command(design)).join("\n");
   }
 
-  const add = (design) => pins.push({ design: { ...design }, outcome: solver.solve(design, map.slips, map.tolerance).outcome });
-  const names = () => Object.keys(map.parameters).filter((name) => name in solver.defaults);
+  const add = (design) => pins.push({ design: { ...design }, outcome: null });
 
   return {
     pin(design) {
@@ -52,7 +52,7 @@ function pinsPart(map, solver, command, changed) {
     show,
     designs: () => pins.map(({ design }) => design),
     write(words) {
-      for (const { design } of pins) words.append("pin", names().filter((name) => Number.isFinite(design[name])).map((name) => `${name}:${design[name]}`).join(","));
+      for (const { design } of pins) words.append("pin", Object.keys(solver.defaults).filter((name) => Number.isFinite(design[name]) && design[name] !== map.fixed[name]).map((name) => `${name}:${design[name]}`).join(","));
     },
     read(words) {
       const wanted = words.getAll("pin").slice(0, MOST_PINS).map((text) => designOf(text, solver.ranges)).filter((design) => design);

@@ -21,11 +21,13 @@ function bisected({ design, slips, tolerance, first, second, ends, codes }) {
 }
 
 onmessage = async ({ data }) => {
-  if (data.module) {
-    solver = await solverOf(data.module);
-    postMessage({ ready: true });
-    return;
-  }
-  const rows = data.ends ? bisected(data) : solver.solvePlaces(data.design, data.slips, data.tolerance, data.first, data.second, data.places);
-  postMessage({ generation: data.generation, rows }, [rows.buffer]);
+  try {
+    if (data.module) {
+      solver = await solverOf(data.module);
+      postMessage({ ready: true });
+      return;
+    }
+    const rows = data.ends ? bisected(data) : solver.solvePlaces(data.design, data.slips, data.tolerance, data.first, data.second, data.places);
+    postMessage({ generation: data.generation, rows }, [rows.buffer]);
+  } catch (error) { postMessage({ error: String(error.message ?? error) }); }  // of an async function onerror hears nothing
 };
