@@ -135,8 +135,9 @@ def chart(grid, name, panels_of):
     handles += cliffs.handles(kinds)
     if starred:
         handles.append(style.star_handle(look.star))
-    if name == "agility" and any(agility <= norm.vmax for agility in looks.JUMPERS.values()):
-        handles.append(plt.Line2D([], [], color=style.MARK, label=f"published jumpers ({looks.JUMPERS_SOURCE})"))
+    if name == "agility":
+        drawn = any(agility <= norm.vmax for agility in looks.JUMPERS.values())
+        handles.append(plt.Line2D([], [], color=style.MARK, linestyle="-" if drawn else "none", label=f"published jumpers ({looks.JUMPERS_SOURCE})"))
     style.legend_above(figure, handles)
     return figure
 

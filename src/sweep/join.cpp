@@ -85,6 +85,8 @@ class Faults {
   /// Throws what was noted, as one line that says which to run again.
   void tell() const {
     if (again_.empty()) return;
+    std::vector<std::size_t> again = again_;
+    std::ranges::sort(again);
     std::string text = fmt::format("{}: ", map_);
     if (const std::size_t missing = again_.size() - broken_.size(); missing > 0)
       text +=
@@ -94,7 +96,7 @@ class Faults {
     if (broken_.size() > reasons_.size())
       text += fmt::format("and {} more; ", broken_.size() - reasons_.size());
     if (!broken_.empty()) text += "remove what is broken, then ";
-    text += fmt::format("run them again, with --resume: --array={}", array_of(again_));
+    text += fmt::format("run them again, with --resume: --array={}", array_of(again));
     if (broken_.empty()) throw InputError(text);
     throw BrokenFile(text);
   }
