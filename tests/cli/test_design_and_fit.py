@@ -137,7 +137,7 @@ def test_objectives_may_be_one_name_and_a_goal_on_a_parameter_says_where_it_belo
 
 def test_ctrl_c_ends_a_search_and_writes_nothing(tmp_path):
     (tmp_path / "q.toml").write_text(BOX)
-    running = subprocess.Popen([PROGRAM, "design", tmp_path / "q.toml", "--sample", "100000000", "-o", tmp_path / "m.h5"], stderr=subprocess.PIPE)
+    running = subprocess.Popen([PROGRAM, "design", tmp_path / "q.toml", "--sample", "20000000", "-o", tmp_path / "m.h5"], stderr=subprocess.PIPE)
     time.sleep(0.7)
     running.send_signal(signal.SIGINT)
     assert running.wait(timeout=20) == 130 and not (tmp_path / "m.h5").exists()
