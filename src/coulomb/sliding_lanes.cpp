@@ -216,7 +216,7 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
   const T least = select(
       is_steep, T(S(shortest_steep)),
       select(panel_.spin_vanishes, T(S(shortest_vanishing)), T(S(shortest_angle)) * (one + T(abs(angle)))));
-  const MaskOf<T> shrinks = turns & !is_last & !solved & !stops & (length > least);
+  const MaskOf<T> shrinks = turns & !is_given & !solved & !stops & (length > least);
   const T shrunk = length * select(unresolved, shrunk_by(panel_.spin_excess),
                                    select(is_steep, T(S(0.5)), shrunk_by(panel_.excess)));
   const T grown =

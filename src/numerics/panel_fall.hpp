@@ -223,6 +223,7 @@ PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename Spectra
   const T place = polish_root(at, from, to, T(from + h * x), MaskOf<T>(false),
                               T(S(4) * std::numeric_limits<S>::epsilon()), falls);
   fall.place = select(falls, place, fall.place);
+  fall.is_plain = asked & (looking | (falls & (place <= T(S(1)))));
   return fall;
 }
 
