@@ -23,16 +23,7 @@ Value largest(std::initializer_list<Value> values) {
   return most;
 }
 
-/// Of a T that holds nodes of an S, or one node of each of its lanes: whether any node is marked, and the
-/// least of their values.
-template <class S, class T>
-MaskOf<S> any_node(const MaskOf<T>& marked) {
-  if constexpr (std::is_same_v<S, T>) {
-    return marked;
-  } else {
-    return any(marked);
-  }
-}
+/// The least of the nodes that a T holds of an S, or of the one node that it holds of each of its lanes.
 template <class S, class T>
 ValueOf<S> least_node(const T& values) {
   if constexpr (std::is_same_v<S, T>) {
