@@ -24,7 +24,7 @@ function saveSvg(canvas, name, draw) {
 
 /** Records a canvas while play() runs, until the promise that it returns is kept. Returns the film, or null where the browser has no recorder. */
 async function recorded(canvas, play) {
-  const type = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((each) => window.MediaRecorder?.isTypeSupported(each));
+  const type = ["video/webm;codecs=vp8", "video/webm;codecs=vp9", "video/webm"].find((each) => window.MediaRecorder?.isTypeSupported(each));
   if (!type || !canvas.captureStream) return null;
   const recorder = new MediaRecorder(canvas.captureStream(60), { mimeType: type, videoBitsPerSecond: 8e6 }), parts = [];
   recorder.ondataavailable = ({ data }) => { if (data.size > 0) parts.push(data); };

@@ -11,7 +11,7 @@ function hopPanel(map, solver, ofItsOwn) {
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
   // source: where the design is from, "design" of the map, "paper" or "hoop" as typed, and which.
-  const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null };
+  const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null, recording: false };
   const chosen = { radius: map.fixed.radius, mass: PAPER_MASS / 1000, jumps: map.jumps };  // m; kg
   radius.value = 1000 * chosen.radius;
   mass.value = 1000 * chosen.mass;
@@ -52,7 +52,8 @@ function hopPanel(map, solver, ofItsOwn) {
 
   function tick(stamp) {
     if (!now.playing) return;
-    const passed = now.last ? Math.min(0.1, (stamp - now.last) / 1000) : 0;
+    // A tab that was away goes on where it was; a film keeps the clock's time even where frames come late.
+    const since = now.last ? (stamp - now.last) / 1000 : 0, passed = now.recording ? since : Math.min(0.1, since);
     now.last = stamp;
     now.time += passed * Number(element("speed").value);
     if (now.time >= end()) { now.time = end(); run(false); }
@@ -121,11 +122,13 @@ function hopPanel(map, solver, ofItsOwn) {
     film.disabled = true;
     film.textContent = "recording ...";
     now.time = 0;
+    now.recording = true;
     const blob = await recorded(scene, () => new Promise((keep) => {
       run(true);
       const wait = () => (now.playing ? requestAnimationFrame(wait) : keep());
       wait();
     }));
+    now.recording = false;
     film.disabled = false;
     film.textContent = "save as WebM";
     if (blob) { film.dataset.bytes = blob.size; saveAs(blob, "hoop.webm"); } else notice("This browser records no films.");

@@ -48,7 +48,8 @@ int run(JoinArguments& arguments) {
   const int status = report->audit ? tell_audit(told, report->spec, *report->audit) : 0;
   if (arguments.quiet) return status;
   print_totals(report->statuses);
-  say("map      {}\n", arguments.map);
+  say("map      {}{}\n", arguments.map,
+      options.as_virtual ? ", whose values stay in the shards beside it" : "");
   return status;
 }
 
@@ -66,6 +67,10 @@ void add_join(CLI::App& app, int& status) {
       ->add_option("--shards", arguments->options.shards,
                    "how many shards it has; default: as many as their names say")
       ->check(CLI::Range(std::size_t{1}, most_shards));
+  command->add_flag(
+      "--virtual", arguments->options.as_virtual,
+      "leave the values in the shards and look them up there: for a map too large to copy; it needs the "
+      "shards beside it");
   command->add_flag("--overwrite", arguments->options.overwrite, "replace an existing map");
   add_no_lock(*command, arguments->locking);
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");

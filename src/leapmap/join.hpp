@@ -18,6 +18,9 @@ struct JoinOptions {
   std::size_t shards = 0;  ///< of how many the map is; 0: of as many as those beside it say
   bool overwrite = false;  ///< replace an existing map
   bool lock = true;        ///< false: do without locks where the file system has none
+  /// The values stay in the shards, and the map has HDF5's virtual datasets, which look them up there: for a
+  /// map too large to be copied. It is worth as much as the shards beside it.
+  bool as_virtual = false;
   /// Told how many designs of how many are in the map, after each tile.
   std::function<void(std::size_t done, std::size_t total)> progress{};
   /// Asked after each tile; true: the joining ends and nothing is kept.

@@ -151,6 +151,7 @@ Handle create_dataset(hid_t file, const DatasetPlan& plan) {
   }
   if (plan.checksums) check(H5Pset_fletcher32(creation), what);
   if (plan.fill) check(H5Pset_fill_value(creation, plan.type, plan.fill), what);
+  add_sources(creation, plan.sources, plan.shape, plan.name);
   const Handle space(H5Screate_simple(static_cast<int>(plan.shape.size()), plan.shape.data(), nullptr),
                      H5Sclose, what);
   return {H5Dcreate2(file, plan.name.c_str(), plan.type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose,

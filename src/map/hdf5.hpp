@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "map/hdf5_virtual.hpp"
+
 namespace leapmap::hdf5 {
 
 /// Throws IoError with `what` and HDF5's innermost reason. HDF5's own printing is off.
@@ -57,15 +59,16 @@ inline void check(herr_t status, const std::string& what) {
   if (status < 0) fail(what);
 }
 
-/// A dataset to be created: creation order tracked, chunked if chunk is not empty.
+/// A dataset to be created: creation order tracked, chunked if chunk is not empty, virtual if it has sources.
 struct DatasetPlan {
   std::string name;
   hid_t type;
   std::span<const hsize_t> shape;
   std::span<const hsize_t> chunk = {};
-  const void* fill = nullptr;  ///< of `type`; unset: zero
-  int compression = 0;         ///< > 0: bytes shuffled (but single ones), deflated at that level
-  bool checksums = false;      ///< of a chunked one: each chunk ends with HDF5's fletcher32
+  const void* fill = nullptr;            ///< of `type`; unset: zero
+  int compression = 0;                   ///< > 0: bytes shuffled (but single ones), deflated at that level
+  bool checksums = false;                ///< of a chunked one: each chunk ends with HDF5's fletcher32
+  std::span<const Source> sources = {};  ///< of a virtual one, which has no values of its own
 };
 Handle create_dataset(hid_t file, const DatasetPlan& plan);
 

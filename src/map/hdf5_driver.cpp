@@ -8,7 +8,8 @@
 #include <exception>
 #include <filesystem>
 #include <iterator>
-#include <new>
+#include <memory>
+#include <set>
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_trust.hpp"
@@ -17,14 +18,20 @@
 namespace leapmap::hdf5 {
 namespace {
 
+/// The files that a file's virtual datasets are made of, known when it has been looked through. They lie
+/// beside it and have no folder here.
+using Sources = std::set<std::string, std::less<>>;
+
 /// What HDF5 holds of an open file. It shares the file: where HDF5 cannot close, its driver outlives us.
 struct Driver : H5FD_t {
   std::shared_ptr<JournaledFile> file;
+  std::shared_ptr<const Sources> sources;
 };
 
 /// What the property list of an open carries to it.
 struct Target {
   const std::shared_ptr<JournaledFile>* file;
+  const std::shared_ptr<const Sources>* sources;
 };
 
 Driver& driver(H5FD_t* base) { return *static_cast<Driver*>(base); }
@@ -43,17 +50,42 @@ herr_t guarded(const F& f) {
   }
 }
 
-/// Opens the target, and no other file: HDF5 comes here too for a file that another one refers to.
+/// A source of the target, whatever folder HDF5 looks for it in: it lies beside the target. Where it cannot
+/// be opened HDF5 would go on with fill values: the target is told, which has failed then.
+std::shared_ptr<JournaledFile> source_of(const Target& target, const std::string& name) {
+  try {
+    const auto path = std::filesystem::path((*target.file)->path()).parent_path() / name;
+    return std::make_shared<JournaledFile>(path.string(), JournaledFile::Access::read, Locking::if_possible);
+  } catch (const std::exception& error) {
+    (*target.file)->note_failure(error.what());
+    throw;
+  }
+}
+
+/// Opens the target or one of its sources, and no other file: HDF5 comes here too for a file that another one
+/// refers to.
 H5FD_t* open(const char* name, unsigned, hid_t access, haddr_t) {
   const auto* target = static_cast<const Target*>(H5Pget_driver_info(access));
-  if (!target || (*target->file)->path() != name) {
-    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_FILE, H5E_CANTOPENFILE,
-             "another file is referred to");
-    return nullptr;
-  }
-  auto* opened = new (std::nothrow) Driver;
-  opened ? void(opened->file = *target->file) : (*target->file)->note_failure("out of memory");
-  return opened;
+  std::unique_ptr<Driver> opened;
+  const herr_t done = guarded([&] {
+    if (target && (*target->file)->path() == name) {
+      opened.reset(new Driver{{}, *target->file, *target->sources});
+      return;
+    }
+    const std::string plain = std::filesystem::path(name).filename().string();
+    if (!target || !*target->sources || !(*target->sources)->contains(plain))
+      throw IoError("another file is referred to");
+    opened.reset(new Driver{{}, source_of(*target, plain), nullptr});
+  });
+  if (done < 0 && target && (*target->file)->path() == name) (*target->file)->note_failure("out of memory");
+  return opened.release();
+}
+
+/// How HDF5 opens the sources of a file: as the file itself.
+void* access_of(H5FD_t* base) {
+  auto* target = static_cast<Target*>(H5allocate_memory(sizeof(Target), false));
+  if (target) *target = {&driver(base).file, &driver(base).sources};
+  return target;
 }
 
 herr_t flush(H5FD_t* base, hid_t, hbool_t) {
@@ -98,6 +130,7 @@ hid_t driver_id() {
     made.maxaddr = (haddr_t{1} << 63) - 1;
     made.fc_degree = H5F_CLOSE_WEAK;
     made.fapl_size = sizeof(Target);
+    made.fapl_get = access_of;
     made.open = open;
     made.close = close;
     made.query = query;
@@ -115,16 +148,16 @@ hid_t driver_id() {
   return id;
 }
 
-/// Valid while `file` is.
-Handle access_to(const std::shared_ptr<JournaledFile>& file) {
+/// Valid while `file` and `sources` are.
+Handle access_to(const std::shared_ptr<JournaledFile>& file, const std::shared_ptr<const Sources>& sources) {
   initialise();
-  const Target target{&file};
+  const Target target{&file, &sources};
   const std::string& path = file->path();
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path);
   check(H5Pset_driver(access, driver_id(), &target), path);
   check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG), path);  // nothing may write after we have closed
   if (file->access() != JournaledFile::Access::read)  // a map that others have repacked may be read as well
-    check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), path);
+    check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V110), path);  // 1.10: virtual datasets
   return access;
 }
 
@@ -140,12 +173,17 @@ enum class Mode { read, change };
 /// The mode is no flag of HDF5's: those are macros that initialise the library, with its handler at exit,
 /// before initialise() can keep it away.
 Handle open_in(const std::shared_ptr<JournaledFile>& file, Mode mode) {
-  const Handle access = access_to(file);
+  const auto sources = std::make_shared<Sources>();
+  const std::shared_ptr<const Sources> seen = sources;
+  const Handle access = access_to(file, seen);
   const std::string& path = file->path();
   try {
     Handle opened(H5Fopen(path.c_str(), mode == Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR, access), H5Fclose,
                   path + ": cannot be read as HDF5");
-    refuse_foreign_parts(opened, path);
+    *sources = refuse_foreign_parts(opened, path);
+    if (!sources->empty() && mode == Mode::change)
+      throw ForeignFile(
+          path + ": its values lie in shards; allowed: a map that leapmap join made without --virtual");
     return opened;
   } catch (const ForeignFile&) {
     throw;
@@ -204,7 +242,8 @@ File File::create(const std::string& path, std::string_view filetype, Locking lo
   if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) make_folder(folder);
   refuse_other_unfinished(path, filetype, locking);
   File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::create, locking));
-  const Handle access = access_to(file.bytes_), creation = creation_of(path);
+  const std::shared_ptr<const Sources> none;
+  const Handle access = access_to(file.bytes_, none), creation = creation_of(path);
   file.handle_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose,
                   path + ": cannot be created"};
   return file;

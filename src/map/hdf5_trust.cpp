@@ -20,6 +20,7 @@ constexpr std::size_t most_deflation = 1032;  // of zlib's format: 258 bytes a c
 struct Survey {
   std::string refusal;  ///< empty: nothing found
   std::size_t objects = 0;
+  std::set<std::string, std::less<>> sources;
   std::exception_ptr failure;  ///< what looking at it threw
 };
 
@@ -41,12 +42,12 @@ bool has_our_filters(const Handle& creation) {
 }
 
 /// What is wrong with a dataset; empty: nothing.
-std::string refusal_of_dataset(hid_t dataset) {
+std::string refusal_of_dataset(hid_t dataset, const std::string& name) {
   const std::string what = "looking at a dataset";
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose, what),
       type(H5Dget_type(dataset), H5Tclose, what);
   const H5D_layout_t layout = H5Pget_layout(creation);
-  if (layout == H5D_VIRTUAL) return "is a virtual dataset, made of other files";
+  if (layout == H5D_VIRTUAL) return refusal_of_sources(creation, name);
   if (H5Pget_external_count(creation) != 0) return "has its values in another file";
   if (H5Tdetect_class(type, H5T_REFERENCE) != 0) return "holds references";
   if (!has_our_filters(creation)) return "is packed by a filter that leapmap does not use";
@@ -62,13 +63,18 @@ std::string refusal_of_dataset(hid_t dataset) {
   return bytes > most_chunk_bytes ? "has chunks larger than leapmap writes" : "";
 }
 
-std::string refusal_of_link(hid_t group, const char* name, const H5L_info_t& link) {
+std::string refusal_of_link(hid_t group, const char* name, const H5L_info_t& link,
+                            std::set<std::string, std::less<>>& sources) {
   if (link.type == H5L_TYPE_SOFT) return {};  // leads nowhere but into the same file
   if (link.type != H5L_TYPE_HARD) return "is a link into another file";
   const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose, "opening an object");
   const H5I_type_t kind = H5Iget_type(object);
   if (kind == H5I_GROUP) return {};
-  return kind == H5I_DATASET ? refusal_of_dataset(object) : "is neither a dataset nor a group";
+  if (kind != H5I_DATASET) return "is neither a dataset nor a group";
+  std::string refusal = refusal_of_dataset(object, name);
+  if (refusal.empty())
+    for (std::string& file : sources_of(object)) sources.insert(std::move(file));
+  return refusal;
 }
 
 /// One link of the file; > 0 ends the visit.
@@ -79,7 +85,7 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* link, void* contex
       survey.refusal = "holds more objects than any file of leapmap's";
       return 1;
     }
-    const std::string refusal = refusal_of_link(group, name, *link);
+    const std::string refusal = refusal_of_link(group, name, *link, survey.sources);
     if (refusal.empty()) return 0;
     survey.refusal = fmt::format("{} {}", printable(name), refusal);
     return 1;
@@ -91,12 +97,13 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* link, void* contex
 
 }  // namespace
 
-void refuse_foreign_parts(hid_t file, const std::string& path) {
+std::set<std::string, std::less<>> refuse_foreign_parts(hid_t file, const std::string& path) {
   Survey survey;
   const herr_t visited = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &survey);
   if (survey.failure) std::rethrow_exception(survey.failure);
   check(visited, path + ": cannot be surveyed");
   if (!survey.refusal.empty()) throw ForeignFile(fmt::format("{}: is refused: {}", path, survey.refusal));
+  return std::move(survey.sources);
 }
 
 std::size_t bytes_in_memory(hid_t dataset, const std::string& what) {

@@ -3,6 +3,8 @@
 /// files of the machine: what leads there, or wants more memory than the file has bytes for, is refused.
 #pragma once
 
+#include <functional>
+#include <set>
 #include <string>
 
 #include "map/hdf5.hpp"
@@ -10,9 +12,10 @@
 namespace leapmap::hdf5 {
 
 /// Throws ForeignFile, naming the part, if the file holds an external link, external storage, a virtual
-/// dataset, a dataset of references, a filter other than shuffle, deflate and fletcher32, a chunk beyond all
-/// use, or more objects than any file of ours. `path` is for messages.
-void refuse_foreign_parts(hid_t file, const std::string& path);
+/// dataset made of anything but datasets of its name in files beside it, a dataset of references, a filter
+/// other than shuffle, deflate and fletcher32, a chunk beyond all use, or more objects than any file of ours.
+/// `path` is for messages. Returns the files beside it that its virtual datasets are made of.
+std::set<std::string, std::less<>> refuse_foreign_parts(hid_t file, const std::string& path);
 
 /// The bytes of a dataset's values. Throws IoError if the bytes stored for it could not hold so many: to be
 /// asked before memory is taken for all of them. `what` is for messages.

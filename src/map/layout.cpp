@@ -61,7 +61,8 @@ std::vector<hsize_t> to_hsize(const std::vector<std::size_t>& extents) {
   return {extents.begin(), extents.end()};
 }
 
-Handle create_field(hid_t file, const Field& field, const MapLayout& layout, const Tiling& tiling) {
+Handle create_field(hid_t file, const Field& field, const MapLayout& layout, const Tiling& tiling,
+                    std::span<const hdf5::Source> sources) {
   const std::vector<hsize_t> shape = to_hsize(tiling.shape()), chunk = to_hsize(tiling.tile_shape());
   const auto* code = std::get_if<Code>(&field.source);
   const bool word = std::holds_alternative<Word>(field.source);
@@ -69,8 +70,11 @@ Handle create_field(hid_t file, const Field& field, const MapLayout& layout, con
                      : word          ? H5T_STD_U64LE
                      : layout.single ? H5T_IEEE_F32LE
                                      : H5T_IEEE_F64LE;
-  Handle dataset = hdf5::create_dataset(file, {std::string(field.name), type, shape, chunk,
-                                               fill_value(layout, field), layout.compression, true});
+  const void* fill = fill_value(layout, field);
+  const std::string name(field.name);
+  Handle dataset = hdf5::create_dataset(
+      file, sources.empty() ? hdf5::DatasetPlan{name, type, shape, chunk, fill, layout.compression, true}
+                            : hdf5::DatasetPlan{name, type, shape, {}, fill, 0, false, sources});
   describe(dataset, field.unit, field.long_name);
   if (word) return dataset;
   if (!code) {
@@ -138,7 +142,8 @@ std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
   return per_design * tiling.designs();
 }
 
-void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling) {
+void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling,
+             std::span<const hdf5::Source> sources) {
   std::vector<Handle> scales = write_scales(file, layout, tiling.whole_designs());
   for (const MapAxis& column : layout.columns)
     write_axis(file, column, &scales[0]).close("writing " + column.name);
@@ -146,7 +151,7 @@ void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling) {
     hdf5::write_series(file, label_name, "1", label_long_name, layout.labels, &scales[0])
         .close("writing labels");
   for (const Field* field : layout.fields) {
-    Handle dataset = create_field(file, *field, layout, tiling);
+    Handle dataset = create_field(file, *field, layout, tiling, sources);
     attach(dataset, scales);
     dataset.close("creating " + std::string(field->name));
   }
@@ -179,7 +184,7 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling) {
     check_one(std::string(field->name), std::string(field->unit), std::string(field->long_name), {});
     const Handle dataset(H5Dopen2(file, std::string(field->name).c_str(), H5P_DEFAULT), H5Dclose,
                          fmt::format("opening {}", field->name));
-    if (hdf5::chunk_of(dataset) != to_hsize(tiling.tile_shape()))
+    if (hdf5::sources_of(dataset).empty() && hdf5::chunk_of(dataset) != to_hsize(tiling.tile_shape()))
       throw BrokenFile(fmt::format("{} is stored in other tiles", field->name));
   }
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,8 +43,10 @@ const void* fill_value(const MapLayout& layout, const Field& field);
 /// How many bytes the map's values take before compression.
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling);
 
-/// Creates every dataset in an empty file and writes axes and columns. Throws IoError.
-void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling);
+/// Creates every dataset in an empty file and writes axes and columns. With sources the fields are virtual
+/// datasets made of them. Throws IoError.
+void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling,
+             std::span<const hdf5::Source> sources = {});
 
 /// Throws BrokenFile, saying what, unless axes, columns and descriptions in a file are those that lay_out
 /// writes.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_trust.hpp"
@@ -106,9 +107,39 @@ void MapReader::survey(Accept accept) {
   for (const Dimension& dimension : dimensions_) expected.push_back(dimension.size);
   if (has_labels_ && hdf5::shape_of(open(label_name)) != expected)
     throw IoError(path_ + ": has not a label for each design");
-  for (const std::string& name : fields_)
-    if (hdf5::shape_of(open(name)) != expected)
+  for (const std::string& name : fields_) {
+    const Handle dataset = open(name);
+    if (hdf5::shape_of(dataset) != expected)
       throw IoError(fmt::format("{}: {} does not lie along the map's dimensions", path_, name));
+    const std::vector<std::string> shards = hdf5::sources_of(dataset);
+    if (name != fields_.front() && shards != shards_)
+      throw BrokenFile(fmt::format("{}: {} lies in other files than {}", path_, name, fields_.front()));
+    shards_ = shards;
+  }
+  if (!shards_.empty()) check_shards();
+}
+
+/// HDF5 has fill values for what is not there and would take what another sweep left under a shard's name.
+void MapReader::check_shards() const {
+  const std::string again = "allowed: the shards that it was made of, or leapmap join anew";
+  if (!hdf5::has_attribute(file_, shard_checksums_attribute))
+    throw BrokenFile(path_ + ": does not say what its shards hold");
+  const std::vector<std::int64_t> told =
+      hdf5::read_integers(file_, shard_checksums_attribute, shards_.size());
+  if (told.size() != shards_.size()) throw BrokenFile(path_ + ": does not say what each shard holds");
+  const auto folder = std::filesystem::path(path_).parent_path();
+  for (std::size_t k = 0; k < shards_.size(); ++k) {
+    const std::string shard = (folder / shards_[k]).string();
+    std::error_code ignored;
+    if (!std::filesystem::exists(shard, ignored))
+      throw BrokenFile(fmt::format("{}: its shard {} is not there; {}", path_, shard, again));
+    const hdf5::File file = hdf5::File::open(shard, Locking::if_possible);
+    if (!hdf5::has_attribute(file, tiles_checksum_attribute) ||
+        hdf5::read_integers(file, tiles_checksum_attribute)[0] != told[k])
+      throw BrokenFile(fmt::format("{}: its shard {} is another; {}", path_, shard, again));
+    if (hdf5::has_attribute(file, shard_checksums_attribute))
+      throw BrokenFile(fmt::format("{}: its shard {} is no shard; {}", path_, shard, again));
+  }
 }
 
 std::vector<std::size_t> MapReader::shape() const {
@@ -168,13 +199,22 @@ std::string MapReader::attribute(const std::string& name) const {
 }
 
 std::vector<double> MapReader::read(const std::string& field, const Tile& block) const {
-  return hdf5::read_block(open(field), block.start, block.extent,
-                          fmt::format("{}: reading {}", path_, field));
+  std::vector<double> values =
+      hdf5::read_block(open(field), block.start, block.extent, fmt::format("{}: reading {}", path_, field));
+  rethrow_failure();
+  return values;
 }
 
 std::vector<std::uint64_t> MapReader::read_words(const std::string& field, const Tile& block) const {
-  return hdf5::read_words(open(field), block.start, block.extent,
-                          fmt::format("{}: reading {}", path_, field));
+  std::vector<std::uint64_t> words =
+      hdf5::read_words(open(field), block.start, block.extent, fmt::format("{}: reading {}", path_, field));
+  rethrow_failure();
+  return words;
+}
+
+/// A shard that could not be opened has left fill values.
+void MapReader::rethrow_failure() const {
+  if (!shards_.empty() && own_.is_open()) own_.bytes().rethrow_failure();
 }
 
 Handle MapReader::open(const std::string& dataset) const {

@@ -20,7 +20,8 @@ enum class Accept { maps, shards_too };
 class MapReader {
  public:
   /// Opens a map (or the .part of one). Throws IoError if it is no leapmap map, of a newer major version, or
-  /// holds what no map does (hdf5_trust.hpp), InputError while a sweep is writing it, or if it is a shard.
+  /// holds what no map does (hdf5_trust.hpp), InputError while a sweep is writing it, or if it is a shard,
+  /// BrokenFile if it is virtual and its shards are not those that it was made of.
   explicit MapReader(const std::string& path, Locking locking = Locking::required,
                      Accept accept = Accept::maps);
   /// Reads a file that is open already and stays so; path is for messages.
@@ -47,6 +48,9 @@ class MapReader {
   /// The names of a list's designs; empty: it has none. Throws IoError.
   std::vector<std::string> labels() const;
 
+  /// The shards in which the values of a virtual map lie, beside it; none: they are its own.
+  const std::vector<std::string>& shards() const { return shards_; }
+
   /// False for what a sweep left that was stopped: designs not computed are holes.
   bool is_whole() const;
 
@@ -69,12 +73,15 @@ class MapReader {
 
  private:
   void survey(Accept accept);
+  void check_shards() const;
+  void rethrow_failure() const;
 
   std::string path_;
   hdf5::File own_;
   hid_t file_;
   std::vector<Dimension> dimensions_;
   std::vector<std::string> fields_;
+  std::vector<std::string> shards_;
   bool has_labels_ = false;
 };
 

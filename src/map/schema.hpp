@@ -15,6 +15,10 @@ inline constexpr const char* shard_attribute = "shard";  ///< of a shard: which 
 inline constexpr const char* shard_tiles_attribute = "shard_tiles";
 /// Of a joined map: how many it was joined of.
 inline constexpr const char* shards_attribute = "shards";
+/// Of a map whose values stay in its shards: the tiles_checksum of each, in the order of its datasets'
+/// sources.
+inline constexpr const char* shard_checksums_attribute = "shard_checksums";
+inline constexpr const char* tiles_checksum_attribute = "tiles_checksum";
 inline constexpr int format_major = 1;  ///< readers refuse a newer one
 /// 1: f4; 2: compression, status_counts, the NeXus group; 3: Coulomb friction's fields; 4: a checksum of each
 /// chunk and of the file, the audit's state; 5: the referee; 6: labels of a list; 7: derivatives; 8: hoops as

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using hdf5::check;
 
 /// Attributes of the root; that of the tiles goes when the map is whole.
-constexpr const char *tiles_attribute = "tiles_done", *checksum_attribute = "tiles_checksum",
+constexpr const char *tiles_attribute = "tiles_done", *checksum_attribute = tiles_checksum_attribute,
                      *statuses_attribute = "status_counts", *seconds_attribute = "wall_time";
 
 std::string_view filetype_of(const Tiling& tiling) {
@@ -82,7 +82,8 @@ MapWriter::MapWriter(const std::string& path, const MapLayout& layout, const Til
     : path_(path), part_(part_of(path)), layout_(&layout), tiling_(&tiling) {}
 
 MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, const Tiling& tiling,
-                           std::span<const hdf5::Attribute> attributes, bool overwrite, Locking locking) {
+                           std::span<const hdf5::Attribute> attributes, bool overwrite, Locking locking,
+                           std::span<const hdf5::Source> sources) {
   refuse_existing_map(path, tiling, overwrite, locking);
   MapWriter writer(path, layout, tiling);
   hdf5::refuse_other_unfinished(writer.part_, filetype_of(tiling), locking);
@@ -96,7 +97,8 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
   writer.replace_ = overwrite;
   refuse_existing_map(path, tiling, overwrite, locking);  // again, now that nobody else can make it
   hdf5::annotate(writer.file_, attributes);
-  lay_out(writer.file_, layout, tiling);
+  writer.virtual_ = !sources.empty();
+  lay_out(writer.file_, layout, tiling, sources);
   writer.datasets_ = open_fields(writer.file_, layout);
   writer.write_progress();
   writer.file_.flush();
@@ -197,7 +199,7 @@ bool MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
   close_datasets();
   return file_.finish(path_, replace_, [&](hid_t written) {
     check_layout(written, *layout_, *tiling_);
-    if (!tiles_are_as_written(written, *layout_, *tiling_, tiling_->size(), part_))
+    if (!virtual_ && !tiles_are_as_written(written, *layout_, *tiling_, tiling_->size(), part_))
       throw BrokenFile(part_ + ": its tiles are not what was written");
   });
 }

@@ -30,10 +30,11 @@ class MapWriter {
  public:
   /// Creates FILE.part and everything in it but the values. Refuses (InputError) to replace FILE or FILE.part
   /// unless overwrite is set, any file but a map even then, and while another program holds FILE.part; throws
-  /// IoError if it cannot be written.
+  /// IoError if it cannot be written. With sources the map is virtual: the values stay in those files, and
+  /// nothing is put.
   static MapWriter begin(const std::string& path, const MapLayout& layout, const Tiling& tiling,
                          std::span<const hdf5::Attribute> attributes, bool overwrite,
-                         Locking locking = Locking::required);
+                         Locking locking = Locking::required, std::span<const hdf5::Source> sources = {});
   /// Opens FILE.part, as of its last commit, to go on with it after verify. Throws as begin does, and
   /// BrokenFile if it is not whole.
   static MapWriter resume(const std::string& path, const MapLayout& layout, const Tiling& tiling,
@@ -83,6 +84,7 @@ class MapWriter {
   std::size_t committed_ = 0;   ///< designs
   bool begun_ = false;          ///< FILE.part is of this writer's making
   bool replace_ = false;        ///< FILE may be there
+  bool virtual_ = false;        ///< the tiles lie in other files
 };
 
 /// The name of a map while it is not whole.

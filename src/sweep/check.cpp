@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "leapmap/errors.hpp"
 #include "map/layout.hpp"
@@ -71,6 +72,18 @@ void check_tile(Check& check, const Field& field, std::size_t tile) {
   } catch (const IoError& error) {
     check.bytes.rethrow_failure();  // the system failed, and not the file to make sense
     check.find(fmt::format("{}: {}", check.place(field, tile), error.what()));
+  }
+}
+
+/// The values of a virtual map are its shards', each of which tells what it has to be.
+void check_shards(Check& check, const std::string& path) {
+  CheckOptions options = check.options;
+  options.sample = 0;
+  for (const std::string& shard : check.map.shards()) {
+    if (check.stopped()) return;
+    const std::string beside = (std::filesystem::path(path).parent_path() / shard).string();
+    for (const std::string& finding : check_map(beside, options).findings)
+      check.find(finding.starts_with(beside) ? finding : fmt::format("{}: {}", beside, finding));
   }
 }
 
@@ -146,7 +159,7 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   report.designs = designs_in(map.status_counts());
   Check check{bytes, map, spec, tiling, options, report};
   check_layout(map.file(), layout, tiling);
-  check_tiles(check, layout);
+  map.shards().empty() ? check_tiles(check, layout) : check_shards(check, path);
   if (report.findings.empty() && !check.stopped()) check_sample(check);
   constexpr std::array first_sealed{std::int64_t{1}, std::int64_t{4}};
   report.sealed = bytes.is_sealed();

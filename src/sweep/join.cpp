@@ -134,7 +134,8 @@ class Joining {
 
   std::optional<JoinReport> run() {
     survey();
-    MapWriter writer = MapWriter::begin(map_, layout_, *tiling_, opening(), options_.overwrite, locking_);
+    MapWriter writer =
+        MapWriter::begin(map_, layout_, *tiling_, opening(), options_.overwrite, locking_, sources_);
     sums_.resize(tiling_->size());
     for (std::size_t i = 1; i <= shards_; ++i)
       if (!copy(i, writer)) return std::nullopt;
@@ -146,6 +147,7 @@ class Joining {
     JoinReport report{shards_, tiling_->size(), tiling_->designs(), progress_.statuses, true, audit_, spec_};
     std::vector<hdf5::Attribute> closing;
     if (audit_) closing = audit_attributes(*audit_);
+    if (options_.as_virtual) closing.emplace_back(shard_checksums_attribute, checksums_);
     report.durable = writer.finish(closing);
     return report;
   }
@@ -208,12 +210,36 @@ class Joining {
     }
     refuse_other_program(shard, path);
     add_up(shard);
-    for (const std::size_t t : tiles_held(shard.file(), tiling_->size())) {
+    const std::vector<std::size_t> tiles = tiles_held(shard.file(), tiling_->size());
+    for (const std::size_t t : tiles) {
       if (holder[t] != 0)
         throw InputError(fmt::format("{}: holds tile {} as {} does; allowed: shards that one program has cut",
                                      path, t, path_of(holder[t])));
       holder[t] = i;
     }
+    if (options_.as_virtual && !tiles.empty()) sources_.push_back(source_of(path, tiles));
+  }
+
+  /// Where a shard's tiles lie. Tiles that follow one another along the last dimension are one block, as HDF5
+  /// takes its time over many.
+  hdf5::Source source_of(const std::string& path, const std::vector<std::size_t>& tiles) const {
+    hdf5::Source source{fs::path(path).filename().string(), {}};
+    for (const std::size_t t : tiles) {
+      const Tile tile = tiling_->tile(t);
+      const std::vector<hsize_t> start(tile.start.begin(), tile.start.end()),
+          extent(tile.extent.begin(), tile.extent.end());
+      if (!source.blocks.empty()) {
+        hdf5::Block& last = source.blocks.back();
+        std::vector<hsize_t> next = last.start;
+        next.back() += last.extent.back();
+        if (next == start && std::equal(extent.begin(), extent.end() - 1, last.extent.begin())) {
+          last.extent.back() += extent.back();
+          continue;
+        }
+      }
+      source.blocks.push_back({start, extent});
+    }
+    return source;
   }
 
   void refuse_other_program(const MapReader& shard, const std::string& path) const {
@@ -253,7 +279,7 @@ class Joining {
     return attributes;
   }
 
-  /// Copies a shard's chunks. Returns false if a stop was requested.
+  /// Copies a shard's chunks, or only reads them where they stay. Returns false if a stop was requested.
   bool copy(std::size_t number, MapWriter& writer) {
     const std::string path = path_of(number);
     const MapReader shard(path, locking_, Accept::shards_too);
@@ -271,7 +297,7 @@ class Joining {
         checksum = checksum_of(checksum, chunk.bytes, chunk.skipped_filters);
         sums_[t].checksum = checksum_of(sums_[t].checksum, chunk.bytes, chunk.skipped_filters);
         sums_[t].bytes += chunk.bytes.size() + sizeof chunk.skipped_filters;
-        writer.put(tile, f, chunk);
+        if (!options_.as_virtual) writer.put(tile, f, chunk);
       }
       ++progress_.tiles;
       done_ += tile.count;
@@ -281,6 +307,7 @@ class Joining {
     if (told.size() != 1 || told[0] != checksum)
       throw BrokenFile(fmt::format(
           "{}: its tiles are not what was written; remove it, then run it again: --array={}", path, number));
+    if (!tiles.empty()) checksums_.push_back(told[0]);
     return true;
   }
 
@@ -299,8 +326,10 @@ class Joining {
   MapProgress progress_;
   std::optional<AuditReport> audit_;
   std::string audit_method_;
-  std::vector<Sum> sums_;  ///< of each tile's chunks
-  std::size_t done_ = 0;   ///< designs
+  std::vector<Sum> sums_;                ///< of each tile's chunks
+  std::vector<hdf5::Source> sources_;    ///< of a virtual map: the shards that have tiles
+  std::vector<std::int64_t> checksums_;  ///< of their tiles, one a source
+  std::size_t done_ = 0;                 ///< designs
 };
 
 }  // namespace

@@ -209,7 +209,7 @@ def test_the_animation_goes_frame_by_frame_and_is_saved_as_a_film(live):
     assert float(clock.text.split()[0]) == pytest.approx(0.1 - 0.25 / 30, abs=6e-4)
     Select(live.find_element("id", "speed")).select_by_value("1")
     live.find_element("id", "film").click()
-    WebDriverWait(live, 60).until(lambda b: int(b.find_element("id", "film").get_attribute("data-bytes") or 0) > 3000)
+    WebDriverWait(live, 240).until(lambda b: int(b.find_element("id", "film").get_attribute("data-bytes") or 0) > 3000)
 
 
 def test_a_link_to_the_paper_s_hoop_shows_the_hoop_first_on_a_phone(live, tmp_path):
