@@ -103,7 +103,7 @@ def _refusal(dataset, file_size, texts):
     """What is wrong with a dataset, before any of its values is read; empty: nothing."""
     creation = dataset.id.get_create_plist()
     if creation.get_layout() == h5py.h5d.VIRTUAL:
-        return "is a virtual dataset, made of other files"
+        return "is a virtual dataset, made of other files, which charts do not follow; leapmap join without --virtual copies them"
     if creation.get_external_count():
         return "has its values in another file"
     if dataset.id.get_type().detect_class(h5py.h5t.REFERENCE):

@@ -262,11 +262,18 @@ class Chain {
 
 void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
                              Gradients& gradients) {
+  for (std::size_t i = 0; i < designs.size(); ++i) outcomes[i] = solver_.solve(designs[i], scene);
+  derive_solved(designs, scene, outcomes, gradients);
+}
+
+void CoulombGradients::derive_solved(std::span<const Design> designs, const Scene& scene,
+                                     std::span<const Outcome> outcomes, Gradients& gradients) {
   gradients.begin(designs.size());
   Recorded recorded;
   for (std::size_t i = 0; i < designs.size(); ++i) {
-    outcomes[i] = solver_.solve(designs[i], scene);
-    if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate) continue;
+    if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate ||
+        !gradients.wanted().any_of_first_jump_in(outcomes[i]))
+      continue;
     ContactState<double> at = released<double>(designs[i]);
     if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
       continue;
@@ -304,11 +311,14 @@ Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& s
 
 GradientSolver coulomb::gradients(const Scene& scene, double tolerance, const Wanted& wanted,
                                   const GradientWanted&) {
-  const GradientSolver first = [solver = std::make_shared<CoulombGradients>(tolerance), scene](
-                                   std::span<const Design> designs, std::span<Outcome> outcomes,
-                                   Gradients& gradients) {
-    solver->solve(designs, scene, outcomes, gradients);
-  };
+  Scene to_first = scene;
+  to_first.jumps = 1;
+  const GradientSolver first =
+      [solver = std::make_shared<CoulombGradients>(tolerance), plain = exact(to_first, tolerance, wanted),
+       scene](std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+        plain(designs, outcomes);
+        solver->derive_solved(designs, scene, outcomes, gradients);
+      };
   if (scene.jumps == 1) return first;
   return in_sequence(first, jumps(scene, tolerance, wanted), dual_jumps(scene, tolerance), scene);
 }

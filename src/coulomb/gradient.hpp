@@ -24,6 +24,9 @@ class CoulombGradients {
 
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
              Gradients& gradients);
+  /// The same of designs that are solved already.
+  void derive_solved(std::span<const Design> designs, const Scene& scene, std::span<const Outcome> outcomes,
+                     Gradients& gradients);
 
   /// One jump with derivatives, as DualJumpSolver has it.
   Outcome jump(Start start, const Design& design, const Scene& scene, Along along,

@@ -26,20 +26,27 @@ JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted&) {
              std::span<Outcome> outcomes) { lanes->solve(start, designs, states, scene, outcomes); };
 }
 
-std::function<double(const Design&)> effort(const Scene& scene) {
-  Scene first = scene;
-  first.jumps = 1;
-  return [solver = std::make_shared<CoulombSolver<double>>(1e-10), first, all = exact(scene, 1e-6, {}),
-          follows = scene.jumps > 1](const Design& design) {
-    // Panels of slides are nearly all of it: a hoop that rocks to rest slides some hundred times.
-    std::vector<SlideTold<double>> slides;
-    solver->solve(design, first, {}, &slides);
-    double panels = 2.0;
-    for (const SlideTold<double>& slide : slides) panels += 0.2 + static_cast<double>(slide.size());
-    if (!follows) return panels;
+std::function<double(const Design&)> effort(const Scene& scene, bool derivatives) {
+  // Panels of slides are nearly all of it: a hoop that rocks to rest slides some hundred times.
+  const auto panels = std::make_shared<double>();
+  const JumpSolver<double> counted =
+      [panels, derivatives, scene, solver = std::make_shared<CoulombSolver<double>>(1e-10)](
+          Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+          std::span<Outcome> outcomes) {
+        constexpr double derived = 10.0;  // the way to a jump once more in duals, on top of it
+        for (std::size_t i = 0; i < designs.size(); ++i) {
+          std::vector<SlideTold<double>> slides;
+          outcomes[i] = solver->solve(start, designs[i], states[i], scene, {}, &slides);
+          double way = 2.0;
+          for (const SlideTold<double>& slide : slides) way += 0.2 + static_cast<double>(slide.size());
+          *panels += derivatives && outcomes[i].status == Status::jumped ? (1.0 + derived) * way : way;
+        }
+      };
+  return [panels, solve = in_sequence(counted, scene)](const Design& design) {
+    *panels = 0.0;
     Outcome outcome;
-    all({&design, 1}, {&outcome, 1});
-    return panels * std::max(1.0, static_cast<double>(outcome.jumps()));
+    solve({&design, 1}, {&outcome, 1});
+    return *panels;
   };
 }
 

@@ -27,7 +27,7 @@ GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wan
 DualJumpSolver dual_jumps(const Scene& scene, double tolerance);
 
 /// A design's share of the work (model/model.hpp).
-std::function<double(const Design&)> effort(const Scene& scene);
+std::function<double(const Design&)> effort(const Scene& scene, bool derivatives);
 
 /// By integration in time (coulomb_integration.hpp).
 Solver integration(const Scene& scene, const IntegrationOptions& options);

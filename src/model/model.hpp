@@ -45,8 +45,8 @@ struct Model {
   Motion (*tell_by_integration)(const Design&, const Scene&, const IntegrationOptions&, double interval);
   /// By a method at a setting, for studies.
   Solving (*solving)(const Contestant&, const Scene&, long max_steps);
-  /// By the exact solver.
-  DesignEffort (*effort)(const Scene&);
+  /// By the exact solver; with derivatives of what it finds, or without.
+  DesignEffort (*effort)(const Scene&, bool derivatives);
 };
 
 /// Every model.

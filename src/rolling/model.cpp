@@ -20,12 +20,13 @@ JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wan
              std::span<Outcome> outcomes) { solver->solve(start, designs, states, scene, outcomes); };
 }
 
-std::function<double(const Design&)> effort(const Scene& scene) {
-  if (scene.jumps == 1) return [](const Design&) { return 1.0; };
-  return [solve = exact(scene, 1e-6, {})](const Design& design) {
+std::function<double(const Design&)> effort(const Scene& scene, bool derivatives) {
+  if (scene.jumps == 1 && !derivatives) return [](const Design&) { return 1.0; };
+  return [solve = exact(scene, 1e-6, {}), derivatives](const Design& design) {
     Outcome outcome;
     solve({&design, 1}, {&outcome, 1});
-    return 1.0 + static_cast<double>(outcome.jumps());
+    constexpr double derived = 2.0;  // to a jump, on top of the way there
+    return 1.0 + static_cast<double>(outcome.jumps()) * (derivatives ? 1.0 + derived : 1.0);
   };
 }
 

@@ -39,13 +39,18 @@ struct Sampled {
   }
 };
 
+DesignEffort effort_of(const Spec& spec) {
+  const Scene scene = scene_followed(spec);
+  return model_of(scene).effort(scene, !spec.output.gradients.empty());
+}
+
 /// Counts the efforts of so many designs of each tile, one of each of as many pieces of it.
 std::vector<Sampled> sample_tiles(const Spec& spec, const Tiling& tiling, std::size_t stride,
                                   const std::vector<std::size_t>& wanted, int threads) {
   const DesignSpace space(spec);
   std::vector<Sampled> sampled(wanted.size());
   parallel_for_each(wanted.size(), thread_count(threads), [&] {
-    return [&, effort = model_of(spec.scene).effort(scene_asked(spec))](std::size_t t) {
+    return [&, effort = effort_of(spec)](std::size_t t) {
       const Tile tile = tiling.tile(stride * t);
       const std::size_t designs = std::min(wanted[t], tile.count);
       std::mt19937_64 random(t);  // the same numbers on every machine, as those of distributions are not

@@ -61,6 +61,12 @@ Scene scene_asked(const Spec& spec) {
   return scene;
 }
 
+Scene scene_followed(const Spec& spec) {
+  Scene scene = scene_asked(spec);
+  if (scene.settle > 0 && asks_for(spec, &Field::of_gait)) scene.jumps = std::max(scene.jumps, scene.settle);
+  return scene;
+}
+
 Solver make_solver(const Spec& spec) {
   const Scene scene = scene_asked(spec);
   const Model& model = model_of(scene);

@@ -22,6 +22,9 @@ Solver make_solver(const Spec& spec);
 /// The spec's scene; of the first jump alone, where nothing is asked for of later ones.
 Scene scene_asked(const Spec& spec);
 
+/// The same with as many jumps as are followed in all: of those asked for gaits until they have settled.
+Scene scene_followed(const Spec& spec);
+
 /// Which derivatives the spec asks for.
 GradientWanted gradients_of(const Spec& spec);
 

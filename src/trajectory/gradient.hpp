@@ -61,6 +61,12 @@ struct GradientWanted {
   bool wants(const OutcomeNumber& quantity) const {
     return std::find(of.begin(), of.end(), quantity) != of.end();
   }
+  /// Whether one of them applies to an outcome's first jump, or to its way there.
+  bool any_of_first_jump_in(const Outcome& outcome) const {
+    return std::any_of(of.begin(), of.end(), [&](const OutcomeNumber& each) {
+      return each.jump == 1 && std::isfinite(each.of(outcome));
+    });
+  }
 };
 
 /// Derivatives of designs, a column for each quantity and parameter asked for; NaN where a quantity does not

@@ -43,7 +43,7 @@ TEST(Shards, TakeAsMuchWorkAsEachOther) {
   const Spec spec = uneven();
   const Tiling tiling = tiling_of(spec);
   const DesignSpace space(spec);
-  const DesignEffort effort = model_of(spec.scene).effort(spec.scene);
+  const DesignEffort effort = model_of(spec.scene).effort(spec.scene, false);
   std::vector<double> all;  // of every tile, every design counted
   for (std::size_t t = 0; t < tiling.size(); ++t) {
     const Tile tile = tiling.tile(t);
