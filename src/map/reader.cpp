@@ -88,6 +88,8 @@ void MapReader::survey(Accept accept) {
     const Handle dataset = open(name);
     const htri_t scale = H5DSis_scale(dataset);
     if (scale < 0) hdf5::fail(path_ + ": reading " + name);
+    if ((scale > 0 || name == label_name) && !hdf5::sources_of(dataset).empty())
+      throw BrokenFile(fmt::format("{}: {} lies in other files", path_, name));
     if (scale > 0) {
       dimensions_.push_back(read_dimension(dataset, name));
     } else if (name == label_name) {

@@ -82,6 +82,8 @@ void check_shards(Check& check, const std::string& path) {
   for (const std::string& shard : check.map.shards()) {
     if (check.stopped()) return;
     const std::string beside = (std::filesystem::path(path).parent_path() / shard).string();
+    if (!seal_holds(beside, options.locking).value_or(true))
+      check.find(beside + ": its bytes are not those that were written");
     for (const std::string& finding : check_map(beside, options).findings)
       check.find(finding.starts_with(beside) ? finding : fmt::format("{}: {}", beside, finding));
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// How large a machine one sweep fills: the engine's own delivery in order, with threads that sleep as long
 /// as a tile takes to solve and a writer that sleeps as long as it takes to write, so that two cores show
-/// what 128 would do. All times are drawn out by `slower`, beside which the machine's own waking up is
-/// nothing.
+/// what 128 would do. All times are drawn out until a tile takes so long that the machine's own waking up is
+/// nothing beside it.
 ///   delivery-simulation [DESIGNS_PER_SECOND_OF_A_CORE DESIGNS_PER_SECOND_OF_THE_WRITER BYTES_OF_A_TILE]
 #include <fmt/format.h>
 
@@ -24,7 +24,9 @@ namespace leapmap {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
-constexpr double slower = 40.0, designs_of_tile = 16'384.0;
+constexpr double designs_of_tile = 16'384.0;
+constexpr double drawn_out = 0.15;  ///< s that a tile takes here
+constexpr std::size_t tiles_of_core = 48;
 
 struct Work {
   std::string_view name;
@@ -40,6 +42,7 @@ struct Seen {
 };
 
 Seen simulate(const Work& work, std::size_t threads, std::size_t tiles) {
+  const double slower = drawn_out * work.solved / designs_of_tile;
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   std::vector<Seconds> solving;
@@ -81,7 +84,7 @@ void tell(const Work& work) {
   fmt::print("{}: {:.3g} designs/s and core, the writer {:.3g} designs/s, which {:.0f} cores fill\n",
              work.name, work.solved, work.written, work.written / work.solved);
   for (const std::size_t threads : {8u, 32u, 64u, 128u, 256u}) {
-    const std::size_t tiles = 12 * threads;
+    const std::size_t tiles = tiles_of_core * threads;
     const Seen seen = simulate(work, threads, tiles);
     const double rate = static_cast<double>(tiles) * designs_of_tile / seen.seconds;
     fmt::print(

@@ -64,6 +64,62 @@ def test_the_map_of_all_shards_is_that_of_one_sweep_bit_for_bit(spec, count, tmp
     assert all(shard(joined, i, count).exists() for i in range(1, count + 1)), "the shards stay"
 
 
+@pytest.mark.parametrize(("spec", "count"), [(COULOMB, 3), (SMALL + '[output]\nprecision = "f4"\ncompression = 4\n', 4), (SMALL + "[scene]\njumps = 3\n", 1)])
+def test_a_virtual_map_looks_its_values_up_in_its_shards(spec, count, tmp_path):
+    joined = shards(tmp_path, spec, count)
+    done = leapmap("join", joined, "--virtual")
+    assert done.returncode == 0 and "stay in the shards" in done.stdout, done.stderr
+    one = sweep(tmp_path, spec, name="one.h5")
+    with h5py.File(one) as a, h5py.File(joined) as b:
+        for name in a:
+            if isinstance(a[name], h5py.Dataset):
+                assert np.array_equal(a[name][()], b[name][()], equal_nan=a[name].dtype.kind == "f"), name
+        assert b["status"].is_virtual and a.attrs["tiles_checksum"] == b.attrs["tiles_checksum"]
+        assert len(b.attrs["shard_checksums"]) == len({source.file_name for source in b["status"].virtual_sources()})
+    checked = leapmap("check", joined)
+    assert checked.returncode == 0 and "sample" in checked.stdout, checked
+    fields = lambda path: leapmap("info", path).stdout.split("dimensions")[1]
+    assert fields(joined) == fields(one)
+    assert leapmap("join", joined, "--overwrite").returncode == 0  # copied after all
+    same_datasets(one, joined)
+
+
+@pytest.mark.parametrize("harm", ["gone", "another", "flipped", "moved"])
+def test_a_virtual_map_without_its_shards_tells_no_fill_values(harm, tmp_path):
+    joined = shards(tmp_path, SMALL, 3)
+    assert leapmap("join", joined, "--virtual").returncode == 0
+    second = shard(joined, 2, 3)
+    if harm == "gone":
+        second.unlink()
+    elif harm == "another":
+        shards(tmp_path, SMALL.replace("0.1", "0.11", 1), 3, "--overwrite", which=[2])
+    elif harm == "flipped":
+        with second.open("r+b") as file:
+            file.seek(second.stat().st_size // 2)
+            byte = file.read(1)
+            file.seek(-1, os.SEEK_CUR)
+            file.write(bytes([byte[0] ^ 1]))
+    else:
+        joined = joined.rename(tmp_path.parent / f"{tmp_path.name}-map.h5")
+    checked = leapmap("check", joined)
+    assert checked.returncode == 1 and "WRONG" in checked.stdout, checked
+    if harm != "flipped":  # what is read of it may be none of the flipped bytes
+        told = leapmap("info", joined)
+        assert told.returncode != 0 and "shard" in told.stderr, told
+    joined.unlink()
+
+
+def test_a_virtual_map_is_not_changed_and_not_drawn(tmp_path):
+    joined = shards(tmp_path, SMALL, 2)
+    assert leapmap("join", joined, "--virtual").returncode == 0
+    before = [path.read_bytes() for path in sorted(tmp_path.glob("*.h5"))]
+    retried = leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--retry-failed")
+    assert retried.returncode != 0 and "--virtual" in retried.stderr, retried
+    drawn = finished("/usr/bin/python3", TOP / "analysis/status_chart.py", joined, "-o", tmp_path / "x.png")
+    assert drawn.returncode != 0 and "--virtual" in drawn.stderr, drawn
+    assert [path.read_bytes() for path in sorted(tmp_path.glob("*.h5"))] == before
+
+
 def test_a_list_has_shards_too(tmp_path):
     (tmp_path / "list.csv").write_text("label,slope,mass_ratio\n" + "".join(f"hoop {i},{0.1 + 0.003 * i!r},{1 + 0.02 * i!r}\n" for i in range(200)))
     spec = f"[design]\npoints = \"{tmp_path / 'list.csv'}\"\n"
