@@ -59,7 +59,7 @@ std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling&
           ? 8.0 * samples * (spreads + threads * (spreads + 2.0 * static_cast<double>(layout.fields.size())))
           : 0.0;
   const double sweep = made + program + held + structure + threads * tile +
-                       std::min(file, static_cast<double>(most_waiting_bytes));
+                       std::min(file, static_cast<double>(most_waiting_bytes(threads)));
   std::string line = fmt::format("at most {} for the sweep with its audit; {} for leapmap info",
                                  spoken_bytes(sweep), spoken_bytes(program + held + structure));
   if (spec.axes.size() >= 2)

@@ -77,7 +77,7 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
         item.prepared.take();
         delivered += item.designs;
       },
-      most_waiting_bytes);
+      most_waiting_bytes(thread_count(options.threads)));
 
   const std::size_t piece = std::min(piece_of(spec), tiling.largest_tile());
   const auto points = points_of(spec.scatter);

@@ -2,6 +2,7 @@
 /// Solves the tiles of a sweep on all threads and hands them on in order.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -16,8 +17,11 @@
 
 namespace leapmap {
 
-/// Of tiles prepared and not yet taken; enough to go on while a commit waits for the disk.
-inline constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
+/// Of tiles prepared and not yet taken, for so many threads; enough to go on while a commit waits for the
+/// disk, and while a tile that takes ten times as long as the others keeps those after it waiting.
+constexpr std::size_t most_waiting_bytes(int threads) {
+  return std::max(std::size_t{64} << 20, static_cast<std::size_t>(threads) << 22);
+}
 
 struct EngineOptions {
   int threads = 0;                       ///< 0: as many as OpenMP offers
