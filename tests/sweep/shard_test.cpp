@@ -68,6 +68,24 @@ TEST(Shards, TakeAsMuchWorkAsEachOther) {
   EXPECT_EQ(seen.size(), tiling.size());
 }
 
+TEST(Shards, EffortsKnowDerivativesAndLaterJumps) {
+  for (const Friction friction : {Friction::sticking, Friction::coulomb}) {
+    Scene one, five;
+    one.friction = five.friction = friction;
+    five.jumps = 5;
+    const Model& model = model_of(friction);
+    const DesignEffort plain = model.effort(one, false), derived = model.effort(one, true),
+                       followed = model.effort(five, false);
+    Design jumps, stays;
+    jumps.slope = 0.5, jumps.mass_ratio = 5.0, jumps.offset_ratio = 0.9;
+    stays.slope = 0.05, stays.mass_ratio = 0.1;  // and rolls on
+    EXPECT_GT(derived(jumps), 2.0 * plain(jumps));
+    EXPECT_EQ(derived(stays), plain(stays));
+    EXPECT_GT(followed(jumps), 1.5 * plain(jumps));
+    EXPECT_EQ(followed(jumps), followed(jumps));  // counted, and nothing kept from one to the next
+  }
+}
+
 TEST(Shards, AreTheSameWhateverTheThreads) {
   const Spec spec = uneven();
   const Tiling tiling = tiling_of(spec);
