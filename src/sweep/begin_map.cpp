@@ -42,7 +42,7 @@ void refuse_other_beginning(const MapReader& part, const std::string& name, cons
     throw InputError(fmt::format("{}: is {}; allowed here: {}, or {}", name,
                                  shard.empty() ? "a whole map" : "shard " + shard,
                                  shard_now.empty() ? "a whole map" : "shard " + shard_now, allowed));
-  for (const std::string key : {"program_version", "git_revision", "instruction_set"})
+  for (const std::string key : bits_depend_on)
     if (part.attribute(key) != text_now(key))
       throw InputError(
           fmt::format("{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one{}, {}",

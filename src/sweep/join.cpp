@@ -202,7 +202,7 @@ class Joining {
       first_ = path;
       layout_ = layout_of(spec_);
       tiling_.emplace(tiling_of(spec_));
-      for (const char* name : same_everywhere) same_.emplace_back(name, shard.attribute(name));
+      for (const char* name : bits_depend_on) same_.emplace_back(name, shard.attribute(name));
       holder.resize(tiling_->size());
     } else if (const auto difference = first_difference(spec_, spec)) {
       throw InputError(fmt::format("{}: is of another spec than {}: {}; allowed: shards of one spec", path,
@@ -250,7 +250,7 @@ class Joining {
       if (shard.attribute(name) != value)
         throw InputError(fmt::format(
             "{}: was made by another leapmap: {} is {} there and {} in {}, which may change bits; "
-            "allowed: shards of one program and instruction set (leapmap --instruction-set)",
+            "allowed: shards of one program, instruction set (leapmap --instruction-set) and C library",
             path, name, shard.attribute(name), value, first_));
   }
 
@@ -310,8 +310,6 @@ class Joining {
     if (!tiles.empty()) checksums_.push_back(told[0]);
     return true;
   }
-
-  static constexpr std::array same_everywhere{"program_version", "git_revision", "instruction_set"};
 
   const std::string map_;
   std::size_t shards_;

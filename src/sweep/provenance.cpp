@@ -5,6 +5,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#if __has_include(<gnu/libc-version.h>)
+#include <gnu/libc-version.h>
+#endif
+
 #include <array>
 #include <chrono>
 
@@ -12,6 +16,23 @@
 #include "map/schema.hpp"
 
 namespace leapmap {
+namespace {
+
+/// Whose sines and arc cosines the parts outside the lanes use. glibc has others for processors that multiply
+/// and add in one rounding.
+std::string math_library() {
+#ifdef __GLIBC__
+  std::string library = fmt::format("glibc {}", gnu_get_libc_version());
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("fma") && __builtin_cpu_supports("avx2")) library += ", fma";
+#endif
+  return library;
+#else
+  return "other than glibc";
+#endif
+}
+
+}  // namespace
 
 std::vector<hdf5::Attribute> file_provenance(std::string_view filetype, const std::string& title) {
   std::array<char, 256> host{};
@@ -23,6 +44,7 @@ std::vector<hdf5::Attribute> file_provenance(std::string_view filetype, const st
           {"program_version", std::string(program_version())},
           {"git_revision", std::string(git_revision())},
           {"instruction_set", std::string(instruction_set())},
+          {"math_library", math_library()},
           {"date", fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"host", std::string(host.data())}};
 }

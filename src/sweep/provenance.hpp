@@ -2,6 +2,7 @@
 /// What every file of ours says about itself.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,11 @@
 #include "sweep/spec.hpp"
 
 namespace leapmap {
+
+/// Those root attributes on which the last bits of numbers depend: what differs in one of them is no part of
+/// the same map.
+inline constexpr std::array bits_depend_on{"program_version", "git_revision", "instruction_set",
+                                           "math_library"};
 
 /// Root attributes of any file: conventions, title, file type and version, program, date, host.
 std::vector<hdf5::Attribute> file_provenance(std::string_view filetype, const std::string& title);

@@ -188,7 +188,7 @@ def test_what_is_missing_is_named_as_an_array_of_slurm(tmp_path):
     refused(tmp_path / "other.h5", "no shard")
 
 
-@pytest.mark.parametrize("harm", ["torn", "flipped", "renamed", "doubled", "foreign spec", "foreign program", "two sets", "whole map", "unreadable"])
+@pytest.mark.parametrize("harm", ["torn", "flipped", "renamed", "doubled", "foreign spec", "foreign program", "foreign library", "two sets", "whole map", "unreadable"])
 def test_a_shard_that_cannot_be_right_is_named_and_nothing_is_written(harm, tmp_path):
     joined = shards(tmp_path, SMALL, 3)
     path = shard(joined, 2, 3)
@@ -219,6 +219,11 @@ def test_a_shard_that_cannot_be_right_is_named_and_nothing_is_written(harm, tmp_
         with h5py.File(path, "r+") as file:
             file.attrs["instruction_set"] = "pdp11"
         refused(joined, path.name, "pdp11", "--instruction-set")
+    elif harm == "foreign library":
+        with h5py.File(path, "r+") as file:
+            assert file.attrs["math_library"].startswith("glibc 2.")
+            file.attrs["math_library"] = "glibc 1.0"
+        refused(joined, path.name, "glibc 1.0", "C library")
     elif harm == "two sets":
         shards(tmp_path, SMALL, 2)
         refused(joined, "of 2 and of 3", "--shards")
