@@ -37,8 +37,10 @@ def maps(tmp_path_factory):
     assert retried.returncode == 0, retried.stderr
     joined = folder / "joined.h5"
     assert leapmap("sweep", "-o", joined, "--shard", "1/1").returncode == 0 and leapmap("join", joined).returncode == 0
+    linked = folder / "linked.h5"
+    assert leapmap("sweep", "-o", linked, "--shard", "1/1").returncode == 0 and leapmap("join", linked, "--virtual").returncode == 0
     slipping = '[scene]\nfriction = "coulomb"\n[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n'
-    return [grid, joined, sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
+    return [grid, joined, linked, sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
             sweep(folder, slipping, name="slipping.h5"),
             sweep(folder, "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n[gait]\nsettle = 50\n"
                           "[numerics]\naudit = 1\n", name="gaits.h5"),
