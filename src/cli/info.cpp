@@ -195,7 +195,9 @@ int run(const InfoArguments& arguments) {
   say("made {} on {} by leapmap {} (git {}), {} threads{}, {} s{}\n", told("date"), told("host"),
       told("program_version"), told("git_revision"), told("threads"), shards.empty() ? "" : " at most",
       short_form("wall_time", ".3g"),
-      shards.empty() ? "" : fmt::format(" in all, in {} shards", printable(shards)));
+      shards.empty() ? ""
+                     : fmt::format(" in all, in {} shards{}", printable(shards),
+                                   map.shards().empty() ? "" : ", which hold its values and lie beside it"));
   if (!map.is_whole()) print_incomplete(map, arguments.path);
   say("method {}, tolerance {}\n", told("method"), told("tolerance"));
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())

@@ -54,8 +54,8 @@ herr_t guarded(const F& f) {
 /// be opened HDF5 would go on with fill values: the target is told, which has failed then.
 std::shared_ptr<JournaledFile> source_of(const Target& target, const std::string& name) {
   try {
-    const auto path = std::filesystem::path((*target.file)->path()).parent_path() / name;
-    return std::make_shared<JournaledFile>(path.string(), JournaledFile::Access::read, Locking::if_possible);
+    return std::make_shared<JournaledFile>(path_beside((*target.file)->path(), name),
+                                           JournaledFile::Access::read, Locking::if_possible);
   } catch (const std::exception& error) {
     (*target.file)->note_failure(error.what());
     throw;

@@ -16,9 +16,9 @@ namespace leapmap::hdf5 {
 class File {
  public:
   File() = default;
-  /// A new file in a folder made if need be, emptying an older unfinished one of that type: V18 format, link
-  /// and attribute creation order tracked (netCDF readers need it). Throws InputError if somebody else holds
-  /// it or another file is there, IoError.
+  /// A new file in a folder made if need be, emptying an older unfinished one of that type: format of
+  /// HDF5 1.8, virtual datasets but, link and attribute creation order tracked (netCDF readers need it).
+  /// Throws InputError if somebody else holds it or another file is there, IoError.
   static File create(const std::string& path, std::string_view filetype, Locking locking = Locking::required);
   /// An existing file, read-only, that holds nothing but what a file of ours may (hdf5_trust.hpp). Throws as
   /// create does, and BrokenFile if it is not HDF5 or not whole.

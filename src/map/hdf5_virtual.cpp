@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/hdf5_virtual.hpp"
 
+#include <filesystem>
+
 #include "map/hdf5.hpp"
 
 namespace leapmap::hdf5 {
@@ -43,6 +45,12 @@ void add_sources(hid_t creation, std::span<const Source> sources, std::span<cons
     }
     check(H5Pset_virtual(creation, part, source.file.c_str(), name.c_str(), part), what);
   }
+}
+
+std::string path_beside(const std::string& map, const std::string& file) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(map, error);
+  return ((error ? std::filesystem::path(map) : real).parent_path() / file).string();
 }
 
 std::vector<std::string> sources_of(hid_t dataset) {

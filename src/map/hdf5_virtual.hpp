@@ -28,6 +28,9 @@ struct Source {
 void add_sources(hid_t creation, std::span<const Source> sources, std::span<const hsize_t> shape,
                  const std::string& name);
 
+/// The path of a file beside a map: beside the map itself, where the path to that goes over links.
+std::string path_beside(const std::string& map, const std::string& file);
+
 /// The files that a dataset is made of, in their order; none: it is not virtual. Throws IoError.
 std::vector<std::string> sources_of(hid_t dataset);
 

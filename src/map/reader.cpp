@@ -10,6 +10,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_trust.hpp"
+#include "map/hdf5_virtual.hpp"
 #include "map/layout.hpp"
 #include "map/schema.hpp"
 #include "model/fields.hpp"
@@ -51,6 +52,15 @@ MapReader::Dimension read_dimension(hid_t dataset, const std::string& name) {
   check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, dimension.values.data()),
         "reading " + name);
   return dimension;
+}
+
+/// Whether a file's name says that it is that shard: MAP.3-of-16.h5 of "3/16".
+bool is_named(const std::string& file, const std::string& shard) {
+  const auto slash = shard.find('/');
+  if (slash == shard.npos) return false;
+  const std::string words = "." + shard.substr(0, slash) + "-of-" + shard.substr(slash + 1);
+  const auto at = file.rfind(words);
+  return at != file.npos && (at + words.size() == file.size() || file[at + words.size()] == '.');
 }
 
 }  // namespace
@@ -114,14 +124,15 @@ void MapReader::survey(Accept accept) {
     if (hdf5::shape_of(dataset) != expected)
       throw IoError(fmt::format("{}: {} does not lie along the map's dimensions", path_, name));
     const std::vector<std::string> shards = hdf5::sources_of(dataset);
-    if (name != fields_.front() && shards != shards_)
-      throw BrokenFile(fmt::format("{}: {} lies in other files than {}", path_, name, fields_.front()));
+    if (shards.empty()) continue;  // a list's column
+    if (!shards_.empty() && shards != shards_)
+      throw BrokenFile(fmt::format("{}: {} lies in other files than fields before it", path_, name));
     shards_ = shards;
   }
   if (!shards_.empty()) check_shards();
 }
 
-/// HDF5 has fill values for what is not there and would take what another sweep left under a shard's name.
+/// HDF5 has fill values for what is not there, and would take what another sweep left under a shard's name.
 void MapReader::check_shards() const {
   const std::string again = "allowed: the shards that it was made of, or leapmap join anew";
   if (!hdf5::has_attribute(file_, shard_checksums_attribute))
@@ -129,18 +140,18 @@ void MapReader::check_shards() const {
   const std::vector<std::int64_t> told =
       hdf5::read_integers(file_, shard_checksums_attribute, shards_.size());
   if (told.size() != shards_.size()) throw BrokenFile(path_ + ": does not say what each shard holds");
-  const auto folder = std::filesystem::path(path_).parent_path();
   for (std::size_t k = 0; k < shards_.size(); ++k) {
-    const std::string shard = (folder / shards_[k]).string();
+    const std::string path = hdf5::path_beside(path_, shards_[k]);
     std::error_code ignored;
-    if (!std::filesystem::exists(shard, ignored))
-      throw BrokenFile(fmt::format("{}: its shard {} is not there; {}", path_, shard, again));
-    const hdf5::File file = hdf5::File::open(shard, Locking::if_possible);
-    if (!hdf5::has_attribute(file, tiles_checksum_attribute) ||
-        hdf5::read_integers(file, tiles_checksum_attribute)[0] != told[k])
-      throw BrokenFile(fmt::format("{}: its shard {} is another; {}", path_, shard, again));
-    if (hdf5::has_attribute(file, shard_checksums_attribute))
-      throw BrokenFile(fmt::format("{}: its shard {} is no shard; {}", path_, shard, again));
+    if (!std::filesystem::exists(path, ignored))
+      throw BrokenFile(fmt::format("{}: its shard {} is not there; {}", path_, path, again));
+    const MapReader shard(path, Locking::if_possible, Accept::shards_too);
+    // Tiles of one status may have the sum of others: the name, the spec and the fields count as well.
+    if (!shard.shards_.empty() || !is_named(shards_[k], shard.attribute(shard_attribute)) ||
+        shard.attribute("spec") != attribute("spec") || shard.fields_ != fields_ ||
+        shard.shape() != shape() || !hdf5::has_attribute(shard.file_, tiles_checksum_attribute) ||
+        hdf5::read_integers(shard.file_, tiles_checksum_attribute)[0] != told[k])
+      throw BrokenFile(fmt::format("{}: its shard {} is another; {}", path_, path, again));
   }
 }
 

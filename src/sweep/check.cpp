@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 #include "leapmap/errors.hpp"
+#include "map/hdf5_virtual.hpp"
 #include "map/layout.hpp"
 #include "map/reader.hpp"
 #include "map/schema.hpp"
@@ -81,7 +81,7 @@ void check_shards(Check& check, const std::string& path) {
   options.sample = 0;
   for (const std::string& shard : check.map.shards()) {
     if (check.stopped()) return;
-    const std::string beside = (std::filesystem::path(path).parent_path() / shard).string();
+    const std::string beside = hdf5::path_beside(path, shard);
     if (!seal_holds(beside, options.locking).value_or(true))
       check.find(beside + ": its bytes are not those that were written");
     for (const std::string& finding : check_map(beside, options).findings)

@@ -113,7 +113,7 @@ void remove_unfinished(const std::string& map, Locking locking) {
   if (!has_part(map, locking)) return;
   const std::string part = part_of(map);
   try {
-    if (!hdf5::has_attribute(MapReader(part, locking, Accept::shards_too).file(), shards_attribute)) return;
+    if (!hdf5::has_attribute(hdf5::File::open(part, locking), shards_attribute)) return;
   } catch (const BrokenFile&) {
     return;  // whoever made it, it is refused
   }
@@ -338,6 +338,11 @@ std::optional<JoinReport> join(const std::string& path, const JoinOptions& optio
   if (fs::exists(map, ignored) && !options.overwrite)
     throw InputError(map +
                      ": exists already; allowed: another name for the shards and the map, or --overwrite");
+  if (options.as_virtual && fs::path(map).filename().string().find('%') != std::string::npos)
+    throw InputError(
+        map +
+        ": has a % in its name, which means something to HDF5's virtual datasets; allowed: another "
+        "name for the shards and the map, or a join without --virtual");
   const std::size_t shards = shards_of(map, options.shards);
   remove_unfinished(map, options.lock ? Locking::required : Locking::if_possible);
   return Joining(map, shards, options).run();

@@ -50,7 +50,9 @@ Seen simulate(const Work& work, std::size_t threads, std::size_t tiles) {
   for (std::size_t t = 0; t < tiles; ++t)
     solving.emplace_back(slower * designs_of_tile / work.solved *
                          std::exp(work.spread * normal(random) - 0.5 * work.spread * work.spread));
-  std::atomic<std::size_t> next{0}, bytes{0}, most{0};
+  std::atomic<std::size_t> next{0};
+  std::atomic<std::ptrdiff_t> bytes{0}, most{0};  // taken may be counted before brought
+  const auto of_tile = static_cast<std::ptrdiff_t>(work.bytes);
   Seconds writing{0};
   const auto begin = std::chrono::steady_clock::now();
   {
@@ -60,7 +62,7 @@ Seen simulate(const Work& work, std::size_t threads, std::size_t tiles) {
           const Seconds one{slower * designs_of_tile / work.written};
           std::this_thread::sleep_for(one);
           writing += one;
-          bytes -= work.bytes;
+          bytes -= of_tile;
         },
         most_waiting_bytes(static_cast<int>(threads)));
     std::vector<std::jthread> cores;
@@ -69,8 +71,8 @@ Seen simulate(const Work& work, std::size_t threads, std::size_t tiles) {
         for (std::size_t t; (t = next++) < tiles;) {
           std::this_thread::sleep_for(solving[t]);
           if (!delivery.bring(t, 0, work.bytes)) return;
-          const std::size_t now = bytes += work.bytes;
-          for (std::size_t seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+          const std::ptrdiff_t now = bytes += of_tile;
+          for (std::ptrdiff_t seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
           }
         }
       });
@@ -78,7 +80,7 @@ Seen simulate(const Work& work, std::size_t threads, std::size_t tiles) {
     delivery.finish();
   }
   const Seconds took = std::chrono::steady_clock::now() - begin;
-  return {took.count() / slower, writing / took, most};
+  return {took.count() / slower, writing / took, static_cast<std::size_t>(most)};
 }
 
 void tell(const Work& work) {

@@ -109,6 +109,39 @@ def test_a_virtual_map_without_its_shards_tells_no_fill_values(harm, tmp_path):
     joined.unlink()
 
 
+def test_a_virtual_map_of_a_list_is_read_and_one_behind_a_link_too(tmp_path):
+    (tmp_path / "list.csv").write_text("slope,mass_ratio\n" + "".join(f"{0.1 + 0.003 * i!r},{1 + 0.02 * i!r}\n" for i in range(200)))
+    joined = shards(tmp_path, f"[design]\npoints = \"{tmp_path / 'list.csv'}\"\n", 2)
+    assert leapmap("join", joined, "--virtual").returncode == 0
+    (tmp_path / "links").mkdir()
+    link = tmp_path / "links" / "l.h5"
+    link.symlink_to(joined)
+    for path in (joined, link):
+        assert leapmap("info", path).returncode == 0 and leapmap("check", path).returncode == 0, path
+
+
+def test_shards_of_equal_sums_are_told_apart(tmp_path):
+    spec = "[design]\nslope = { from = 0.5, to = 0.6, count = 256 }\nmass_ratio = { from = 5, to = 6, count = 256 }\n[output]\nfields = [\"status\"]\n[numerics]\naudit = 0\n"
+    joined = shards(tmp_path, spec, 2)
+    assert leapmap("join", joined, "--virtual").returncode == 0
+    with h5py.File(joined) as m:
+        first, second = m.attrs["shard_checksums"]
+        assert first == second, "else there is nothing to tell apart"
+    shutil.copy(shard(joined, 1, 2), shard(joined, 2, 2))
+    told = leapmap("info", joined)
+    assert told.returncode != 0 and "is another" in told.stderr
+
+
+def test_what_a_killed_virtual_join_left_is_in_nobodys_way(tmp_path):
+    joined = shards(tmp_path, SMALL, 2)
+    assert leapmap("join", joined, "--virtual").returncode == 0
+    with h5py.File(joined, "r+") as part:  # as it is before its end
+        del part.attrs["shard_checksums"]
+    joined.rename(joined.with_name("map.h5.part"))
+    assert leapmap("join", joined, "--virtual").returncode == 0
+    assert leapmap("info", joined).returncode == 0
+
+
 def test_a_virtual_map_is_not_changed_and_not_drawn(tmp_path):
     joined = shards(tmp_path, SMALL, 2)
     assert leapmap("join", joined, "--virtual").returncode == 0
