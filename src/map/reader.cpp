@@ -58,7 +58,7 @@ MapReader::Dimension read_dimension(hid_t dataset, const std::string& name) {
 bool is_named(const std::string& file, const std::string& shard) {
   const auto slash = shard.find('/');
   if (slash == shard.npos) return false;
-  const std::string words = "." + shard.substr(0, slash) + "-of-" + shard.substr(slash + 1);
+  const std::string words = fmt::format(".{}-of-{}", shard.substr(0, slash), shard.substr(slash + 1));
   const auto at = file.rfind(words);
   return at != file.npos && (at + words.size() == file.size() || file[at + words.size()] == '.');
 }

@@ -10,6 +10,7 @@
 #include "map/schema.hpp"
 #include "support/printable.hpp"
 #include "sweep/map_spec.hpp"
+#include "sweep/provenance.hpp"
 
 namespace leapmap {
 namespace {
