@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
-#include <set>
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_trust.hpp"
@@ -18,20 +17,16 @@
 namespace leapmap::hdf5 {
 namespace {
 
-/// The files that a file's virtual datasets are made of, known when it has been looked through. They lie
-/// beside it and have no folder here.
-using Sources = std::set<std::string, std::less<>>;
-
 /// What HDF5 holds of an open file. It shares the file: where HDF5 cannot close, its driver outlives us.
 struct Driver : H5FD_t {
   std::shared_ptr<JournaledFile> file;
-  std::shared_ptr<const Sources> sources;
+  std::shared_ptr<const SourceNames> sources;  ///< known when it has been looked through
 };
 
 /// What the property list of an open carries to it.
 struct Target {
   const std::shared_ptr<JournaledFile>* file;
-  const std::shared_ptr<const Sources>* sources;
+  const std::shared_ptr<const SourceNames>* sources;
 };
 
 Driver& driver(H5FD_t* base) { return *static_cast<Driver*>(base); }
@@ -149,7 +144,8 @@ hid_t driver_id() {
 }
 
 /// Valid while `file` and `sources` are.
-Handle access_to(const std::shared_ptr<JournaledFile>& file, const std::shared_ptr<const Sources>& sources) {
+Handle access_to(const std::shared_ptr<JournaledFile>& file,
+                 const std::shared_ptr<const SourceNames>& sources) {
   initialise();
   const Target target{&file, &sources};
   const std::string& path = file->path();
@@ -173,8 +169,8 @@ enum class Mode { read, change };
 /// The mode is no flag of HDF5's: those are macros that initialise the library, with its handler at exit,
 /// before initialise() can keep it away.
 Handle open_in(const std::shared_ptr<JournaledFile>& file, Mode mode) {
-  const auto sources = std::make_shared<Sources>();
-  const std::shared_ptr<const Sources> seen = sources;
+  const auto sources = std::make_shared<SourceNames>();
+  const std::shared_ptr<const SourceNames> seen = sources;
   const Handle access = access_to(file, seen);
   const std::string& path = file->path();
   try {
@@ -242,7 +238,7 @@ File File::create(const std::string& path, std::string_view filetype, Locking lo
   if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) make_folder(folder);
   refuse_other_unfinished(path, filetype, locking);
   File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::create, locking));
-  const std::shared_ptr<const Sources> none;
+  const std::shared_ptr<const SourceNames> none;
   const Handle access = access_to(file.bytes_, none), creation = creation_of(path);
   file.handle_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose,
                   path + ": cannot be created"};

@@ -20,7 +20,7 @@ constexpr std::size_t most_deflation = 1032;  // of zlib's format: 258 bytes a c
 struct Survey {
   std::string refusal;  ///< empty: nothing found
   std::size_t objects = 0;
-  std::set<std::string, std::less<>> sources;
+  SourceNames sources;
   std::exception_ptr failure;  ///< what looking at it threw
 };
 
@@ -63,8 +63,7 @@ std::string refusal_of_dataset(hid_t dataset, const std::string& name) {
   return bytes > most_chunk_bytes ? "has chunks larger than leapmap writes" : "";
 }
 
-std::string refusal_of_link(hid_t group, const char* name, const H5L_info_t& link,
-                            std::set<std::string, std::less<>>& sources) {
+std::string refusal_of_link(hid_t group, const char* name, const H5L_info_t& link, SourceNames& sources) {
   if (link.type == H5L_TYPE_SOFT) return {};  // leads nowhere but into the same file
   if (link.type != H5L_TYPE_HARD) return "is a link into another file";
   const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose, "opening an object");
@@ -97,7 +96,7 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* link, void* contex
 
 }  // namespace
 
-std::set<std::string, std::less<>> refuse_foreign_parts(hid_t file, const std::string& path) {
+SourceNames refuse_foreign_parts(hid_t file, const std::string& path) {
   Survey survey;
   const herr_t visited = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &survey);
   if (survey.failure) std::rethrow_exception(survey.failure);

@@ -11,11 +11,14 @@
 
 namespace leapmap::hdf5 {
 
+/// Files that virtual datasets are made of. They lie beside the file that has those, and have no folder here.
+using SourceNames = std::set<std::string, std::less<>>;
+
 /// Throws ForeignFile, naming the part, if the file holds an external link, external storage, a virtual
 /// dataset made of anything but datasets of its name in files beside it, a dataset of references, a filter
 /// other than shuffle, deflate and fletcher32, a chunk beyond all use, or more objects than any file of ours.
 /// `path` is for messages. Returns the files beside it that its virtual datasets are made of.
-std::set<std::string, std::less<>> refuse_foreign_parts(hid_t file, const std::string& path);
+SourceNames refuse_foreign_parts(hid_t file, const std::string& path);
 
 /// The bytes of a dataset's values. Throws IoError if the bytes stored for it could not hold so many: to be
 /// asked before memory is taken for all of them. `what` is for messages.

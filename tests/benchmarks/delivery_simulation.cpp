@@ -48,7 +48,7 @@ Seen simulate(const Work& work, std::size_t threads, std::size_t tiles) {
   std::normal_distribution<double> normal;
   std::vector<Seconds> solving;
   for (std::size_t t = 0; t < tiles; ++t)
-    solving.emplace_back(slower * designs_of_tile / work.solved *
+    solving.emplace_back(drawn_out *
                          std::exp(work.spread * normal(random) - 0.5 * work.spread * work.spread));
   std::atomic<std::size_t> next{0};
   std::atomic<std::ptrdiff_t> bytes{0}, most{0};  // taken may be counted before brought
