@@ -3,7 +3,7 @@
 
 const ADDRESS_PAUSE = 500;  // ms between two changes that are undone one by one
 const ADDRESS_REST = 120;   // ms at least between two writings, of which browsers allow so many
-const address = { parts: [], steps: 0, at: 0, last: -Infinity, later: 0, reading: false };
+const address = { parts: [], steps: 0, at: 0, last: -Infinity, later: 0, reading: false, others: false, live: false };  // others: a file's map and a live one have addresses
 
 const addressWords = () => new URLSearchParams(location.hash.slice(1));
 
@@ -45,6 +45,7 @@ function showSteps() {
 /** Undo and redo: buttons, keys and the browser's own. */
 function addressButtons() {
   window.addEventListener("popstate", (event) => {
+    if (address.others && addressWords().has("live") !== address.live) { location.reload(); return; }  // the other of the two pages
     address.at = event.state?.step ?? 0;
     showSteps();
     readAddress();

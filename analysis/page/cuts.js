@@ -2,14 +2,14 @@
 
 /** Draws one cut. offset(index): a design's place among the values; axis: along which. */
 function drawCut(canvas, map, view, axis, offset) {
-  const frame = fitted(canvas, 1);
+  const frame = fitted(canvas, 1), [factor] = shownIn(view.field.unit, map.fixed);
   if (!frame) return;
   const context = canvas.getContext("2d"), { left, right, top, bottom, ratio } = frame, { field } = view, row = map.axes[axis];
   const flags = map.codes.spurious_first_jump?.values, torn = map.codes.cliffs?.values, n = row.values.length;
   const places = Array.from({ length: n }, (_, i) => offset(view.index.map((k, a) => (a === axis ? i : k))));
   const sx = axisScale(row, left, right), span = field.high - field.low || 1, low = Math.min(field.low, ...places.map((k) => field.values[k]).filter((v) => v === v)),
     high = Math.max(field.low + 1e-12, ...places.map((k) => field.values[k]).filter((v) => v === v)) + 0.04 * span;
-  const sy = { pixel: (v) => bottom - (bottom - top) * (v - low) / (high - low || 1), ticks: () => linearTicks(low, high, 4) };
+  const sy = { pixel: (v) => bottom - (bottom - top) * (v - low) / (high - low || 1), ticks: () => linearTicks(low * factor, high * factor, 4) }, shownY = { ...sy, pixel: (v) => sy.pixel(v / factor) };
   context.fillStyle = tones.ground;
   context.fillRect(0, 0, canvas.width, canvas.height);
   context.lineWidth = 1.8 * ratio;
@@ -27,7 +27,7 @@ function drawCut(canvas, map, view, axis, offset) {
     context.stroke();
   }
   context.setLineDash([]);
-  paintAxes(context, frame, sx, sy, labelOf(row), field.label.split(":")[0].split(" of the ")[0]);
+  paintAxes(context, frame, sx, shownY, labelOf(row), fieldLabel(field, map.fixed, field.label.split(":")[0].split(" of the ")[0]));
   const here = sx.centre(view.index[axis]), value = field.values[places[view.index[axis]]];
   context.strokeStyle = tones.mark;
   context.lineWidth = 1.2 * ratio;
@@ -50,7 +50,7 @@ function cutsPart(map, view) {
   const draw = () => { if (part.open) [view.view.x, view.view.y].forEach((axis, k) => drawCut(canvases[k], map, view.view, axis, view.offset)); };
   part.addEventListener("toggle", draw);
   for (const [k, name] of ["cut-x", "cut-y"].entries())
-    element(`${name}-svg`).addEventListener("click", () => saveSvg(canvases[k], `${name}.svg`, (like) => drawCut(like, map, view.view, [view.view.x, view.view.y][k], view.offset)));
+    saveButtons(name, canvases[k], () => `${view.view.field.name}_over_${map.axes[[view.view.x, view.view.y][k]].name}`, (like) => drawCut(like, map, view.view, [view.view.x, view.view.y][k], view.offset));
   new ResizeObserver(draw).observe(canvases[0]);
   return draw;
 }

@@ -4,7 +4,7 @@ const LOWER_IS_BETTER = ["jump_time", "first_jump_time", "jump_distance", "energ
 
 /** Builds the goals' part; changed(): another picture is due, best(index): the best design left is to be shown. */
 function filtersPart(map, view, changed, best) {
-  const list = element("goals"), told = element("goals-told"), goals = [];
+  const list = element("goals"), told = element("goals-told"), goals = [];  // bounds in the fields' own units
   const real = element("goal-real"), find = element("goal-best");
 
   function keeps(k) {
@@ -27,6 +27,7 @@ function filtersPart(map, view, changed, best) {
   const better = (a, b) => (LOWER_IS_BETTER.includes(view.view.field.name) ? a < b : a > b);
 
   function tell() {
+    for (const { show } of goals) show();
     find.textContent = `show the ${better(0, 1) ? "lowest" : "highest"} left`;
     if (!map.keeps) { told.textContent = ""; return; }
     const n = map.fields[0].values.length;
@@ -38,14 +39,19 @@ function filtersPart(map, view, changed, best) {
   function row(asked = {}) {
     const item = document.createElement("li"), select = document.createElement("select"), sign = document.createElement("select"), number = document.createElement("input"),
       away = document.createElement("button"), goal = { field: view.view.field, sign: "least", bound: NaN, ...asked };
-    map.fields.forEach((field, k) => option(select, k, withUnit(field.label, field.unit ? `[${field.unit}]` : "")));
+    map.fields.forEach((field, k) => option(select, k, ""));
     select.value = map.fields.indexOf(goal.field);
+    const factor = () => shownIn(goal.field.unit, map.fixed)[0];
+    /** In the units shown, but for a number that is being typed. */
+    goal.show = () => {
+      map.fields.forEach((field, k) => { select.options[k].textContent = fieldLabel(field, map.fixed); });
+      if (document.activeElement !== number) number.value = Number((goal.bound * factor()).toPrecision(6));
+    };
     option(sign, "least", "at least");
     option(sign, "most", "at most");
     number.type = "number";
     number.step = "any";
-    if (Number.isNaN(goal.bound)) goal.bound = Number(((goal.field.low + goal.field.high) / 2).toPrecision(2));
-    number.value = goal.bound;
+    if (Number.isNaN(goal.bound)) goal.bound = Number((factor() * (goal.field.low + goal.field.high) / 2).toPrecision(2)) / factor();
     sign.value = goal.sign;
     away.type = "button";
     away.textContent = "×";
@@ -55,7 +61,7 @@ function filtersPart(map, view, changed, best) {
     away.setAttribute("aria-label", "remove this goal");
     select.addEventListener("change", () => { goal.field = map.fields[select.value]; update(); });
     sign.addEventListener("change", () => { goal.sign = sign.value; update(); });
-    number.addEventListener("input", () => { if (number.value !== "") { goal.bound = Number(number.value); update(); } });
+    number.addEventListener("input", () => { if (number.value !== "") { goal.bound = Number(number.value) / factor(); update(); } });
     away.addEventListener("click", () => { goals.splice(goals.indexOf(goal), 1); item.remove(); update(); });
     item.append(select, sign, number, away);
     list.append(item);
@@ -76,7 +82,7 @@ function filtersPart(map, view, changed, best) {
   return {
     tell,
     write(words) {
-      for (const { field, sign, bound } of goals) words.append("goal", `${field.name}:${sign}:${bound}`);
+      for (const { field, sign, bound } of goals) words.append("goal", `${field.name}:${sign}:${Number(bound.toPrecision(12))}`);
       if (real.checked) words.set("real", "");
     },
     read(words) {

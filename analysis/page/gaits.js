@@ -37,7 +37,9 @@ function gaitsPart(map, solver, choose) {
     return { ratio, box, font, left: 4.5 * font, right: canvas.width - font, top: 0.6 * font, bottom: canvas.height - 3 * font };
   }
 
-  function draw() {
+  function draw() { drawOn(canvas); }
+
+  function drawOn(canvas) {
     const ratio = window.devicePixelRatio || 1, size = canvas.getBoundingClientRect();
     canvas.width = Math.max(1, Math.round(size.width * ratio));
     canvas.height = Math.max(1, Math.round(size.height * ratio));
@@ -45,7 +47,7 @@ function gaitsPart(map, solver, choose) {
     let most = 0;
     for (const column of now.heights) for (const height of column ?? []) if (height > most) most = height;
     most = most > 0 ? 1.05 * most : 1;
-    const image = new ImageData(COLUMNS, ROWS), hits = new Uint32Array(ROWS);
+    const ink = [1, 3, 5].map((k) => parseInt(tones.data.slice(k, k + 2), 16)), image = new ImageData(COLUMNS, ROWS), hits = new Uint32Array(ROWS);
     for (let column = 0; column < COLUMNS; ++column) {
       // A coarse picture: what lies to the left is drawn on until the column itself is there.
       let source = column;
@@ -61,10 +63,11 @@ function gaitsPart(map, solver, choose) {
       for (let row = 0; row < ROWS; ++row) {
         if (!hits[row]) continue;
         const at = 4 * ((ROWS - 1 - row) * COLUMNS + column), shade = 0.35 + 0.65 * Math.log(1 + hits[row]) / Math.log(1 + KEEP);
-        image.data.set([31, 78, 121, 255 * shade], at);
+        image.data.set([...ink, 255 * shade], at);
       }
     }
-    const ready = new OffscreenCanvas(COLUMNS, ROWS);
+    const ready = document.createElement("canvas");  // which SVG can hold
+    [ready.width, ready.height] = [COLUMNS, ROWS];
     ready.getContext("2d").putImageData(image, 0, 0);
     context.imageSmoothingEnabled = false;
     context.drawImage(ready, left, top, right - left, bottom - top);
@@ -74,7 +77,8 @@ function gaitsPart(map, solver, choose) {
     context.fillStyle = tones.ink;
     context.textAlign = "right";
     context.textBaseline = "middle";
-    for (const tick of linearTicks(0, most, 5)) context.fillText(short(tick), left - 0.4 * font, bottom - (bottom - top) * tick / most);
+    const [height, heightUnit] = now.design ? shownIn("diameters", now.design) : [1, "diameters"];
+    for (const tick of linearTicks(0, most * height, 5)) context.fillText(short(tick), left - 0.4 * font, bottom - (bottom - top) * tick / height / most);
     context.textAlign = "center";
     context.textBaseline = "top";
     for (const tick of linearTicks(from * factor(), to * factor(), 8))
@@ -83,7 +87,7 @@ function gaitsPart(map, solver, choose) {
     context.save();
     context.translate(font, (top + bottom) / 2);
     context.rotate(-Math.PI / 2);
-    context.fillText("jump height [diameters]", 0, -0.6 * font);
+    context.fillText(`jump height [${heightUnit}]`, 0, -0.6 * font);
     context.restore();
     const here = now.design ? (now.design[over.value] - from) / (to - from) : NaN;
     if (here >= 0 && here <= 1) {
@@ -135,6 +139,13 @@ function gaitsPart(map, solver, choose) {
     const place = ((event.clientX - box.left) * canvas.width / box.width - left) / (right - left);
     if (now.design && place >= 0 && place <= 1) choose(over.value, from + (to - from) * place);
   });
+  canvas.addEventListener("keydown", (event) => {
+    const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key], [from, to] = bounds();
+    if (!way || !now.design) return;
+    event.preventDefault();
+    choose(over.value, Math.min(to, Math.max(from, now.design[over.value] + way * (event.shiftKey ? 10 : 1) * (to - from) / 200)));
+  });
+  saveButtons("gaits", canvas, () => `jump_after_jump_over_${over.value}`, drawOn);
   new ResizeObserver(() => { if (part.open && now.heights.length > 0) draw(); }).observe(canvas);
   setBounds();
   onTones(() => { if (part.open && now.heights.length > 0) draw(); });

@@ -1,6 +1,17 @@
 // The hoop shown, number by number: each of its parameters to type, and what a little more of each would do.
 
-const CONTACT = ["mu_static", "mu_kinetic", "restitution"];
+/** Lets arrow keys change a number by a round hundredth or so of what it is moved between, where any number may be typed. */
+function stepsOf(input, span) {
+  const step = 10 ** Math.floor(Math.log10(span / 50));
+  input.addEventListener("keydown", (event) => {
+    const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (!way || input.value === "") return;
+    event.preventDefault();
+    input.value = Number((Number(input.value) + way * step * (event.shiftKey ? 10 : 1)).toPrecision(12));
+    input.dispatchEvent(new Event("change"));
+  });
+}
+
 /** What is differentiated, with the unit that the table tells it in. */
 const DIFFERENTIATED = [["jump_height", "jump height", "diameters"], ["jump_time", "lift-off after", "s"]];
 
@@ -8,7 +19,7 @@ const DIFFERENTIATED = [["jump_height", "jump height", "diameters"], ["jump_time
 function hoopInputs(map, solver, changed) {
   const box = element("hoop-inputs"), now = { design: null }, inputs = new Map();
   const unitOf = (name) => map.parameters[name].unit, factor = (name) => (unitOf(name) === "°" ? 180 / Math.PI : 1);
-  const wanted = () => Object.keys(map.parameters).filter((name) => name in solver.defaults && (map.slips || !CONTACT.includes(name)));
+  const wanted = () => Object.keys(map.parameters).filter((name) => name in solver.defaults && name !== "radius" && (map.slips || !SLIPPING.includes(name)));
 
   function build() {
     inputs.clear();
@@ -24,6 +35,8 @@ function hoopInputs(map, solver, changed) {
         notice(good ? "" : `${label} must be between ${short(least * factor(name))} and ${short(most * factor(name))}.`);
         if (good && now.design) changed({ ...now.design, [name]: value });
       });
+      const [low, high] = LIVE_RANGES[name] ?? [0, 1];
+      stepsOf(input, (high - low) * factor(name));
       inputs.set(name, input);
       row.append(words, input);
       return row;
@@ -49,7 +62,7 @@ function gradientPart(map, solver) {
   function draw() {
     if (!part.open || !now.design) return;
     const head = document.createElement("tr");
-    head.append(cell("th", "a little more"), ...DIFFERENTIATED.map(([, words, unit]) => { const th = cell("th", `${words} [${unit}]`); th.scope = "col"; return th; }));
+    head.append(cell("th", "a little more"), ...DIFFERENTIATED.map(([, words, unit]) => { const th = cell("th", `${words} [${shownIn(unit, now.design)[1]}]`); th.scope = "col"; return th; }));
     const slopes = DIFFERENTIATED.map(([name]) => solver.gradient(now.design, map.slips, map.tolerance, name));
     const rows = Object.entries(map.parameters).filter(([name]) => slopes.some((slope) => Number.isFinite(slope[name]))).map(([name, { label, unit }]) => {
       // Of an angle and of what may be zero a step, of the rest a hundredth: what a workshop's tolerance is.
@@ -58,7 +71,7 @@ function gradientPart(map, solver) {
       th.scope = "row";
       tr.dataset.name = name;
       tr.append(th, ...slopes.map((slope, k) => {
-        const change = slope[name] * steps[0], td = cell("td", Number.isFinite(change) ? `${change > 0 ? "▲ +" : change < 0 ? "▼ " : ""}${short(change, 3)}` : "none");
+        const change = slope[name] * steps[0] * shownIn(DIFFERENTIATED[k][2], now.design)[0], td = cell("td", Number.isFinite(change) ? `${change > 0 ? "▲ +" : change < 0 ? "▼ " : ""}${short(change, 3)}` : "none");
         td.dataset.of = DIFFERENTIATED[k][0];
         td.dataset.value = String(slope[name]);
         return td;

@@ -4,16 +4,18 @@ const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20
 
 /**
  * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome):
- * a hoop is shown that is none of the map's designs.
+ * a hoop is shown that is none of the map's designs; otherUnits(): everything is to be told anew; pinned(): other designs are.
  */
-function hopPanel(map, solver, ofItsOwn) {
+function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
   // source: where the design is from, "design" of the map, "paper" or "hoop" as typed, and which.
   const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null, recording: false };
   const chosen = { radius: map.fixed.radius, mass: PAPER_MASS / 1000, jumps: map.jumps };  // m; kg
+  units.mass = chosen.mass;
   radius.value = 1000 * chosen.radius;
+  radius.parentElement.hidden = map.live;  // which has a slider for it
   mass.value = 1000 * chosen.mass;
   const jumps = element("jumps");
   jumps.value = chosen.jumps;
@@ -24,18 +26,24 @@ function hopPanel(map, solver, ofItsOwn) {
   });
   const showInputs = hoopInputs(map, solver, (design) => typed(design)), showGradient = gradientPart(map, solver);
 
-  const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "), () => { if (now.story) { haunt(); draw(); } noteAddress(); });
+  const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "), () => { if (now.story) { haunt(); draw(); } pinned(); noteAddress(); });
   element("pin").addEventListener("click", () => { if (now.story) pins.pin(now.design); });
   element("pins-along").addEventListener("change", () => { if (now.story) { haunt(); draw(); } });
 
   const GHOSTS = 20, ghosts = element("ghosts");
   const width = element("ghosts-width");
+  // How one looks at the hoop, by the address's words: what turns it, and how it stands at first.
+  const ways = [["speed", element("speed")], ["close", element("follow")], ["forces", element("forces")], ["along", element("pins-along")], ["as_made", ghosts], ["sigma", width]]
+    .map(([name, input]) => [name, input, input.type === "checkbox" ? input.checked : input.value]);
+  for (const [, input] of ways) input.addEventListener("change", noteAddress);
   element("ghosts-label").hidden = map.scatter.length === 0 && !map.live;
   width.parentElement.hidden = !map.live;
   /** How hoops are made: as the map says, or on a live map as the reader does, by one standard deviation of all that a workshop makes. */
   const scatterOf = () => (!map.live ? map.scatter : ["mass_ratio", "offset_ratio", "inertia_factor"].map((name) => ({ name, law: "normal", width: Number(width.value), percent: true })));
 
   const end = () => Math.max(now.story?.motion.t.at(-1) ?? 0, ...now.ghosts.map(({ story }) => story.motion.t.at(-1) ?? 0));
+
+  const plotOn = (canvas) => drawPlots(canvas, now.story, now.ghosts.filter(({ pin }) => pin !== undefined), now.time, end(), measuresOf(now.design, chosen.mass).plots, now.design.radius);
 
   function draw() {
     if (!now.story || now.story.motion.t.length === 0) {
@@ -44,7 +52,7 @@ function hopPanel(map, solver, ofItsOwn) {
       return;
     }
     drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts, element("forces").checked);
-    now.timeAt = drawPlots(plots, now.story.motion, now.story.liftOffs, now.time, measuresOf(now.design, chosen.mass).plots, now.design.radius);
+    now.timeAt = plotOn(plots);
     const measured = measuresOf(now.design, chosen.mass).plots.t;
     clock.textContent = `${(now.time * measured[0]).toFixed(3)} ${measured[1]}`;
     scrub.value = now.time;
@@ -67,7 +75,10 @@ function hopPanel(map, solver, ofItsOwn) {
     play.textContent = now.playing ? "❚❚ pause" : "▶ play";
     cancelAnimationFrame(now.frame);
     if (now.playing) now.frame = requestAnimationFrame(tick);
+    else noteAddress();
   }
+
+  const stopAt = (time) => { now.time = Math.min(Math.max(0, time), end()); run(false); draw(); };
 
   function tell() {
     table.replaceChildren(...numberRows(now.story, now.design, chosen, map.slips));
@@ -86,6 +97,7 @@ function hopPanel(map, solver, ofItsOwn) {
   }
   function solved() {
     const { design } = now;
+    if (map.live) chosen.radius = map.fixed.radius;
     design.radius = chosen.radius;
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.story = solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps);
@@ -104,7 +116,7 @@ function hopPanel(map, solver, ofItsOwn) {
       .map((design) => ({ design, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) }));
     const outcomes = now.ghosts.map(({ story }) => story.outcome);
     if (element("pins-along").checked)
-      for (const design of pins.designs()) now.ghosts.push({ design, pinned: true, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) });
+      for (const [i, design] of pins.designs().entries()) now.ghosts.push({ design, pin: i, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) });
     const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, map.goals, solver.codes)).length;
     element("ghosts-told").textContent = outcomes.length === 0 ? "" : `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
     scrub.max = end();
@@ -113,7 +125,7 @@ function hopPanel(map, solver, ofItsOwn) {
     input.addEventListener("change", () => { if (now.story && width.checkValidity()) { haunt(); now.time = Math.min(now.time, end()); draw(); } });
 
   play.addEventListener("click", () => run(!now.playing));
-  const frame = (way) => { run(false); now.time = Math.min(end(), Math.max(0, now.time + way * Number(element("speed").value) / 30)); draw(); };
+  const frame = (way) => stopAt(now.time + way * Number(element("speed").value) / 30);
   element("step-back").addEventListener("click", () => frame(-1));
   element("step-on").addEventListener("click", () => frame(1));
   element("film").addEventListener("click", async () => {
@@ -133,11 +145,9 @@ function hopPanel(map, solver, ofItsOwn) {
     film.textContent = "save as WebM";
     if (blob) { film.dataset.bytes = blob.size; saveAs(blob, "hoop.webm"); } else notice("This browser records no films.");
   });
-  scrub.addEventListener("input", () => { run(false); now.time = Number(scrub.value); draw(); });
+  scrub.addEventListener("input", () => stopAt(Number(scrub.value)));
   for (const id of ["follow", "forces"]) element(id).addEventListener("change", draw);
-  element("plots-png").addEventListener("click", () => savePicture(plots, "hoop_forces.png"));
-  element("plots-svg").addEventListener("click", () => saveSvg(plots, "hoop_forces.svg", (canvas) =>
-    drawPlots(canvas, now.story.motion, now.story.liftOffs, now.time, measuresOf(now.design, chosen.mass).plots, now.design.radius)));
+  saveButtons("plots", plots, () => "hoop_forces", plotOn);
   onTones(() => { if (now.story) draw(); });
   /** Takes a number above zero; says so if it is none, and what is shown stays as it was. */
   const choose = (input, name, then) => input.addEventListener("change", () => {
@@ -150,10 +160,7 @@ function hopPanel(map, solver, ofItsOwn) {
     if (now.story) then();
     noteAddress();
   });
-  choose(radius, "radius", () => {
-    if (map.live) { map.fixed.radius = chosen.radius; map.refresh(); }  // the whole map is of that size
-    solve();
-  });
+  choose(radius, "radius", solve);
   jumps.addEventListener("change", () => {
     const good = jumps.value !== "" && jumps.checkValidity();
     jumps.setAttribute("aria-invalid", String(!good));
@@ -164,8 +171,8 @@ function hopPanel(map, solver, ofItsOwn) {
     noteAddress();
     if (now.design) { solve(); run(!still && now.story !== null); }
   });
-  choose(mass, "mass", () => { tell(); draw(); });
-  const seek = (event) => { if (now.timeAt && (event.type === "click" || event.buttons === 1)) { run(false); now.time = now.timeAt(event.clientX); draw(); } };
+  choose(mass, "mass", () => { units.mass = chosen.mass; otherUnits(); });
+  const seek = (event) => { if (now.timeAt && (event.type === "click" || event.buttons === 1)) stopAt(now.timeAt(event.clientX)); };
   plots.addEventListener("click", seek);
   plots.addEventListener("pointermove", seek);
   element("copy").addEventListener("click", async () => {
@@ -210,13 +217,14 @@ function hopPanel(map, solver, ofItsOwn) {
     if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight) part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
     begin(designAt(map, index), `One hoop: ${placeText(map, index)}`, ["design", index.join(",")], goesOn);
   };
-  const stopAt = (time) => { run(false); now.time = Math.min(Math.max(0, time), end()); draw(); };
   addressPart({
     write(words) {
       const [key, value] = now.source;
       if (key) words.set(key, value);
       for (const [name, input, fallback] of [["jumps", jumps, map.jumps], ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]])
         if (Number(input.value) !== fallback) words.set(name === "radius" ? "hoop_radius" : name, input.value);
+      for (const [name, input, fallback] of ways) if (input.type === "checkbox" ? input.checked !== fallback : input.value !== fallback) words.set(name, input.type === "checkbox" ? Number(input.checked) : input.value);
+      if (now.story && !now.playing && now.time > 0 && now.time < end()) words.set("time", Number(now.time.toPrecision(6)));
       pins.write(words);
     },
     read(words) {
@@ -224,8 +232,15 @@ function hopPanel(map, solver, ofItsOwn) {
         const value = Number(words.get(name) ?? fallback);
         if (value > 0 && value <= Number(input.max)) input.value = value;
       }
+      units.mass = Number(mass.value) / 1000;
       Object.assign(chosen, { radius: Number(radius.value) / 1000, mass: Number(mass.value) / 1000, jumps: Math.round(Number(jumps.value)) });
+      for (const [name, input, fallback] of ways) {
+        const word = words.get(name);
+        if (input.type === "checkbox") input.checked = word === null ? fallback : word === "1";
+        else input.value = word !== null && (input.tagName !== "SELECT" || [...input.options].some(({ value }) => value === word)) ? word : fallback;
+      }
       pins.read(words);
+      pinned();
       const hoop = designOf(words.get("hoop"), solver.ranges);
       if (words.has("paper")) paper();
       else if (hoop) typed({ ...map.fixed, ...hoop });
@@ -239,7 +254,7 @@ function hopPanel(map, solver, ofItsOwn) {
     const title = element("hop-title").textContent;
     title === PAPERS ? paper() : typed(now.design, title);
   };
-  return { show, stopAt, remodel, retell: () => { if (now.story) { tell(); draw(); } }, isOfMap: () => now.source[0] === "design" };
+  return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", resize: () => { if (now.design && now.design.radius !== map.fixed.radius) solve(); } };
 }
 
 /** A design from name:value,name:value, as an address has it; null if any of it is none. */

@@ -20,20 +20,27 @@ function valueAt(motion, name, time) {
   return motion[name][low] + (motion[name][high] - motion[name][low]) * part;
 }
 
-/** Hoops as made at a time, faint: motions beside the one drawn, each on its own slope, drawn along this one. */
+/** Hoops beside the one drawn at a time, each on its own slope, drawn along this one: as made, faint, and pinned ones in their colours, numbered. */
 function drawGhosts(context, ghosts, time, turned, px, scale, R) {
   context.globalAlpha = 0.3;
   context.lineWidth = Math.max(1, 0.03 * R * scale);
-  for (const { design, story } of ghosts) {
+  for (const { design, story, pin } of ghosts) {
     if (story.motion.t.length === 0) continue;
+    context.globalAlpha = pin === undefined ? 0.3 : 0.9;
     const [x, y, phi] = ["x", "y", "phi"].map((name) => valueAt(story.motion, name, time)), L = design.offset_ratio * R;
-    context.strokeStyle = tones[(PHASES[story.motion.phase[sampleAt(story.motion, time).low]] ?? PHASES[1])[1]];
+    context.strokeStyle = pin === undefined ? tones[(PHASES[story.motion.phase[sampleAt(story.motion, time).low]] ?? PHASES[1])[1]] : PIN_COLOURS[pin];
     context.beginPath();
     context.arc(...px(turned(x, y + R)), R * scale, 0, 2 * Math.PI);
     context.stroke();
+    if (pin !== undefined) {
+      const [u, v] = px(turned(x, y + 2.3 * R));
+      context.fillStyle = context.strokeStyle;
+      context.font = `${Math.max(11, 0.4 * R * scale)}px system-ui, "DejaVu Sans", sans-serif`;
+      context.fillText(String(pin + 1), u, v);
+    }
     context.beginPath();
     context.arc(...px(turned(x - L * Math.sin(phi), y + R - L * Math.cos(phi))), Math.max(2, 0.1 * R * scale), 0, 2 * Math.PI);
-    context.fillStyle = tones.weight;
+    context.fillStyle = pin === undefined ? tones.weight : PIN_COLOURS[pin];
     context.fill();
   }
   context.globalAlpha = 1;

@@ -27,8 +27,9 @@ function listView(canvas, map, onPoint, onPick) {
   }
 
   function paintOn(context) {
-    const column = map.columns[view.x], { values, log } = view.field, { font, ratio } = frame;
-    const shown = column.values.map((v) => (v === null ? NaN : column.quantity ? v : inShownUnit(column, v)));
+    const column = map.columns[view.x], { log } = view.field, { font, ratio } = frame;
+    const [factor] = shownIn(view.field.unit, map.fixed), values = Float64Array.from(view.field.values, (v) => v * factor), [across, acrossUnit] = column.quantity ? shownIn(column.unit, map.fixed) : [1, column.unit];
+    const shown = column.values.map((v) => (v === null ? NaN : column.quantity ? v * across : inShownUnit(column, v)));
     const sx = scale(shown, column.log, frame.left, frame.right), sy = scale([...values], log, frame.bottom - 1.5 * font, frame.top);
     context.fillStyle = tones.ground;
     context.fillRect(0, 0, canvas.width, canvas.height);
@@ -45,7 +46,7 @@ function listView(canvas, map, onPoint, onPick) {
       if (there && flags?.values[i] !== 1) context.fill();
       context.stroke();
     });
-    paintAxes(context, frame, sx, sy, labelOf(column), view.field.label + (view.field.unit ? ` [${view.field.unit}]` : ""));
+    paintAxes(context, frame, sx, sy, labelOf({ ...column, unit: acrossUnit }), fieldLabel(view.field, map.fixed));
   }
 
   function paintCursor() {

@@ -6,11 +6,12 @@ const REST = 150;    // ms without a change after which cliffs are looked for
 /** What parameters can be moved between: their values as the solver takes them. */
 const LIVE_RANGES = {
   slope: [0.02, 0.87], mass_ratio: [0.1, 20], offset_ratio: [0.05, 1], inertia_factor: [0.5, 1], release_angle: [0, 2 * Math.PI], release_spin: [-3, 6],
-  drive_torque: [-0.2, 0.5], mu_static: [0.05, 1.5], mu_kinetic: [0.05, 1.5], restitution: [0, 0.9], runway: [0.5, 10], hop_height: [0, 0.5],
+  drive_torque: [-0.2, 0.5], mu_static: [0.05, 1.5], mu_kinetic: [0.05, 1.5], restitution: [0, 0.9], rest_speed: [0, 0.1], runway: [0.5, 10], hop_height: [0, 0.5], radius: [0.01, 0.5],
+  gravity: [0.5, 25],
 };
 const OUTCOME_CODES = ["status", "spurious_first_jump", "candidates"];  // which tell one course of events from another
-const SLIPPING = ["mu_static", "mu_kinetic", "restitution"];
-const NO_LIVE_AXIS = ["runway", "hop_height"];
+const SLIPPING = ["mu_static", "mu_kinetic", "restitution", "rest_speed"];
+const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity"];  // none of the design's own
 
 /** A map as the explorer writes them, without a number yet. given: {looks, statuses, parameters, ...}; state: {x, y, slips, fixed}. */
 function liveMap(given, solver, state) {
@@ -59,6 +60,11 @@ function putRows(map, rows, cells, side, level) {
   }
 }
 
+/** Whether two designs, by their places among the values, end by another course of events. */
+function outcomesDiffer({ codes: { status, spurious_first_jump: spurious, candidates } }) {
+  return (a, b) => status.values[a] !== status.values[b] || spurious.values[a] !== spurious.values[b] || candidates.values[a] !== candidates.values[b];
+}
+
 /** Scales and isolines after the values that are there, and the cells that differ from the next: cliffs. */
 function settleMap(map) {
   for (const field of map.fields) {
@@ -68,8 +74,7 @@ function settleMap(map) {
     scaleField(map, field, low, high, field.given ?? linearTicks(low, high, 12));
     field.step = field.name === "candidates" ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-2) / 60000));
   }
-  const [nx, ny] = LIVE_SHAPE, { status, spurious_first_jump: spurious, candidates, cliffs } = map.codes;
-  const differ = (a, b) => status.values[a] !== status.values[b] || spurious.values[a] !== spurious.values[b] || candidates.values[a] !== candidates.values[b];
+  const [nx, ny] = LIVE_SHAPE, { cliffs } = map.codes, differ = outcomesDiffer(map);
   for (let i = 0; i < nx; ++i)
     for (let j = 0; j < ny; ++j) {
       const k = i * ny + j;
@@ -81,7 +86,7 @@ function settleMap(map) {
 function liveEngine(map, module, workerText, onPicture) {
   const [nx, ny] = LIVE_SHAPE, level = new Uint8Array(nx * ny);
   const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
-  const now = { generation: 0, queue: [], left: [], edges: [], begun: 0, resting: 0, shown: 0, cost: 0, timing: {} }, workers = [];
+  const now = { generation: 0, queue: [], left: [], edges: {}, rushing: false, again: false, begun: 0, resting: 0, shown: 0, cost: 0, timing: {} }, workers = [];
   const count = Math.max(1, Math.min(16, navigator.hardwareConcurrency || 2));
 
   /** Keeps two jobs with a worker, so that it never waits for this thread to paint. */
@@ -102,21 +107,37 @@ function liveEngine(map, module, workerText, onPicture) {
     worker.postMessage({ ...order, places });
   }
 
-  /** The whole map is there: its cliffs are looked for. */
-  function beginCliffs() {
-    now.edges = cliffEdges(map);
-    const most = Math.min(map.slips ? 16 : 400, Math.max(1, Math.ceil(now.edges.length / count)));
-    now.left.push(Math.ceil(now.edges.length / most));
-    for (let first = 0; first < now.edges.length; first += most) now.queue.push({ stage: now.left.length - 1, edges: now.edges.slice(first, first + most) });
+  /** Looks for cliffs: of the first picture between its few designs, before anything else, and once the whole map is there between all. */
+  function beginCliffs(side) {
+    const edges = cliffEdges(map, side), most = Math.min(map.slips ? 16 : 400, Math.max(1, Math.ceil(edges.length / count))), jobs = [];
+    for (let first = 0; first < edges.length; first += most) jobs.push({ side, stage: now.left.length, edges: edges.slice(first, first + most) });
+    now.edges[side] = edges;
+    now.left.push(jobs.length);
+    now.queue = side > 1 ? [...jobs, ...now.queue] : jobs;
+    if (jobs.length === 0) endCliffs(side);
     feedAll();
   }
 
   function receiveCliffs(job, parts) {
     job.edges.forEach((edge, k) => { edge.part = parts[k]; });
-    if (--now.left[job.stage] > 0) return;
-    map.curves = cliffCurves(map, now.edges);
+    if (--now.left[job.stage] === 0) endCliffs(job.side);
+  }
+
+  function endCliffs(side) {
+    map.curves = cliffCurves(map, now.edges[side], side);
+    map.roughCurves = side > 1;
+    if (side > 1) { show("part"); now.rushing = false; if (now.again) begin(); return; }
     now.timing.crisp = performance.now() - now.begun;
     onPicture("cliffs");
+  }
+
+  function show(what) {
+    const begun = performance.now();
+    settleMap(map);
+    if (what === "whole") map.curves = [];  // those of the first picture are too rough for it
+    onPicture(what);
+    now.shown = performance.now();
+    now.cost = now.shown - begun;
   }
 
   function receive(worker, { data }) {
@@ -124,23 +145,17 @@ function liveEngine(map, module, workerText, onPicture) {
     if (data.ready) { worker.ready = true; feed(worker); return; }
     const job = worker.jobs.shift();
     feed(worker);
-    if (data.generation === now.generation && job.edges) {
-      receiveCliffs(job, data.rows);
-    } else if (data.generation === now.generation) {
-      putRows(map, data.rows, job.cells, job.side, level);
-      const last = --now.left[job.stage] === 0, coarse = last && job.stage === 0, whole = last && now.left.every((left) => left === 0), passed = performance.now() - now.begun;
-      if (coarse) now.timing = { coarse: passed };
-      if (whole) Object.assign(now.timing, { full: passed, designs: nx * ny });
-      // Pictures take longer than designs: of those between the first and the last no more than take a fifth of the time.
-      if (coarse || whole || performance.now() - now.shown > Math.max(250, 5 * now.cost)) {
-        const begun = performance.now();
-        settleMap(map);
-        onPicture(whole ? "whole" : "part");
-        now.shown = performance.now();
-        now.cost = now.shown - begun;
-      }
-      if (whole) now.resting = setTimeout(beginCliffs, REST);
-    }
+    if (data.generation !== now.generation) return;
+    if (job.edges) { receiveCliffs(job, data.rows); return; }
+    putRows(map, data.rows, job.cells, job.side, level);
+    const last = --now.left[job.stage] === 0, passed = performance.now() - now.begun;
+    if (last && job.stage === 0) { now.timing = { coarse: passed }; beginCliffs(COARSEST); return; }
+    if (now.rushing) return;  // the first picture has its cliffs
+    const whole = last && now.left.every((left) => left === 0);
+    if (whole) Object.assign(now.timing, { full: passed, designs: nx * ny });
+    // Pictures take longer than designs: of those between the first and the last no more than take a fifth of the time.
+    if (whole || performance.now() - now.shown > Math.max(250, 5 * now.cost)) show(whole ? "whole" : "part");
+    if (whole) now.resting = setTimeout(() => beginCliffs(1), REST);
   }
 
   for (let i = 0; i < count; ++i) {
@@ -152,13 +167,15 @@ function liveEngine(map, module, workerText, onPicture) {
     worker.postMessage({ module });
   }
 
-  /** Throws away what is under way and starts again, coarse first. */
+  /** Throws away what is under way and starts again, coarse first; but a first picture that is begun is shown first, however often a slider tells. */
   function begin() {
+    now.again = now.rushing;
+    if (now.rushing) return;
+    now.rushing = true;
     ++now.generation;
     clearTimeout(now.resting);
     now.queue = [];
     now.left = [];
-    map.curves = [];
     now.begun = performance.now();
     level.fill(255);
     for (let side = COARSEST, stage = 0; side >= 1; side /= 2, ++stage) {

@@ -1,18 +1,20 @@
 // Cliffs of a live map: where what becomes of a hoop changes between two neighbours, bisected and joined to curves.
 
-/** Pairs of neighbours with different outcomes: {key, i, j, along} each; along: 0 to the right, 1 up. */
-function cliffEdges(map) {
-  const [nx, ny] = LIVE_SHAPE, { values } = map.codes.cliffs, edges = [];
-  for (let i = 0; i < nx; ++i)
-    for (let j = 0; j < ny; ++j)
-      for (const along of [0, 1]) if (values[i * ny + j] >> along & 1) edges.push({ key: `${along}:${i},${j}`, i, j, along, part: 0.5 });
+/** Pairs of neighbours among every `side`-th design with different outcomes: {key, i, j, along} each; along: 0 to the right, 1 up. */
+function cliffEdges(map, side) {
+  const [nx, ny] = LIVE_SHAPE, differ = outcomesDiffer(map), edges = [];
+  for (let i = 0; i < nx; i += side)
+    for (let j = 0; j < ny; j += side) {
+      if (i + side < nx && differ(i * ny + j, (i + side) * ny + j)) edges.push({ key: `0:${i},${j}`, i, j, along: 0, side, part: 0.5 });
+      if (j + side < ny && differ(i * ny + j, i * ny + j + side)) edges.push({ key: `1:${i},${j}`, i, j, along: 1, side, part: 0.5 });
+    }
   return edges;
 }
 
 /** The ends of edges for the solver: [x, y, x, y] each. */
 function edgeEnds(map, edges) {
   const [x, y] = map.axes.map((axis) => axis.values), ends = new Float64Array(4 * edges.length);
-  edges.forEach(({ i, j, along }, k) => ends.set([x[i], y[j], x[along === 0 ? i + 1 : i], y[along === 1 ? j + 1 : j]], 4 * k));
+  edges.forEach(({ i, j, along, side }, k) => ends.set([x[i], y[j], x[along === 0 ? i + side : i], y[along === 1 ? j + side : j]], 4 * k));
   return ends;
 }
 
@@ -20,12 +22,12 @@ function edgeEnds(map, edges) {
  * Curves through edges whose `part` tells how far along the outcome changes: straight from edge to edge of the square between four designs,
  * or to the middle where more than two of its sides are cut. As the explorer writes curves.
  */
-function cliffCurves(map, edges) {
+function cliffCurves(map, edges, side) {
   const [nx, ny] = LIVE_SHAPE, cut = new Map(edges.map((edge) => [edge.key, edge])), segments = [];
-  const point = ({ key, i, j, along, part }) => ({ key, x: i + (along === 0 ? part : 0), y: j + (along === 1 ? part : 0) });
-  for (let i = 0; i + 1 < nx; ++i)
-    for (let j = 0; j + 1 < ny; ++j) {
-      const sides = [`0:${i},${j}`, `1:${i + 1},${j}`, `0:${i},${j + 1}`, `1:${i},${j}`].filter((key) => cut.has(key)).map((key) => point(cut.get(key)));
+  const point = ({ key, i, j, along, part }) => ({ key, x: i + (along === 0 ? part * side : 0), y: j + (along === 1 ? part * side : 0) });
+  for (let i = 0; i + side < nx; i += side)
+    for (let j = 0; j + side < ny; j += side) {
+      const sides = [`0:${i},${j}`, `1:${i + side},${j}`, `0:${i},${j + side}`, `1:${i},${j}`].filter((key) => cut.has(key)).map((key) => point(cut.get(key)));
       if (sides.length === 2) segments.push(sides);
       if (sides.length > 2) {
         const mean = (name) => sides.reduce((sum, side) => sum + side[name], 0) / sides.length, middle = { key: `m${i},${j}`, x: mean("x"), y: mean("y") };

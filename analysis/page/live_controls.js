@@ -26,13 +26,13 @@ function liveState(words, solver) {
 
 /** Writes it into the address. */
 function writeLive(words, map, defaults) {
-  const axisText = ({ name, from, to }) => `${name}:${Number(from.toPrecision(9))}:${Number(to.toPrecision(9))}`;
+  const axisText = ({ name, from, to }) => `${name}:${from}:${to}`;
   words.set("live", "");
   words.set("x", axisText(map.axes[0]));
   words.set("y", axisText(map.axes[1]));
   if (map.slips) words.set("friction", "coulomb");
   for (const [name, value] of Object.entries(map.fixed))
-    if (value !== defaults[name] && Number.isFinite(value) && !map.axes.some((axis) => axis.name === name)) words.set(name, String(Number(value.toPrecision(12))));
+    if (value !== defaults[name] && Number.isFinite(value) && !map.axes.some((axis) => axis.name === name)) words.set(name, String(value));
 }
 
 /** Builds the controls. changed(what): "map" if the map is another, "model" if the model is. Returns what the address wants of them. */
@@ -95,6 +95,7 @@ function liveControls(map, solver, changed) {
         const value = map.fixed[name];
         number.value = Number.isFinite(value) ? Number((value * factor(name)).toPrecision(6)) : "";
         slider.value = Number.isFinite(value) ? value : map.fixed.mu_static;
+        slider.setAttribute("aria-valuetext", withUnit(number.value || "as static friction", unit));
       };
       const take = (value) => {
         const [least, most] = solver.ranges[name], follows = name === "mu_kinetic" && number.value === "";
@@ -105,7 +106,8 @@ function liveControls(map, solver, changed) {
         map.fixed[name] = follows ? NaN : value;
         changed("map");
       };
-      slider.addEventListener("input", () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6)); take(Number(slider.value)); });
+      slider.addEventListener("input", () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6)); slider.setAttribute("aria-valuetext", withUnit(number.value, unit)); take(Number(slider.value)); });
+      stepsOf(number, (high - low) * factor(name));
       number.addEventListener("change", () => { take(number.value === "" ? NaN : Number(number.value) / factor(name)); if (number.getAttribute("aria-invalid") !== "true") show(); });
       show();
       row.append(words, slider, number);

@@ -13,7 +13,7 @@ function mapView(canvas, map, onPoint, onPick) {
   const view = { x: 0, y: 1, field: map.fields[0], index: shape.map((n) => Math.floor(n / 2)), picked: null };
   const status = map.codes.status, flags = map.codes.spurious_first_jump, cliffs = map.codes.cliffs;
   const background = document.createElement("canvas");  // all but the cursor
-  let sx, sy, frame, box, chains, pixels;
+  let sx, sy, frame, box, chains, isCrisp, pixels;
 
   const offset = (i, j) => {
     let at = i * strides[view.x] + j * strides[view.y];
@@ -40,6 +40,7 @@ function mapView(canvas, map, onPoint, onPick) {
     const x0 = Math.round(frame.left), y0 = Math.round(frame.top);
     box = { x0, y0, w: Math.round(frame.right) - x0, h: Math.round(frame.bottom) - y0 };
     chains = chainsHere();
+    isCrisp = chains !== undefined && !map.roughCurves;  // else cells are drawn as they are
     paintCells(context);
     if (!rough) paintIsolines(context);
     paintCliffs(context);
@@ -84,7 +85,7 @@ function mapView(canvas, map, onPoint, onPick) {
     const { x0, y0, w, h } = box, image = context.createImageData(w, h), data = new Uint32Array(image.data.buffer), { values } = view.field;
     const back = [1, 3, 5].map((at) => parseInt(tones.ground.slice(at, at + 2), 16));  // which what fails is dimmed towards
     const period = Math.round(9 * frame.ratio), line = Math.max(1, Math.round(frame.ratio * 0.8));
-    if (chains) {
+    if (isCrisp) {
       // Of hoops as made values are smooth across the cliffs of hoops as drawn.
       pixels = crispPlane(values, offset, sx, sy, box, view.field.made ? [] : chains.map((chain) => chain.places));
       for (let q = 0, pixel = 0; q < h; ++q)
@@ -113,7 +114,7 @@ function mapView(canvas, map, onPoint, onPick) {
 
   /** Isolines at a level, each [x, y, x, y, ...] in pixels: between designs, or, within curves, between every other pixel. */
   function linesAt(level) {
-    if (chains) {
+    if (isCrisp) {
       const step = 2, { x0, y0, w, h } = box, at = (i, j) => step * j * w + step * i;
       const near = (i, j) => pixels.torn[at(i, j)] | pixels.torn[at(i + 1, j)] | pixels.torn[at(i, j + 1)] | pixels.torn[at(i + 1, j + 1)];
       const centre = (first) => (i) => first + step * i + 0.5;
@@ -126,16 +127,16 @@ function mapView(canvas, map, onPoint, onPick) {
   }
 
   function paintIsolines(context) {
-    const { font } = frame, { levels, ink } = view.field;
+    const { font } = frame, { ink } = view.field;
     context.lineWidth = 1.1 * frame.ratio;
     context.strokeStyle = context.fillStyle = ink;
     context.font = `${0.85 * font}px system-ui, "DejaVu Sans", sans-serif`;
     context.textAlign = "center";
     context.textBaseline = "middle";
     const labels = [];  // where there is text already
-    for (const level of levels)
-      for (const chain of linesAt(level)) {
-        const text = short(level), room = context.measureText(text).width + 0.4 * font;
+    for (const { value, text } of shownLevels(view.field, map.fixed))
+      for (const chain of linesAt(value)) {
+        const room = context.measureText(text).width + 0.4 * font;
         let length = 0;
         for (let k = 2; k < chain.length; k += 2) length += Math.hypot(chain[k] - chain[k - 2], chain[k + 1] - chain[k - 1]);
         // A label in the middle of a line long enough for it, away from others.
@@ -202,18 +203,19 @@ function mapView(canvas, map, onPoint, onPick) {
       context.stroke();
       context.fillText(text, x + w + 0.3 * font, p);
     };
-    const marks = field.levels.length > 0 ? field.levels : linearTicks(field.low, field.high);
-    for (const level of [field.low, ...marks.filter((l) => l > field.low && l < field.high), field.high]) {
-      const p = placeOf(level);
-      if (last - p < 0.95 * font && level !== field.low) continue;
+    const [factor, unit] = shownIn(field.unit, map.fixed), told = (value, digits = 3) => ({ value, text: short(value * factor, digits) });
+    const marks = field.levels.length > 0 ? shownLevels(field, map.fixed) : linearTicks(field.low * factor, field.high * factor).map((v) => told(v / factor, 4));
+    for (const { value, text } of [told(field.low), ...marks.filter((m) => m.value > field.low && m.value < field.high), told(field.high)]) {
+      const p = placeOf(value);
+      if (last - p < 0.95 * font && value !== field.low) continue;
       if (jumpers.some(([, v]) => Math.abs(placeOf(v) - p) < 0.9 * font)) continue;
       last = p;
-      mark(level, (level === field.high && field.most > field.high ? "≥ " : "") + short(level, 3), tones.ink);
+      mark(value, (value === field.high && field.most > field.high ? "≥ " : "") + text, tones.ink);
     }
     const beyond = jumpers.filter(([, value]) => value > field.high);
-    for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${value}`, tones.mark);
+    for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${short(value * factor)}`, tones.mark);
     // What is beyond the map's own scale is told below it, and how colours go with values, where it is not evenly.
-    const notes = [...beyond.map(([name, value]) => `${name} ${value} ↑`), ...(field.log ? ["log scale"] : field.exponent !== 1 ? [`power ${field.exponent}`] : [])];
+    const notes = [...(unit ? [unit] : []), ...beyond.map(([name, value]) => `${name} ${short(value * factor)} ↑`), ...(field.log ? ["log scale"] : field.exponent !== 1 ? [`power ${field.exponent}`] : [])];
     context.fillStyle = tones.ink;
     notes.forEach((note, k) => context.fillText(note, x, bottom + (1 + k) * font));
   }
@@ -248,6 +250,30 @@ function mapView(canvas, map, onPoint, onPick) {
     context.stroke();
   }
 
+  /** Pinned designs with their numbers; faint where anything but the two axes drawn is another. */
+  function paintPins(context) {
+    const { font, ratio } = frame, drawn = [map.axes[view.x], map.axes[view.y]], unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1), here = { ...map.fixed };
+    map.axes.forEach((axis, k) => { if (k !== view.x && k !== view.y) here[axis.name] = axis.values[view.index[k]]; });
+    map.pins?.forEach((design, i) => {
+      const [x, y] = [sx, sy].map((scale, k) => scale.pixel(design[drawn[k].name] * unit(drawn[k])));
+      if (!(x >= frame.left && x <= frame.right && y >= frame.top && y <= frame.bottom)) return;
+      context.globalAlpha = Object.keys(here).every((name) => drawn.some((axis) => axis.name === name) || !(Math.abs(here[name] - design[name]) > 1e-9 * Math.abs(here[name]))) ? 1 : 0.45;
+      context.beginPath();
+      context.arc(x, y, 0.62 * font, 0, 2 * Math.PI);
+      context.fillStyle = PIN_COLOURS[i];
+      context.strokeStyle = "#ffffff";
+      context.lineWidth = 1.5 * ratio;
+      context.fill();
+      context.stroke();
+      context.fillStyle = PIN_INKS[i];
+      context.font = `bold ${0.85 * font}px system-ui, "DejaVu Sans", sans-serif`;
+      context.textAlign = "center";
+      context.textBaseline = "middle";
+      context.fillText(String(i + 1), x, y);
+      context.globalAlpha = 1;
+    });
+  }
+
   function paintCursor() {
     if (!frame) return;
     const context = canvas.getContext("2d"), { font, ratio } = frame;
@@ -270,6 +296,7 @@ function mapView(canvas, map, onPoint, onPick) {
     }
     cross(view.index, "#ffffff", 4);
     cross(view.index, "#000000", 1.6);
+    paintPins(context);
   }
 
   function pointAt(event) {

@@ -51,6 +51,10 @@ const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : ""
   parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1).map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");
 const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI : value);
 
+/** Quantities that only hoops that may slip have, or only those that never do. */
+const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
+const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name);
+
 /** Starts with a map that is solved as one looks. */
 function startLive(given, module, solver) {
   const map = liveMap(given, solver, liveState(addressWords(), solver));
@@ -64,7 +68,7 @@ function startLive(given, module, solver) {
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   });
-  const begin = map.refresh = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
+  const begin = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
   settleMap(map);
   const controls = liveControls(map, solver, (what) => {
     if (what === "model" && page) page.remodel();
@@ -94,15 +98,34 @@ function start(map, solver) {
     (map.fields.some((f) => f.name === "agility") ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "") + ".";
 
   let said = "", own = null, points = false;  // what the readout tells; the hoop beside, if it is none of the map's; whether one points at the map
+  /** Of every quantity but the one shown a row, whether there is a number or none, so that nothing below moves. */
+  const tellOthers = (textOf) => element("others").replaceChildren(...map.fields.filter((f) => f !== view.view.field && applies(map, f)).map((f) => {
+    const pair = document.createElement("div"), name = document.createElement("dt"), value = document.createElement("dd");
+    name.textContent = f.label.split(":")[0];
+    value.textContent = textOf(f) || "–";
+    pair.append(name, value);
+    return pair;
+  }));
+  /** For who listens: what is told, once it has stood for a while. */
+  let speaking = 0;
+  const speak = () => {
+    clearTimeout(speaking);
+    speaking = setTimeout(() => { element("spoken").textContent = `${element("place").textContent}. ${element("value").textContent}`; }, 600);
+  };
   const tellOwn = () => {
     const { outcome, title } = own, { field } = view.view, v = outcome[field.name];
     said = "";
     element("place").textContent = title;
     element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, map.fixed) : outcome.status.replaceAll("_", " ")}`;
-    element("others").replaceChildren();
+    tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name]) ? toldIn(outcome[f.name], f.unit, map.fixed) : ""));
+    speak();
     Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });
   };
-  const chosen = hopPanel(map, solver, (title, outcome) => { own = { title, outcome }; points = false; view.view.picked = null; view.paint(); tellOwn(); });
+  const chosen = hopPanel(map, solver, {
+    ofItsOwn(title, outcome) { own = { title, outcome }; points = false; view.view.picked = null; view.paint(); tellOwn(); },
+    otherUnits: () => tellUnits(),
+    pinned: () => view.paint(),
+  });
   let drawCuts = () => {}, filters = null;
   const told = (index) => {
     const at = view.offset(index), shown = view.view.field, key = `${index} ${shown.name}`;
@@ -117,13 +140,8 @@ function start(map, solver) {
       : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
     element("place").textContent = placeText(map, index);
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notes].filter((w) => w).join("; ");
-    element("others").replaceChildren(...map.fields.filter((f) => f !== shown && number(f)).map((f) => {
-      const pair = document.createElement("div"), name = document.createElement("dt"), value = document.createElement("dd");
-      name.textContent = f.label.split(":")[0];
-      value.textContent = alsoAs(f, f.values[at], map.fixed).slice(3) || text(f);
-      pair.append(name, value);
-      return pair;
-    }));
+    tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));
+    speak();
     const { dataset } = element("readout");
     dataset.index = index.join(",");
     dataset.value = number(shown);
@@ -148,8 +166,14 @@ function start(map, solver) {
   const fieldSelect = element("field"), selects = map.columns ? { x: element("x-axis") } : { x: element("x-axis"), y: element("y-axis") };
   element("y-axis").parentElement.hidden = Boolean(map.columns) || Boolean(map.live);
   element("x-axis").parentElement.hidden = Boolean(map.live);
-  map.fields.forEach((f, k) => option(fieldSelect, k, withUnit(f.label, f.unit ? `[${f.unit}]` : "")));
+  map.fields.forEach((f, k) => option(fieldSelect, k, fieldLabel(f, map.fixed)));
   fieldSelect.value = map.fields.indexOf(view.view.field);
+  /** Offers what the model has. */
+  const offerFields = () => {
+    map.fields.forEach((f, k) => { fieldSelect.options[k].hidden = fieldSelect.options[k].disabled = !applies(map, f); });
+    if (!applies(map, view.view.field)) { fieldSelect.value = 0; view.view.field = map.fields[0]; }
+  };
+  offerFields();
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
   const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
   const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); tellShown(); filters?.tell(); };
@@ -172,6 +196,7 @@ function start(map, solver) {
       arrange();
       view.paint();
       legend();
+      noteAddress();
     });
 
   /** A slider for every axis that is not on the screen. */
@@ -187,7 +212,7 @@ function start(map, solver) {
       slider.value = view.view.index[k];
       slider.dataset.axis = axis.name;
       const tell = () => { value.textContent = withUnit(short(inShownUnit(axis, axis.values[view.view.index[k]])), axis.unit); slider.setAttribute("aria-valuetext", value.textContent); };
-      slider.addEventListener("input", () => { view.view.index[k] = Number(slider.value); tell(); view.paint(); told(view.view.index); });
+      slider.addEventListener("input", () => { view.view.index[k] = Number(slider.value); tell(); view.paint(); told(view.view.index); noteAddress(); });
       tell();
       label.append(axis.label, slider, value);
       return [label];
@@ -235,17 +260,49 @@ function start(map, solver) {
   legend();
   told(view.view.index);
   const pictureName = () => `${map.name.replace(/\.[^.]*$/, "")}_${view.view.field.name}`;
-  element("map-png").addEventListener("click", () => savePicture(canvas, `${pictureName()}.png`));
-  element("map-svg").addEventListener("click", () => saveSvg(canvas, `${pictureName()}.svg`, (like) => view.paintOn(like.getContext("2d"))));
+  saveButtons("map", canvas, pictureName, (like) => view.paintOn(like.getContext("2d")));
   element("cuts").hidden = Boolean(map.columns);
   if (!map.columns) drawCuts = cutsPart(map, view);
   filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; view.pick(); });
   element("filters").hidden = Boolean(map.columns);
   if (filters) addressPart(filters);
-  addressPart(unitsPart(() => { said = ""; tellShown(); chosen.retell(); noteAddress(); }));
+  const tellUnits = () => {
+    said = "";
+    map.fields.forEach((f, k) => { fieldSelect.options[k].textContent = fieldLabel(f, map.fixed); });
+    view.paint();
+    filters?.tell();
+    drawCuts();
+    tellShown();
+    chosen.retell();
+    noteAddress();
+  };
+  addressPart(unitsPart(tellUnits));
   onTones(() => { view.paint(); drawCuts(); legend(); });
   // The design that the address asks for, unless it asks for a hoop of its own.
-  const home = [...view.view.index];
+  const home = [...view.view.index], homeAxes = [view.view.x, view.view.y];
+  if (!map.live) addressPart({
+    write(words) {
+      for (const [k, key] of ["right", "up"].entries())
+        if (key[0] === "r" ? view.view.x !== homeAxes[0] : !map.columns && view.view.y !== homeAxes[1]) words.set(key, choices[[view.view.x, view.view.y][k]].name);
+      if (!map.columns) map.axes.forEach((axis, k) => { if (k !== view.view.x && k !== view.view.y && view.view.index[k] !== home[k]) words.append("at", `${axis.name}:${view.view.index[k]}`); });
+    },
+    read(words) {
+      const [x, y] = ["right", "up"].map((key, k) => { const at = choices.findIndex(({ name }) => name === words.get(key)); return at < 0 ? homeAxes[k] : at; });
+      view.view.x = x;
+      if (!map.columns) {
+        view.view.y = x === y ? homeAxes[x === homeAxes[0] ? 1 : 0] : y;
+        view.view.index = [...home];
+        for (const [name, text] of words.getAll("at").map((word) => word.split(":"))) {
+          const k = map.axes.findIndex((axis) => axis.name === name);
+          if (k >= 0 && /^\d+$/.test(text) && Number(text) < map.axes[k].values.length) view.view.index[k] = Number(text);
+          else notice(`The address asks for a place that is not on this map: ${name}`);
+        }
+      }
+      arrange();
+      view.paint();
+      legend();
+    },
+  });
   addressPart({
     write() {},
     read(words) {
@@ -275,9 +332,9 @@ function start(map, solver) {
       tellShown();
     },
     /** The hoop shown, of the same place on another map. */
-    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true); },
+    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true); else chosen.resize(); },
     /** Another model: what is told of a hoop is another. */
-    remodel() { element("paper").hidden = map.slips; chosen.remodel(); legend(); },
+    remodel() { element("paper").hidden = map.slips; offerFields(); chosen.remodel(); legend(); },
   };
 }
 
@@ -309,6 +366,7 @@ function addressed(map, words) {
       throw new Error("this browser is too old; Chrome 97, Firefox 113 and Safari 16.4 are not");
     const module = await loadModule(element("module").textContent), solver = await solverOf(module), data = JSON.parse(element("data").textContent);
     const live = data.only_live || addressWords().has("live");
+    Object.assign(address, { live: Boolean(live), others: !data.only_live });
     tonesPart();
     const toggle = element("live-toggle");
     toggle.hidden = Boolean(data.only_live);

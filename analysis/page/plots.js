@@ -6,13 +6,28 @@ const PLOTS = [
                                 { column: "friction", tone: "slide", name: "friction, downhill", contact: true, dash: [6, 4] }] },
 ];
 
-/** Draws the plots; shown: {t, y, force}, each what SI, or weights, are multiplied by, and the unit; radius: of the hoop [m]. Returns the time at a place on the screen. */
-function drawPlots(canvas, motion, liftOffs, time, shown, radius) {
+/** A line over time, broken where there is no number and, of forces, in flight: a force ends with the contact. */
+function drawTrace(context, motion, values, contact, sx, sy) {
+  context.beginPath();
+  let drawing = false;
+  values.forEach((v, i) => {
+    if (!Number.isFinite(v) || (contact && motion.phase[i] === 3)) { drawing = false; return; }
+    if (drawing) context.lineTo(sx(motion.t[i]), sy(v)); else context.moveTo(sx(motion.t[i]), sy(v));
+    drawing = true;
+  });
+  context.stroke();
+}
+
+/**
+ * Draws the plots of a hoop's story, and of pinned ones, thin and in their colours, beside it: [{pin, story}]. end: the time axis's [s]; shown: {t, y, force}, each
+ * what SI, or weights, are multiplied by, and the unit; radius: of the hoop [m]. Returns the time at a place on the screen.
+ */
+function drawPlots(canvas, { motion, liftOffs }, pinned, time, end, shown, radius) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
   canvas.width = Math.max(1, Math.round(box.width * ratio));
   canvas.height = Math.max(1, Math.round(box.height * ratio));
   const context = canvas.getContext("2d"), font = 12 * ratio;
-  const left = 5 * font, right = canvas.width - font, end = motion.t[motion.t.length - 1] || 1;
+  const left = 5 * font, right = canvas.width - font;
   const sx = (t) => left + (right - left) * t / end;
   const height = (canvas.height - 2.8 * font) / PLOTS.length;
   context.clearRect(0, 0, canvas.width, canvas.height);
@@ -22,7 +37,8 @@ function drawPlots(canvas, motion, liftOffs, time, shown, radius) {
     const top = k * height + 0.6 * font, bottom = (k + 1) * height - 0.6 * font;
     const [factor, unit] = shown[plot.unit], scaled = plot.lines.map((line) => ({ ...line, values: motion[line.column].map((v) => v * factor) }));
     let low = 0, high = factor * (plot.unit === "y" ? 0.1 * radius : 1e-9);  // a tenth of R: what is less is nothing to look at
-    for (const line of scaled) for (const v of line.values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+    const beside = pinned.filter(({ story }) => story.motion.t.length > 0).map(({ pin, story }) => ({ pin, motion: story.motion, values: story.motion[plot.lines[0].column].map((v) => v * factor) }));
+    for (const line of [...scaled, ...beside]) for (const v of line.values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
     high += 0.05 * (high - low);
     const sy = (v) => bottom - (bottom - top) * (v - low) / (high - low);
     // Phases but rolling are shaded.
@@ -59,19 +75,16 @@ function drawPlots(canvas, motion, liftOffs, time, shown, radius) {
       context.stroke();
     }
     let legend = left + 0.6 * font;
+    context.lineWidth = 1.2 * ratio;
+    for (const { pin, motion: its, values } of beside) {
+      context.strokeStyle = PIN_COLOURS[pin];
+      drawTrace(context, its, values, plot.lines[0].contact, sx, sy);
+    }
     for (const line of scaled) {
-      context.beginPath();
       context.setLineDash((line.dash ?? []).map((d) => d * ratio));
       context.strokeStyle = context.fillStyle = tones[line.tone];
       context.lineWidth = 1.6 * ratio;
-      let drawing = false;
-      line.values.forEach((v, i) => {
-        // A force ends with the contact: no line through the lift-off.
-        if (!Number.isFinite(v) || (line.contact && motion.phase[i] === 3)) { drawing = false; return; }
-        if (drawing) context.lineTo(sx(motion.t[i]), sy(v)); else context.moveTo(sx(motion.t[i]), sy(v));
-        drawing = true;
-      });
-      context.stroke();
+      drawTrace(context, motion, line.values, line.contact, sx, sy);
       context.setLineDash([]);
       if (line.name) {
         context.textAlign = "left";

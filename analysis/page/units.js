@@ -1,6 +1,6 @@
 // Lengths, times and forces as people read them: in SI, or as pure numbers in radii, weights and √(R/g).
 
-const units = { pure: false };
+const units = { pure: false, mass: 0.0282 };  // kg, of hoop and point mass
 
 /** How measures of one hoop are told. design: with its radius and gravity; kg: of hoop and point mass. All are given in SI, forces in weights. */
 function measuresOf(design, kg) {
@@ -19,13 +19,31 @@ function measuresOf(design, kg) {
   };
 }
 
-/** A field's value in the units chosen, where those are not the field's own: "= 99 mm"; "" else. */
-function alsoAs(field, value, scene) {
-  const R = scene.radius, second = Math.sqrt(R / scene.gravity);
-  const rows = units.pure ? { s: [1 / second, "√(R/g)"], "m/s": [second / R, "√(g R)"] }
-    : { "hoop diameters": [2000 * R, "mm"], R: [1000 * R, "mm"], "√(g/R)": [1 / second, "rad/s"], rad: [180 / Math.PI, "°"] };
-  const row = rows[field.unit];
-  return row && value === value ? ` = ${withUnit(short(value * row[0]), row[1])}` : "";
+/** What values of a unit are shown in: [factor, unit], in SI or as pure numbers. scene: with the radius and gravity they belong to. */
+function shownIn(unit, { radius: R, gravity: g }) {
+  const second = Math.sqrt(R / g), rows = units.pure ? { s: [1 / second, "√(R/g)"], "m/s": [second / R, "√(g R)"] }
+    : { "hoop diameters": [2000 * R, "mm"], diameters: [2000 * R, "mm"], R: [1000 * R, "mm"], "√(g/R)": [1 / second, "rad/s"], rad: [180 / Math.PI, "°"], "(m + mₚ) g R": [1000 * units.mass * g * R, "mJ"] };
+  return rows[unit] ?? [1, unit];
+}
+
+/** A value in the units shown, with the unit. */
+function toldIn(value, unit, scene, digits = 4) {
+  const [factor, shown] = shownIn(unit, scene);
+  return withUnit(short(value * factor, digits), shown);
+}
+
+/** A field's value in the units shown, where those are not the field's own: " = 99 mm"; "" else. */
+const alsoAs = (field, value, scene) => (shownIn(field.unit, scene)[1] === field.unit || value !== value ? "" : ` = ${toldIn(value, field.unit, scene)}`);
+
+/** A field's name with the unit it is shown in. */
+const fieldLabel = (field, scene, label = field.label) => { const [, unit] = shownIn(field.unit, scene); return unit ? `${label} [${unit}]` : label; };
+
+/** A field's isolines, round numbers in the units shown: [{value, text}], value in the field's own. */
+function shownLevels(field, scene) {
+  const [factor] = shownIn(field.unit, scene), told = (value) => ({ value: value / factor, text: short(value) });
+  if (factor === 1 || field.levels.length === 0) return field.levels.map(told);
+  const [low, high] = [field.low * factor, field.high * factor];
+  return (field.log ? logTicks(low, high) : linearTicks(low, high, 12)).map(told);
 }
 
 /** The switch; changed(): everything is told anew. */

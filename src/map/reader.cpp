@@ -13,6 +13,7 @@
 #include "map/hdf5_virtual.hpp"
 #include "map/layout.hpp"
 #include "map/schema.hpp"
+#include "map/shard_name.hpp"
 #include "model/fields.hpp"
 
 namespace leapmap {
@@ -52,15 +53,6 @@ MapReader::Dimension read_dimension(hid_t dataset, const std::string& name) {
   check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, dimension.values.data()),
         "reading " + name);
   return dimension;
-}
-
-/// Whether a file's name says that it is that shard: MAP.3-of-16.h5 of "3/16".
-bool is_named(const std::string& file, const std::string& shard) {
-  const auto slash = shard.find('/');
-  if (slash == shard.npos) return false;
-  const std::string words = fmt::format(".{}-of-{}", shard.substr(0, slash), shard.substr(slash + 1));
-  const auto at = file.rfind(words);
-  return at != file.npos && (at + words.size() == file.size() || file[at + words.size()] == '.');
 }
 
 }  // namespace
@@ -146,8 +138,9 @@ void MapReader::check_shards() const {
     if (!std::filesystem::exists(path, ignored))
       throw BrokenFile(fmt::format("{}: its shard {} is not there; {}", path_, path, again));
     const MapReader shard(path, Locking::if_possible, Accept::shards_too);
+    const auto named = shard_by_name(shards_[k]);
     // Tiles of one status may have the sum of others: the name, the spec and the fields count as well.
-    if (!shard.shards_.empty() || !is_named(shards_[k], shard.attribute(shard_attribute)) ||
+    if (!shard.shards_.empty() || !named || text_of(*named) != shard.attribute(shard_attribute) ||
         shard.attribute("spec") != attribute("spec") || shard.fields_ != fields_ ||
         shard.shape() != shape() || !hdf5::has_attribute(shard.file_, tiles_checksum_attribute) ||
         hdf5::read_integers(shard.file_, tiles_checksum_attribute)[0] != told[k])

@@ -38,7 +38,7 @@ void Classify<T>::run(Block<T>& block, std::vector<SureFall<ScalarOf<T>>>& falls
     const Roll<T> roll = block.template load_path<T>(lanes.index.data());
     const CurvedSample<T> at_a = lift(roll, a), at_b = lift(roll, b);
     const T turn = lanes_from<T>(intervals, first, [](const Interval<S>& interval) { return interval.turn; });
-    const auto is_up = [&](Side Interval<S>::*side, const T& value) {
+    const auto is_up = [&](GapSign Interval<S>::*side, const T& value) {
       const T decided = lanes_from<T>(
           intervals, first, [&](const Interval<S>& interval) { return S(static_cast<int>(interval.*side)); });
       return (decided > T(0)) | ((decided == T(0)) & (value > T(0)));

@@ -17,7 +17,7 @@ namespace leapmap {
 
 /// An end of an interval at the release or at a node has a sign of G that was decided before; elsewhere it is
 /// asked.
-enum class Side : std::int8_t { below = -1, asked = 0, above = 1 };
+enum class GapSign : std::int8_t { below = -1, asked = 0, above = 1 };
 
 /// An interval that may hold a fall of G.
 template <class S>
@@ -25,7 +25,7 @@ struct Interval {
   std::uint32_t design;  ///< of the block
   S turn;                ///< the revolution it lies in
   S from, to;
-  Side from_side, to_side;
+  GapSign from_side, to_side;
 };
 
 /// An interval that surely holds one fall of G, and nothing else.
@@ -199,15 +199,15 @@ Next IntervalSearch<S>::next(std::uint32_t design, Interval<S>& look, SureFall<S
     const S length = part_lengths<S>[static_cast<std::size_t>(halvings)], at = place + S(part) * length;
     const S from = std::max(at * step, release), to = std::min((at + length) * step, end);
     if (from < to) {
-      const auto side = [&](bool is_above) { return is_above ? Side::above : Side::below; };
-      look = {design, revolution, from, to, Side::asked, Side::asked};
+      const auto side = [&](bool is_above) { return is_above ? GapSign::above : GapSign::below; };
+      look = {design, revolution, from, to, GapSign::asked, GapSign::asked};
       if (from == release) {
         look.from_side = side(released_above);
       } else if (from == left_node) {
         look.from_side = side(flags.above[t] >> node & 1u);
       }
       if (to == right_node) look.to_side = side(flags.above[t] >> (node + 1) & 1u);
-      if (ends_above && is_same_place(to, end)) look.to_side = Side::above;
+      if (ends_above && is_same_place(to, end)) look.to_side = GapSign::above;
       return Next::look;
     }
     if (from >= end) {

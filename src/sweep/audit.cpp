@@ -201,7 +201,8 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
   }
 }
 
-auto Auditor::verdict_of(const Judge& judge, const Design& design, const Outcome& ours) const -> Verdict {
+auto Auditor::verdict_of(const AuditSolver& judge, const Design& design, const Outcome& ours) const
+    -> Verdict {
   const Outcome theirs = solved(judge.solve, design);
   Verdict verdict;
   verdict.difference = difference(ours, theirs, spec_.output);

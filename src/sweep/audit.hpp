@@ -15,9 +15,9 @@
 #include "map/tile.hpp"
 #include "sweep/audit_gait.hpp"
 #include "sweep/audit_gradient.hpp"
-#include "sweep/audit_judge.hpp"
 #include "sweep/audit_report.hpp"
 #include "sweep/audit_sequence.hpp"
+#include "sweep/audit_solver.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/solver.hpp"
 #include "sweep/spec.hpp"
@@ -80,13 +80,13 @@ class Auditor {
 
     bool convicts() const { return !undecided && (wrong_flags || inaccurate); }
   };
-  Verdict verdict_of(const Judge& judge, const Design& design, const Outcome& ours) const;
+  Verdict verdict_of(const AuditSolver& judge, const Design& design, const Outcome& ours) const;
   Verdict verdict_among(const Outcome& ours, const std::vector<Outcome>& beside) const;
   bool exceeds(const AuditDifference& d, const AuditDifference& doubt, const Outcome& ours) const;
 
   const Spec& spec_;
   DesignSpace space_;
-  Judge second_, referee_;
+  AuditSolver second_, referee_;
   GradientAuditor gradients_;
   SequenceAuditor sequences_;
   GaitAuditor gaits_;

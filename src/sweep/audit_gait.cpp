@@ -10,7 +10,7 @@
 #include "gait/return_map.hpp"
 #include "gait/settle.hpp"
 #include "model/model.hpp"
-#include "sweep/audit_judge.hpp"
+#include "sweep/audit_solver.hpp"
 #include "trajectory/integration_options.hpp"
 
 namespace leapmap {

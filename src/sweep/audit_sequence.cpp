@@ -32,7 +32,7 @@ SequenceAuditor::SequenceAuditor(const Spec& spec, double allowed)
 }
 
 /// The second method, for so many jumps.
-Judge SequenceAuditor::second(std::size_t jumps) const {
+AuditSolver SequenceAuditor::second(std::size_t jumps) const {
   Scene scene = scene_;
   scene.jumps = static_cast<long>(jumps);
   const std::string method = audit_method(spec_.numerics);
@@ -54,7 +54,7 @@ double SequenceAuditor::error_of(const Outcome& ours, const Outcome& theirs, std
                   error("jump_time_", a.time, b.time, std::abs(b.time)));
 }
 
-std::size_t SequenceAuditor::sure_of(const Judge& judge, const Design& design, const Outcome& theirs,
+std::size_t SequenceAuditor::sure_of(const AuditSolver& judge, const Design& design, const Outcome& theirs,
                                      std::span<const double> growth) const {
   std::size_t sure = theirs.jumps() + 1;
   for (const Outcome& beside : outcomes_beside(judge, design, spec_, true)) {
@@ -77,7 +77,7 @@ void SequenceAuditor::look_at(std::size_t number, const Design& design, const Ou
   const std::size_t told = whole ? std::min(made + 1, static_cast<std::size_t>(scene_.jumps)) : growth.size();
   std::size_t compared = 1;
   if (told > 1) {
-    const Judge judge = second(told);
+    const AuditSolver judge = second(told);
     const Outcome theirs = solved(judge.solve, design);
     if (theirs.status != Status::jumped) return;  // which is told of the first jump
     const std::size_t mine = std::min(made, told), both = std::min(mine, theirs.jumps());

@@ -9,7 +9,7 @@
 #include "gait/error_growth.hpp"
 #include "leapmap/audit.hpp"
 #include "leapmap/spec.hpp"
-#include "sweep/audit_judge.hpp"
+#include "sweep/audit_solver.hpp"
 
 namespace leapmap {
 
@@ -28,9 +28,9 @@ class SequenceAuditor {
   double error_of(const Outcome& ours, const Outcome& theirs, std::size_t jump, bool stored_only) const;
   /// How many of its jumps the second method is sure of, to errors that have grown as told; one more if also
   /// of how they end.
-  std::size_t sure_of(const Judge& judge, const Design& design, const Outcome& theirs,
+  std::size_t sure_of(const AuditSolver& judge, const Design& design, const Outcome& theirs,
                       std::span<const double> growth) const;
-  Judge second(std::size_t jumps) const;
+  AuditSolver second(std::size_t jumps) const;
 
   const Spec& spec_;
   Scene scene_;

@@ -120,6 +120,7 @@ void check_sample(Check& check) {
     if (samples.size() >= most_samples_held) look_at_samples();
   }
   look_at_samples();
+  check.bytes.rethrow_failure();
   const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
       check.find(fmt::format("design {}: {}; see it by: {}", told_design(check.spec, *design), what,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "map/schema.hpp"
+#include "map/shard_name.hpp"
 #include "map/writer.hpp"
 #include "support/printable.hpp"
 #include "sweep/audit.hpp"
@@ -46,7 +47,8 @@ std::set<std::size_t> totals_beside(const std::string& map) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::string name = entry->path().filename().string();
     if (name.ends_with(".part")) name.resize(name.size() - 5);
-    if (const auto shard = shard_by_name(path.filename().string(), name)) totals.insert(shard->of);
+    const auto shard = shard_by_name(name);
+    if (shard && name == shard_path(path.filename().string(), *shard)) totals.insert(shard->of);
   }
   if (error) throw IoError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
   return totals;

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <numeric>
 #include <queue>
@@ -67,49 +65,6 @@ std::vector<Sampled> sample_tiles(const Spec& spec, const Tiling& tiling, std::s
 }
 
 }  // namespace
-
-namespace {
-
-/// Two whole numbers I and N, 1 <= I <= N, with something between them.
-std::optional<Shard> shard_in(std::string_view text, std::string_view between) {
-  Shard shard{0, 0};
-  const auto middle = text.find(between);
-  const auto number = [&](std::string_view digits, std::size_t& into) {
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), into);
-    return error == std::errc() && end == digits.data() + digits.size();
-  };
-  if (middle == text.npos || !number(text.substr(0, middle), shard.number) ||
-      !number(text.substr(middle + between.size()), shard.of) || shard.number < 1 ||
-      shard.number > shard.of || shard.of > most_shards)
-    return std::nullopt;
-  return shard;
-}
-
-}  // namespace
-
-Shard parse_shard(std::string_view text) {
-  if (const auto shard = shard_in(text, "/")) return *shard;
-  throw InputError(fmt::format(
-      "--shard {}: is no part of a whole; allowed: I/N with I from 1 to N, N at most {}", text, most_shards));
-}
-
-std::optional<Shard> shard_by_name(const std::string& map, const std::string& name) {
-  const std::filesystem::path path(map);
-  const std::string begin = path.stem().string() + ".", end = path.extension().string();
-  if (!name.starts_with(begin) || !name.ends_with(end) || name.size() <= begin.size() + end.size())
-    return std::nullopt;
-  return shard_in(std::string_view(name).substr(begin.size(), name.size() - begin.size() - end.size()),
-                  "-of-");
-}
-
-std::string text_of(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.of); }
-
-std::string shard_path(const std::string& map, const Shard& shard) {
-  const std::filesystem::path path(map);
-  return (path.parent_path() / fmt::format("{}.{}-of-{}{}", path.stem().string(), shard.number, shard.of,
-                                           path.extension().string()))
-      .string();
-}
 
 std::vector<double> tile_efforts(const Spec& spec, const Tiling& tiling, std::size_t shards, int threads) {
   const double samples =

@@ -7,29 +7,15 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "leapmap/sweep.hpp"
 #include "map/hdf5.hpp"
+#include "map/shard_name.hpp"
 #include "map/tile.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap {
-
-inline constexpr std::size_t most_shards = 10'000;
-
-/// From "3/16". Throws InputError.
-Shard parse_shard(std::string_view text);
-std::string text_of(const Shard& shard);
-
-/// The file of a shard, beside the map that it is part of: MAP.3-of-16.h5 of MAP.h5.
-std::string shard_path(const std::string& map, const Shard& shard);
-
-/// Which shard of a map a file says to be by its name alone; nothing: none of it. Both without folders.
-std::optional<Shard> shard_by_name(const std::string& map, const std::string& name);
 
 /// What each tile takes, all of them together the whole map's work, as it is told for so many shards.
 std::vector<double> tile_efforts(const Spec& spec, const Tiling& tiling, std::size_t shards, int threads = 0);

@@ -58,6 +58,7 @@ inline GradientSolver in_sequence(GradientSolver first, JumpSolver<double> jumps
     sequences->solve(designs, scene, outcomes);
     std::size_t last = 1;
     for (const OutcomeNumber& wanted : gradients.wanted().of) last = std::max(last, wanted.jump);
+    if (last == 1) return;  // `first` has put all that is asked for
     for (std::size_t i = 0; i < designs.size(); ++i) {
       ContactState<DesignDual> at = dual_release(designs[i]);
       for (std::size_t jump = 1; jump <= std::min(last, outcomes[i].jumps()); ++jump) {

@@ -134,6 +134,13 @@ TEST(Shards, AreNamedAndRead) {
   EXPECT_EQ(text_of(shard), "3/16");
   for (const char* wrong : {"", "3", "/", "0/2", "3/2", "1/", "/2", "1/2/3", "1.5/2", " 1/2", "1/99999999"})
     EXPECT_THROW(parse_shard(wrong), InputError) << wrong;
+  for (const std::string map : {"a.h5", "a.b.h5", "a", "a.1-of-2.h5"}) {
+    const std::optional<Shard> named = shard_by_name(shard_path(map, shard));
+    ASSERT_TRUE(named) << map;
+    EXPECT_EQ(text_of(*named), "3/16") << map;
+  }
+  for (const char* none : {"", "a.h5", "a.3-of.h5", "3-of-16", "a.17-of-16.h5", "a.3-of-16.h5.part"})
+    EXPECT_FALSE(shard_by_name(none)) << none;
 }
 
 TEST(Tiling, APartHasSomeOfTheTilesInTheirPlaces) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sweep/audit_judge.hpp"
+#include "sweep/audit_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ Outcome solved(const Solver& solve, const Design& design) {
   return outcome;
 }
 
-std::vector<Outcome> outcomes_beside(const Judge& judge, const Design& design, const Spec& spec,
+std::vector<Outcome> outcomes_beside(const AuditSolver& judge, const Design& design, const Spec& spec,
                                      bool farther) {
   std::vector<Design> designs = beside(design, spec, 0.0);
   if (farther) std::ranges::copy(beside(design, spec, audit_reach), std::back_inserter(designs));

@@ -17,7 +17,7 @@ inline constexpr double audit_tolerance = 1e-13, coarser_tolerance = 1e-12;
 inline constexpr double audited_growth = 1e5;
 
 /// A method at a fine tolerance, and at a coarser one.
-struct Judge {
+struct AuditSolver {
   Solver solve, coarser;
 };
 
@@ -27,7 +27,7 @@ Outcome solved(const Solver& solve, const Design& design);
 /// What a judge itself makes of the design with one unit in the last place of each input changed, and at a
 /// coarser tolerance; with `farther` also with the inputs changed by as much as its own error, by which it
 /// may see a flag flip. The solver under audit has no say in it.
-std::vector<Outcome> outcomes_beside(const Judge& judge, const Design& design, const Spec& spec,
+std::vector<Outcome> outcomes_beside(const AuditSolver& judge, const Design& design, const Spec& spec,
                                      bool farther);
 
 }  // namespace leapmap
