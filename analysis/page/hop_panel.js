@@ -11,7 +11,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
   // source: where the design is from, "design" of the map, "paper" or "hoop" as typed, and which.
-  const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null, recording: false };
+  const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null, recording: false, haunting: 0 };
   const chosen = { radius: map.fixed.radius, mass: PAPER_MASS / 1000, jumps: map.jumps };  // m; kg
   units.mass = chosen.mass;
   radius.value = 1000 * chosen.radius;
@@ -26,9 +26,9 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
   });
   const showInputs = hoopInputs(map, solver, (design) => typed(design)), showGradient = gradientPart(map, solver);
 
-  const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "), () => { if (now.story) { haunt(); draw(); } pinned(); noteAddress(); });
+  const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "), () => { if (now.story) haunt(); pinned(); noteAddress(); });
   element("pin").addEventListener("click", () => { if (now.story) pins.pin(now.design); });
-  element("pins-along").addEventListener("change", () => { if (now.story) { haunt(); draw(); } });
+  element("pins-along").addEventListener("change", () => { if (now.story) haunt(); });
 
   const GHOSTS = 20, ghosts = element("ghosts");
   const width = element("ghosts-width");
@@ -101,6 +101,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     design.radius = chosen.radius;
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.story = solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps);
+    scrub.max = end();
     haunt();
     showGaits(design);
     showInputs(design);
@@ -110,19 +111,30 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     draw();
   }
 
-  /** Makes hoops after the design shown, if they are asked for, and says how many of them jump. */
-  function haunt() {
-    now.ghosts = !ghosts.checked ? [] : madeAfter(now.design, scatterOf(), solver.ranges, GHOSTS)
-      .map((design) => ({ design, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) }));
-    const outcomes = now.ghosts.map(({ story }) => story.outcome);
-    if (element("pins-along").checked)
-      for (const [i, design] of pins.designs().entries()) now.ghosts.push({ design, pin: i, story: solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps) });
+  /** Solves the hoops that jump along: those pinned, and as made, of which it says how many jump. A slice at a time, as friction takes its time. */
+  async function haunt() {
+    const mine = ++now.haunting, made = ghosts.checked ? madeAfter(now.design, scatterOf(), solver.ranges, GHOSTS) : [];
+    const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin })) : []), ...made.map((design) => ({ design }))], found = [];
+    now.ghosts = [];
+    element("ghosts-told").textContent = made.length > 0 ? ": solving" : "";
+    let begun = performance.now();
+    for (const each of wanted) {
+      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, chosen.jumps) }); } catch (error) { notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
+      if (performance.now() - begun < SLICE) continue;
+      await new Promise((go) => { setTimeout(go); });
+      if (mine !== now.haunting) return;  // others are wanted by now
+      begun = performance.now();
+    }
+    now.ghosts = found;
+    const outcomes = found.filter(({ pin }) => pin === undefined).map(({ story }) => story.outcome);
     const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, map.goals, solver.codes)).length;
-    element("ghosts-told").textContent = outcomes.length === 0 ? "" : `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
+    if (outcomes.length > 0) element("ghosts-told").textContent = `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
     scrub.max = end();
+    now.time = Math.min(now.time, end());
+    draw();
   }
   for (const input of [ghosts, width])
-    input.addEventListener("change", () => { if (now.story && width.checkValidity()) { haunt(); now.time = Math.min(now.time, end()); draw(); } });
+    input.addEventListener("change", () => { if (now.story && width.checkValidity()) haunt(); });
 
   play.addEventListener("click", () => run(!now.playing));
   const frame = (way) => stopAt(now.time + way * Number(element("speed").value) / 30);

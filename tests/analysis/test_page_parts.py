@@ -5,6 +5,7 @@ import hashlib
 import io
 import math
 import os
+import shlex
 import tarfile
 import urllib.request
 import xml.etree.ElementTree as ElementTree
@@ -67,17 +68,27 @@ def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, 
     random, jumped, turned = np.random.default_rng(23), 0, 0
     for _ in range(count):
         design = {"slope": random.uniform(0.05, 0.85), "mass_ratio": random.uniform(0.2, 15), "offset_ratio": random.uniform(0.1, 1), "inertia_factor": random.uniform(0.5, 1),
-                  "release_angle": random.uniform(0, 2 * math.pi), "release_spin": random.choice([0, random.uniform(-2, 3)]), "drive_torque": random.choice([0, random.uniform(0, 0.2)])}
+                  "release_angle": random.uniform(0, 2 * math.pi), "release_spin": random.choice([0, random.uniform(-2, 3)]), "drive_torque": random.choice([0, random.uniform(0, 0.2)]),
+                  "runway": random.uniform(2, 9), "hop_height": random.uniform(0, 0.1), "gravity": random.uniform(1.5, 25)}
         if friction:
-            design |= {"mu_static": random.uniform(0.1, 1.2), "mu_kinetic": random.uniform(0.05, 0.1), "restitution": random.uniform(0, 0.6)}
+            design |= {"mu_static": random.uniform(0.1, 1.2), "mu_kinetic": random.uniform(0.05, 0.1), "restitution": random.uniform(0, 0.6), "rest_speed": random.uniform(1e-4, 0.05)}
         page.execute_script("""for (const [name, text] of Object.entries(arguments[0])) {
             const input = document.querySelector(`#hoop-inputs input[data-parameter=${name}]`); input.value = text; input.dispatchEvent(new Event('change')); }""",
                             {name: repr(math.degrees(v) if name in ANGLES else float(v)) for name, v in design.items()})
         assert page.find_element("id", "message").text == ""
         told = told_by_leapmap(page)
+        settings = {name: float(word) for name, _, word in (setting.partition("=") for setting in shlex.split(page.find_element("id", "command").text)) if name in design}
         for name, value in design.items():
+            if name in settings:
+                assert settings[name] == pytest.approx(value, rel=1e-14)
+                continue
             assert told["design"][name] == pytest.approx(value, rel=1e-14, abs=1e-300), name
         assert agrees(numbers(page), told) >= (9 if told["status"] == "jumped" else 1)
+        if told["status"] == "jumped":  # what is read is that number, in SI
+            text = page.execute_script("return [...document.querySelectorAll('#numbers tr')].filter((r) => r.dataset.name.match(/^jump_(height|time)$/)).map((r) => r.cells[1].textContent)")
+            diameter = 2 * told["design"]["radius"] if "radius" in told["design"] else 0.082
+            scale = 1000 if text[0].split()[1] == "mm" else 1
+            assert float(text[0].split()[0]) == pytest.approx(scale * diameter * told["jump_height"], rel=1e-3) and float(text[1].split()[0]) == pytest.approx(told["jump_time"], rel=1e-3)
         jumped += told["status"] == "jumped"
         turned += design["release_spin"] < 0
     assert jumped >= 0.4 * count and turned >= count // 20
@@ -153,15 +164,21 @@ def test_a_link_is_all_that_was_found(page, html):
     give(page, "#jumps", "3")
     give(page, "#mass", "31")
     Select(page.find_element("id", "units")).select_by_value("pure")
+    Select(page.find_element("id", "speed")).select_by_value("0.1")
+    page.find_element("id", "follow").click()
+    page.find_element("id", "forces").click()
+    give(page, "#scrub", "0.31", "input")
 
     def seen():
         return page.execute_script("""return { goals: document.getElementById('goals-told').textContent, field: window.explorer.view.view.field.name, units: document.getElementById('units').value,
             pins: document.getElementById('pins-csv').dataset.text, commands: document.getElementById('pins-commands').textContent, command: document.getElementById('command').textContent,
-            numbers: document.getElementById('numbers').textContent, mass: document.getElementById('mass').value, title: document.getElementById('hop-title').textContent }""")
-    WebDriverWait(page, 5).until(lambda b: "units=pure" in b.execute_script("return location.hash"))
+            numbers: document.getElementById('numbers').textContent, mass: document.getElementById('mass').value, title: document.getElementById('hop-title').textContent,
+            clock: document.getElementById('clock').textContent, ways: ['speed', 'follow', 'forces'].map((id) => { const e = document.getElementById(id); return e.type === 'checkbox' ? e.checked : e.value; }) }""")
+    WebDriverWait(page, 5).until(lambda b: "time=0.31" in b.execute_script("return location.hash"))
     before, address = seen(), page.execute_script("return location.hash")
     assert before["field"] == "agility" and "of 30,000" in before["goals"] and before["commands"].count("leapmap hop") == 2 and "--jumps 3" in before["command"] and "√(R/g)" in before["numbers"]
     at(page, html, address)
+    assert before["ways"] == ["0.1", True, False]
     assert seen() == before
     assert page.execute_script("return location.hash") == address
 
@@ -204,10 +221,10 @@ def test_forces_are_drawn_at_the_contact_and_may_be_left_out(page):
 def test_hoops_as_made_jump_along_on_a_live_map(page):
     show(page, [87, 29])
     page.find_element("id", "ghosts").click()
-    told = page.find_element("id", "ghosts-told").text
-    assert "of 20 jump" in told
+    told = lambda words: WebDriverWait(page, 10).until(lambda b: words in b.find_element("id", "ghosts-told").text)
+    told("of 20 jump")
     give(page, "#ghosts-width", "20")
-    assert "of 20 jump" in page.find_element("id", "ghosts-told").text
+    told("of 20 jump")
     page.find_element("id", "ghosts").click()
     assert page.find_element("id", "ghosts-told").text == ""
 
@@ -220,10 +237,10 @@ def saved(page, button):
     return page.execute_async_script("const done = arguments[arguments.length - 1]; window.offered.text().then(done)")
 
 
-@pytest.mark.parametrize(("button", "words", "images"), [("map-svg", ["slope [degrees]", "mass ratio", "power 0.6"], 1), ("plots-svg", ["height [mm]", "force [N]", "time since release [s]"], 0),
-                                                         ("cut-x-svg", ["slope [degrees]"], 0)])
+@pytest.mark.parametrize(("button", "words", "images"), [("map-svg", ["slope [degrees]", "mass ratio", "mm", "power 0.6"], 1), ("plots-svg", ["height [mm]", "force [N]", "time since release [s]"], 0),
+                                                         ("cut-x-svg", ["slope [degrees]", "jump height [mm]"], 0), ("gaits-svg", ["jump height [mm]", "slope [°]"], 1)])
 def test_charts_are_saved_as_svg_with_texts_that_are_texts(button, words, images, page):
-    page.execute_script("document.getElementById('cuts').open = true")
+    page.execute_script("for (const id of ['cuts', 'gaits']) document.getElementById(id).open = true")
     WebDriverWait(page, 10).until(lambda b: b.find_element("id", "cut-x").get_attribute("data-values"))
     root = ElementTree.fromstring(saved(page, button))
     named = lambda kind: root.findall(f".//{{http://www.w3.org/2000/svg}}{kind}")
@@ -233,6 +250,52 @@ def test_charts_are_saved_as_svg_with_texts_that_are_texts(button, words, images
         assert any(word in text for text in texts), word
 
 
+def test_units_are_switched_wherever_numbers_stand(page):
+    """Fields, goals, pins, derivatives and the colour bar: SI at first, then pure numbers, of the same values."""
+    show(page, [87, 29])
+    page.execute_script("document.getElementById('filters').open = document.getElementById('gradient').open = true")
+    page.find_element("id", "goal-add").click()
+    give(page, "#goals input", "41", "input")
+    page.find_element("id", "pin").click()
+
+    def seen():
+        return page.execute_script("""return [document.getElementById('field').selectedOptions[0].textContent, document.querySelector('#goals option').textContent, document.querySelector('#goals input').value,
+            [...document.querySelectorAll('#pins-table tr')].find((r) => r.cells[0].textContent === 'jump height').cells[1].textContent, document.querySelector('#gradient-table th:nth-child(2)').textContent,
+            document.getElementById('goals-told').textContent]""")
+    field, option, goal, pin, gradient, left = seen()
+    assert field == option == "jump height [mm]" and goal == "41" and pin.endswith(" mm") and gradient == "jump height [mm]"
+    assert "mm" in saved(page, "map-svg")
+    Select(page.find_element("id", "units")).select_by_value("pure")
+    pure = seen()
+    assert pure[0] == pure[1] == "jump height [hoop diameters]" and pure[2] == "0.5" and pure[4] == "jump height [diameters]" and pure[5] == left
+    assert float(pure[3].split()[0]) == pytest.approx(float(pin.split()[0]) / 82, rel=1e-4)
+    assert ">mm<" not in saved(page, "map-svg")
+
+
+def test_a_file_s_map_has_its_axes_and_slices_in_the_address_and_goes_back_from_live(browser, tmp_path):
+    path = sweep(tmp_path, "[design]\nslope = { from = 0.1, to = 0.7, count = 9 }\nmass_ratio = { from = 0.5, to = 10, count = 8 }\noffset_ratio = { values = [0.7, 0.9, 1.0] }\n")
+    done = finished("/usr/bin/python3", TOP / "analysis/explorer", path, "--module", BUILD / "leapmap.wasm", "-o", tmp_path / "map.html")
+    assert done.returncode == 0, done.stderr
+    browser.get("about:blank")
+    opened(browser, tmp_path / "map.html")
+    give(browser, "#x-axis", "1")
+    give(browser, "#sliders input", "0", "input")
+    state = "return [window.explorer.view.view.x, window.explorer.view.view.y, window.explorer.view.view.index[2], location.hash]"
+    WebDriverWait(browser, 5).until(lambda b: "at=offset_ratio:0" in b.execute_script(state)[3])
+    before = browser.execute_script(state)
+    assert before[:3] == [1, 0, 0]
+    browser.get("about:blank")
+    opened_at = (tmp_path / "map.html").as_uri() + before[3]
+    browser.get(opened_at)
+    WebDriverWait(browser, 20).until(lambda b: b.execute_script("return !!window.explorer"))
+    assert browser.execute_script(state) == before
+    browser.find_element("id", "live-toggle").click()
+    settled(browser)
+    browser.execute_script("history.back()")
+    WebDriverWait(browser, 20).until(lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
+    assert browser.execute_script(state) == before
+
+
 def test_a_picture_is_saved_as_png(page):
     page.find_element("id", "map-png").click()
     WebDriverWait(page, 10).until(lambda b: int(b.execute_script("return document.body.dataset.bytes ?? 0")) > 10000)
@@ -240,7 +303,7 @@ def test_a_picture_is_saved_as_png(page):
 
 def test_nothing_moves_when_numbers_change(page):
     """Controls stay where they are, whatever design is pointed at and while the hoop moves."""
-    places = lambda: page.execute_script("""return ['field', 'map', 'map-png', 'play', 'scrub', 'step-on', 'speed', 'film', 'radius'].map((id) => {
+    places = lambda: page.execute_script("""return ['field', 'map', 'map-png', 'filters', 'play', 'scrub', 'step-on', 'speed', 'film', 'mass', 'copy', 'command'].map((id) => {
         const { left, top } = document.getElementById(id).getBoundingClientRect(); return [left + scrollX, top + scrollY]; })""")
     show(page, [87, 29])
     before = places()
@@ -250,6 +313,11 @@ def test_nothing_moves_when_numbers_change(page):
     for part in (0, 0.3, 1):
         page.execute_script("const s = document.getElementById('scrub'); s.value = arguments[0] * s.max; s.dispatchEvent(new Event('input'))", part)
         assert places() == before
+    page.find_element("id", "copy").click()
+    WebDriverWait(page, 5).until(lambda b: b.find_element("id", "copy").text != "copy")
+    assert places() == before
+    give(page, "#hoop-inputs input[data-parameter=offset_ratio]", "1.5")
+    assert page.find_element("id", "message").text != "" and places() == before
 
 
 @pytest.fixture(scope="module")
