@@ -1,12 +1,12 @@
 // What the views of a map share: colours, a frame with ticks, names with units, and how designs are pointed at.
 
-/** The canvas at the screen's own resolution and the frame in it, or null while it is not shown. */
-function fitted(canvas, right) {
+/** The canvas at the screen's own resolution and the frame in it, or null while it is not shown; right, above: what is free there [of the font's size]. */
+function fitted(canvas, right, above = 0.8) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect(), font = 13 * ratio;
   if (!(box.width > 0)) return null;
   canvas.width = Math.round(box.width * ratio);
   canvas.height = Math.round(box.height * ratio);
-  return { left: 4.6 * font, top: 0.8 * font, right: canvas.width - right * font, bottom: canvas.height - 3.4 * font, font, ratio };
+  return { left: 4.6 * font, top: above * font, right: canvas.width - right * font, bottom: canvas.height - 3.4 * font, font, ratio };
 }
 
 /**

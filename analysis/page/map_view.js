@@ -23,7 +23,7 @@ function mapView(canvas, map, onPoint, onPick) {
 
   /** Everything but the cursor, at the screen's own resolution. rough: without isolines, of a map that is about to be another. */
   function paint(rough = false) {
-    const fresh = fitted(canvas, 7);
+    const fresh = fitted(canvas, 7, 2);
     if (!fresh) return;
     frame = fresh;
     background.width = canvas.width;
@@ -46,6 +46,7 @@ function mapView(canvas, map, onPoint, onPick) {
     paintCliffs(context);
     paintAxes(context, frame, sx, sy, labelOf(map.axes[view.x]), labelOf(map.axes[view.y]));
     paintBar(context);
+    paintTitle(context);
     paintPaper(context);
   }
 
@@ -218,6 +219,21 @@ function mapView(canvas, map, onPoint, onPick) {
     const notes = [...(unit ? [unit] : []), ...beyond.map(([name, value]) => `${name} ${short(value * factor)} ↑`), ...(field.log ? ["log scale"] : field.exponent !== 1 ? [`power ${field.exponent}`] : [])];
     context.fillStyle = tones.ink;
     notes.forEach((note, k) => context.fillText(note, x, bottom + (1 + k) * font));
+  }
+
+  /** What is drawn, of which hoops: a picture that is saved says it itself. */
+  function paintTitle(context) {
+    const { left, top, right, font } = frame, drawn = [map.axes[view.x].name, map.axes[view.y].name];
+    const values = { ...map.fixed, ...Object.fromEntries(map.axes.map((axis, k) => [axis.name, axis.values[view.index[k]]])) };
+    const told = Object.entries(map.parameters).filter(([name]) => !drawn.includes(name) && Number.isFinite(values[name]) && (map.slips || !SLIPPING.includes(name)) && !NO_LIVE_AXIS.includes(name))
+      .map(([name, row]) => `${row.symbol} ${withUnit(short(inShownUnit(row, values[name])), row.unit)}`);
+    const text = `${fieldLabel(view.field, map.fixed)}: ${[...told, map.slips ? "may slip" : "never slips"].join(", ")}`, size = (part) => `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
+    context.fillStyle = tones.ink;
+    context.textAlign = "left";
+    context.textBaseline = "alphabetic";
+    context.font = size(0.85);
+    context.font = size(Math.max(0.5, Math.min(0.85, 0.85 * (right + 6 * font - left) / context.measureText(text).width)));
+    context.fillText(text, left, top - 0.6 * font);
   }
 
   /** Where the paper's hoop is on the screen, or null. */
