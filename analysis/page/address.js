@@ -19,7 +19,7 @@ function noteAddress() {
   const words = new URLSearchParams();
   for (const part of address.parts) part.write(words);
   const hash = [...words].map(([key, value]) => (value === "" ? key : `${key}=${encodeURIComponent(value).replaceAll("%3A", ":").replaceAll("%2C", ",")}`)).join("&");
-  if (`#${hash}` === location.hash) return;
+  if (`#${hash}` === location.hash) { address.steps = Math.max(address.at + 1, address.steps); return; }
   address.last = performance.now();
   if (address.steps > 0 && passed > ADDRESS_PAUSE) {
     ++address.at;
@@ -44,6 +44,7 @@ function showSteps() {
 
 /** Undo and redo: buttons, keys and the browser's own. */
 function addressButtons() {
+  address.at = history.state?.step ?? 0;
   window.addEventListener("popstate", (event) => {
     if (address.others && addressWords().has("live") !== address.live) { location.reload(); return; }  // the other of the two pages
     address.at = event.state?.step ?? 0;

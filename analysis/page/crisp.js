@@ -44,16 +44,21 @@ function crispPlane(values, offset, sx, sy, { x0, y0, w, h }, chains) {
       cells.get(key).push(segment);
     }
   const value = new Float64Array(w * h), design = new Int32Array(w * h), torn = new Uint8Array(w * h);
-  const right = Math.min(1, sx.n - 1), below = Math.min(1, sy.n - 1), shares = [0, 0, 0, 0], at = [0, 0, 0, 0];
+  const right = Math.min(1, sx.n - 1), below = Math.min(1, sy.n - 1), shares = [0, 0, 0, 0], at = [0, 0, 0, 0], corners = [0, 0, 0, 0];
   for (let q = 0; q < h; ++q) {
     const j = v.before[q], fv = v.share[q], y = y0 + q + 0.5;
+    let cell = -1, segments;
     for (let p = 0; p < w; ++p) {
       const i = u.before[p], fu = u.share[p], x = x0 + p + 0.5, pixel = q * w + p;
-      for (let k = 0; k < 4; ++k) {
-        at[k] = offset(i + (k & 1) * right, j + (k >> 1) * below);
-        shares[k] = (k & 1 ? fu : 1 - fu) * (k >> 1 ? fv : 1 - fv);
+      if (i !== cell) {
+        cell = i;
+        segments = cells.get(j * sx.n + i);
+        for (let k = 0; k < 4; ++k) {
+          at[k] = offset(i + (k & 1) * right, j + (k >> 1) * below);
+          corners[k] = values[at[k]];
+        }
       }
-      const segments = cells.get(j * sx.n + i);
+      for (let k = 0; k < 4; ++k) shares[k] = (k & 1 ? fu : 1 - fu) * (k >> 1 ? fv : 1 - fv);
       if (segments !== undefined) {
         for (let k = 0; k < 4; ++k) {
           const cx = sx.centre(i + (k & 1) * right), cy = sy.centre(j + (k >> 1) * below);
@@ -65,11 +70,11 @@ function crispPlane(values, offset, sx, sy, { x0, y0, w, h }, chains) {
       let most = 0, total = 0, sum = 0;
       for (let k = 0; k < 4; ++k) {
         if (shares[k] > shares[most]) most = k;
-        const corner = values[at[k]];
+        const corner = corners[k];
         if (corner === corner && shares[k] > 0) { total += shares[k]; sum += shares[k] * corner; }
       }
       design[pixel] = at[most];
-      value[pixel] = values[at[most]] === values[at[most]] ? sum / total : NaN;
+      value[pixel] = corners[most] === corners[most] ? sum / total : NaN;
     }
   }
   return { value, design, torn };

@@ -61,6 +61,7 @@ function filtersPart(map, view, changed, best) {
     away.setAttribute("aria-label", "remove this goal");
     select.addEventListener("change", () => { goal.field = map.fields[select.value]; update(); });
     sign.addEventListener("change", () => { goal.sign = sign.value; update(); });
+    stepsOf(number, () => factor() * (goal.field.high - goal.field.low || 1));
     number.addEventListener("input", () => { if (number.value !== "") { goal.bound = Number(number.value) / factor(); update(); } });
     away.addEventListener("click", () => { goals.splice(goals.indexOf(goal), 1); item.remove(); update(); });
     item.append(select, sign, number, away);

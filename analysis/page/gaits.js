@@ -132,7 +132,10 @@ function gaitsPart(map, solver, choose) {
   }
 
   over.addEventListener("change", () => { setBounds(); begin(); });
-  for (const input of Object.values(inputs)) input.addEventListener("change", begin);
+  for (const input of Object.values(inputs)) {
+    input.addEventListener("change", begin);
+    stepsOf(input, () => (OVER[over.value][1] - OVER[over.value][0]) * factor());
+  }
   part.addEventListener("toggle", begin);
   canvas.addEventListener("click", (event) => {
     const { box, left, right } = frame(), [from, to] = bounds();
@@ -151,7 +154,7 @@ function gaitsPart(map, solver, choose) {
   onTones(() => { if (part.open && now.heights.length > 0) draw(); });
 
   /** What the picture is of, but for the one parameter: nothing is computed anew if that alone is another. */
-  const keyOf = (design) => JSON.stringify(Object.entries(design).filter(([name]) => name !== over.value && name !== "radius"));
+  const keyOf = (design) => JSON.stringify([map.slips, ...Object.entries(design).filter(([name]) => name !== over.value && name !== "radius")]);
   return (design) => {
     const same = now.design && keyOf(design) === keyOf(now.design);
     now.design = { ...design };

@@ -1,14 +1,14 @@
 // The hoop shown, number by number: each of its parameters to type, and what a little more of each would do.
 
-/** Lets arrow keys change a number by a round hundredth or so of what it is moved between, where any number may be typed. */
+/** Lets arrow keys change a number by a round hundredth or so of its span(), where any number may be typed. */
 function stepsOf(input, span) {
-  const step = 10 ** Math.floor(Math.log10(span / 50));
   input.addEventListener("keydown", (event) => {
     const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (!way || input.value === "") return;
     event.preventDefault();
+    const step = 10 ** Math.floor(Math.log10(span() / 50));
     input.value = Number((Number(input.value) + way * step * (event.shiftKey ? 10 : 1)).toPrecision(12));
-    input.dispatchEvent(new Event("change"));
+    for (const kind of ["input", "change"]) input.dispatchEvent(new Event(kind));
   });
 }
 
@@ -36,7 +36,7 @@ function hoopInputs(map, solver, changed) {
         if (good && now.design) changed({ ...now.design, [name]: value });
       });
       const [low, high] = LIVE_RANGES[name] ?? [0, 1];
-      stepsOf(input, (high - low) * factor(name));
+      stepsOf(input, () => (high - low) * factor(name));
       inputs.set(name, input);
       row.append(words, input);
       return row;

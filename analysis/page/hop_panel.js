@@ -3,7 +3,7 @@
 const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20 g
 
 /**
- * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome):
+ * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome, design):
  * a hoop is shown that is none of the map's designs; otherUnits(): everything is to be told anew; pinned(): other designs are.
  */
 function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
@@ -75,10 +75,9 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     play.textContent = now.playing ? "❚❚ pause" : "▶ play";
     cancelAnimationFrame(now.frame);
     if (now.playing) now.frame = requestAnimationFrame(tick);
-    else noteAddress();
   }
 
-  const stopAt = (time) => { now.time = Math.min(Math.max(0, time), end()); run(false); draw(); };
+  const stopAt = (time) => { now.time = Math.min(Math.max(0, time), end()); run(false); draw(); noteAddress(); };
 
   function tell() {
     table.replaceChildren(...numberRows(now.story, now.design, chosen, map.slips));
@@ -91,6 +90,12 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
   }
   const commandPieces = (design) => hopCommand(design, map, solver.defaults, chosen.jumps);
 
+  /** Of a hoop that is none of the map's, what the map's readout tells. */
+  function tellOwn() {
+    const { design, story: { outcome } } = now;
+    ofItsOwn(element("hop-title").textContent, { ...outcome, agility: 2 * design.radius * outcome.jump_height / (outcome.jump_time + outcome.apex_time) }, design);
+  }
+
   /** Solves the design anew, its motion from the start. */
   function solve() {
     try { solved(); } catch (error) { now.story = null; notice(`This hoop cannot be shown: ${error.message ?? error}`); }
@@ -101,6 +106,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     design.radius = chosen.radius;
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.story = solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps);
+    if (now.source[0] !== "design") tellOwn();
     scrub.max = end();
     haunt();
     showGaits(design);
@@ -119,7 +125,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     element("ghosts-told").textContent = made.length > 0 ? ": solving" : "";
     let begun = performance.now();
     for (const each of wanted) {
-      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, chosen.jumps) }); } catch (error) { notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
+      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, chosen.jumps) }); } catch (error) { element("ghosts-told").textContent = ""; notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
       if (performance.now() - begun < SLICE) continue;
       await new Promise((go) => { setTimeout(go); });
       if (mine !== now.haunting) return;  // others are wanted by now
@@ -136,7 +142,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
   for (const input of [ghosts, width])
     input.addEventListener("change", () => { if (now.story && width.checkValidity()) haunt(); });
 
-  play.addEventListener("click", () => run(!now.playing));
+  play.addEventListener("click", () => { run(!now.playing); noteAddress(); });
   const frame = (way) => stopAt(now.time + way * Number(element("speed").value) / 30);
   element("step-back").addEventListener("click", () => frame(-1));
   element("step-on").addEventListener("click", () => frame(1));
@@ -159,7 +165,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
   });
   scrub.addEventListener("input", () => stopAt(Number(scrub.value)));
   for (const id of ["follow", "forces"]) element(id).addEventListener("change", draw);
-  saveButtons("plots", plots, () => "hoop_forces", plotOn);
+  saveButtons("plots", plots, () => "hoop_forces", (canvas) => { if (now.story) plotOn(canvas); });
   onTones(() => { if (now.story) draw(); });
   /** Takes a number above zero; says so if it is none, and what is shown stays as it was. */
   const choose = (input, name, then) => input.addEventListener("change", () => {
@@ -172,6 +178,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     if (now.story) then();
     noteAddress();
   });
+  for (const input of [radius, mass]) stepsOf(input, () => Number(input.value) || 1);
   choose(radius, "radius", solve);
   jumps.addEventListener("change", () => {
     const good = jumps.value !== "" && jumps.checkValidity();
@@ -210,19 +217,15 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     solve();
     if (stopped && now.story) stopAt(time);
     else run(!still && now.story !== null);
-    if (source[0] !== "design" && now.story) ofItsOwn(title, { ...now.story.outcome, agility: 2 * design.radius * now.story.outcome.jump_height / (now.story.outcome.jump_time + now.story.outcome.apex_time) });
     noteAddress();
   };
   /** A hoop of numbers that were typed, of which only those that differ from the map's go into the address. */
-  const typed = (design, title = "One hoop: as typed") => {
-    const numbers = Object.keys(map.parameters).filter((name) => name in solver.defaults && Number.isFinite(design[name]));
-    begin(design, title, ["hoop", numbers.map((name) => `${name}:${design[name]}`).join(",")]);
-  };
+  const typed = (design, title = "One hoop: as typed") => begin(design, title, ["hoop", wordsOf(design, Object.keys(map.parameters).filter((name) => name in solver.defaults && name !== "radius" && (map.slips || !SLIPPING.includes(name))))]);
   const PAPERS = "One hoop: the paper's, from rest with its mass on top";
   // In a model that slips it is a hoop of numbers: the paper's has no friction to name.
-  const paper = () => (map.slips ? typed({ ...map.fixed, ...map.paper }, PAPERS) : begin({ ...map.fixed, ...map.paper }, PAPERS, ["paper", ""]));
+  const paper = (goesOn = false) => (map.slips ? typed({ ...map.fixed, ...map.paper }, PAPERS) : begin({ ...map.fixed, ...map.paper }, PAPERS, ["paper", ""], goesOn));
   element("paper").hidden = map.slips;
-  element("paper").addEventListener("click", paper);
+  element("paper").addEventListener("click", () => paper());
   const show = (index, byHand, goesOn = false) => {
     // On a phone the hoop is further down.
     const part = element("hop-part");
@@ -234,7 +237,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
       const [key, value] = now.source;
       if (key) words.set(key, value);
       for (const [name, input, fallback] of [["jumps", jumps, map.jumps], ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]])
-        if (Number(input.value) !== fallback) words.set(name === "radius" ? "hoop_radius" : name, input.value);
+        if (Number(input.value) !== fallback && !(name === "radius" && map.live)) words.set(name === "radius" ? "hoop_radius" : name, input.value);
       for (const [name, input, fallback] of ways) if (input.type === "checkbox" ? input.checked !== fallback : input.value !== fallback) words.set(name, input.type === "checkbox" ? Number(input.checked) : input.value);
       if (now.story && !now.playing && now.time > 0 && now.time < end()) words.set("time", Number(now.time.toPrecision(6)));
       pins.write(words);
@@ -250,6 +253,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
         const word = words.get(name);
         if (input.type === "checkbox") input.checked = word === null ? fallback : word === "1";
         else input.value = word !== null && (input.tagName !== "SELECT" || [...input.options].some(({ value }) => value === word)) ? word : fallback;
+        if (input.value === "" || !input.checkValidity()) input.value = fallback;
       }
       pins.read(words);
       pinned();
@@ -266,12 +270,22 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     const title = element("hop-title").textContent;
     title === PAPERS ? paper() : typed(now.design, title);
   };
-  return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", resize: () => { if (now.design && now.design.radius !== map.fixed.radius) solve(); } };
+  /** The scene is another: the paper's hoop is in it, one of numbers has its own but for the radius. */
+  const follow = () => {
+    const { source, design } = now;
+    if (source[0] === "paper" && NO_LIVE_AXIS.some((name) => design[name] !== map.fixed[name])) paper(true);
+    else if (source[0] === "hoop" && design.radius !== map.fixed.radius) begin(design, element("hop-title").textContent, source, true);
+  };
+  return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", follow };
 }
 
-/** A design from name:value,name:value, as an address has it; null if any of it is none. */
+/** Numbers of a design as an address has them, name:value,name:value; kinetic friction that follows the static has none. */
+const wordsOf = (design, names) => names.filter((name) => name === "mu_kinetic" || Number.isFinite(design[name])).map((name) => `${name}:${Number.isFinite(design[name]) ? design[name] : "static"}`).join(",");
+
+/** And back; null if any of it is none. */
 function designOf(text, ranges) {
-  if (!text) return null;
-  const pairs = text.split(",").map((word) => word.split(":")), good = ([name, value]) => name in ranges && value !== "" && Number(value) >= ranges[name][0] && Number(value) <= ranges[name][1];
-  return pairs.every(good) ? Object.fromEntries(pairs.map(([name, value]) => [name, Number(value)])) : null;
+  if (text === null) return null;
+  const pairs = text === "" ? [] : text.split(",").map((word) => word.split(":")), follows = ([name, value]) => name === "mu_kinetic" && value === "static";
+  const good = ([name, value]) => name in ranges && value !== "" && Number(value) >= ranges[name][0] && Number(value) <= ranges[name][1];
+  return pairs.every((pair) => follows(pair) || good(pair)) ? Object.fromEntries(pairs.map((pair) => [pair[0], follows(pair) ? NaN : Number(pair[1])])) : null;
 }

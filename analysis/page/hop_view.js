@@ -21,12 +21,12 @@ function valueAt(motion, name, time) {
 }
 
 /** Hoops beside the one drawn at a time, each on its own slope, drawn along this one: as made, faint, and pinned ones in their colours, numbered. */
-function drawGhosts(context, ghosts, time, turned, px, scale, R) {
-  context.globalAlpha = 0.3;
-  context.lineWidth = Math.max(1, 0.03 * R * scale);
+function drawGhosts(context, ghosts, time, turned, px, scale) {
   for (const { design, story, pin } of ghosts) {
     if (story.motion.t.length === 0) continue;
+    const R = design.radius;
     context.globalAlpha = pin === undefined ? 0.3 : 0.9;
+    context.lineWidth = Math.max(1, 0.03 * R * scale);
     const [x, y, phi] = ["x", "y", "phi"].map((name) => valueAt(story.motion, name, time)), L = design.offset_ratio * R;
     context.strokeStyle = pin === undefined ? tones[(PHASES[story.motion.phase[sampleAt(story.motion, time).low]] ?? PHASES[1])[1]] : PIN_COLOURS[pin];
     context.beginPath();
@@ -142,7 +142,7 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = f
     context.stroke();
   }
   context.globalAlpha = 1;
-  drawGhosts(context, ghosts, time, turned, px, scale, R);
+  drawGhosts(context, ghosts, time, turned, px, scale);
   const phase = PHASES[motion.phase[low]] ?? PHASES[1];
   context.beginPath();
   context.arc(...px([cu, cv]), R * scale, 0, 2 * Math.PI);
@@ -165,19 +165,19 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = f
   if (forces) drawForces(context, design, motion, time, turned, px, scale);
 
   // A ruler of a round length, and what the hoop does.
-  const length = niceLength((right - left) / 5), font = 13 * ratio;
+  const unit = units.pure ? R : 1, length = niceLength((right - left) / 5 / unit), font = 13 * ratio;
   context.font = `${font}px system-ui, "DejaVu Sans", sans-serif`;
   context.fillStyle = context.strokeStyle = tones.ink;
   context.lineWidth = 2 * ratio;
   const ruler = [0.8 * font, canvas.height - 1.0 * font];
   context.beginPath();
   context.moveTo(ruler[0], ruler[1]);
-  context.lineTo(ruler[0] + length * scale, ruler[1]);
+  context.lineTo(ruler[0] + length * unit * scale, ruler[1]);
   context.stroke();
-  context.fillText(length >= 1 ? `${length} m` : length >= 0.01 ? `${short(100 * length)} cm` : `${short(1000 * length)} mm`, ruler[0], ruler[1] - 0.5 * font);
+  context.fillText(units.pure ? `${length} R` : length >= 1 ? `${length} m` : length >= 0.01 ? `${short(100 * length)} cm` : `${short(1000 * length)} mm`, ruler[0], ruler[1] - 0.5 * font);
   context.textAlign = "right";
   context.fillStyle = tones[phase[1]];
-  context.fillText(`${phase[0]}${y > 0 ? `, ${short(1000 * y, 3)} mm above the plane` : ""}`, canvas.width - 0.8 * font, 1.5 * font);
+  context.fillText(`${phase[0]}${y > 0 ? `, ${units.pure ? `${short(y / R, 3)} R` : `${short(1000 * y, 3)} mm`} above the plane` : ""}`, canvas.width - 0.8 * font, 1.5 * font);
   context.textAlign = "left";
 }
 

@@ -1,14 +1,43 @@
 // Isolines by marching squares over the centres of cells.
 
+const BLOCK = 16;  // squares a side
+
+/** A plane's values at(i, j), with the least and the largest of each block of squares, by which isolines pass over most of it. */
+function planeOf(at, nx, ny) {
+  const values = new Float64Array(nx * ny), across = Math.ceil((nx - 1) / BLOCK), up = Math.ceil((ny - 1) / BLOCK);
+  const low = new Float64Array(across * up).fill(Infinity), high = new Float64Array(across * up).fill(-Infinity);
+  const blocks = (i, count) => [Math.max(0, Math.floor((i - 1) / BLOCK)), Math.min(count - 1, Math.floor(i / BLOCK))];  // a corner may be of two
+  for (let j = 0; j < ny; ++j)
+    for (let i = 0; i < nx; ++i) {
+      const v = values[j * nx + i] = at(i, j);
+      if (v !== v) continue;
+      const [left, right] = blocks(i, across), [below, above] = blocks(j, up);
+      for (let q = below; q <= above; ++q)
+        for (let p = left; p <= right; ++p) {
+          const block = q * across + p;
+          if (v < low[block]) low[block] = v;
+          if (v > high[block]) high[block] = v;
+        }
+    }
+  return { values, nx, ny, across, low, high };
+}
+
 /**
- * Chains of points, [x, y, x, y, ...], where plane(i, j) equals level. Squares with a missing corner, and those that
+ * Chains of points, [x, y, x, y, ...], where a plane equals level. Squares with a missing corner, and those that
  * `torn(i, j)` says a cliff runs through, have none.
  */
-function isolines(plane, nx, ny, level, px, py, torn) {
+function isolines(plane, level, px, py, torn) {
   const segments = [];
-  for (let j = 0; j + 1 < ny; ++j)
-    for (let i = 0; i + 1 < nx; ++i) {
-      const a = plane(i, j) - level, b = plane(i + 1, j) - level, c = plane(i + 1, j + 1) - level, d = plane(i, j + 1) - level;
+  for (let block = 0; block < plane.low.length; ++block)
+    if (plane.low[block] <= level && level <= plane.high[block]) blockLines(plane, block, level, px, py, torn, segments);
+  return chained(segments);
+}
+
+function blockLines({ values, nx, ny, across }, block, level, px, py, torn, segments) {
+  const i0 = BLOCK * (block % across), j0 = BLOCK * Math.floor(block / across);
+  for (let j = j0; j < Math.min(ny - 1, j0 + BLOCK); ++j)
+    for (let i = i0; i < Math.min(nx - 1, i0 + BLOCK); ++i) {
+      const at = j * nx + i, a = values[at] - level, b = values[at + 1] - level, c = values[at + nx + 1] - level, d = values[at + nx] - level;
       if (!(a - a + b - b + c - c + d - d === 0) || torn(i, j)) continue;
       if (a > 0 === b > 0 && b > 0 === c > 0 && c > 0 === d > 0) continue;
       const sides = [];  // crossings in order around the square: bottom, right, top, left
@@ -27,7 +56,6 @@ function isolines(plane, nx, ny, level, px, py, torn) {
         segments.push(together ? [sides[0], sides[1]] : [sides[0], sides[3]], together ? [sides[2], sides[3]] : [sides[1], sides[2]]);
       }
     }
-  return chained(segments);
 }
 
 function chained(segments) {

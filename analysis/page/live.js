@@ -71,7 +71,7 @@ function settleMap(map) {
     let low = Infinity, high = -Infinity;
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
     if (!(low <= high)) [low, high] = [0, 1];
-    scaleField(map, field, low, high, field.given ?? linearTicks(low, high, 12));
+    scaleField(field, low, high, field.given ?? linearTicks(low, high, 12));
     field.step = field.name === "candidates" ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-2) / 60000));
   }
   const [nx, ny] = LIVE_SHAPE, { cliffs } = map.codes, differ = outcomesDiffer(map);
@@ -99,11 +99,15 @@ function liveEngine(map, module, workerText, onPicture) {
   }
 
   function send(worker, job) {
-    const [x, y] = map.axes, order = { generation: now.generation, design: map.fixed, slips: map.slips, tolerance: map.tolerance, first: x.name, second: y.name };
+    const { order, values: [xs, ys] } = now;
     worker.jobs.push(job);
-    if (job.edges) { worker.postMessage({ ...order, ends: edgeEnds(map, job.edges), codes: OUTCOME_CODES }); return; }
+    if (job.edges) {
+      const steps = job.side > 1 ? 3 : 7;  // to a cell, and to a hundredth of one
+      worker.postMessage({ ...order, ends: edgeEnds(xs, ys, job.edges), codes: OUTCOME_CODES, steps });
+      return;
+    }
     const places = new Float64Array(2 * job.cells.length);
-    job.cells.forEach((k, i) => { places[2 * i] = x.values[Math.floor(k / ny)]; places[2 * i + 1] = y.values[k % ny]; });
+    job.cells.forEach((k, i) => { places[2 * i] = xs[Math.floor(k / ny)]; places[2 * i + 1] = ys[k % ny]; });
     worker.postMessage({ ...order, places });
   }
 
@@ -126,7 +130,12 @@ function liveEngine(map, module, workerText, onPicture) {
   function endCliffs(side) {
     map.curves = cliffCurves(map, now.edges[side], side);
     map.roughCurves = side > 1;
-    if (side > 1) { show("part"); now.rushing = false; if (now.again) begin(); return; }
+    if (side > 1) {
+      now.rushing = false;
+      if (now.again || !now.left.every((left) => left === 0)) show("part"); else goOn();
+      if (now.again) begin();
+      return;
+    }
     now.timing.crisp = performance.now() - now.begun;
     onPicture("cliffs");
   }
@@ -141,18 +150,25 @@ function liveEngine(map, module, workerText, onPicture) {
   }
 
   function receive(worker, { data }) {
-    if (data.error) { complain(data.error); return; }
     if (data.ready) { worker.ready = true; feed(worker); return; }
     const job = worker.jobs.shift();
     feed(worker);
+    if (data.error) {
+      complain(data.error);
+      if (data.generation === now.generation) now.rushing = false;
+      return;
+    }
     if (data.generation !== now.generation) return;
     if (job.edges) { receiveCliffs(job, data.rows); return; }
     putRows(map, data.rows, job.cells, job.side, level);
-    const last = --now.left[job.stage] === 0, passed = performance.now() - now.begun;
-    if (last && job.stage === 0) { now.timing = { coarse: passed }; beginCliffs(COARSEST); return; }
-    if (now.rushing) return;  // the first picture has its cliffs
-    const whole = last && now.left.every((left) => left === 0);
-    if (whole) Object.assign(now.timing, { full: passed, designs: nx * ny });
+    const last = --now.left[job.stage] === 0;
+    if (last && job.stage === 0) { now.timing = { coarse: performance.now() - now.begun }; beginCliffs(COARSEST); } else if (!now.rushing) goOn();  // the first picture has its cliffs
+  }
+
+  /** More designs are there. */
+  function goOn() {
+    const whole = now.left.every((left) => left === 0);
+    if (whole) Object.assign(now.timing, { full: performance.now() - now.begun, designs: nx * ny });
     // Pictures take longer than designs: of those between the first and the last no more than take a fifth of the time.
     if (whole || performance.now() - now.shown > Math.max(250, 5 * now.cost)) show(whole ? "whole" : "part");
     if (whole) now.resting = setTimeout(() => beginCliffs(1), REST);
@@ -172,7 +188,9 @@ function liveEngine(map, module, workerText, onPicture) {
     now.again = now.rushing;
     if (now.rushing) return;
     now.rushing = true;
-    ++now.generation;
+    // One picture is of one set of numbers, whatever is turned meanwhile.
+    now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, first: map.axes[0].name, second: map.axes[1].name };
+    now.values = map.axes.map((axis) => axis.values);
     clearTimeout(now.resting);
     now.queue = [];
     now.left = [];

@@ -11,9 +11,9 @@ function cliffEdges(map, side) {
   return edges;
 }
 
-/** The ends of edges for the solver: [x, y, x, y] each. */
-function edgeEnds(map, edges) {
-  const [x, y] = map.axes.map((axis) => axis.values), ends = new Float64Array(4 * edges.length);
+/** The ends of edges for the solver: [x, y, x, y] each. x, y: the values along the axes. */
+function edgeEnds(x, y, edges) {
+  const ends = new Float64Array(4 * edges.length);
   edges.forEach(({ i, j, along, side }, k) => ends.set([x[i], y[j], x[along === 0 ? i + side : i], y[along === 1 ? j + side : j]], 4 * k));
   return ends;
 }

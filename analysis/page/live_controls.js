@@ -75,7 +75,10 @@ function liveControls(map, solver, changed) {
       showSliders();
       changed("map");
     });
-    for (const input of [inputs.from, inputs.to]) input.addEventListener("change", () => takeAxes(k));
+    for (const input of [inputs.from, inputs.to]) {
+      input.addEventListener("change", () => takeAxes(k));
+      stepsOf(input, () => { const name = inputs.name.value, [low, high] = LIVE_RANGES[name]; return (high - low) * factor(name); });
+    }
   });
 
   function showSliders() {
@@ -107,7 +110,7 @@ function liveControls(map, solver, changed) {
         changed("map");
       };
       slider.addEventListener("input", () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6)); slider.setAttribute("aria-valuetext", withUnit(number.value, unit)); take(Number(slider.value)); });
-      stepsOf(number, (high - low) * factor(name));
+      stepsOf(number, () => (high - low) * factor(name));
       number.addEventListener("change", () => { take(number.value === "" ? NaN : Number(number.value) / factor(name)); if (number.getAttribute("aria-invalid") !== "true") show(); });
       show();
       row.append(words, slider, number);

@@ -1,5 +1,10 @@
 // The map as an image: cells, hatching, isolines, cliffs, axes, and a cursor on the design pointed at.
 
+/** What a scene is told by. */
+const SCENE_WORDS = {
+  radius: (v) => `R ${v} m`, gravity: (v) => `g ${v} m/s²`, runway: (v) => `runway of ${v} turns`, hop_height: (v) => `jumps from ${v} diameters on`, rest_speed: (v) => `rebounds from ${v} √(g R) on`,
+};
+
 /** Of the lines of cliffs, by what happens there. */
 const DASHES = { fold: [4, 2], runway: [1, 2], turn: [5, 2, 1, 2], release: [1, 1], phase: [3, 1, 1, 1], unresolved: [1, 2] };
 
@@ -48,6 +53,7 @@ function mapView(canvas, map, onPoint, onPick) {
     paintBar(context);
     paintTitle(context);
     paintPaper(context);
+    paintPins(context);
   }
 
   /** The curves of the plane drawn, as pixels; undefined where its axes are not those that cliffs were looked for along. */
@@ -113,18 +119,20 @@ function mapView(canvas, map, onPoint, onPick) {
     context.putImageData(image, x0, y0);
   }
 
-  /** Isolines at a level, each [x, y, x, y, ...] in pixels: between designs, or, within curves, between every other pixel. */
-  function linesAt(level) {
+  /** Isolines: at(level), each [x, y, x, y, ...] in pixels; between designs, or, within curves, between every other pixel. */
+  function isolinesHere() {
     if (isCrisp) {
       const step = 2, { x0, y0, w, h } = box, at = (i, j) => step * j * w + step * i;
       const near = (i, j) => pixels.torn[at(i, j)] | pixels.torn[at(i + 1, j)] | pixels.torn[at(i, j + 1)] | pixels.torn[at(i + 1, j + 1)];
       const centre = (first) => (i) => first + step * i + 0.5;
-      return isolines((i, j) => pixels.value[at(i, j)], Math.ceil(w / step), Math.ceil(h / step), level, centre(x0), centre(y0), near);
+      const plane = planeOf((i, j) => pixels.value[at(i, j)], Math.ceil(w / step), Math.ceil(h / step));
+      return (level) => isolines(plane, level, centre(x0), centre(y0), near);
     }
     const bitX = 1 << view.x, bitY = 1 << view.y;
     const torn = (i, j) => cliffs !== undefined &&
       ((cliffs.values[offset(i, j)] & (bitX | bitY)) !== 0 || (cliffs.values[offset(i + 1, j)] & bitY) !== 0 || (cliffs.values[offset(i, j + 1)] & bitX) !== 0);
-    return isolines((i, j) => view.field.values[offset(i, j)], sx.n, sy.n, level, sx.centre, sy.centre, torn);
+    const plane = planeOf((i, j) => view.field.values[offset(i, j)], sx.n, sy.n);
+    return (level) => isolines(plane, level, sx.centre, sy.centre, torn);
   }
 
   function paintIsolines(context) {
@@ -134,7 +142,7 @@ function mapView(canvas, map, onPoint, onPick) {
     context.font = `${0.85 * font}px system-ui, "DejaVu Sans", sans-serif`;
     context.textAlign = "center";
     context.textBaseline = "middle";
-    const labels = [];  // where there is text already
+    const labels = [], linesAt = isolinesHere();  // where there is text already
     for (const { value, text } of shownLevels(view.field, map.fixed))
       for (const chain of linesAt(value)) {
         const room = context.measureText(text).width + 0.4 * font;
@@ -227,7 +235,8 @@ function mapView(canvas, map, onPoint, onPick) {
     const values = { ...map.fixed, ...Object.fromEntries(map.axes.map((axis, k) => [axis.name, axis.values[view.index[k]]])) };
     const told = Object.entries(map.parameters).filter(([name]) => !drawn.includes(name) && Number.isFinite(values[name]) && (map.slips || !SLIPPING.includes(name)) && !NO_LIVE_AXIS.includes(name))
       .map(([name, row]) => `${row.symbol} ${withUnit(short(inShownUnit(row, values[name])), row.unit)}`);
-    const text = `${fieldLabel(view.field, map.fixed)}: ${[...told, map.slips ? "may slip" : "never slips"].join(", ")}`, size = (part) => `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
+    const scene = Object.entries(SCENE_WORDS).filter(([name]) => name === "radius" || values[name] !== map.defaults[name]).filter(([name]) => map.slips || !SLIPPING.includes(name)).map(([name, tell]) => tell(short(values[name])));
+    const text = `${fieldLabel(view.field, map.fixed)}: ${[...told, ...scene, map.slips ? "may slip" : "never slips"].join(", ")}`, size = (part) => `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
     context.fillStyle = tones.ink;
     context.textAlign = "left";
     context.textBaseline = "alphabetic";
@@ -312,7 +321,6 @@ function mapView(canvas, map, onPoint, onPick) {
     }
     cross(view.index, "#ffffff", 4);
     cross(view.index, "#000000", 1.6);
-    paintPins(context);
   }
 
   function pointAt(event) {

@@ -28,7 +28,7 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
     if (!slips) add("dip", "flight first dips", measure.length(2 * R * outcome.dip, 3));
   }
   if (jumped && chosen.jumps > 1)
-    add("jumps", "jumps made", `${outcome.jumps} of ${chosen.jumps}: ${[...liftOffs.height].filter((_, i) => liftOffs.is_jump[i] === 1).map((h) => short(h)).join(", ")} diameters`);
+    add("jumps", "jumps made", `${outcome.jumps} of ${chosen.jumps}: ${[...liftOffs.height].filter((_, i) => liftOffs.is_jump[i] === 1).map((h) => measure.length(2 * R * h)).join(", ")}`);
   if (outcome.candidates > 0) {
     const after = measure.time(outcome.first_jump_time);
     add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"

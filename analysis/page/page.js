@@ -10,7 +10,7 @@ function notice(text) {
 const complain = (error) => notice(`This page cannot be shown: ${error.message ?? error}`);
 
 /** Sets a field's colours and isolines for values from low to high. A few extreme designs do not set the scale: isolines that are given do. */
-function scaleField(map, field, low, high, levels) {
+function scaleField(field, low, high, levels) {
   const most = high, given = levels.filter((l) => l >= low && l <= high);
   if (field.log && given.length > 2) low = Math.max(low, given[0]);
   if (!field.log && given.length > 2) [low, high] = [Math.max(low, Math.min(given[0], low + 0.02 * (high - low))), Math.min(high, levels.find((l) => l >= high) ?? levels.at(-1))];
@@ -28,7 +28,7 @@ async function readMap() {
     field.table = Uint8Array.from(atob(field.colours), (c) => c.charCodeAt(0));
     let low = Infinity, high = -Infinity;
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
-    scaleField(map, field, low, high, field.levels);
+    scaleField(field, low, high, field.levels);
   }
   for (const code of Object.values(map.codes)) code.values = await codes(code, shape);
   if (map.codes.status)
@@ -86,6 +86,7 @@ function startLive(given, module, solver) {
 }
 
 function start(map, solver) {
+  map.defaults = solver.defaults;
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
   element("title").textContent = map.title || map.name;
@@ -113,16 +114,16 @@ function start(map, solver) {
     speaking = setTimeout(() => { element("spoken").textContent = `${element("place").textContent}. ${element("value").textContent}`; }, 600);
   };
   const tellOwn = () => {
-    const { outcome, title } = own, { field } = view.view, v = outcome[field.name];
+    const { outcome, title, design } = own, { field } = view.view, v = outcome[field.name];
     said = "";
     element("place").textContent = title;
-    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, map.fixed) : outcome.status.replaceAll("_", " ")}`;
-    tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name]) ? toldIn(outcome[f.name], f.unit, map.fixed) : ""));
+    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : outcome.status.replaceAll("_", " ")}`;
+    tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name]) ? toldIn(outcome[f.name], f.unit, design) : ""));
     speak();
     Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });
   };
   const chosen = hopPanel(map, solver, {
-    ofItsOwn(title, outcome) { own = { title, outcome }; points = false; view.view.picked = null; view.paint(); tellOwn(); },
+    ofItsOwn(title, outcome, design) { own = { title, outcome, design }; points = false; view.view.picked = null; view.paint(); tellOwn(); },
     otherUnits: () => tellUnits(),
     pinned: () => view.paint(),
   });
@@ -136,7 +137,7 @@ function start(map, solver) {
     const number = (f) => (f.values[at] === f.values[at] ? f.values[at].toFixed(decimalsOf(f.step)) : "");
     const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
-    const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${short(map.fixed.hop_height)} diameters`]
+    const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
       : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
     element("place").textContent = placeText(map, index);
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notes].filter((w) => w).join("; ");
@@ -176,7 +177,7 @@ function start(map, solver) {
   offerFields();
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
   const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
-  const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); tellShown(); filters?.tell(); };
+  const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); tellShown(); drawCuts(); filters?.tell(); };
   fieldSelect.addEventListener("change", () => { showField(); noteAddress(); });
   const firstField = fieldSelect.value;
   addressPart({
@@ -195,6 +196,7 @@ function start(map, solver) {
       view.view[key] = taken;
       arrange();
       view.paint();
+      drawCuts();
       legend();
       noteAddress();
     });
@@ -243,7 +245,7 @@ function start(map, solver) {
     if (flags?.values.includes(1) && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
     if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
     items.push(symbol("pointed at", "⊕", tones.ink), symbol("shown beside", "⊕", tones.mark));
-    for (const kind of new Set(map.curves.map((curve) => curve.kind)))
+    for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
       items.push(symbol(map.cliff_words[kind], kind in DASHES ? "╌" : "—", tones.ink));
     element("legend").replaceChildren(...items);
   }
@@ -263,7 +265,7 @@ function start(map, solver) {
   saveButtons("map", canvas, pictureName, (like) => view.paintOn(like.getContext("2d")));
   element("cuts").hidden = Boolean(map.columns);
   if (!map.columns) drawCuts = cutsPart(map, view);
-  filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; view.pick(); });
+  filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; arrange(); view.paint(); view.pick(); });
   element("filters").hidden = Boolean(map.columns);
   if (filters) addressPart(filters);
   const tellUnits = () => {
@@ -284,7 +286,7 @@ function start(map, solver) {
     write(words) {
       for (const [k, key] of ["right", "up"].entries())
         if (key[0] === "r" ? view.view.x !== homeAxes[0] : !map.columns && view.view.y !== homeAxes[1]) words.set(key, choices[[view.view.x, view.view.y][k]].name);
-      if (!map.columns) map.axes.forEach((axis, k) => { if (k !== view.view.x && k !== view.view.y && view.view.index[k] !== home[k]) words.append("at", `${axis.name}:${view.view.index[k]}`); });
+      if (!map.columns) map.axes.forEach((axis, k) => { if (k !== view.view.x && k !== view.view.y && view.view.index[k] !== (view.view.picked ?? home)[k]) words.append("at", `${axis.name}:${view.view.index[k]}`); });
     },
     read(words) {
       const [x, y] = ["right", "up"].map((key, k) => { const at = choices.findIndex(({ name }) => name === words.get(key)); return at < 0 ? homeAxes[k] : at; });
@@ -308,8 +310,13 @@ function start(map, solver) {
     read(words) {
       const asked = addressed(map, words);
       if (asked.index || !(words.has("paper") || words.has("hoop"))) {
+        const slices = view.view.index;
         view.view.index = asked.index ?? [...home];
         view.pick();
+        if (words.has("at")) view.view.index = view.view.index.map((i, k) => (k === view.view.x || k === view.view.y ? i : slices[k]));
+        arrange();
+        view.paint();
+        told(view.view.index);
       }
       // On a phone the hoop that a link is about comes first.
       document.body.classList.toggle("hoop-first", words.has("paper") || words.has("hoop"));
@@ -330,9 +337,10 @@ function start(map, solver) {
       filters?.tell();
       legend();
       tellShown();
+      drawCuts();
     },
     /** The hoop shown, of the same place on another map. */
-    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true); else chosen.resize(); },
+    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true); else chosen.follow(); },
     /** Another model: what is told of a hoop is another. */
     remodel() { element("paper").hidden = map.slips; offerFields(); chosen.remodel(); legend(); },
   };

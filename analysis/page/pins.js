@@ -58,7 +58,7 @@ function pinsPart(map, solver, command, changed) {
     show,
     designs: () => pins.map(({ design }) => design),
     write(words) {
-      for (const { design } of pins) words.append("pin", Object.keys(solver.defaults).filter((name) => Number.isFinite(design[name]) && design[name] !== map.fixed[name]).map((name) => `${name}:${design[name]}`).join(","));
+      for (const { design } of pins) words.append("pin", wordsOf(design, Object.keys(solver.defaults).filter((name) => !Object.is(design[name], map.fixed[name]))));
     },
     read(words) {
       const wanted = words.getAll("pin").slice(0, MOST_PINS).map((text) => designOf(text, solver.ranges)).filter((design) => design);

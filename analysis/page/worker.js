@@ -1,10 +1,9 @@
 // A thread of a live map: solves the designs that it is sent, and finds where outcomes change between two.
 
-const BISECTIONS = 7;  // to a hundredth of a cell
 let solver = null;
 
-/** How far along from the first end of each edge to the second its outcome changes: ends as [x, y, x, y] each. */
-function bisected({ design, slips, tolerance, first, second, ends, codes }) {
+/** How far along from the first end of each edge to the second its outcome changes, halved `steps` times: ends as [x, y, x, y] each. */
+function bisected({ design, slips, tolerance, first, second, ends, codes, steps }) {
   const count = ends.length / 4, wide = solver.rowNames.length, parts = new Float64Array(count).fill(0.5), places = new Float64Array(2 * count);
   const columns = codes.map((name) => solver.rowNames.indexOf(name));
   const solved = (part) => {
@@ -13,7 +12,7 @@ function bisected({ design, slips, tolerance, first, second, ends, codes }) {
     return solver.solvePlaces(design, slips, tolerance, first, second, places);
   };
   const begins = solved(() => 0);
-  for (let step = 0.25, n = 0; n < BISECTIONS; step /= 2, ++n) {
+  for (let step = 0.25, n = 0; n < steps; step /= 2, ++n) {
     const rows = solved((k) => parts[k]);
     for (let k = 0; k < count; ++k) parts[k] += columns.every((c) => Object.is(rows[k * wide + c], begins[k * wide + c])) ? step : -step;
   }
@@ -29,5 +28,5 @@ onmessage = async ({ data }) => {
     }
     const rows = data.ends ? bisected(data) : solver.solvePlaces(data.design, data.slips, data.tolerance, data.first, data.second, data.places);
     postMessage({ generation: data.generation, rows }, [rows.buffer]);
-  } catch (error) { postMessage({ error: String(error.message ?? error) }); }  // of an async function onerror hears nothing
+  } catch (error) { postMessage({ error: String(error.message ?? error), generation: data.generation }); }  // of an async function onerror hears nothing
 };
