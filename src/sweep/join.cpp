@@ -142,9 +142,7 @@ class Joining {
     for (std::size_t i = 1; i <= shards_; ++i)
       if (!copy(i, writer)) return std::nullopt;
     std::uint32_t checksum = 0;
-    for (const Sum& sum : sums_)
-      checksum =
-          static_cast<std::uint32_t>(crc32_combine(checksum, sum.checksum, static_cast<z_off_t>(sum.bytes)));
+    for (const Sum& sum : sums_) checksum = followed_by(checksum, sum);
     writer.take_over(progress_, checksum);
     JoinReport report{shards_, tiling_->size(), tiling_->designs(), progress_.statuses, true, audit_, spec_};
     std::vector<hdf5::Attribute> closing;
@@ -159,6 +157,12 @@ class Joining {
     std::uint32_t checksum = 0;
     std::uint64_t bytes = 0;
   };
+
+  /// The checksum of what one was of, with that behind it.
+  static std::uint32_t followed_by(std::uint32_t checksum, const Sum& next) {
+    return static_cast<std::uint32_t>(
+        crc32_combine(checksum, next.checksum, static_cast<z_off_t>(next.bytes)));
+  }
 
   std::string path_of(std::size_t shard) const { return shard_path(map_, {shard, shards_}); }
 
@@ -296,11 +300,11 @@ class Joining {
       const std::vector<hsize_t> place(tile.start.begin(), tile.start.end());
       for (std::size_t f = 0; f < fields.size(); ++f) {
         chunk.skipped_filters = hdf5::read_chunk(fields[f], place, chunk.bytes, path + ": reading a tile");
-        checksum = checksum_of(checksum, chunk.bytes, chunk.skipped_filters);
         sums_[t].checksum = checksum_of(sums_[t].checksum, chunk.bytes, chunk.skipped_filters);
         sums_[t].bytes += chunk.bytes.size() + sizeof chunk.skipped_filters;
         if (!options_.as_virtual) writer.put(tile, f, chunk);
       }
+      checksum = followed_by(checksum, sums_[t]);
       ++progress_.tiles;
       done_ += tile.count;
       if (options_.progress) options_.progress(done_, tiling_->designs());
