@@ -177,7 +177,7 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = f
   context.fillText(units.pure ? `${length} R` : length >= 1 ? `${length} m` : length >= 0.01 ? `${short(100 * length)} cm` : `${short(1000 * length)} mm`, ruler[0], ruler[1] - 0.5 * font);
   context.textAlign = "right";
   context.fillStyle = tones[phase[1]];
-  context.fillText(`${phase[0]}${y > 0 ? `, ${units.pure ? `${short(y / R, 3)} R` : `${short(1000 * y, 3)} mm`} above the plane` : ""}`, canvas.width - 0.8 * font, 1.5 * font);
+  context.fillText(`${phase[0]}${y > 1e-9 * R ? `, ${units.pure ? `${short(y / R, 3)} R` : `${short(1000 * y, 3)} mm`} above the plane` : ""}`, canvas.width - 0.8 * font, 1.5 * font);
   context.textAlign = "left";
 }
 
