@@ -58,7 +58,13 @@ function crispPlane(values, offset, sx, sy, { x0, y0, w, h }, chains) {
           corners[k] = values[at[k]];
         }
       }
-      for (let k = 0; k < 4; ++k) shares[k] = (k & 1 ? fu : 1 - fu) * (k >> 1 ? fv : 1 - fv);
+      shares[0] = (1 - fu) * (1 - fv), shares[1] = fu * (1 - fv), shares[2] = (1 - fu) * fv, shares[3] = fu * fv;
+      const whole = shares[0] * corners[0] + shares[1] * corners[1] + shares[2] * corners[2] + shares[3] * corners[3];
+      if (segments === undefined && whole === whole) {  // as nearly everywhere
+        value[pixel] = whole;
+        design[pixel] = at[(fu > 0.5 ? 1 : 0) + (fv > 0.5 ? 2 : 0)];
+        continue;
+      }
       if (segments !== undefined) {
         for (let k = 0; k < 4; ++k) {
           const cx = sx.centre(i + (k & 1) * right), cy = sy.centre(j + (k >> 1) * below);

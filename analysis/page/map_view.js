@@ -71,41 +71,38 @@ function mapView(canvas, map, onPoint, onPick) {
     return looked ? chains : undefined;
   }
 
-  /** A colour as canvases store it, red first in memory: of a design, and of it where the hatching of spurious lift-offs is. */
-  function colourOf(shown, k, back) {
-    const { table, place } = view.field;
-    let [r, g, b] = back, part = 1;
-    if (shown === shown) {
-      const c = 3 * Math.round(255 * place(shown));
-      r = table[c]; g = table[c + 1]; b = table[c + 2];
-      if (flags && !view.field.made && flags.values[k] === 1) part = 0.45;
-    } else if (status) {
-      [r, g, b] = status.rgb[status.values[k]] ?? [255, 255, 255];
-    } else { r = g = b = 217; }
-    const dim = map.keeps && !map.keeps(k) ? 0.2 : 1, mixed = (v, at, dark) => back[at] + (v * dark - back[at]) * dim;
-    const word = (dark) => (255 << 24 | mixed(b, 2, dark) << 16 | mixed(g, 1, dark) << 8 | mixed(r, 0, dark)) >>> 0;
-    return [word(1), part < 1 ? word(part) : word(1)];
+  /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where the lines of spurious lift-offs run. */
+  function colouring() {
+    const { table, place, made } = view.field, back = [1, 3, 5].map((at) => parseInt(tones.ground.slice(at, at + 2), 16));  // which what fails is dimmed towards
+    const word = (rgb, dark, dim) => rgb.map((v, at) => back[at] + (v * dark - back[at]) * dim).reduceRight((all, v) => all << 8 | v, 255) >>> 0;
+    const shades = [1, 0.2].map((dim) => [1, 0.45].map((dark) => Uint32Array.from({ length: 256 }, (_, c) => word([...table.subarray(3 * c, 3 * c + 3)], dark, dim))));
+    const others = [1, 0.2].map((dim) => ({ grey: word([217, 217, 217], 1, dim), white: word([255, 255, 255], 1, dim), statuses: status?.rgb.map((rgb) => word(rgb, 1, dim)) }));
+    return (value, k, hatched) => {
+      const dimmed = map.keeps && !map.keeps(k) ? 1 : 0;
+      if (value === value) return shades[dimmed][hatched && flags && !made && flags.values[k] === 1 ? 1 : 0][Math.round(255 * place(value))];
+      return status ? others[dimmed].statuses[status.values[k]] ?? others[dimmed].white : others[dimmed].grey;
+    };
   }
 
   /** Fills the frame; pixels is then what every pixel shows: within the curves of its cell, or its cell's. */
   function paintCells(context) {
     const { x0, y0, w, h } = box, image = context.createImageData(w, h), data = new Uint32Array(image.data.buffer), { values } = view.field;
-    const back = [1, 3, 5].map((at) => parseInt(tones.ground.slice(at, at + 2), 16));  // which what fails is dimmed towards
+    const colourOf = colouring();
     const period = Math.round(9 * frame.ratio), line = Math.max(1, Math.round(frame.ratio * 0.8));
     if (isCrisp) {
       // Of hoops as made values are smooth across the cliffs of hoops as drawn.
       pixels = crispPlane(values, offset, sx, sy, box, view.field.made ? [] : chains.map((chain) => chain.places));
       for (let q = 0, pixel = 0; q < h; ++q)
-        for (let p = 0; p < w; ++p, ++pixel) data[pixel] = colourOf(pixels.value[pixel], pixels.design[pixel], back)[(p + q) % period < line ? 1 : 0];
+        for (let p = 0; p < w; ++p, ++pixel) data[pixel] = colourOf(pixels.value[pixel], pixels.design[pixel], (p + q) % period < line);
     } else {
       // One colour a design, of which there are fewer than pixels.
       const design = new Int32Array(w * h), columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5)), plain = new Uint32Array(sx.n), hatched = new Uint32Array(sx.n);
-      const at = new Int32Array(sx.n), none = (255 << 24 | back[2] << 16 | back[1] << 8 | back[0]) >>> 0;
+      const at = new Int32Array(sx.n), ground = parseInt(tones.ground.slice(1), 16), none = (255 << 24 | (ground & 0xff) << 16 | (ground & 0xff00) | ground >> 16) >>> 0;
       let done = -1;
       for (let q = 0, pixel = 0; q < h; ++q) {
         const j = sy.index(y0 + q + 0.5);
         if (j >= 0 && j !== done) {
-          for (let i = 0; i < sx.n; ++i) { at[i] = offset(i, j); [plain[i], hatched[i]] = colourOf(values[at[i]], at[i], back); }
+          for (let i = 0; i < sx.n; ++i) { at[i] = offset(i, j); plain[i] = colourOf(values[at[i]], at[i], false); hatched[i] = colourOf(values[at[i]], at[i], true); }
           done = j;
         }
         for (let p = 0; p < w; ++p, ++pixel) {
