@@ -9,7 +9,8 @@ const LIVE_RANGES = {
   drive_torque: [-0.2, 0.5], mu_static: [0.05, 1.5], mu_kinetic: [0.05, 1.5], restitution: [0, 0.9], rest_speed: [0, 0.1], runway: [0.5, 10], hop_height: [0, 0.5], radius: [0.01, 0.5],
   gravity: [0.5, 25],
 };
-const OUTCOME_CODES = ["status", "spurious_first_jump", "candidates"];  // which tell one course of events from another
+/** What tells one course of events from another, each with what stands where there is none. */
+const OUTCOME_CODES = [["status", 0], ["spurious_first_jump", 255], ["candidates", 0]];
 const SLIPPING = ["mu_static", "mu_kinetic", "restitution", "rest_speed"];
 const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity"];  // none of the design's own
 
@@ -43,7 +44,7 @@ function liveAxis(given, { name, from, to, count }) {
 function putRows(map, rows, cells, side, level) {
   const [nx, ny] = LIVE_SHAPE, names = map.rowNames, wide = names.length, column = (name) => names.indexOf(name), radius = map.fixed.radius;
   const [height, time, apex] = ["jump_height", "jump_time", "apex_time"].map(column), columns = map.fields.map((field) => column(field.name));
-  const codes = [["status", 0], ["spurious_first_jump", 255], ["candidates", 0]].map(([name, none]) => ({ at: column(name), none, values: map.codes[name].values }));
+  const codes = OUTCOME_CODES.map(([name, none]) => ({ at: column(name), none, values: map.codes[name].values }));
   const told = new Float64Array(map.fields.length);
   for (let n = 0; n < cells.length; ++n) {
     const at = cells[n], row = n * wide, i0 = Math.floor(at / ny), j0 = at % ny;
@@ -102,8 +103,8 @@ function liveEngine(map, module, workerText, onPicture) {
     const { order, values: [xs, ys] } = now;
     worker.jobs.push(job);
     if (job.edges) {
-      const steps = job.side > 1 ? 3 : 7;  // to a cell, and to a hundredth of one
-      worker.postMessage({ ...order, ends: edgeEnds(xs, ys, job.edges), codes: OUTCOME_CODES, steps });
+      const steps = job.side === 1 ? 7 : map.slips ? 1 : 3;  // to a hundredth of a cell; while one drags to some cells, and to one
+      worker.postMessage({ ...order, ends: edgeEnds(xs, ys, job.edges), begins: edgeBegins(map, job.edges), codes: OUTCOME_CODES, steps });
       return;
     }
     const places = new Float64Array(2 * job.cells.length);
@@ -132,8 +133,8 @@ function liveEngine(map, module, workerText, onPicture) {
     map.roughCurves = side > 1;
     if (side > 1) {
       now.rushing = false;
-      if (now.again || !now.left.every((left) => left === 0)) show("part"); else goOn();
-      if (now.again) begin();
+      onPicture("rough cliffs");
+      if (now.again) begin(); else if (now.left.every((left) => left === 0)) goOn();
       return;
     }
     now.timing.crisp = performance.now() - now.begun;
@@ -162,7 +163,7 @@ function liveEngine(map, module, workerText, onPicture) {
     if (job.edges) { receiveCliffs(job, data.rows); return; }
     putRows(map, data.rows, job.cells, job.side, level);
     const last = --now.left[job.stage] === 0;
-    if (last && job.stage === 0) { now.timing = { coarse: performance.now() - now.begun }; beginCliffs(COARSEST); } else if (!now.rushing) goOn();  // the first picture has its cliffs
+    if (last && job.stage === 0) { now.timing = { coarse: performance.now() - now.begun }; map.curves = []; beginCliffs(COARSEST); show("part"); } else if (!now.rushing) goOn();  // the first picture has its cliffs
   }
 
   /** More designs are there. */

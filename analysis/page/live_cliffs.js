@@ -18,6 +18,11 @@ function edgeEnds(x, y, edges) {
   return ends;
 }
 
+/** What becomes of the first end's hoop: code by code of each. */
+function edgeBegins(map, edges) {
+  return Float64Array.from(edges.flatMap(({ i, j }) => OUTCOME_CODES.map(([name]) => map.codes[name].values[i * LIVE_SHAPE[1] + j])));
+}
+
 /**
  * Curves through edges whose `part` tells how far along the outcome changes: straight from edge to edge of the square between four designs,
  * or to the middle where more than two of its sides are cut. As the explorer writes curves.

@@ -167,6 +167,14 @@ function mapView(canvas, map, onPoint, onPick) {
       }
   }
 
+  /** Curves that came after the picture that they belong to. */
+  function overlayCliffs() {
+    if (!frame) return;
+    chains = chainsHere();
+    paintCliffs(background.getContext("2d"));
+    paintCursor();
+  }
+
   /** Where outcomes jump, as leapmap boundaries found it. */
   function paintCliffs(context) {
     context.save();
@@ -347,7 +355,7 @@ function mapView(canvas, map, onPoint, onPick) {
   new ResizeObserver(() => paint()).observe(canvas);
 
   return {
-    view, paint, paintOn, pick, point, showsPaper: () => paperPlace() !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
+    view, paint, paintOn, overlayCliffs, pick, point, showsPaper: () => paperPlace() !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
     /** What the map's pixels are, for tests: the design whose codes each shows, and where its centre lies along the axes. */
     shown() {
       const { x0, y0, w, h } = box, places = (scale, first, count) => Array.from({ length: count }, (_, p) => scale.value(first + p + 0.5));

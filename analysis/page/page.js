@@ -62,9 +62,9 @@ function startLive(given, module, solver) {
   let page = null, settled = 0, again = false;
   const engine = liveEngine(map, module, element("worker").textContent, (what) => {
     if (!page) page = start(map, solver);
-    page.repaint(what === "part");
+    if (what === "rough cliffs") page.view.overlayCliffs(); else page.repaint(what === "part");
     const { dataset } = element("map");
-    Object.assign(dataset, { whole: String(what !== "part"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
+    Object.assign(dataset, { whole: String(what === "whole" || what === "cliffs"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   });

@@ -2,19 +2,19 @@
 
 let solver = null;
 
-/** How far along from the first end of each edge to the second its outcome changes, halved `steps` times: ends as [x, y, x, y] each. */
-function bisected({ design, slips, tolerance, first, second, ends, codes, steps }) {
+/**
+ * How far along from the first end of each edge to the second its outcome changes, halved `steps` times: ends as [x, y, x, y] each, begins as
+ * the codes that the first end has, codes as [name, what stands where there is none].
+ */
+function bisected({ design, slips, tolerance, first, second, ends, begins, codes, steps }) {
   const count = ends.length / 4, wide = solver.rowNames.length, parts = new Float64Array(count).fill(0.5), places = new Float64Array(2 * count);
-  const columns = codes.map((name) => solver.rowNames.indexOf(name));
-  const solved = (part) => {
-    for (let k = 0; k < count; ++k)
-      for (const c of [0, 1]) places[2 * k + c] = ends[4 * k + c] + (ends[4 * k + 2 + c] - ends[4 * k + c]) * part(k);
-    return solver.solvePlaces(design, slips, tolerance, first, second, places);
-  };
-  const begins = solved(() => 0);
+  const columns = codes.map(([name, none]) => [solver.rowNames.indexOf(name), none]);
   for (let step = 0.25, n = 0; n < steps; step /= 2, ++n) {
-    const rows = solved((k) => parts[k]);
-    for (let k = 0; k < count; ++k) parts[k] += columns.every((c) => Object.is(rows[k * wide + c], begins[k * wide + c])) ? step : -step;
+    for (let k = 0; k < count; ++k)
+      for (const c of [0, 1]) places[2 * k + c] = ends[4 * k + c] + (ends[4 * k + 2 + c] - ends[4 * k + c]) * parts[k];
+    const rows = solver.solvePlaces(design, slips, tolerance, first, second, places);
+    const isAsBegun = (k) => columns.every(([column, none], c) => { const v = rows[k * wide + column]; return (v === v ? v : none) === begins[k * columns.length + c]; });
+    for (let k = 0; k < count; ++k) parts[k] += isAsBegun(k) ? step : -step;
   }
   return parts;
 }
