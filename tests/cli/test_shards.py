@@ -380,7 +380,9 @@ def test_gnu_parallel_runs_all_shards_and_joins_them(tmp_path):
     if not shutil.which("parallel"):
         pytest.skip("GNU parallel is missing")
     sweep(tmp_path, SMALL, name="one.h5")
-    done = subprocess.run(["sh", TOP / "sweeps" / "cluster" / "parallel.sh", "3", tmp_path / "spec.toml", tmp_path / "all" / "map.h5"], capture_output=True, text=True,
-                          env={**os.environ, "LEAPMAP": PROGRAM})
+    again = lambda *words: subprocess.run(["sh", TOP / "sweeps" / "cluster" / "parallel.sh", "3", tmp_path / "spec.toml", tmp_path / "all" / "map.h5", *words], capture_output=True,
+                                          text=True, env={**os.environ, "LEAPMAP": PROGRAM})
+    done = again()
     assert done.returncode == 0, done.stderr
     same_datasets(tmp_path / "one.h5", tmp_path / "all" / "map.h5")
+    assert again().returncode == 0 and again("--set", "runway=2").returncode == 2  # whole already; of another spec
