@@ -4,14 +4,16 @@ const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20
 
 /**
  * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome, design):
- * a hoop is shown that is none of the map's designs; otherUnits(): everything is to be told anew; pinned(): other designs are.
+ * a hoop is shown that is none of the map's designs; otherUnits(): everything is to be told anew; pinned(): other designs are; followed():
+ * a live map's hoops are followed for another number of jumps.
  */
-function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
+function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
   // source: where the design is from, "design" of the map, "paper" or "hoop" as typed, and which.
   const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null, recording: false, haunting: 0 };
+  const firstJumps = map.jumps;
   const chosen = { radius: map.fixed.radius, mass: PAPER_MASS / 1000, jumps: map.jumps };  // m; kg
   units.mass = chosen.mass;
   radius.value = 1000 * chosen.radius;
@@ -180,12 +182,19 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
   });
   for (const input of [radius, mass]) stepsOf(input, () => Number(input.value) || 1);
   choose(radius, "radius", solve);
+  /** A live map tells how many jumps each of its hoops makes of as many. */
+  const followOn = () => {
+    if (!map.live || map.jumps === chosen.jumps) return;
+    map.jumps = chosen.jumps;
+    followed();
+  };
   jumps.addEventListener("change", () => {
     const good = jumps.value !== "" && jumps.checkValidity();
     jumps.setAttribute("aria-invalid", String(!good));
     notice(good ? "" : `How many jumps must be a whole number from ${jumps.min} to ${jumps.max}.`);
     if (!good) return;
     chosen.jumps = Number(jumps.value);
+    followOn();
     pins.show();
     noteAddress();
     if (now.design) { solve(); run(!still && now.story !== null); }
@@ -236,19 +245,20 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned }) {
     write(words) {
       const [key, value] = now.source;
       if (key) words.set(key, value);
-      for (const [name, input, fallback] of [["jumps", jumps, map.jumps], ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]])
+      for (const [name, input, fallback] of [["jumps", jumps, firstJumps], ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]])
         if (Number(input.value) !== fallback && !(name === "radius" && map.live)) words.set(name === "radius" ? "hoop_radius" : name, input.value);
       for (const [name, input, fallback] of ways) if (input.type === "checkbox" ? input.checked !== fallback : input.value !== fallback) words.set(name, input.type === "checkbox" ? Number(input.checked) : input.value);
       if (now.story && !now.playing && now.time > 0 && now.time < end()) words.set("time", Number(now.time.toPrecision(6)));
       pins.write(words);
     },
     read(words) {
-      for (const [name, input, fallback] of [["jumps", jumps, map.jumps], ["hoop_radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]]) {
+      for (const [name, input, fallback] of [["jumps", jumps, firstJumps], ["hoop_radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]]) {
         const value = Number(words.get(name) ?? fallback);
         if (value > 0 && value <= Number(input.max)) input.value = value;
       }
       units.mass = Number(mass.value) / 1000;
       Object.assign(chosen, { radius: Number(radius.value) / 1000, mass: Number(mass.value) / 1000, jumps: Math.round(Number(jumps.value)) });
+      followOn();
       for (const [name, input, fallback] of ways) {
         const word = words.get(name);
         if (input.type === "checkbox") input.checked = word === null ? fallback : word === "1";

@@ -73,7 +73,7 @@ function settleMap(map) {
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
     if (!(low <= high)) [low, high] = [0, 1];
     scaleField(field, low, high, field.given ?? linearTicks(low, high, 12));
-    field.step = field.name === "candidates" ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-2) / 60000));
+    field.step = ["candidates", "jumps"].includes(field.name) ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-2) / 60000));
   }
   const [nx, ny] = LIVE_SHAPE, { cliffs } = map.codes, differ = outcomesDiffer(map);
   for (let i = 0; i < nx; ++i)
@@ -190,7 +190,7 @@ function liveEngine(map, module, workerText, onPicture) {
     if (now.rushing) return;
     now.rushing = true;
     // One picture is of one set of numbers, whatever is turned meanwhile.
-    now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, first: map.axes[0].name, second: map.axes[1].name };
+    now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, jumps: map.jumps, first: map.axes[0].name, second: map.axes[1].name };
     now.values = map.axes.map((axis) => axis.values);
     clearTimeout(now.resting);
     now.queue = [];

@@ -53,7 +53,7 @@ const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI
 
 /** Quantities that only hoops that may slip have, or only those that never do. */
 const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
-const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name);
+const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name) && !(name === "jumps" && map.live && map.jumps === 1);
 
 /** Starts with a map that is solved as one looks. */
 function startLive(given, module, solver) {
@@ -68,7 +68,7 @@ function startLive(given, module, solver) {
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   });
-  const begin = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
+  const begin = map.refresh = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
   settleMap(map);
   const controls = liveControls(map, solver, (what) => {
     if (what === "model" && page) page.remodel();
@@ -126,6 +126,7 @@ function start(map, solver) {
     ofItsOwn(title, outcome, design) { own = { title, outcome, design }; points = false; view.view.picked = null; view.paint(); tellOwn(); },
     otherUnits: () => tellUnits(),
     pinned: () => view.paint(),
+    followed() { offerFields(); map.refresh?.(); },
   });
   let drawCuts = () => {}, filters = null;
   const told = (index) => {

@@ -59,10 +59,11 @@ async function solverOf(module) {
     rowNames,
     /**
      * Designs that differ in two parameters, in full: rows of numbers and codes of each, one after the other. places: the two numbers of
-     * each by turns.
+     * each by turns. jumps: how many each is followed for.
      */
-    solvePlaces(design, slips, tolerance, first, second, places) {
+    solvePlaces(design, slips, tolerance, first, second, places, jumps = 1) {
       give(design);
+      leapmap.set_jumps(jumps);
       const count = places.length / 2;
       doubles(leapmap.places(count), places.length).set(places);
       leapmap.solve_places(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second), count);

@@ -84,6 +84,7 @@ class Sequences {
       if (is_over) outcomes[i].sequence_end = Status::no_jump;
       return is_over;
     });
+    if (going_.empty()) return;
     some_.clear(), some_states_.clear(), found_.resize(going_.size());
     for (const std::size_t i : going_) some_.push_back(designs[i]), some_states_.push_back(states_[i]);
     next_(Start::landing, some_, some_states_, found_);

@@ -21,6 +21,7 @@
 #include "rolling/exact.hpp"
 #include "rolling/gradient.hpp"
 #include "rolling/model.hpp"
+#include "trajectory/sequence.hpp"
 
 namespace leapmap {
 namespace {
@@ -82,12 +83,14 @@ struct Page {
 };
 Page page;
 
-/// What a map computed on the page tells of each design: numbers and codes of the first jump.
+/// What a map computed on the page tells of each design: numbers and codes of the first jump, and how many
+/// it makes.
 const std::vector<const Field*>& row_fields() {
   static const std::vector<const Field*> fields = [] {
     std::vector<const Field*> fields;
     for (const Field& field : map_fields())
-      if (!field.of_sequence && !field.of_gait && !std::holds_alternative<Word>(field.source))
+      if ((!field.of_sequence || field.name == "jumps") && !field.of_gait &&
+          !std::holds_alternative<Word>(field.source))
         fields.push_back(&field);
     return fields;
   }();
@@ -183,7 +186,7 @@ LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
                               flown.flight_time, flown.dip, flown.is_jump ? 1.0 : 0.0});
 }
 
-/// How many jumps solve follows a hoop for.
+/// How many jumps solve and solve_places follow a hoop for.
 LEAPMAP_EXPORT void set_jumps(int jumps) {
   page.jumps = std::clamp(static_cast<long>(jumps), 1l, most_jumps);
 }
@@ -291,8 +294,9 @@ LEAPMAP_EXPORT double* places(int count) {
 /// design a row of rows(), as the map stores it; NaN: does not apply. A design that nothing can be with is
 /// not_computed.
 LEAPMAP_EXPORT void solve_places(int friction, double tolerance, int first, int second, int count) {
-  Scene scene = page.scene(friction);
-  scene.jumps = 1;
+  const Scene scene = page.scene(friction);
+  Scene of_one = scene;
+  of_one.jumps = 1;
   const auto all = leapmap::parameters();
   const Parameter &x = all[static_cast<std::size_t>(first)], &y = all[static_cast<std::size_t>(second)];
   const auto member = [](const Parameter& parameter) {
@@ -312,7 +316,8 @@ LEAPMAP_EXPORT void solve_places(int friction, double tolerance, int first, int 
     which.push_back(i);
   }
   std::vector<Outcome> outcomes(designs.size());
-  first_jump_solver(scene, tolerance)(designs, outcomes);
+  first_jump_solver(of_one, tolerance)(designs, outcomes);
+  if (scene.jumps > 1) Sequences<double>(jump_solver(scene, tolerance)).solve(designs, scene, outcomes);
   for (std::size_t k = 0; k < which.size(); ++k)
     for (std::size_t f = 0; f < wide; ++f)
       page.rows[which[k] * wide + f] = stored_number(*row_fields()[f], outcomes[k]);

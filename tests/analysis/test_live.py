@@ -199,6 +199,28 @@ def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(
     assert live.execute_script("return document.getElementById('map').toDataURL()") != marked, "the map marks what is pinned"
 
 
+@pytest.mark.parametrize("friction", [False, True])
+def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(friction, live):
+    option = "return [...document.getElementById('field').options].find((o) => o.textContent === 'jumps made').disabled"
+    assert live.execute_script(option)
+    if friction:
+        Select(live.find_element("id", "live-model")).select_by_value("coulomb")
+    live.execute_script("document.getElementById('map').dataset.whole = 'false'; const j = document.getElementById('jumps'); j.value = 4; j.dispatchEvent(new Event('change'))")
+    settled(live, 200)
+    assert not live.execute_script(option)
+    Select(live.find_element("id", "field")).select_by_visible_text("jumps made")
+    WebDriverWait(live, 5).until(lambda b: "jumps=4" in b.execute_script("return location.hash") and "field=jumps" in b.execute_script("return location.hash"))
+    made = []
+    for cell in designs(live, [int(k) for k in np.random.default_rng(11).integers(0, 30000, 30)]):
+        flags = [w for name, v in cell["design"].items() if v is not None and (friction or name not in ("mu_static", "mu_kinetic", "restitution", "rest_speed")) for w in ("--set", f"{name}={v!r}")]
+        done = leapmap("hop", *flags, *(["--set", "friction=coulomb"] if friction else []), "--jumps", "4", "--json")
+        assert done.returncode == 0, (cell, done.stderr)
+        told = json.loads(done.stdout)
+        assert (cell["told"]["jumps"] == "NaN" and not told["jumps"]) or float(cell["told"]["jumps"]) == told["jumps"], cell
+        made.append(told["jumps"] or 0)
+    assert len(set(made)) >= 3  # none, some, all
+
+
 def test_cliffs_move_while_one_drags_and_no_drag_goes_unseen(live):
     """Each picture on the way has curves of its own, and they come however often the slider tells."""
     settled(live, what="cliffs")

@@ -139,6 +139,16 @@ def test_dry_run_plans_and_writes_nothing(tmp_path):
     assert not list(tmp_path.glob("map.h5*"))
 
 
+@pytest.mark.parametrize("scene, design", [("coulomb", ("--mass-ratio", "1.0583892617449666", "--slope", "0.09384433666502173")),
+                                           ("never", ("--mass-ratio", "2.4", "--slope", "23 deg", "--set", "runway=2"))])
+def test_a_first_jump_that_lands_beyond_the_runway_is_the_last(scene, design):
+    words = ("hop", *design, "--jumps", "4", "--json", *(["--set", "friction=coulomb"] if scene == "coulomb" else []))
+    done = leapmap(*words)
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert told["status"] == "jumped" and told["jumps"] == 1 and told["sequence_end"] == "no_jump" and told["jump_height_2"] is None
+
+
 def test_help_teaches_and_version_is_told():
     assert "slope" in leapmap("sweep", "--help").stdout and leapmap("--help").returncode == 0
     assert leapmap("--version").stdout.startswith("leapmap ")
