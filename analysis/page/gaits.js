@@ -47,7 +47,7 @@ function gaitsPart(map, solver, choose) {
     let most = 0;
     for (const column of now.heights) for (const height of column ?? []) if (height > most) most = height;
     most = most > 0 ? 1.05 * most : 1;
-    const ink = [1, 3, 5].map((k) => parseInt(tones.data.slice(k, k + 2), 16)), image = new ImageData(COLUMNS, ROWS), hits = new Uint32Array(ROWS);
+    const ink = rgbOf(tones.data), image = new ImageData(COLUMNS, ROWS), hits = new Uint32Array(ROWS);
     for (let column = 0; column < COLUMNS; ++column) {
       // A coarse picture: what lies to the left is drawn on until the column itself is there.
       let source = column;

@@ -109,22 +109,23 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.story = solver.solve(design, map.slips, map.tolerance, 0, chosen.jumps);
     if (now.source[0] !== "design") tellOwn();
-    scrub.max = end();
+    now.time = 0;
+    tell();
     haunt();
     showGaits(design);
     showInputs(design);
     showGradient(design);
-    now.time = 0;
-    tell();
-    draw();
   }
 
-  /** Solves the hoops that jump along: those pinned, and as made, of which it says how many jump. A slice at a time, as friction takes its time. */
+  /** Draws the hoop, and solves those that jump along: those pinned, and as made, of which it says how many jump. A slice at a time, as friction takes its time. */
   async function haunt() {
     const mine = ++now.haunting, made = ghosts.checked ? madeAfter(now.design, scatterOf(), solver.ranges, GHOSTS) : [];
     const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin })) : []), ...made.map((design) => ({ design }))], found = [];
     now.ghosts = [];
     element("ghosts-told").textContent = made.length > 0 ? ": solving" : "";
+    scrub.max = end();
+    draw();
+    if (wanted.length === 0) return;
     let begun = performance.now();
     for (const each of wanted) {
       try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, chosen.jumps) }); } catch (error) { element("ghosts-told").textContent = ""; notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }

@@ -16,7 +16,7 @@ const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity"]
 
 /** A map as the explorer writes them, without a number yet. given: {looks, statuses, parameters, ...}; state: {x, y, slips, fixed}. */
 function liveMap(given, solver, state) {
-  const n = LIVE_SHAPE[0] * LIVE_SHAPE[1], rgb = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  const n = LIVE_SHAPE[0] * LIVE_SHAPE[1];
   const fields = given.looks.map((look) => ({
     ...look, step: 1e-6, made: false, table: Uint8Array.from(atob(look.colours), (c) => c.charCodeAt(0)), values: new Float64Array(n).fill(NaN),
     given: look.levels, low: 0, high: 1, most: 1, place: () => 0,
@@ -27,7 +27,7 @@ function liveMap(given, solver, state) {
     axes: [state.x, state.y].map((axis) => liveAxis(given, axis)), fixed: { ...solver.defaults, ...state.fixed },
     fields, curves: [], scatter: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1,
     codes: {
-      status: { meanings, shown, rgb: shown.map(({ colour }) => rgb(colour)), values: new Uint8Array(n) },
+      status: { meanings, shown, rgb: shown.map(({ colour }) => rgbOf(colour)), values: new Uint8Array(n) },
       spurious_first_jump: { values: new Uint8Array(n).fill(255) }, candidates: { values: new Uint8Array(n) }, cliffs: { values: new Uint8Array(n) },
     },
   };

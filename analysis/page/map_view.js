@@ -73,7 +73,7 @@ function mapView(canvas, map, onPoint, onPick) {
 
   /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where the lines of spurious lift-offs run. */
   function colouring() {
-    const { table, place, made } = view.field, back = [1, 3, 5].map((at) => parseInt(tones.ground.slice(at, at + 2), 16));  // which what fails is dimmed towards
+    const { table, place, made } = view.field, back = rgbOf(tones.ground);  // which what fails is dimmed towards
     const word = (rgb, dark, dim) => rgb.map((v, at) => back[at] + (v * dark - back[at]) * dim).reduceRight((all, v) => all << 8 | v, 255) >>> 0;
     const shades = [1, 0.2].map((dim) => [1, 0.45].map((dark) => Uint32Array.from({ length: 256 }, (_, c) => word([...table.subarray(3 * c, 3 * c + 3)], dark, dim))));
     const others = [1, 0.2].map((dim) => ({ grey: word([217, 217, 217], 1, dim), white: word([255, 255, 255], 1, dim), statuses: status?.rgb.map((rgb) => word(rgb, 1, dim)) }));
@@ -97,7 +97,7 @@ function mapView(canvas, map, onPoint, onPick) {
     } else {
       // One colour a design, of which there are fewer than pixels.
       const design = new Int32Array(w * h), columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5)), plain = new Uint32Array(sx.n), hatched = new Uint32Array(sx.n);
-      const at = new Int32Array(sx.n), ground = parseInt(tones.ground.slice(1), 16), none = (255 << 24 | (ground & 0xff) << 16 | (ground & 0xff00) | ground >> 16) >>> 0;
+      const at = new Int32Array(sx.n), [r, g, b] = rgbOf(tones.ground), none = (255 << 24 | b << 16 | g << 8 | r) >>> 0;
       let done = -1;
       for (let q = 0, pixel = 0; q < h; ++q) {
         const j = sy.index(y0 + q + 0.5);
@@ -237,7 +237,7 @@ function mapView(canvas, map, onPoint, onPick) {
   /** What is drawn, of which hoops: a picture that is saved says it itself. */
   function paintTitle(context) {
     const { left, top, right, font } = frame, drawn = [map.axes[view.x].name, map.axes[view.y].name];
-    const values = { ...map.fixed, ...Object.fromEntries(map.axes.map((axis, k) => [axis.name, axis.values[view.index[k]]])) };
+    const values = designAt(map, view.index);
     const told = Object.entries(map.parameters).filter(([name]) => !drawn.includes(name) && Number.isFinite(values[name]) && (map.slips || !SLIPPING.includes(name)) && !NO_LIVE_AXIS.includes(name))
       .map(([name, row]) => `${row.symbol} ${withUnit(short(inShownUnit(row, values[name])), row.unit)}`);
     const scene = Object.entries(SCENE_WORDS).filter(([name]) => name === "radius" || values[name] !== map.defaults[name]).filter(([name]) => map.slips || !SLIPPING.includes(name)).map(([name, tell]) => tell(short(values[name])));
@@ -254,9 +254,7 @@ function mapView(canvas, map, onPoint, onPick) {
   function paperPlace() {
     if (map.slips || !frame) return null;
     const near = (a, b) => Math.abs(a - b) <= 1e-6 * Math.max(1, Math.abs(b));
-    const here = { ...map.fixed };
-    map.axes.forEach((axis, k) => { if (k !== view.x && k !== view.y) here[axis.name] = axis.values[view.index[k]]; });
-    const drawn = [map.axes[view.x].name, map.axes[view.y].name];
+    const here = designAt(map, view.index), drawn = [map.axes[view.x].name, map.axes[view.y].name];
     if (!drawn.every((name) => name in map.paper) || Object.entries(map.paper).some(([k, v]) => !drawn.includes(k) && !near(here[k], v))) return null;
     const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1);
     const x = sx.pixel(map.paper[drawn[0]] * unit(map.axes[view.x])), y = sy.pixel(map.paper[drawn[1]] * unit(map.axes[view.y]));
@@ -282,8 +280,7 @@ function mapView(canvas, map, onPoint, onPick) {
 
   /** Pinned designs with their numbers; faint where anything but the two axes drawn is another. */
   function paintPins(context) {
-    const { font, ratio } = frame, drawn = [map.axes[view.x], map.axes[view.y]], unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1), here = { ...map.fixed };
-    map.axes.forEach((axis, k) => { if (k !== view.x && k !== view.y) here[axis.name] = axis.values[view.index[k]]; });
+    const { font, ratio } = frame, drawn = [map.axes[view.x], map.axes[view.y]], unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1), here = designAt(map, view.index);
     map.pins?.forEach((design, i) => {
       const [x, y] = [sx, sy].map((scale, k) => scale.pixel(design[drawn[k].name] * unit(drawn[k])));
       if (!(x >= frame.left && x <= frame.right && y >= frame.top && y <= frame.bottom)) return;

@@ -32,7 +32,7 @@ async function readMap() {
   }
   for (const code of Object.values(map.codes)) code.values = await codes(code, shape);
   if (map.codes.status)
-    map.codes.status.rgb = map.codes.status.shown.map(({ colour }) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16)));
+    map.codes.status.rgb = map.codes.status.shown.map(({ colour }) => rgbOf(colour));
   return map;
 }
 
@@ -285,9 +285,11 @@ function start(map, solver) {
   const home = [...view.view.index], homeAxes = [view.view.x, view.view.y];
   if (!map.live) addressPart({
     write(words) {
-      for (const [k, key] of ["right", "up"].entries())
-        if (key[0] === "r" ? view.view.x !== homeAxes[0] : !map.columns && view.view.y !== homeAxes[1]) words.set(key, choices[[view.view.x, view.view.y][k]].name);
-      if (!map.columns) map.axes.forEach((axis, k) => { if (k !== view.view.x && k !== view.view.y && view.view.index[k] !== (view.view.picked ?? home)[k]) words.append("at", `${axis.name}:${view.view.index[k]}`); });
+      const { x, y } = view.view;
+      if (x !== homeAxes[0]) words.set("right", choices[x].name);
+      if (map.columns) return;
+      if (y !== homeAxes[1]) words.set("up", choices[y].name);
+      map.axes.forEach((axis, k) => { if (k !== x && k !== y && view.view.index[k] !== (view.view.picked ?? home)[k]) words.append("at", `${axis.name}:${view.view.index[k]}`); });
     },
     read(words) {
       const [x, y] = ["right", "up"].map((key, k) => { const at = choices.findIndex(({ name }) => name === words.get(key)); return at < 0 ? homeAxes[k] : at; });

@@ -8,6 +8,9 @@ function readTones() {
   for (const name of TONES) tones[name] = style.getPropertyValue(`--${name}`).trim();
 }
 
+/** Red, green and blue of #rrggbb. */
+const rgbOf = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+
 /** repaint(): whenever colours are others. */
 const onTones = (repaint) => toneListeners.push(repaint);
 

@@ -18,6 +18,7 @@
 #include "sweep/audit.hpp"
 #include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
+#include "sweep/join_faults.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/provenance.hpp"
@@ -27,17 +28,6 @@ namespace leapmap {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Numbers as Slurm's --array takes them: 3,5-7.
-std::string array_of(const std::vector<std::size_t>& numbers) {
-  std::string text;
-  for (std::size_t i = 0, j = 0; i < numbers.size(); i = j) {
-    for (j = i + 1; j < numbers.size() && numbers[j] == numbers[j - 1] + 1;) ++j;
-    text += fmt::format("{}{}", text.empty() ? "" : ",", numbers[i]);
-    if (j > i + 1) text += fmt::format("-{}", numbers[j - 1]);
-  }
-  return text;
-}
 
 /// The numbers of shards that files beside the map say by their names, whole or not.
 std::set<std::size_t> totals_beside(const std::string& map) {
@@ -68,47 +58,6 @@ std::size_t shards_of(const std::string& map, std::size_t asked) {
                     map, *totals.begin(), *std::next(totals.begin())));
   return *totals.begin();
 }
-
-/// What is wrong with shards, all of them told at once.
-class Faults {
- public:
-  explicit Faults(std::string map, std::size_t shards) : map_(std::move(map)), shards_(shards) {}
-
-  /// broken: the file is there, and has to go before it is made again.
-  void note(std::size_t shard, std::string what, bool broken = false) {
-    again_.push_back(shard);
-    if (broken) {
-      broken_.push_back(shard_path(map_, {shard, shards_}));
-      if (reasons_.size() < 3) reasons_.push_back(std::move(what));
-    } else {
-      unfinished_ += !what.empty();
-    }
-  }
-  /// Throws what was noted, as one line that says which to run again.
-  void tell() const {
-    if (again_.empty()) return;
-    std::vector<std::size_t> again = again_;
-    std::ranges::sort(again);
-    std::string text = fmt::format("{}: ", map_);
-    if (const std::size_t missing = again_.size() - broken_.size(); missing > 0)
-      text +=
-          fmt::format("{} of its {} shards {} not there{}; ", missing, shards_, missing == 1 ? "is" : "are",
-                      unfinished_ > 0 ? fmt::format(", {} of them unfinished", unfinished_) : "");
-    for (const std::string& reason : reasons_) text += reason + "; ";
-    if (broken_.size() > reasons_.size())
-      text += fmt::format("and {} more; ", broken_.size() - reasons_.size());
-    if (!broken_.empty()) text += "remove what is broken, then ";
-    text += fmt::format("run them again, with --resume: --array={}", array_of(again));
-    if (broken_.empty()) throw InputError(text);
-    throw BrokenFile(text);
-  }
-
- private:
-  std::string map_;
-  std::size_t shards_, unfinished_ = 0;
-  std::vector<std::size_t> again_;
-  std::vector<std::string> broken_, reasons_;
-};
 
 /// What an interrupted join has left is of no use to anybody.
 void remove_unfinished(const std::string& map, Locking locking) {
@@ -168,7 +117,7 @@ class Joining {
 
   /// Reads what every shard says of itself, before anything is written.
   void survey() {
-    Faults faults(map_, shards_);
+    JoinFaults faults(map_, shards_);
     std::vector<std::size_t> there;
     for (std::size_t i = 1; i <= shards_; ++i) {
       std::error_code ignored;

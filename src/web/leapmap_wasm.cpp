@@ -113,11 +113,10 @@ Solver first_jump_solver(const Scene& scene, double tolerance) {
   };
 }
 
-JumpSolver<double> jump_solver(const Scene& scene, double tolerance) {
+JumpSolver<double> jump_solver(const Scene& scene, double tolerance, const Wanted& wanted = {}) {
   if (scene.friction == Friction::coulomb)
     return jumps_one_by_one<double>(std::make_shared<CoulombSolver<double>>(tolerance), scene);
-  constexpr Wanted heights_only{.first_jump_time = false, .jump_time = false, .descent = true};
-  return [solver = std::make_shared<ExactSolver<Batch>>(tolerance, heights_only), scene](
+  return [solver = std::make_shared<ExactSolver<Batch>>(tolerance, wanted), scene](
              Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
              std::span<Outcome> outcomes) { solver->solve(start, designs, states, scene, outcomes); };
 }
@@ -202,7 +201,8 @@ LEAPMAP_EXPORT int bifurcate(int friction, double tolerance, int parameter, doub
       std::get_if<double Design::*>(&leapmap::parameters()[static_cast<std::size_t>(parameter)].member);
   page.heights.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(keep), Outcome::none);
   if (!member) return 0;
-  const JumpSolver<double> solve = jump_solver(scene, tolerance);
+  constexpr Wanted heights_only{.first_jump_time = false, .jump_time = false, .descent = true};
+  const JumpSolver<double> solve = jump_solver(scene, tolerance, heights_only);
   std::vector<Design> designs;
   std::vector<ContactState<double>> states;
   std::vector<std::size_t> which;
@@ -295,8 +295,6 @@ LEAPMAP_EXPORT double* places(int count) {
 /// not_computed.
 LEAPMAP_EXPORT void solve_places(int friction, double tolerance, int first, int second, int count) {
   const Scene scene = page.scene(friction);
-  Scene of_one = scene;
-  of_one.jumps = 1;
   const auto all = leapmap::parameters();
   const Parameter &x = all[static_cast<std::size_t>(first)], &y = all[static_cast<std::size_t>(second)];
   const auto member = [](const Parameter& parameter) {
@@ -316,8 +314,9 @@ LEAPMAP_EXPORT void solve_places(int friction, double tolerance, int first, int 
     which.push_back(i);
   }
   std::vector<Outcome> outcomes(designs.size());
-  first_jump_solver(of_one, tolerance)(designs, outcomes);
-  if (scene.jumps > 1) Sequences<double>(jump_solver(scene, tolerance)).solve(designs, scene, outcomes);
+  const Solver solve = scene.jumps > 1 ? in_sequence(jump_solver(scene, tolerance), scene)
+                                       : first_jump_solver(scene, tolerance);
+  solve(designs, outcomes);
   for (std::size_t k = 0; k < which.size(); ++k)
     for (std::size_t f = 0; f < wide; ++f)
       page.rows[which[k] * wide + f] = stored_number(*row_fields()[f], outcomes[k]);

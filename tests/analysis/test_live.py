@@ -48,18 +48,29 @@ def designs(browser, cells):
           told: Object.fromEntries(map.fields.map((f) => [f.name, String(f.values[k])])) }))""", cells)
 
 
+def told_of(cell, *more):
+    """What leapmap hop tells of a cell's design."""
+    contact = ("mu_static", "mu_kinetic", "restitution", "rest_speed")
+    flags = [w for name, v in cell["design"].items() if v is not None and (cell["slips"] or name not in contact) for w in ("--set", f"{name}={v!r}")]
+    done = leapmap("hop", *flags, *(["--set", "friction=coulomb"] if cell["slips"] else []), *more, "--json")
+    assert done.returncode == 0, (cell, done.stderr)
+    return json.loads(done.stdout)
+
+
+def same_first_jump(cell, told):
+    assert cell["status"] == told["status"], cell
+    numbers = {name: text for name, text in cell["told"].items() if name in TOLD}
+    if told["candidates"] == 0:
+        numbers.pop("candidates")  # of which the map has a number where hop says none
+    assert agrees(numbers, told) >= 9
+
+
 def compare(browser, random, count):
     """Some cells against leapmap hop. Returns how many of them jump."""
     jumped = 0
     for cell in designs(browser, [int(k) for k in random.integers(0, 30000, count)]):
-        contact = ("mu_static", "mu_kinetic", "restitution", "rest_speed")
-        flags = [w for name, v in cell["design"].items() if v is not None and (cell["slips"] or name not in contact) for w in ("--set", f"{name}={v!r}")]
-        told = json.loads(leapmap("hop", *flags, *(["--set", "friction=coulomb"] if cell["slips"] else []), "--json").stdout)
-        assert cell["status"] == told["status"], cell
-        numbers = {name: text for name, text in cell["told"].items() if name in TOLD}
-        if told["candidates"] == 0:
-            numbers.pop("candidates")  # of which the map has a number where hop says none
-        assert agrees(numbers, told) >= 9
+        told = told_of(cell)
+        same_first_jump(cell, told)
         jumped += told["status"] == "jumped"
     return jumped
 
@@ -212,10 +223,8 @@ def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(fri
     WebDriverWait(live, 5).until(lambda b: "jumps=4" in b.execute_script("return location.hash") and "field=jumps" in b.execute_script("return location.hash"))
     made = []
     for cell in designs(live, [int(k) for k in np.random.default_rng(11).integers(0, 30000, 30)]):
-        flags = [w for name, v in cell["design"].items() if v is not None and (friction or name not in ("mu_static", "mu_kinetic", "restitution", "rest_speed")) for w in ("--set", f"{name}={v!r}")]
-        done = leapmap("hop", *flags, *(["--set", "friction=coulomb"] if friction else []), "--jumps", "4", "--json")
-        assert done.returncode == 0, (cell, done.stderr)
-        told = json.loads(done.stdout)
+        told = told_of(cell, "--jumps", "4")
+        same_first_jump(cell, told)
         assert (cell["told"]["jumps"] == "NaN" and not told["jumps"]) or float(cell["told"]["jumps"]) == told["jumps"], cell
         made.append(told["jumps"] or 0)
     assert len(set(made)) >= 3  # none, some, all
