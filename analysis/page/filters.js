@@ -82,6 +82,7 @@ function filtersPart(map, view, changed, best) {
   });
   return {
     tell,
+    fields: () => goals.map(({ field }) => field),
     write(words) {
       for (const { field, sign, bound } of goals) words.append("goal", `${field.name}:${sign}:${Number(bound.toPrecision(12))}`);
       if (real.checked) words.set("real", "");

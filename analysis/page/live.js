@@ -11,6 +11,8 @@ const LIVE_RANGES = {
 };
 /** What tells one course of events from another, each with what stands where there is none. */
 const OUTCOME_CODES = [["status", 0], ["spurious_first_jump", 255], ["candidates", 0]];
+/** Fields that take many jumps of each hoop, and what they want asked: they have numbers only while the field shown or a goal is among them. */
+const COSTLY = { ...Object.fromEntries(["period", "multiplier", "height", "speed", "energy_lost"].map((name) => [`gait_${name}`, "settle"])), sequence_condition: "growth" };
 const SLIPPING = ["mu_static", "mu_kinetic", "restitution", "rest_speed"];
 const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity"];  // none of the design's own
 
@@ -25,7 +27,7 @@ function liveMap(given, solver, state) {
   const map = {
     ...given, live: true, name: "leapmap", title: "Jumps of passive hoops, computed as you look", designs: n, computed: 1, slips: state.slips, method: "exact", tolerance: 1e-10,
     axes: [state.x, state.y].map((axis) => liveAxis(given, axis)), fixed: { ...solver.defaults, ...state.fixed },
-    fields, curves: [], scatter: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1,
+    fields, curves: [], scatter: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1, settle: 100, tells: { settle: false, growth: false },
     codes: {
       status: { meanings, shown, rgb: shown.map(({ colour }) => rgbOf(colour)), values: new Uint8Array(n) },
       spurious_first_jump: { values: new Uint8Array(n).fill(255) }, candidates: { values: new Uint8Array(n) }, cliffs: { values: new Uint8Array(n) },
@@ -33,6 +35,16 @@ function liveMap(given, solver, state) {
   };
   return map;
 }
+
+/** Makes a live map tell all that these fields want. Returns whether that is more than it told. */
+function tellFor(map, fields) {
+  const before = map.tells, wants = (what) => fields.some(({ name }) => COSTLY[name] === what);
+  map.tells = { settle: wants("settle"), growth: wants("growth") };
+  return Object.keys(before).some((what) => map.tells[what] && !before[what]);
+}
+const isTold = (map, { name }) => !map.live || !(name in COSTLY) || map.tells[COSTLY[name]];
+/** What the solver is asked of a hoop that is followed for so many jumps. */
+const askedOf = (map, jumps) => ({ jumps, settle: map.tells?.settle ? map.settle : 0, growth: Boolean(map.tells?.growth) });
 
 /** An axis with its values, evenly from one bound to the other. */
 function liveAxis(given, { name, from, to, count }) {
@@ -73,7 +85,7 @@ function settleMap(map) {
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
     if (!(low <= high)) [low, high] = [0, 1];
     scaleField(field, low, high, field.given ?? linearTicks(low, high, 12));
-    field.step = ["candidates", "jumps"].includes(field.name) ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-2) / 60000));
+    field.step = ["candidates", "jumps", "gait_period"].includes(field.name) ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-2) / 60000));
   }
   const [nx, ny] = LIVE_SHAPE, { cliffs } = map.codes, differ = outcomesDiffer(map);
   for (let i = 0; i < nx; ++i)
@@ -184,13 +196,17 @@ function liveEngine(map, module, workerText, onPicture) {
     worker.postMessage({ module });
   }
 
-  /** Throws away what is under way and starts again, coarse first; but a first picture that is begun is shown first, however often a slider tells. */
+  /**
+   * Throws away what is under way and starts again, coarse first; but a first picture that is begun is shown first, however often a slider
+   * tells, unless it takes many jumps of each hoop.
+   */
   function begin() {
     now.again = now.rushing;
     if (now.rushing) return;
-    now.rushing = true;
+    const costs = map.tells.settle || map.tells.growth;
+    now.rushing = !costs;
     // One picture is of one set of numbers, whatever is turned meanwhile.
-    now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, jumps: map.jumps, first: map.axes[0].name, second: map.axes[1].name };
+    now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, asked: askedOf(map, map.jumps), first: map.axes[0].name, second: map.axes[1].name };
     now.values = map.axes.map((axis) => axis.values);
     clearTimeout(now.resting);
     now.queue = [];
@@ -201,7 +217,7 @@ function liveEngine(map, module, workerText, onPicture) {
       const cells = [];
       for (let i = 0; i < nx; i += side)
         for (let j = 0; j < ny; j += side) if (side === COARSEST || i % (2 * side) || j % (2 * side)) cells.push(i * ny + j);
-      const most = Math.min(map.slips ? 200 : 2000, Math.ceil(cells.length / count));
+      const most = Math.min((map.slips ? 200 : 2000) / (costs ? 20 : 1), Math.ceil(cells.length / count));
       now.left.push(0);
       for (let first = 0; first < cells.length; first += most) {
         now.queue.push({ stage, side, cells: cells.slice(first, first + most) });

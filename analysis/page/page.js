@@ -53,7 +53,29 @@ const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI
 
 /** Quantities that only hoops that may slip have, or only those that never do. */
 const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
-const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name) && !(name === "jumps" && map.live && map.jumps === 1);
+const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name) && !(["jumps", "sequence_condition"].includes(name) && map.live && map.jumps === 1);
+
+/** How many jumps a live map lets go by before it looks for gaits. */
+function settlePart(map) {
+  const input = element("settle"), usual = map.settle;
+  input.addEventListener("change", () => {
+    const good = input.value !== "" && input.checkValidity();
+    input.setAttribute("aria-invalid", String(!good));
+    notice(good ? "" : `How many jumps go by before a gait is looked for must be a whole number from ${input.min} to ${input.max}.`);
+    if (!good) return;
+    map.settle = Number(input.value);
+    map.refresh();
+    noteAddress();
+  });
+  return {
+    write(words) { if (map.settle !== usual) words.set("settle", map.settle); },
+    read(words) {
+      input.value = words.get("settle") ?? usual;
+      if (input.value === "" || !input.checkValidity()) { input.value = usual; notice(`The address asks for settle=${words.get("settle")}, which cannot be, and is left out.`); }
+      map.settle = Number(input.value);
+    },
+  };
+}
 
 /** Starts with a map that is solved as one looks. */
 function startLive(given, module, solver) {
@@ -100,7 +122,7 @@ function start(map, solver) {
 
   let said = "", own = null, points = false;  // what the readout tells; the hoop beside, if it is none of the map's; whether one points at the map
   /** Of every quantity but the one shown a row, whether there is a number or none, so that nothing below moves. */
-  const tellOthers = (textOf) => element("others").replaceChildren(...map.fields.filter((f) => f !== view.view.field && applies(map, f)).map((f) => {
+  const tellOthers = (textOf) => element("others").replaceChildren(...map.fields.filter((f) => f !== view.view.field && applies(map, f) && isTold(map, f)).map((f) => {
     const pair = document.createElement("div"), name = document.createElement("dt"), value = document.createElement("dd");
     name.textContent = f.label.split(":")[0];
     value.textContent = textOf(f) || "–";
@@ -178,8 +200,19 @@ function start(map, solver) {
   offerFields();
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
   const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
-  const showField = () => { view.view.field = map.fields[fieldSelect.value]; view.paint(); tellShown(); drawCuts(); filters?.tell(); };
+  /** Solves a live map anew if it does not tell yet what is shown or asked for. */
+  const tellWanted = () => { if (map.live && tellFor(map, [view.view.field, ...(filters?.fields() ?? [])])) map.refresh(); };
+  const showField = () => {
+    view.view.field = map.fields[fieldSelect.value];
+    element("settle").parentElement.hidden = !map.live || COSTLY[view.view.field.name] !== "settle";
+    tellWanted();
+    view.paint();
+    tellShown();
+    drawCuts();
+    filters?.tell();
+  };
   fieldSelect.addEventListener("change", () => { showField(); noteAddress(); });
+  if (map.live) addressPart(settlePart(map));
   const firstField = fieldSelect.value;
   addressPart({
     write(words) { if (fieldSelect.value !== firstField) words.set("field", view.view.field.name); },
@@ -266,7 +299,7 @@ function start(map, solver) {
   saveButtons("map", canvas, pictureName, (like) => view.paintOn(like.getContext("2d")));
   element("cuts").hidden = Boolean(map.columns);
   if (!map.columns) drawCuts = cutsPart(map, view);
-  filters = map.columns ? null : filtersPart(map, view, () => view.paint(), (index) => { view.view.index = index; arrange(); view.paint(); view.pick(); });
+  filters = map.columns ? null : filtersPart(map, view, () => { tellWanted(); view.paint(); }, (index) => { view.view.index = index; arrange(); view.paint(); view.pick(); });
   element("filters").hidden = Boolean(map.columns);
   if (filters) addressPart(filters);
   const tellUnits = () => {

@@ -32,15 +32,17 @@ async function solverOf(module) {
   const ranges = Object.fromEntries(parameters.map((name, i) => [name, [leapmap.parameter_least(i), leapmap.parameter_most(i)]]));
   const codes = Object.fromEntries(fields.map((name, i) => [name, namesBy((code) => leapmap.code_name(i, code))]));
   const give = (design) => doubles(leapmap.parameter_values(), parameters.length).set(parameters.map((name) => design[name] ?? defaults[name]));
+  const ask = ({ jumps = 1, settle = 0, growth = false }) => leapmap.ask(jumps, settle, Number(growth));
   return {
     defaults, ranges, codes,
     /**
      * One design in full: {outcome, motion, liftOffs}, in SI but for forces, in weights, and heights, in diameters. interval: of the
-     * motion's samples [s]; 0: as fine as a picture needs. jumps: how many it is followed for.
+     * motion's samples [s]; 0: as fine as a picture needs. asked: how many `jumps` it is followed for, the gait after `settle` of them, if
+     * that is above zero, and whether the `growth` of errors is told.
      */
-    solve(design, slips, tolerance, interval = 0, jumps = 1) {
+    solve(design, slips, tolerance, interval = 0, asked = {}) {
       give(design);
-      leapmap.set_jumps(jumps);
+      ask(asked);
       leapmap.solve(slips ? 1 : 0, tolerance, interval);
       const outcome = Object.fromEntries(fields.map((name, i) => [name, word(leapmap.field_text(i)) ?? leapmap.field_value(i)]));
       return {
@@ -59,11 +61,11 @@ async function solverOf(module) {
     rowNames,
     /**
      * Designs that differ in two parameters, in full: rows of numbers and codes of each, one after the other. places: the two numbers of
-     * each by turns. jumps: how many each is followed for.
+     * each by turns. asked: as of solve.
      */
-    solvePlaces(design, slips, tolerance, first, second, places, jumps = 1) {
+    solvePlaces(design, slips, tolerance, first, second, places, asked = {}) {
       give(design);
-      leapmap.set_jumps(jumps);
+      ask(asked);
       const count = places.length / 2;
       doubles(leapmap.places(count), places.length).set(places);
       leapmap.solve_places(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second), count);

@@ -26,7 +26,7 @@ onmessage = async ({ data }) => {
       postMessage({ ready: true });
       return;
     }
-    const rows = data.ends ? bisected(data) : solver.solvePlaces(data.design, data.slips, data.tolerance, data.first, data.second, data.places, data.jumps);
+    const rows = data.ends ? bisected(data) : solver.solvePlaces(data.design, data.slips, data.tolerance, data.first, data.second, data.places, data.asked);
     postMessage({ generation: data.generation, rows }, [rows.buffer]);
   } catch (error) { postMessage({ error: String(error.message ?? error), generation: data.generation }); }  // of an async function onerror hears nothing
 };

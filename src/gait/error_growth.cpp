@@ -7,8 +7,11 @@
 
 namespace leapmap {
 
+ErrorGrowth::ErrorGrowth(const Scene& scene, DualJumpSolver duals)
+    : scene_(each_jump_alone(scene)), duals_(std::move(duals)) {}
+
 ErrorGrowth::ErrorGrowth(const Scene& scene, double tolerance)
-    : scene_(each_jump_alone(scene)), duals_(model_of(scene).dual_jumps(scene_, tolerance)) {}
+    : ErrorGrowth(scene, model_of(scene).dual_jumps(each_jump_alone(scene), tolerance)) {}
 
 std::vector<double> ErrorGrowth::along(const Design& design, std::size_t most) {
   return along(design, Start::release, released<double>(design), most);

@@ -19,7 +19,8 @@ inline constexpr double most_growth = 1e20;
 /// A thread's own workspace.
 class ErrorGrowth {
  public:
-  /// tolerance: relative, of times.
+  ErrorGrowth(const Scene& scene, DualJumpSolver duals);
+  /// By the scene's model. tolerance: relative, of times.
   ErrorGrowth(const Scene& scene, double tolerance);
 
   /// Of each jump that the exact solver makes, up to `most`: what an error of one [rad, sqrt(g/R)] at the

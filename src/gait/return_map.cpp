@@ -66,17 +66,17 @@ StateVector between(const Landed& a, const Landed& b) {
   return difference;
 }
 
-ReturnMap::ReturnMap(const Scene& scene, double tolerance)
-    : scene_(each_jump_alone(scene)),
-      jumps_(model_of(scene_).jumps(scene_, tolerance,
-                                    {.first_jump_time = false, .jump_time = false, .descent = true})),
-      timed_jumps_(model_of(scene_).jumps(scene_, tolerance, {})),
-      duals_(model_of(scene_).dual_jumps(scene_, tolerance)) {}
+JumpSolvers jump_solvers(const Scene& scene, double tolerance) {
+  const Scene alone = each_jump_alone(scene);
+  const Model& model = model_of(alone);
+  return {model.jumps(alone, tolerance, untimed), model.jumps(alone, tolerance, {}),
+          model.dual_jumps(alone, tolerance)};
+}
 
 void ReturnMap::next(Start start, std::span<const Design> designs, std::span<Landed> states,
                      std::vector<Outcome>& outcomes) {
   outcomes.resize(designs.size());
-  jumps_(start, designs, states, outcomes);
+  solvers_.jumps(start, designs, states, outcomes);
   for (std::size_t i = 0; i < designs.size(); ++i) {
     if (outcomes[i].status == Status::jumped && is_beyond(scene_, states[i]))
       outcomes[i].status = Status::no_jump;
@@ -89,7 +89,7 @@ void ReturnMap::next(Start start, std::span<const Design> designs, std::span<Lan
 bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatrix& slope) {
   ContactState<DesignDual> dual = by_state(at);
   for (int k = 0; k < period; ++k) {
-    if (duals_(Start::landing, design, Along::state, dual, {}).status != Status::jumped) return false;
+    if (solvers_.duals(Start::landing, design, Along::state, dual, {}).status != Status::jumped) return false;
     if (is_beyond(scene_, plain(dual))) return false;
     set_values(dual, reduced(plain(dual)));
   }
@@ -150,7 +150,7 @@ bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const De
 
 bool ReturnMap::describe(const Design& design, int period, const Landed& start, const StateMatrix& slope,
                          Orbit& orbit) {
-  if (!go_once_round(timed_jumps_, scene_, design, period, start, orbit)) return false;
+  if (!go_once_round(solvers_.timed_jumps, scene_, design, period, start, orbit)) return false;
   orbit.multiplier = largest_eigenvalue(slope);
   return true;
 }

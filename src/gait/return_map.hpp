@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "model/model.hpp"
@@ -51,11 +52,23 @@ struct Orbit {
 bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const Design& design, int period,
                    const Landed& start, Orbit& orbit);
 
+/// Of a jump its flight, and no time before it.
+inline constexpr Wanted untimed{.first_jump_time = false, .jump_time = false, .descent = true};
+
+/// How designs go on from one landing to the next, each jump alone.
+struct JumpSolvers {
+  JumpSolver<double> jumps, timed_jumps;  ///< untimed, and with all that there is
+  DualJumpSolver duals;
+};
+/// Those of the scene's model. tolerance: relative, of times.
+JumpSolvers jump_solvers(const Scene& scene, double tolerance);
+
 /// Goes round orbits of one design after the other. A thread's own workspace.
 class ReturnMap {
  public:
-  /// tolerance: relative, of times. The runway counts from each landing to the next.
-  ReturnMap(const Scene& scene, double tolerance);
+  /// The runway counts from each landing to the next.
+  ReturnMap(const Scene& scene, JumpSolvers solvers)
+      : scene_(each_jump_alone(scene)), solvers_(std::move(solvers)) {}
 
   /// Takes designs from their landings, or releases, to their next landings, reduced; outcomes tell which
   /// jumped: one beyond the runway did not.
@@ -74,8 +87,7 @@ class ReturnMap {
   bool describe(const Design& design, int period, const Landed& at, const StateMatrix& slope, Orbit& orbit);
 
   Scene scene_;
-  JumpSolver<double> jumps_, timed_jumps_;
-  DualJumpSolver duals_;
+  JumpSolvers solvers_;
 };
 
 }  // namespace leapmap

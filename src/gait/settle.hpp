@@ -13,7 +13,9 @@ namespace leapmap {
 /// are near. A thread's own workspace.
 class GaitSolver {
  public:
-  GaitSolver(const Scene& scene, double tolerance) : scene_(scene), map_(scene, tolerance) {}
+  GaitSolver(const Scene& scene, JumpSolvers solvers) : scene_(scene), map_(scene, std::move(solvers)) {}
+  /// By the scene's model. tolerance: relative, of times.
+  GaitSolver(const Scene& scene, double tolerance) : GaitSolver(scene, jump_solvers(scene, tolerance)) {}
 
   /// Fills in what outcomes tell of gaits.
   void solve(std::span<const Design> designs, std::span<Outcome> outcomes);

@@ -16,6 +16,8 @@
 #include "coulomb/coulomb.hpp"
 #include "coulomb/gradient.hpp"
 #include "coulomb/model.hpp"
+#include "gait/error_growth.hpp"
+#include "gait/settle.hpp"
 #include "model/fields.hpp"
 #include "model/parameters.hpp"
 #include "rolling/exact.hpp"
@@ -60,12 +62,13 @@ struct Page {
     Scene scene;
     fill(design, scene);
     scene.friction = static_cast<Friction>(friction);
-    scene.jumps = jumps;
+    scene.jumps = jumps, scene.settle = settle;
     return scene;
   }
 
   std::vector<double> parameters;
-  long jumps = 1;
+  long jumps = 1, settle = 0;
+  bool tells_growth = false;
   Outcome outcome;
   std::string text;
   std::vector<std::array<double, column_names.size()>> points;
@@ -83,15 +86,12 @@ struct Page {
 };
 Page page;
 
-/// What a map computed on the page tells of each design: numbers and codes of the first jump, and how many
-/// it makes.
+/// What a map computed on the page tells of each design: all numbers and codes.
 const std::vector<const Field*>& row_fields() {
   static const std::vector<const Field*> fields = [] {
     std::vector<const Field*> fields;
     for (const Field& field : map_fields())
-      if ((!field.of_sequence || field.name == "jumps") && !field.of_gait &&
-          !std::holds_alternative<Word>(field.source))
-        fields.push_back(&field);
+      if (!std::holds_alternative<Word>(field.source)) fields.push_back(&field);
     return fields;
   }();
   return fields;
@@ -119,6 +119,23 @@ JumpSolver<double> jump_solver(const Scene& scene, double tolerance, const Wante
   return [solver = std::make_shared<ExactSolver<Batch>>(tolerance, wanted), scene](
              Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
              std::span<Outcome> outcomes) { solver->solve(start, designs, states, scene, outcomes); };
+}
+
+DualJumpSolver dual_solver(const Scene& scene, double tolerance) {
+  return scene.friction == Friction::coulomb ? coulomb::dual_jumps(scene, tolerance)
+                                             : rolling::dual_jumps(scene, tolerance);
+}
+
+/// Fills in what was asked for besides jumps: gaits, and how errors grow.
+void tell_more(const Scene& scene, double tolerance, std::span<const Design> designs,
+               std::span<Outcome> outcomes) {
+  const Scene alone = each_jump_alone(scene);
+  if (page.tells_growth && scene.jumps > 1)
+    ErrorGrowth(scene, dual_solver(alone, tolerance)).tell(designs, outcomes);
+  if (scene.settle > 0)
+    GaitSolver(scene, {jump_solver(alone, tolerance, untimed), jump_solver(alone, tolerance),
+                       dual_solver(alone, tolerance)})
+        .solve(designs, outcomes);
 }
 
 template <std::size_t n>
@@ -176,6 +193,7 @@ LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
   }
   const Motion motion = tell(design, scene, tolerance, interval);
   page.outcome = motion.outcome;
+  tell_more(scene, tolerance, {&design, 1}, {&page.outcome, 1});
   page.points.clear(), page.lift_offs.clear();
   for (const MotionPoint& point : motion.points)
     page.points.push_back({point.t, point.phi, point.spin, point.x, point.y, point.normal_force,
@@ -185,9 +203,12 @@ LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
                               flown.flight_time, flown.dip, flown.is_jump ? 1.0 : 0.0});
 }
 
-/// How many jumps solve and solve_places follow a hoop for.
-LEAPMAP_EXPORT void set_jumps(int jumps) {
+/// What solve and solve_places tell of a hoop: so many jumps at most, the gait after `settle` of them if that
+/// is above zero, and how errors grow, which only a sequence has.
+LEAPMAP_EXPORT void ask(int jumps, int settle, int growth) {
   page.jumps = std::clamp(static_cast<long>(jumps), 1l, most_jumps);
+  page.settle = std::max(settle, 0);
+  page.tells_growth = growth != 0;
 }
 
 /// Lets hoops jump that differ in one parameter, evenly from `from` to `to`: heights()[i * keep + k] is the
@@ -201,8 +222,7 @@ LEAPMAP_EXPORT int bifurcate(int friction, double tolerance, int parameter, doub
       std::get_if<double Design::*>(&leapmap::parameters()[static_cast<std::size_t>(parameter)].member);
   page.heights.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(keep), Outcome::none);
   if (!member) return 0;
-  constexpr Wanted heights_only{.first_jump_time = false, .jump_time = false, .descent = true};
-  const JumpSolver<double> solve = jump_solver(scene, tolerance, heights_only);
+  const JumpSolver<double> solve = jump_solver(scene, tolerance, untimed);
   std::vector<Design> designs;
   std::vector<ContactState<double>> states;
   std::vector<std::size_t> which;
@@ -317,6 +337,7 @@ LEAPMAP_EXPORT void solve_places(int friction, double tolerance, int first, int 
   const Solver solve = scene.jumps > 1 ? in_sequence(jump_solver(scene, tolerance), scene)
                                        : first_jump_solver(scene, tolerance);
   solve(designs, outcomes);
+  tell_more(scene, tolerance, designs, outcomes);
   for (std::size_t k = 0; k < which.size(); ++k)
     for (std::size_t f = 0; f < wide; ++f)
       page.rows[which[k] * wide + f] = stored_number(*row_fields()[f], outcomes[k]);

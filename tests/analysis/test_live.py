@@ -230,6 +230,60 @@ def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(fri
     assert len(set(made)) >= 3  # none, some, all
 
 
+def show(browser, field):
+    """Chooses the quantity that the map shows."""
+    browser.execute_script("""const select = document.getElementById('field');
+        select.value = window.explorer.map.fields.findIndex((f) => f.name === arguments[0]); select.dispatchEvent(new Event('change'))""", field)
+
+
+def first_picture(browser, field, seconds=120):
+    """The cells of the first, coarse picture in which a field has numbers."""
+    cells = [i * 150 + j for i in range(0, 200, 8) for j in range(0, 150, 8)]
+    told = "const at = arguments[0], f = window.explorer?.map.fields.find((f) => f.name === arguments[1]); return f ? at.filter((k) => f.values[k] === f.values[k]) : []"
+    WebDriverWait(browser, seconds).until(lambda b: len(b.execute_script(told, cells, field)) > 20)
+    return browser.execute_script(told, cells, field)
+
+
+@pytest.mark.parametrize("friction, settle", [("sticking", 200), ("coulomb", 60)])
+def test_the_gait_that_each_hoop_settles_on_is_a_field_solved_once_one_looks(friction, settle, live, tmp_path):
+    field = "return Object.fromEntries(window.explorer.map.fields.map((f) => [f.name, f.values.some((v) => v === v)]))"
+    assert not live.execute_script(field)["gait_period"], "nobody has asked for gaits yet"
+    address = f"#live&x=slope:0.05:0.45&y=mass_ratio:0.3:20&offset_ratio=0.5&runway=20&settle={settle}&field=gait_period&friction={friction}"
+    live.get("about:blank")
+    live.get(page_at(tmp_path).as_uri() + address)
+    cells = designs(live, first_picture(live, "gait_period")[::8])
+    same = settled_on_one = 0
+    for cell in cells:
+        told = told_of(cell, "--set", f"settle={settle}")
+        # What a chaotic hoop comes to after so many jumps hangs on the last digit of the first.
+        same += float(cell["told"]["gait_period"]) == (told["gait_period"] if told["gait_period"] is not None else 255)
+        if told["gait_period"] and told["gait_period"] < 255 and float(cell["told"]["gait_period"]) == told["gait_period"]:
+            settled_on_one += 1
+            for name in ("gait_height", "gait_speed", "gait_energy_lost"):
+                assert float(cell["told"][name]) == pytest.approx(told[name], rel=1e-9, abs=1e-11), (name, cell)
+            # A derivative, of as many digits as Newton's iteration leaves the orbit.
+            assert float(cell["told"]["gait_multiplier"]) == pytest.approx(told["gait_multiplier"], rel=1e-6, abs=1e-8), cell
+    assert same >= 0.9 * len(cells) and settled_on_one >= 3, (same, settled_on_one, len(cells))
+    live.find_element("id", "paper").click() if friction == "sticking" else None
+    show(live, "gait_height")
+    assert f"settle={settle}" in live.execute_script("return location.hash")
+    assert live.find_element("id", "settle").is_displayed()
+    show(live, "jump_height")
+    assert not live.find_element("id", "settle").is_displayed()
+
+
+def test_how_errors_grow_is_a_field_of_sequences(live):
+    live.execute_script("document.getElementById('map').dataset.whole = 'false'; const j = document.getElementById('jumps'); j.value = 3; j.dispatchEvent(new Event('change'))")
+    settled(live)
+    show(live, "sequence_condition")
+    compared = 0
+    for cell in designs(live, first_picture(live, "sequence_condition")[::10]):
+        told = told_of(cell, "--jumps", "3")
+        assert float(cell["told"]["sequence_condition"]) == pytest.approx(told["sequence_condition"], rel=1e-6), cell
+        compared += 1
+    assert compared >= 3
+
+
 def test_cliffs_move_while_one_drags_and_no_drag_goes_unseen(live):
     """Each picture on the way has curves of its own, and they come however often the slider tells."""
     settled(live, what="cliffs")
