@@ -101,6 +101,11 @@ def is_of_made(name):
     return name == "yield" or name.endswith(("_q05", "_q50", "_q95", "_mean", "_sd"))
 
 
+def is_of_gait(name):
+    """Whether a quantity is of the gait that a hoop settles on, whatever its first jump was."""
+    return name.startswith("gait_")
+
+
 def quantity(m, name):
     """A field of the map, or what follows from several; NaN where it does not apply. None if the map cannot tell."""
     if name == "agility":

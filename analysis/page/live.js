@@ -20,7 +20,7 @@ const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity"]
 function liveMap(given, solver, state) {
   const n = LIVE_SHAPE[0] * LIVE_SHAPE[1];
   const fields = given.looks.map((look) => ({
-    ...look, step: 1e-6, made: false, table: Uint8Array.from(atob(look.colours), (c) => c.charCodeAt(0)), values: new Float64Array(n).fill(NaN),
+    ...look, step: 1e-6, table: Uint8Array.from(atob(look.colours), (c) => c.charCodeAt(0)), values: new Float64Array(n).fill(NaN),
     given: look.levels, low: 0, high: 1, most: 1, place: () => 0,
   }));
   const meanings = solver.codes.status, shown = meanings.map((word) => given.statuses[word] ?? { colour: "#ffffff", words: word });
@@ -95,11 +95,14 @@ function settleMap(map) {
     }
 }
 
-/** Solves a live map on all cores, anew by begin(). onPicture(what): there is more to see: "part" of the map, the "whole", or its "cliffs" too. */
-function liveEngine(map, module, workerText, onPicture) {
+/**
+ * Solves a live map on all cores, anew by begin(). onPicture(what): there is more to see: "part" of the map, the "whole", or its "cliffs" too.
+ * onProgress(share, left): of a map that takes many jumps of each hoop so much is solved, and the rest will take so long [s].
+ */
+function liveEngine(map, module, workerText, onPicture, onProgress) {
   const [nx, ny] = LIVE_SHAPE, level = new Uint8Array(nx * ny);
   const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
-  const now = { generation: 0, queue: [], left: [], edges: {}, rushing: false, again: false, begun: 0, resting: 0, shown: 0, cost: 0, timing: {} }, workers = [];
+  const now = { generation: 0, queue: [], left: [], edges: {}, rushing: false, again: false, begun: 0, costs: false, solved: 0, resting: 0, shown: 0, cost: 0, timing: {} }, workers = [];
   const count = Math.max(1, Math.min(16, navigator.hardwareConcurrency || 2));
 
   /** Keeps two jobs with a worker, so that it never waits for this thread to paint. */
@@ -174,6 +177,8 @@ function liveEngine(map, module, workerText, onPicture) {
     if (data.generation !== now.generation) return;
     if (job.edges) { receiveCliffs(job, data.rows); return; }
     putRows(map, data.rows, job.cells, job.side, level);
+    now.solved += job.cells.length;
+    if (now.costs) onProgress(now.solved / (nx * ny), (performance.now() - now.begun) / 1000 * (nx * ny / now.solved - 1));
     const last = --now.left[job.stage] === 0;
     if (last && job.stage === 0) { now.timing = { coarse: performance.now() - now.begun }; map.curves = []; beginCliffs(COARSEST); show("part"); } else if (!now.rushing) goOn();  // the first picture has its cliffs
   }
@@ -203,8 +208,10 @@ function liveEngine(map, module, workerText, onPicture) {
   function begin() {
     now.again = now.rushing;
     if (now.rushing) return;
-    const costs = map.tells.settle || map.tells.growth;
-    now.rushing = !costs;
+    now.costs = map.tells.settle || map.tells.growth;
+    now.rushing = !now.costs;
+    now.solved = 0;
+    onProgress(1, 0);
     // One picture is of one set of numbers, whatever is turned meanwhile.
     now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, asked: askedOf(map, map.jumps), first: map.axes[0].name, second: map.axes[1].name };
     now.values = map.axes.map((axis) => axis.values);
@@ -217,7 +224,7 @@ function liveEngine(map, module, workerText, onPicture) {
       const cells = [];
       for (let i = 0; i < nx; i += side)
         for (let j = 0; j < ny; j += side) if (side === COARSEST || i % (2 * side) || j % (2 * side)) cells.push(i * ny + j);
-      const most = Math.min((map.slips ? 200 : 2000) / (costs ? 20 : 1), Math.ceil(cells.length / count));
+      const most = Math.min((map.slips ? 200 : 2000) / (now.costs ? 20 : 1), Math.ceil(cells.length / count));
       now.left.push(0);
       for (let first = 0; first < cells.length; first += most) {
         now.queue.push({ stage, side, cells: cells.slice(first, first + most) });

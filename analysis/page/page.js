@@ -55,6 +55,8 @@ const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI
 const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
 const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name) && !(["jumps", "sequence_condition"].includes(name) && map.live && map.jumps === 1);
 
+const LIVE_SUBTITLE = "Turn anything: the map follows. Click a design to see it jump; the address keeps what you see.";
+
 /** How many jumps a live map lets go by before it looks for gaits. */
 function settlePart(map) {
   const input = element("settle"), usual = map.settle;
@@ -89,6 +91,8 @@ function startLive(given, module, solver) {
     Object.assign(dataset, { whole: String(what === "whole" || what === "cliffs"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
+  }, (share, left) => {
+    element("subtitle").textContent = share < 1 ? `${(100 * share).toFixed(0)} % of the hoops have gone on jumping; ${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
   });
   const begin = map.refresh = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
   settleMap(map);
@@ -112,7 +116,7 @@ function start(map, solver) {
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
   element("title").textContent = map.title || map.name;
-  element("subtitle").textContent = map.live ? "Turn anything: the map follows. Click a design to see it jump; the address keeps what you see." : `${map.name}: ${map.designs.toLocaleString("en")} designs` +
+  element("subtitle").textContent = map.live ? LIVE_SUBTITLE : `${map.name}: ${map.designs.toLocaleString("en")} designs` +
     (map.computed < 1 ? `, INCOMPLETE: ${(100 * map.computed).toFixed(0)} % of them computed` : "") +
     `; ${map.about.join(", ")}`;
   element("footer").textContent = (map.live ? "Every number is computed by leapmap in this page" : `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as shown`) +
@@ -207,6 +211,7 @@ function start(map, solver) {
     element("settle").parentElement.hidden = !map.live || COSTLY[view.view.field.name] !== "settle";
     tellWanted();
     view.paint();
+    legend();
     tellShown();
     drawCuts();
     filters?.tell();
@@ -265,10 +270,11 @@ function start(map, solver) {
     };
     const items = [];
     const flags = map.codes.spurious_first_jump;
-    if (flags?.values.includes(1) && !map.columns) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+    if (flags?.values.includes(1) && !map.columns && !view.view.field.gait) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
     map.codes.status?.shown.forEach(({ colour, words }, k) => {
       if (map.codes.status.meanings[k] !== "jumped" && map.codes.status.values.includes(k)) items.push(entry(words, colour));
     });
+    if (view.view.field.gait) items.push(entry("no gait: none is found, or the hoop comes to an end", "#ffffff"));
     const symbol = (words, sign, colour) => {
       const item = document.createElement("li"), mark = document.createElement("span");
       mark.textContent = sign;
@@ -279,7 +285,7 @@ function start(map, solver) {
     if (flags?.values.includes(1) && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
     if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
     items.push(symbol("pointed at", "⊕", tones.ink), symbol("shown beside", "⊕", tones.mark));
-    for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
+    if (!view.view.field.gait) for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
       items.push(symbol(map.cliff_words[kind], kind in DASHES ? "╌" : "—", tones.ink));
     element("legend").replaceChildren(...items);
   }
