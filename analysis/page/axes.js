@@ -1,5 +1,8 @@
 // What the views of a map share: colours, a frame with ticks, names with units, and how designs are pointed at.
 
+/** Whether cliffs and flags of the first jump are a field's own: not of hoops as made, nor of gaits. */
+const isOfFirstJump = (field) => !field.made && !field.gait;
+
 /** The canvas at the screen's own resolution and the frame in it, or null while it is not shown; right, above: what is free there [of the font's size]. */
 function fitted(canvas, right, above = 0.8) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect(), font = 13 * ratio;

@@ -5,7 +5,7 @@ function drawCut(canvas, map, view, axis, offset) {
   const frame = fitted(canvas, 1), [factor] = shownIn(view.field.unit, map.fixed);
   if (!frame) return;
   const context = canvas.getContext("2d"), { left, right, top, bottom, ratio } = frame, { field } = view, row = map.axes[axis];
-  const flags = map.codes.spurious_first_jump?.values, torn = map.codes.cliffs?.values, n = row.values.length;
+  const own = isOfFirstJump(field), flags = own ? map.codes.spurious_first_jump?.values : undefined, torn = own ? map.codes.cliffs?.values : undefined, n = row.values.length;
   const places = Array.from({ length: n }, (_, i) => offset(view.index.map((k, a) => (a === axis ? i : k))));
   const sx = axisScale(row, left, right), span = field.high - field.low || 1, low = Math.min(field.low, ...places.map((k) => field.values[k]).filter((v) => v === v)),
     high = Math.max(field.low + 1e-12, ...places.map((k) => field.values[k]).filter((v) => v === v)) + 0.04 * span;

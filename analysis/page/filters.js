@@ -1,6 +1,6 @@
 // Questions to a map: only designs that reach every goal are shown in full, and the best of them is marked.
 
-const LOWER_IS_BETTER = ["jump_time", "first_jump_time", "jump_distance", "energy_lost", "slip_distance", "candidates"];
+const LOWER_IS_BETTER = ["jump_time", "first_jump_time", "jump_distance", "energy_lost", "slip_distance", "candidates", "gait_energy_lost", "sequence_condition"];
 
 /** Builds the goals' part; changed(): another picture is due, best(index): the best design left is to be shown. */
 function filtersPart(map, view, changed, best) {
@@ -24,11 +24,12 @@ function filtersPart(map, view, changed, best) {
     noteAddress();
   }
 
-  const better = (a, b) => (LOWER_IS_BETTER.includes(view.view.field.name) ? a < b : a > b);
+  // Of multipliers the least by size is the most stable.
+  const better = (a, b) => (view.view.field.name === "gait_multiplier" ? Math.abs(a) < Math.abs(b) : LOWER_IS_BETTER.includes(view.view.field.name) ? a < b : a > b);
 
   function tell() {
     for (const { show } of goals) show();
-    find.textContent = `show the ${better(0, 1) ? "lowest" : "highest"} left`;
+    find.textContent = `show the ${view.view.field.name === "gait_multiplier" ? "most stable" : better(0, 1) ? "lowest" : "highest"} left`;
     if (!map.keeps) { told.textContent = ""; return; }
     const n = map.fields[0].values.length;
     let left = 0;

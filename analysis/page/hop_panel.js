@@ -107,7 +107,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
     if (map.live) chosen.radius = map.fixed.radius;
     design.radius = chosen.radius;
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
-    now.asked = askedOf(map, chosen.jumps);
+    now.asked = { ...map.asked, jumps: chosen.jumps };
     now.story = solver.solve(design, map.slips, map.tolerance, 0, now.asked);
     if (now.source[0] !== "design") tellOwn();
     now.time = 0;
@@ -282,11 +282,11 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
     const title = element("hop-title").textContent;
     title === PAPERS ? paper() : typed(now.design, title);
   };
-  /** The scene is another, or more is told: the paper's hoop is in that scene, one of numbers has its own but for the radius. */
+  /** The scene is another, or something else is asked: the paper's hoop is in that scene, one of numbers has its own but for the radius. */
   const follow = () => {
-    const { source, design } = now, asked = askedOf(map, chosen.jumps), more = now.story && Object.keys(asked).some((what) => asked[what] !== now.asked[what]);
-    if (source[0] === "paper" && (more || NO_LIVE_AXIS.some((name) => design[name] !== map.fixed[name]))) paper(true);
-    else if (source[0] === "hoop" && (more || design.radius !== map.fixed.radius)) begin(design, element("hop-title").textContent, source, true);
+    const { source, design } = now, other = now.story && Object.keys(map.asked).some((what) => what !== "jumps" && map.asked[what] !== now.asked[what]);
+    if (source[0] === "paper" && (other || NO_LIVE_AXIS.some((name) => design[name] !== map.fixed[name]))) paper(true);
+    else if (source[0] === "hoop" && (other || design.radius !== map.fixed.radius)) begin(design, element("hop-title").textContent, source, true);
   };
   return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", follow };
 }

@@ -43,7 +43,7 @@ function listView(canvas, map, onPoint, onPick) {
       context.beginPath();
       if (there) context.arc(x, y, 0.3 * font, 0, 2 * Math.PI);
       else for (const s of [-1, 1]) { context.moveTo(x - 0.25 * font, y - s * 0.25 * font); context.lineTo(x + 0.25 * font, y + s * 0.25 * font); }
-      if (there && flags?.values[i] !== 1) context.fill();
+      if (there && !(flags?.values[i] === 1 && isOfFirstJump(view.field))) context.fill();
       context.stroke();
     });
     paintAxes(context, frame, sx, sy, labelOf({ ...column, unit: acrossUnit }), fieldLabel(view.field, map.fixed));

@@ -27,7 +27,7 @@ function liveMap(given, solver, state) {
   const map = {
     ...given, live: true, name: "leapmap", title: "Jumps of passive hoops, computed as you look", designs: n, computed: 1, slips: state.slips, method: "exact", tolerance: 1e-10,
     axes: [state.x, state.y].map((axis) => liveAxis(given, axis)), fixed: { ...solver.defaults, ...state.fixed },
-    fields, curves: [], scatter: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1, settle: 100, tells: { settle: false, growth: false },
+    fields, curves: [], scatter: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1, settle: 100, asked: { jumps: 1, settle: 0, growth: false }, wanted: () => [],
     codes: {
       status: { meanings, shown, rgb: shown.map(({ colour }) => rgbOf(colour)), values: new Uint8Array(n) },
       spurious_first_jump: { values: new Uint8Array(n).fill(255) }, candidates: { values: new Uint8Array(n) }, cliffs: { values: new Uint8Array(n) },
@@ -36,15 +36,14 @@ function liveMap(given, solver, state) {
   return map;
 }
 
-/** Makes a live map tell all that these fields want. Returns whether that is more than it told. */
-function tellFor(map, fields) {
-  const before = map.tells, wants = (what) => fields.some(({ name }) => COSTLY[name] === what);
-  map.tells = { settle: wants("settle"), growth: wants("growth") };
-  return Object.keys(before).some((what) => map.tells[what] && !before[what]);
+/** What the solver is to be asked of each hoop of a live map, so that all that is wanted has numbers. */
+function toAsk(map) {
+  const wants = (what) => map.wanted().some(({ name }) => COSTLY[name] === what);
+  return { jumps: map.jumps, settle: wants("settle") ? map.settle : 0, growth: map.jumps > 1 && wants("growth") };
 }
-const isTold = (map, { name }) => !map.live || !(name in COSTLY) || map.tells[COSTLY[name]];
-/** What the solver is asked of a hoop that is followed for so many jumps. */
-const askedOf = (map, jumps) => ({ jumps, settle: map.tells?.settle ? map.settle : 0, growth: Boolean(map.tells?.growth) });
+const isCostly = ({ settle, growth }) => settle > 0 || growth;
+/** Whether a live map has, or will have, numbers of a field. */
+const isTold = (map, { name }) => !map.live || !(name in COSTLY) || Boolean(map.asked[COSTLY[name]]);
 
 /** An axis with its values, evenly from one bound to the other. */
 function liveAxis(given, { name, from, to, count }) {
@@ -83,8 +82,8 @@ function settleMap(map) {
   for (const field of map.fields) {
     let low = Infinity, high = -Infinity;
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
-    if (!(low <= high)) [low, high] = [0, 1];
-    scaleField(field, low, high, field.given ?? linearTicks(low, high, 12));
+    if (!(low <= high)) [low, high] = field.log ? [1, 10] : [0, 1];
+    scaleField(field, low, high, field.given ?? (field.log ? logTicks(low, high) : linearTicks(low, high, 12)));
     field.step = ["candidates", "jumps", "gait_period"].includes(field.name) ? 1 : 10 ** Math.floor(Math.log10(Math.max(high - low, 1e-2) / 60000));
   }
   const [nx, ny] = LIVE_SHAPE, { cliffs } = map.codes, differ = outcomesDiffer(map);
@@ -96,13 +95,13 @@ function settleMap(map) {
 }
 
 /**
- * Solves a live map on all cores, anew by begin(). onPicture(what): there is more to see: "part" of the map, the "whole", or its "cliffs" too.
+ * Solves a live map on all cores, anew by begin(). onPicture(what): there is more to see: "part" of the map, the "whole", or its "cliffs" too; "none" yet.
  * onProgress(share, left): of a map that takes many jumps of each hoop so much is solved, and the rest will take so long [s].
  */
 function liveEngine(map, module, workerText, onPicture, onProgress) {
   const [nx, ny] = LIVE_SHAPE, level = new Uint8Array(nx * ny);
   const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
-  const now = { generation: 0, queue: [], left: [], edges: {}, rushing: false, again: false, begun: 0, costs: false, solved: 0, resting: 0, shown: 0, cost: 0, timing: {} }, workers = [];
+  const now = { generation: 0, queue: [], left: [], edges: {}, rushing: false, again: false, begun: 0, solved: 0, resting: 0, shown: 0, cost: 0, timing: {} }, workers = [];
   const count = Math.max(1, Math.min(16, navigator.hardwareConcurrency || 2));
 
   /** Keeps two jobs with a worker, so that it never waits for this thread to paint. */
@@ -171,16 +170,16 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     feed(worker);
     if (data.error) {
       complain(data.error);
-      if (data.generation === now.generation) now.rushing = false;
+      if (data.generation === now.generation) { now.rushing = false; onProgress(1, 0); }
       return;
     }
     if (data.generation !== now.generation) return;
     if (job.edges) { receiveCliffs(job, data.rows); return; }
     putRows(map, data.rows, job.cells, job.side, level);
     now.solved += job.cells.length;
-    if (now.costs) onProgress(now.solved / (nx * ny), (performance.now() - now.begun) / 1000 * (nx * ny / now.solved - 1));
+    if (isCostly(map.asked)) onProgress(now.solved / (nx * ny), (performance.now() - now.begun) / 1000 * (nx * ny / now.solved - 1));
     const last = --now.left[job.stage] === 0;
-    if (last && job.stage === 0) { now.timing = { coarse: performance.now() - now.begun }; map.curves = []; beginCliffs(COARSEST); show("part"); } else if (!now.rushing) goOn();  // the first picture has its cliffs
+    if (last && job.stage === 0) { now.timing = { coarse: performance.now() - now.begun }; map.curves = []; beginCliffs(COARSEST); show("part"); } else if (!now.rushing && now.left[0] === 0) goOn();  // the first picture has its cliffs
   }
 
   /** More designs are there. */
@@ -203,17 +202,18 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
 
   /**
    * Throws away what is under way and starts again, coarse first; but a first picture that is begun is shown first, however often a slider
-   * tells, unless it takes many jumps of each hoop.
+   * tells, unless it takes a second or more.
    */
   function begin() {
     now.again = now.rushing;
     if (now.rushing) return;
-    now.costs = map.tells.settle || map.tells.growth;
-    now.rushing = !now.costs;
+    map.asked = toAsk(map);
+    now.rushing = !isCostly(map.asked) || (!map.slips && map.settle <= 200);
     now.solved = 0;
     onProgress(1, 0);
+    onPicture("none");
     // One picture is of one set of numbers, whatever is turned meanwhile.
-    now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, asked: askedOf(map, map.jumps), first: map.axes[0].name, second: map.axes[1].name };
+    now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, asked: map.asked, first: map.axes[0].name, second: map.axes[1].name };
     now.values = map.axes.map((axis) => axis.values);
     clearTimeout(now.resting);
     now.queue = [];
@@ -224,7 +224,7 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
       const cells = [];
       for (let i = 0; i < nx; i += side)
         for (let j = 0; j < ny; j += side) if (side === COARSEST || i % (2 * side) || j % (2 * side)) cells.push(i * ny + j);
-      const most = Math.min((map.slips ? 200 : 2000) / (now.costs ? 20 : 1), Math.ceil(cells.length / count));
+      const most = Math.min((map.slips ? 200 : 2000) / (isCostly(map.asked) ? 20 : 1), Math.ceil(cells.length / count));
       now.left.push(0);
       for (let first = 0; first < cells.length; first += most) {
         now.queue.push({ stage, side, cells: cells.slice(first, first + most) });

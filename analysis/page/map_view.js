@@ -74,13 +74,13 @@ function mapView(canvas, map, onPoint, onPick) {
 
   /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where the lines of spurious lift-offs run. */
   function colouring() {
-    const { table, place, made, gait } = view.field, back = rgbOf(tones.ground);  // which what fails is dimmed towards
+    const { table, place } = view.field, own = isOfFirstJump(view.field), back = rgbOf(tones.ground);  // which what fails is dimmed towards
     const word = (rgb, dark, dim) => rgb.map((v, at) => back[at] + (v * dark - back[at]) * dim).reduceRight((all, v) => all << 8 | v, 255) >>> 0;
     const shades = [1, 0.2].map((dim) => [1, 0.45].map((dark) => Uint32Array.from({ length: 256 }, (_, c) => word([...table.subarray(3 * c, 3 * c + 3)], dark, dim))));
     const others = [1, 0.2].map((dim) => ({ grey: word([217, 217, 217], 1, dim), white: word([255, 255, 255], 1, dim), statuses: status?.rgb.map((rgb) => word(rgb, 1, dim)) }));
     return (value, k, hatched) => {
       const dimmed = map.keeps && !map.keeps(k) ? 1 : 0;
-      if (value === value) return shades[dimmed][hatched && flags && !made && !gait && flags.values[k] === 1 ? 1 : 0][Math.round(255 * place(value))];
+      if (value === value) return shades[dimmed][hatched && flags && own && flags.values[k] === 1 ? 1 : 0][Math.round(255 * place(value))];
       return status ? others[dimmed].statuses[status.values[k]] ?? others[dimmed].white : others[dimmed].grey;
     };
   }
@@ -127,7 +127,7 @@ function mapView(canvas, map, onPoint, onPick) {
       return (level) => isolines(plane, level, centre(x0), centre(y0), near);
     }
     const bitX = 1 << view.x, bitY = 1 << view.y;
-    const torn = (i, j) => cliffs !== undefined && !view.field.made && !view.field.gait &&
+    const torn = (i, j) => cliffs !== undefined && isOfFirstJump(view.field) &&
       ((cliffs.values[offset(i, j)] & (bitX | bitY)) !== 0 || (cliffs.values[offset(i + 1, j)] & bitY) !== 0 || (cliffs.values[offset(i, j + 1)] & bitX) !== 0);
     const plane = planeOf((i, j) => view.field.values[offset(i, j)], sx.n, sy.n);
     return (level) => isolines(plane, level, sx.centre, sy.centre, torn);

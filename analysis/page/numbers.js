@@ -59,6 +59,7 @@ function hopCommand(design, map, defaults, jumps) {
   for (const key of ["runway", "hop_height", "radius", "gravity"])
     if (design[key] !== defaults[key]) words.push(`--set ${key}=${design[key]}`);
   if (jumps > 1) words.push(`--jumps ${jumps}`);
+  if (map.asked?.settle > 0) words.push(`--set settle=${map.asked.settle}`);
   if (map.tolerance !== 1e-10) words.push(`--set tolerance=${map.tolerance}`);
   return words;
 }

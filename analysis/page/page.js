@@ -73,11 +73,14 @@ function settlePart(map) {
     write(words) { if (map.settle !== usual) words.set("settle", map.settle); },
     read(words) {
       input.value = words.get("settle") ?? usual;
+      input.setAttribute("aria-invalid", "false");
       if (input.value === "" || !input.checkValidity()) { input.value = usual; notice(`The address asks for settle=${words.get("settle")}, which cannot be, and is left out.`); }
       map.settle = Number(input.value);
     },
   };
 }
+
+const NOTHING_YET = { coarse: "false", whole: "false", cliffs: "false" };
 
 /** Starts with a map that is solved as one looks. */
 function startLive(given, module, solver) {
@@ -85,16 +88,18 @@ function startLive(given, module, solver) {
   map.rowNames = solver.rowNames;
   let page = null, settled = 0, again = false;
   const engine = liveEngine(map, module, element("worker").textContent, (what) => {
-    if (!page) page = start(map, solver);
-    if (what === "rough cliffs") page.view.overlayCliffs(); else page.repaint(what === "part");
     const { dataset } = element("map");
+    if (what === "none") { Object.assign(dataset, NOTHING_YET); return; }
+    dataset.coarse = "true";
+    if (!page) page = start(map, solver);  // which may begin anew, by what the address wants
+    if (what === "rough cliffs") page.view.overlayCliffs(); else page.repaint(what === "part");
     Object.assign(dataset, { whole: String(what === "whole" || what === "cliffs"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   }, (share, left) => {
     element("subtitle").textContent = share < 1 ? `${(100 * share).toFixed(0)} % of the hoops have gone on jumping; ${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
   });
-  const begin = map.refresh = () => { Object.assign(element("map").dataset, { whole: "false", cliffs: "false" }); engine.begin(); };
+  const begin = map.refresh = () => { Object.assign(element("map").dataset, NOTHING_YET); engine.begin(); };
   settleMap(map);
   const controls = liveControls(map, solver, (what) => {
     if (what === "model" && page) page.remodel();
@@ -107,12 +112,15 @@ function startLive(given, module, solver) {
       again = false;
     });
   });
-  addressPart(controls);
+  addressPart(settlePart(map));
+  addressPart(controls);  // begins anew, by what is told above
   begin();
 }
 
 function start(map, solver) {
   map.defaults = solver.defaults;
+  // Of a file's map a hoop of one's own is told what the map's designs are.
+  map.asked ??= { jumps: map.jumps, settle: map.fields.some((f) => f.gait) ? Math.min(map.settle, 1000) : 0, growth: map.fields.some((f) => f.name === "sequence_condition") };
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
   element("title").textContent = map.title || map.name;
@@ -143,7 +151,7 @@ function start(map, solver) {
     const { outcome, title, design } = own, { field } = view.view, v = outcome[field.name];
     said = "";
     element("place").textContent = title;
-    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : outcome.status.replaceAll("_", " ")}`;
+    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ")}`;
     tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name]) ? toldIn(outcome[f.name], f.unit, design) : ""));
     speak();
     Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });
@@ -161,7 +169,7 @@ function start(map, solver) {
     said = key;
     drawCuts();
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
-    const number = (f) => (f.values[at] === f.values[at] ? f.values[at].toFixed(decimalsOf(f.step)) : "");
+    const number = (f) => (f.values[at] === f.values[at] ? (map.live && f.log ? short(f.values[at], 6) : f.values[at].toFixed(decimalsOf(f.step))) : "");
     const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
@@ -204,11 +212,19 @@ function start(map, solver) {
   offerFields();
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
   const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
-  /** Solves a live map anew if it does not tell yet what is shown or asked for. */
-  const tellWanted = () => { if (map.live && tellFor(map, [view.view.field, ...(filters?.fields() ?? [])])) map.refresh(); };
+  map.wanted = () => [view.view.field, ...(filters?.fields() ?? [])];
+  /** Solves a live map anew if it has not the numbers of all that is wanted, or is still after some that are not. */
+  const tellWanted = () => {
+    if (!map.live) return;
+    const { asked } = map, wanted = toAsk(map), isThere = element("map").dataset.whole === "true";
+    element("settle").parentElement.hidden = wanted.settle === 0;
+    const lacks = (wanted.settle && wanted.settle !== asked.settle) || (wanted.growth && !asked.growth);
+    if (!lacks && (isThere || !isCostly(asked) || isCostly(wanted))) return;
+    map.refresh();
+    chosen.follow();
+  };
   const showField = () => {
     view.view.field = map.fields[fieldSelect.value];
-    element("settle").parentElement.hidden = !map.live || COSTLY[view.view.field.name] !== "settle";
     tellWanted();
     view.paint();
     legend();
@@ -217,7 +233,6 @@ function start(map, solver) {
     filters?.tell();
   };
   fieldSelect.addEventListener("change", () => { showField(); noteAddress(); });
-  if (map.live) addressPart(settlePart(map));
   const firstField = fieldSelect.value;
   addressPart({
     write(words) { if (fieldSelect.value !== firstField) words.set("field", view.view.field.name); },
@@ -270,11 +285,11 @@ function start(map, solver) {
     };
     const items = [];
     const flags = map.codes.spurious_first_jump;
-    if (flags?.values.includes(1) && !map.columns && !view.view.field.gait) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+    if (flags?.values.includes(1) && !map.columns && isOfFirstJump(view.view.field)) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
     map.codes.status?.shown.forEach(({ colour, words }, k) => {
       if (map.codes.status.meanings[k] !== "jumped" && map.codes.status.values.includes(k)) items.push(entry(words, colour));
     });
-    if (view.view.field.gait) items.push(entry("no gait: none is found, or the hoop comes to an end", "#ffffff"));
+    if (view.view.field.gait) items.push(entry(view.view.field.name === "gait_period" ? "no gait is found" : "no gait: none is found, or the hoop comes to an end", "#ffffff"));
     const symbol = (words, sign, colour) => {
       const item = document.createElement("li"), mark = document.createElement("span");
       mark.textContent = sign;
@@ -282,7 +297,7 @@ function start(map, solver) {
       item.append(mark, ` ${words}`);
       return item;
     };
-    if (flags?.values.includes(1) && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
+    if (flags?.values.includes(1) && map.columns && isOfFirstJump(view.view.field)) items.push(symbol("first lift-off is spurious", "○", tones.data));
     if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
     items.push(symbol("pointed at", "⊕", tones.ink), symbol("shown beside", "⊕", tones.mark));
     if (!view.view.field.gait) for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
@@ -375,7 +390,7 @@ function start(map, solver) {
     repaint(rough) {
       said = "";
       view.paint(rough);
-      if (rough) return;
+      if (rough && !isCostly(map.asked)) return;
       filters?.tell();
       legend();
       tellShown();
@@ -396,6 +411,7 @@ function liveFrom(map) {
   for (const axis of map.columns ? [] : map.axes) if (!axes.includes(axis)) words.set(axis.name, axis.values[Math.floor(axis.values.length / 2)]);
   for (const [name, value] of Object.entries(map.fixed)) if (Number.isFinite(value)) words.set(name, value);
   if (map.slips) words.set("friction", "coulomb");
+  if (map.settle > 0) words.set("settle", Math.min(map.settle, element("settle").max));
   return `live&${words.toString().replaceAll("%3A", ":")}`;
 }
 
