@@ -155,7 +155,10 @@ bool is_foretold(const Sampled& a, const Sampled& middle, const Sampled& b, std:
 class Search {
  public:
   Search(const Design& design, const Scene& scene, const GaitOptions& options)
-      : design_(design), options_(options), scene_(scene), map_(scene, jump_solvers(scene, options.tolerance)) {}
+      : design_(design),
+        options_(options),
+        scene_(scene),
+        map_(scene, jump_solvers(scene, options.tolerance)) {}
 
   /// One number of returns after the other, each as if the others were not looked for: what is found of a
   /// period does not depend on the longest.
