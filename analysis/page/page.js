@@ -57,29 +57,6 @@ const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).incl
 
 const LIVE_SUBTITLE = "Turn anything: the map follows. Click a design to see it jump; the address keeps what you see.";
 
-/** How many jumps a live map lets go by before it looks for gaits. */
-function settlePart(map) {
-  const input = element("settle"), usual = map.settle;
-  input.addEventListener("change", () => {
-    const good = input.value !== "" && input.checkValidity();
-    input.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `How many jumps go by before a gait is looked for must be a whole number from ${input.min} to ${input.max}.`);
-    if (!good) return;
-    map.settle = Number(input.value);
-    map.refresh();
-    noteAddress();
-  });
-  return {
-    write(words) { if (map.settle !== usual) words.set("settle", map.settle); },
-    read(words) {
-      input.value = words.get("settle") ?? usual;
-      input.setAttribute("aria-invalid", "false");
-      if (input.value === "" || !input.checkValidity()) { input.value = usual; notice(`The address asks for settle=${words.get("settle")}, which cannot be, and is left out.`); }
-      map.settle = Number(input.value);
-    },
-  };
-}
-
 const NOTHING_YET = { coarse: "false", whole: "false", cliffs: "false" };
 
 /** Starts with a map that is solved as one looks. */
