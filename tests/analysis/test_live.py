@@ -270,6 +270,28 @@ def test_the_gait_that_each_hoop_settles_on_is_a_field_solved_once_one_looks(fri
     assert same >= 0.9 * len(cells) and settled_on_one >= 3, (same, settled_on_one, len(cells))
 
 
+def gait_of_a_hoop_of_ones_own(browser):
+    """Types a hoop in whose gait is shown; it must be the one that the command beside it tells."""
+    browser.execute_script("""for (const [name, value] of [['slope', 12], ['mass_ratio', 3]]) {
+        const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value; input.dispatchEvent(new Event('change')); }""")
+    told = told_by_leapmap(browser)
+    assert told["gait_height"] > 0.1
+    assert float(browser.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(told["gait_height"], rel=1e-9)
+
+
+def test_a_file_s_map_tells_gaits_of_a_hoop_of_one_s_own_too_and_goes_live_as_it_settled(browser, tmp_path):
+    path = sweep(tmp_path, """[scene]\nrunway = 20.0\n[design]\nslope = { from = "8 deg", to = "16 deg", count = 9 }\nmass_ratio = { from = 2, to = 4, count = 5 }\noffset_ratio = 0.5
+[gait]\nsettle = 60\n[output]\nfields = ["jump_height", "status", "gait_height", "gait_period"]\n""")
+    html = page_at(tmp_path, path)
+    browser.get("about:blank")
+    opened(browser, html)
+    show(browser, "gait_height")
+    gait_of_a_hoop_of_ones_own(browser)
+    browser.find_element("id", "live-toggle").click()
+    settled(browser)
+    assert browser.execute_script("return window.explorer.map.settle") == 60
+
+
 def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(live, tmp_path):
     asked = "return window.explorer.map.asked.settle"
     live.get("about:blank")
@@ -277,9 +299,8 @@ def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(live, 
     WebDriverWait(live, 20).until(lambda b: b.execute_script("return window.explorer?.map.asked.settle") == 60)
     settled(live)
     # A hoop of one's own is told the same, by the command that the page shows too.
-    live.execute_script("for (const [n, v] of [['slope', 12], ['mass_ratio', 3]]) { const i = document.querySelector(`#own [data-parameter=${n}]`); i.value = v; i.dispatchEvent(new Event('change')); }")
-    told, settle = told_by_leapmap(live), live.find_element("id", "settle")
-    assert told["gait_height"] > 0.1 and float(live.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(told["gait_height"], rel=1e-9)
+    gait_of_a_hoop_of_ones_own(live)
+    settle = live.find_element("id", "settle")
     assert settle.is_displayed()
     live.execute_script("document.getElementById('map').dataset.whole = 'false'; arguments[0].value = 90; arguments[0].dispatchEvent(new Event('change'))", settle)
     settled(live)
