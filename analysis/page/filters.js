@@ -25,11 +25,12 @@ function filtersPart(map, view, changed, best) {
   }
 
   // Of multipliers the least by size is the most stable.
-  const better = (a, b) => (view.view.field.name === "gait_multiplier" ? Math.abs(a) < Math.abs(b) : LOWER_IS_BETTER.includes(view.view.field.name) ? a < b : a > b);
+  const isMultiplier = () => view.view.field.name === "gait_multiplier";
+  const better = (a, b) => (isMultiplier() ? Math.abs(a) < Math.abs(b) : LOWER_IS_BETTER.includes(view.view.field.name) ? a < b : a > b);
 
   function tell() {
     for (const { show } of goals) show();
-    find.textContent = `show the ${view.view.field.name === "gait_multiplier" ? "most stable" : better(0, 1) ? "lowest" : "highest"} left`;
+    find.textContent = `show the ${isMultiplier() ? "most stable" : better(0, 1) ? "lowest" : "highest"} left`;
     if (!map.keeps) { told.textContent = ""; return; }
     const n = map.fields[0].values.length;
     let left = 0;

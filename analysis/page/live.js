@@ -11,8 +11,8 @@ const LIVE_RANGES = {
 };
 /** What tells one course of events from another, each with what stands where there is none. */
 const OUTCOME_CODES = [["status", 0], ["spurious_first_jump", 255], ["candidates", 0]];
-/** Fields that take many jumps of each hoop, and what they want asked: they have numbers only while the field shown or a goal is among them. */
-const COSTLY = { ...Object.fromEntries(["period", "multiplier", "height", "speed", "energy_lost"].map((name) => [`gait_${name}`, "settle"])), sequence_condition: "growth" };
+/** What a field that takes many jumps of each hoop wants asked; it has numbers only while it is shown, or a goal. */
+const costOf = (field) => (field.gait ? "settle" : field.name === "sequence_condition" ? "growth" : null);
 const SLIPPING = ["mu_static", "mu_kinetic", "restitution", "rest_speed"];
 const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity"];  // none of the design's own
 
@@ -38,12 +38,12 @@ function liveMap(given, solver, state) {
 
 /** What the solver is to be asked of each hoop of a live map, so that all that is wanted has numbers. */
 function toAsk(map) {
-  const wants = (what) => map.wanted().some(({ name }) => COSTLY[name] === what);
+  const wants = (what) => map.wanted().some((field) => costOf(field) === what);
   return { jumps: map.jumps, settle: wants("settle") ? map.settle : 0, growth: map.jumps > 1 && wants("growth") };
 }
 const isCostly = ({ settle, growth }) => settle > 0 || growth;
 /** Whether a live map has, or will have, numbers of a field. */
-const isTold = (map, { name }) => !map.live || !(name in COSTLY) || Boolean(map.asked[COSTLY[name]]);
+const isTold = (map, field) => !map.live || costOf(field) === null || Boolean(map.asked[costOf(field)]);
 
 /** An axis with its values, evenly from one bound to the other. */
 function liveAxis(given, { name, from, to, count }) {

@@ -97,7 +97,7 @@ function startLive(given, module, solver) {
 function start(map, solver) {
   map.defaults = solver.defaults;
   // Of a file's map a hoop of one's own is told what the map's designs are.
-  map.asked ??= { jumps: map.jumps, settle: map.fields.some((f) => f.gait) ? Math.min(map.settle, 1000) : 0, growth: map.fields.some((f) => f.name === "sequence_condition") };
+  map.asked ??= { jumps: map.jumps, settle: map.fields.some((f) => f.gait) ? Math.min(map.settle, element("settle").max) : 0, growth: map.fields.some((f) => costOf(f) === "growth") };
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
   element("title").textContent = map.title || map.name;
@@ -261,12 +261,12 @@ function start(map, solver) {
       return item;
     };
     const items = [];
-    const flags = map.codes.spurious_first_jump;
-    if (flags?.values.includes(1) && !map.columns && isOfFirstJump(view.view.field)) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+    const { field } = view.view, showsSpurious = isOfFirstJump(field) && map.codes.spurious_first_jump?.values.includes(1);
+    if (showsSpurious && !map.columns) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
     map.codes.status?.shown.forEach(({ colour, words }, k) => {
       if (map.codes.status.meanings[k] !== "jumped" && map.codes.status.values.includes(k)) items.push(entry(words, colour));
     });
-    if (view.view.field.gait) items.push(entry(view.view.field.name === "gait_period" ? "no gait is found" : "no gait: none is found, or the hoop comes to an end", "#ffffff"));
+    if (field.gait) items.push(entry(field.name === "gait_period" ? "no gait is found" : "no gait: none is found, or the hoop comes to an end", "#ffffff"));
     const symbol = (words, sign, colour) => {
       const item = document.createElement("li"), mark = document.createElement("span");
       mark.textContent = sign;
@@ -274,10 +274,10 @@ function start(map, solver) {
       item.append(mark, ` ${words}`);
       return item;
     };
-    if (flags?.values.includes(1) && map.columns && isOfFirstJump(view.view.field)) items.push(symbol("first lift-off is spurious", "○", tones.data));
+    if (showsSpurious && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
     if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
     items.push(symbol("pointed at", "⊕", tones.ink), symbol("shown beside", "⊕", tones.mark));
-    if (!view.view.field.gait) for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
+    if (!field.gait) for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
       items.push(symbol(map.cliff_words[kind], kind in DASHES ? "╌" : "—", tones.ink));
     element("legend").replaceChildren(...items);
   }

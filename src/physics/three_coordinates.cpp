@@ -39,6 +39,18 @@ Vector loads(const ThreeCoordinates& model, double s, double c, double w) {
           hoop.drive - d * (hoop.sin_slope * c + hoop.cos_slope * s), a * s * w * w, a * c * w * w};
 }
 
+/// The system factored, and its solution.
+struct Solved {
+  Eigen::PartialPivLU<Matrix> factored;
+  Vector z;
+};
+
+/// Not inlined: one piece of code for all who ask, that they be told the same to the last bit.
+[[gnu::noinline]] Solved solved(const ThreeCoordinates& model, double s, double c, double w) {
+  const Eigen::PartialPivLU<Matrix> factored(saddle_point(model, s, c));
+  return {factored, factored.solve(loads(model, s, c, w))};
+}
+
 struct Residuals {
   double x, y;
 };
@@ -70,8 +82,7 @@ ThreeState ThreeCoordinates::rolling(double angle, double spin) const {
 ConstrainedMotion ThreeCoordinates::motion(const ThreeState& y) const {
   const auto [a, d] = lengths_of(*this);
   const double s = std::sin(y[2]), c = std::cos(y[2]), w = y[5];
-  const auto factored = saddle_point(*this, s, c).partialPivLu();
-  const Vector z = factored.solve(loads(*this, s, c, w));
+  const auto [factored, z] = solved(*this, s, c, w);
   // A z = b along the motion: A z' = b' - A' z.
   const double turned = c * w * w * w + 2.0 * s * w * z[2];   // of s w^2
   const double tilted = -s * w * w * w + 2.0 * c * w * z[2];  // of c w^2
@@ -83,8 +94,7 @@ ConstrainedMotion ThreeCoordinates::motion(const ThreeState& y) const {
 }
 
 std::array<double, 3> ThreeCoordinates::acceleration(const ThreeState& y) const {
-  const double s = std::sin(y[2]), c = std::cos(y[2]);
-  const Vector z = saddle_point(*this, s, c).partialPivLu().solve(loads(*this, s, c, y[5]));
+  const Vector z = solved(*this, std::sin(y[2]), std::cos(y[2]), y[5]).z;
   return {z[0], z[1], z[2]};
 }
 
