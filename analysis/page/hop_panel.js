@@ -5,9 +5,9 @@ const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20
 /**
  * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome, design):
  * a hoop is shown that is none of the map's designs; otherUnits(): everything is to be told anew; pinned(): other designs are; followed():
- * a live map's hoops are followed for another number of jumps.
+ * a live map's hoops are followed for another number of jumps; teller: tells of hoops as made.
  */
-function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
+function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller }) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
@@ -33,15 +33,11 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
   element("pins-along").addEventListener("change", () => { if (now.story) haunt(); });
 
   const GHOSTS = 20, ghosts = element("ghosts");
-  const width = element("ghosts-width");
   // How one looks at the hoop, by the address's words: what turns it, and how it stands at first.
-  const ways = [["speed", element("speed")], ["close", element("follow")], ["forces", element("forces")], ["along", element("pins-along")], ["as_made", ghosts], ["sigma", width]]
+  const ways = [["speed", element("speed")], ["close", element("follow")], ["forces", element("forces")], ["along", element("pins-along")], ["as_made", ghosts]]
     .map(([name, input]) => [name, input, input.type === "checkbox" ? input.checked : input.value]);
   for (const [, input] of ways) input.addEventListener("change", noteAddress);
-  element("ghosts-label").hidden = map.scatter.length === 0 && !map.live;
-  width.parentElement.hidden = !map.live;
-  /** How hoops are made: as the map says, or on a live map as the reader does, by one standard deviation of all that a workshop makes. */
-  const scatterOf = () => (!map.live ? map.scatter : ["mass_ratio", "offset_ratio", "inertia_factor"].map((name) => ({ name, law: "normal", width: Number(width.value), percent: true })));
+  element("ghosts-label").hidden = map.spreads.length === 0 && !map.live;
 
   const end = () => Math.max(now.story?.motion.t.at(-1) ?? 0, ...now.ghosts.map(({ story }) => story.motion.t.at(-1) ?? 0));
 
@@ -95,7 +91,19 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
   /** Of a hoop that is none of the map's, what the map's readout tells. */
   function tellOwn() {
     const { design, story: { outcome } } = now;
-    ofItsOwn(element("hop-title").textContent, { ...outcome, agility: 2 * design.radius * outcome.jump_height / (outcome.jump_time + outcome.apex_time) }, design);
+    ofItsOwn(element("hop-title").textContent, { ...outcome, ...now.asMade, agility: 2 * design.radius * outcome.jump_height / (outcome.jump_time + outcome.apex_time) }, design);
+  }
+
+  /** Of such a hoop what is told of hoops made after it, once that is known. */
+  function tellAsMade(design) {
+    const { made } = map.asked;
+    if (!made || !map.fields.some((field) => field.made && isTold(map, field))) return;
+    const places = Float64Array.of(design.slope, design.mass_ratio);
+    teller({ only: "made", design, slips: map.slips, tolerance: map.tolerance, first: "slope", second: "mass_ratio", places, asked: { made } }, (row) => {
+      if (design !== now.design || now.source[0] === "design") return;
+      now.asMade = Object.fromEntries(made.fields.map((name, k) => [name, row[k]]));
+      tellOwn();
+    });
   }
 
   /** Solves the design anew, its motion from the start. */
@@ -109,7 +117,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
     element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.asked = { ...map.asked, jumps: chosen.jumps };
     now.story = solver.solve(design, map.slips, map.tolerance, 0, now.asked);
-    if (now.source[0] !== "design") tellOwn();
+    now.asMade = {};
+    if (now.source[0] !== "design") { tellOwn(); tellAsMade(design); }
     now.time = 0;
     tell();
     haunt();
@@ -120,7 +129,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
 
   /** Draws the hoop, and solves those that jump along: those pinned, and as made, of which it says how many jump. A slice at a time, as friction takes its time. */
   async function haunt() {
-    const mine = ++now.haunting, made = ghosts.checked ? madeAfter(now.design, scatterOf(), solver.ranges, GHOSTS) : [];
+    const mine = ++now.haunting, made = ghosts.checked ? madeAfter(now.design, map.spreads, solver.ranges, GHOSTS) : [];
     const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin })) : []), ...made.map((design) => ({ design }))], found = [];
     now.ghosts = [];
     element("ghosts-told").textContent = made.length > 0 ? ": solving" : "";
@@ -137,14 +146,13 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
     }
     now.ghosts = found;
     const outcomes = found.filter(({ pin }) => pin === undefined).map(({ story }) => story.outcome);
-    const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, map.goals, solver.codes)).length;
-    if (outcomes.length > 0) element("ghosts-told").textContent = `: ${jump} of ${GHOSTS} jump` + (map.goals.length ? `, ${reach} reach every goal` : "");
+    const jump = outcomes.filter((o) => o.status === "jumped").length, goals = map.live ? map.hoopGoals() : map.goals, reach = outcomes.filter((o) => reachesAll(o, goals, solver.codes)).length;
+    if (outcomes.length > 0) element("ghosts-told").textContent = `: ${jump} of ${GHOSTS} jump` + (goals.length ? `, ${reach} reach every goal` : "");
     scrub.max = end();
     now.time = Math.min(now.time, end());
     draw();
   }
-  for (const input of [ghosts, width])
-    input.addEventListener("change", () => { if (now.story && width.checkValidity()) haunt(); });
+  ghosts.addEventListener("change", () => { if (now.story) haunt(); });
 
   play.addEventListener("click", () => { run(!now.playing); noteAddress(); });
   const frame = (way) => stopAt(now.time + way * Number(element("speed").value) / 30);
@@ -288,7 +296,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed }) {
     if (source[0] === "paper" && (other || NO_LIVE_AXIS.some((name) => design[name] !== map.fixed[name]))) paper(true);
     else if (source[0] === "hoop" && (other || design.radius !== map.fixed.radius)) begin(design, element("hop-title").textContent, source, true);
   };
-  return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", follow };
+  return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", follow, haunt: () => { if (now.story) haunt(); } };
 }
 
 /** Numbers of a design as an address has them, name:value,name:value; kinetic friction that follows the static has none. */

@@ -11,8 +11,8 @@ const LIVE_RANGES = {
 };
 /** What tells one course of events from another, each with what stands where there is none. */
 const OUTCOME_CODES = [["status", 0], ["spurious_first_jump", 255], ["candidates", 0]];
-/** What a field that takes many jumps of each hoop wants asked; it has numbers only while it is shown, or a goal. */
-const costOf = (field) => (field.gait ? "settle" : field.name === "sequence_condition" ? "growth" : null);
+/** What a field that takes many jumps, or many hoops of each, wants asked; it has numbers only while it is shown, or a goal. */
+const costOf = (field) => (field.made ? "made" : field.gait ? "settle" : field.name === "sequence_condition" ? "growth" : null);
 const SLIPPING = ["mu_static", "mu_kinetic", "restitution", "rest_speed"];
 const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity"];  // none of the design's own
 
@@ -27,7 +27,8 @@ function liveMap(given, solver, state) {
   const map = {
     ...given, live: true, name: "leapmap", title: "Jumps of passive hoops, computed as you look", designs: n, computed: 1, slips: state.slips, method: "exact", tolerance: 1e-10,
     axes: [state.x, state.y].map((axis) => liveAxis(given, axis)), fixed: { ...solver.defaults, ...state.fixed },
-    fields, curves: [], scatter: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1, settle: 100, asked: { jumps: 1, settle: 0, growth: false }, wanted: () => [],
+    fields, curves: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1, settle: 100, samples: 256, seed: 1, spreads: USUAL_SPREADS,
+    solver, asked: { jumps: 1, settle: 0, growth: false, made: null }, wanted: () => [], hoopGoals: () => [],
     codes: {
       status: { meanings, shown, rgb: shown.map(({ colour }) => rgbOf(colour)), values: new Uint8Array(n) },
       spurious_first_jump: { values: new Uint8Array(n).fill(255) }, candidates: { values: new Uint8Array(n) }, cliffs: { values: new Uint8Array(n) },
@@ -39,11 +40,15 @@ function liveMap(given, solver, state) {
 /** What the solver is to be asked of each hoop of a live map, so that all that is wanted has numbers. */
 function toAsk(map) {
   const wants = (what) => map.wanted().some((field) => costOf(field) === what);
-  return { jumps: map.jumps, settle: wants("settle") ? map.settle : 0, growth: map.jumps > 1 && wants("growth") };
+  return { jumps: map.jumps, settle: wants("settle") ? map.settle : 0, growth: map.jumps > 1 && wants("growth"), made: wants("made") ? madeAsked(map, map.hoopGoals()) : null };
 }
-const isCostly = ({ settle, growth }) => settle > 0 || growth;
+const isCostly = ({ settle, growth, made }) => settle > 0 || growth || made !== null;
+/** How many jumps a hoop of the map takes, roughly. */
+const jumpsOf = ({ settle, growth, made }) => (settle > 0 ? 20 + settle / 5 : 1) + (growth ? 20 : 0) + (made ? made.samples / 8 * jumpsOf({ ...made, made: null }) : 0);
+/** Whether hoops are made by the tolerances and goals that a live map has now. */
+const isAsMade = (map) => JSON.stringify(map.asked.made) === JSON.stringify(madeAsked(map, map.hoopGoals()));
 /** Whether a live map has, or will have, numbers of a field. */
-const isTold = (map, field) => !map.live || costOf(field) === null || Boolean(map.asked[costOf(field)]);
+const isTold = (map, field) => !map.live || costOf(field) === null || (field.made ? isAsMade(map) : Boolean(map.asked[costOf(field)]));
 
 /** An axis with its values, evenly from one bound to the other. */
 function liveAxis(given, { name, from, to, count }) {
@@ -53,14 +58,14 @@ function liveAxis(given, { name, from, to, count }) {
 
 /** Puts what rows tell of designs, cell by cell, into all fields: each in a block of `side` cells, but for cells that know better. */
 function putRows(map, rows, cells, side, level) {
-  const [nx, ny] = LIVE_SHAPE, names = map.rowNames, wide = names.length, column = (name) => names.indexOf(name), radius = map.fixed.radius;
+  const [nx, ny] = LIVE_SHAPE, names = [...map.solver.rowNames, ...(map.asked.made?.fields ?? [])], wide = names.length, column = (name) => names.indexOf(name), radius = map.fixed.radius;
   const [height, time, apex] = ["jump_height", "jump_time", "apex_time"].map(column), columns = map.fields.map((field) => column(field.name));
   const codes = OUTCOME_CODES.map(([name, none]) => ({ at: column(name), none, values: map.codes[name].values }));
   const told = new Float64Array(map.fields.length);
   for (let n = 0; n < cells.length; ++n) {
     const at = cells[n], row = n * wide, i0 = Math.floor(at / ny), j0 = at % ny;
     for (let f = 0; f < told.length; ++f)
-      told[f] = columns[f] >= 0 ? rows[row + columns[f]] : 2 * radius * rows[row + height] / (rows[row + time] + rows[row + apex]);
+      told[f] = columns[f] >= 0 ? rows[row + columns[f]] : map.fields[f].made ? NaN : 2 * radius * rows[row + height] / (rows[row + time] + rows[row + apex]);
     for (let i = i0; i < Math.min(nx, i0 + side); ++i)
       for (let j = j0; j < Math.min(ny, j0 + side); ++j) {
         const k = i * ny + j;
@@ -96,7 +101,7 @@ function settleMap(map) {
 
 /**
  * Solves a live map on all cores, anew by begin(). onPicture(what): there is more to see: "part" of the map, the "whole", or its "cliffs" too; "none" yet.
- * onProgress(share, left): of a map that takes many jumps of each hoop so much is solved, and the rest will take so long [s].
+ * onProgress(share, left): of a map that takes many jumps, or many hoops of each design, so much is solved, and the rest will take so long [s].
  */
 function liveEngine(map, module, workerText, onPicture, onProgress) {
   const [nx, ny] = LIVE_SHAPE, level = new Uint8Array(nx * ny);
@@ -208,7 +213,7 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     now.again = now.rushing;
     if (now.rushing) return;
     map.asked = toAsk(map);
-    now.rushing = !isCostly(map.asked) || (!map.slips && map.settle <= 200);
+    now.rushing = !isCostly(map.asked) || (!map.slips && jumpsOf(map.asked) <= 60);
     now.solved = 0;
     onProgress(1, 0);
     onPicture("none");
@@ -224,7 +229,7 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
       const cells = [];
       for (let i = 0; i < nx; i += side)
         for (let j = 0; j < ny; j += side) if (side === COARSEST || i % (2 * side) || j % (2 * side)) cells.push(i * ny + j);
-      const most = Math.min((map.slips ? 200 : 2000) / (isCostly(map.asked) ? 20 : 1), Math.ceil(cells.length / count));
+      const most = Math.min(Math.max(1, Math.floor((map.slips ? 200 : 2000) / jumpsOf(map.asked))), Math.ceil(cells.length / count));
       now.left.push(0);
       for (let first = 0; first < cells.length; first += most) {
         now.queue.push({ stage, side, cells: cells.slice(first, first + most) });

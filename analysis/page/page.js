@@ -62,19 +62,19 @@ const NOTHING_YET = { coarse: "false", whole: "false", cliffs: "false" };
 /** Starts with a map that is solved as one looks. */
 function startLive(given, module, solver) {
   const map = liveMap(given, solver, liveState(addressWords(), solver));
-  map.rowNames = solver.rowNames;
+  const teller = madeTeller(module, element("worker").textContent);
   let page = null, settled = 0, again = false;
   const engine = liveEngine(map, module, element("worker").textContent, (what) => {
     const { dataset } = element("map");
     if (what === "none") { Object.assign(dataset, NOTHING_YET); return; }
     dataset.coarse = "true";
-    if (!page) page = start(map, solver);  // which may begin anew, by what the address wants
+    if (!page) page = start(map, solver, teller);  // which may begin anew, by what the address wants
     if (what === "rough cliffs") page.view.overlayCliffs(); else page.repaint(what === "part");
     Object.assign(dataset, { whole: String(what === "whole" || what === "cliffs"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   }, (share, left) => {
-    element("subtitle").textContent = share < 1 ? `${(100 * share).toFixed(0)} % of the hoops have gone on jumping; ${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
+    element("subtitle").textContent = share < 1 ? `${(100 * share).toFixed(0)} % of the designs are solved; ${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
   });
   const begin = map.refresh = () => { Object.assign(element("map").dataset, NOTHING_YET); engine.begin(); };
   settleMap(map);
@@ -94,10 +94,11 @@ function startLive(given, module, solver) {
   begin();
 }
 
-function start(map, solver) {
+function start(map, solver, teller) {
   map.defaults = solver.defaults;
   // Of a file's map a hoop of one's own is told what the map's designs are.
-  map.asked ??= { jumps: map.jumps, settle: map.fields.some((f) => f.gait) ? Math.min(map.settle, element("settle").max) : 0, growth: map.fields.some((f) => costOf(f) === "growth") };
+  map.solver = solver;
+  map.asked ??= askedOfFile(map);
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
   element("title").textContent = map.title || map.name;
@@ -138,6 +139,7 @@ function start(map, solver) {
     otherUnits: () => tellUnits(),
     pinned: () => view.paint(),
     followed() { offerFields(); map.refresh?.(); },
+    teller,
   });
   let drawCuts = () => {}, filters = null;
   const told = (index) => {
@@ -190,12 +192,13 @@ function start(map, solver) {
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
   const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
   map.wanted = () => [view.view.field, ...(filters?.fields() ?? [])];
+  map.hoopGoals = () => filters?.ofHoops() ?? [];
   /** Solves a live map anew if it has not the numbers of all that is wanted, or is still after some that are not. */
   const tellWanted = () => {
     if (!map.live) return;
     const { asked } = map, wanted = toAsk(map), isThere = element("map").dataset.whole === "true";
     element("settle").parentElement.hidden = wanted.settle === 0;
-    const lacks = (wanted.settle && wanted.settle !== asked.settle) || (wanted.growth && !asked.growth);
+    const lacks = (wanted.settle && wanted.settle !== asked.settle) || (wanted.growth && !asked.growth) || (wanted.made && !isAsMade(map));
     if (!lacks && (isThere || !isCostly(asked) || isCostly(wanted))) return;
     map.refresh();
     chosen.follow();
@@ -299,6 +302,8 @@ function start(map, solver) {
   if (!map.columns) drawCuts = cutsPart(map, view);
   filters = map.columns ? null : filtersPart(map, view, () => { tellWanted(); view.paint(); }, (index) => { view.view.index = index; arrange(); view.paint(); view.pick(); });
   element("filters").hidden = Boolean(map.columns);
+  const tolerances = map.live ? tolerancesPart(map, solver, () => { tellWanted(); filters.tell(); said = ""; tellShown(); chosen.haunt(); }) : null;
+  if (tolerances) addressPart(tolerances);
   if (filters) addressPart(filters);
   const tellUnits = () => {
     said = "";
@@ -376,8 +381,14 @@ function start(map, solver) {
     /** The hoop shown, of the same place on another map. */
     again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true); else chosen.follow(); },
     /** Another model: what is told of a hoop is another. */
-    remodel() { element("paper").hidden = map.slips; offerFields(); chosen.remodel(); legend(); },
+    remodel() { element("paper").hidden = map.slips; offerFields(); tolerances.remodel(); chosen.remodel(); legend(); },
   };
+}
+
+/** What the solver is to be asked of a hoop of one's own beside a file's map, so that all its fields are told. */
+function askedOfFile(map) {
+  const has = (cost) => map.fields.some((f) => costOf(f) === cost), settle = Math.min(map.settle, element("settle").max), goals = numberedGoals(map.goals, map.solver.codes);
+  return { jumps: map.jumps, settle: has("settle") ? settle : 0, growth: has("growth"), made: has("made") && goals ? madeAsked({ ...map, settle }, goals) : null };
 }
 
 /** The address of the live map that a file's map begins at: its two longest axes, the rest as it stands. */
@@ -389,6 +400,12 @@ function liveFrom(map) {
   for (const [name, value] of Object.entries(map.fixed)) if (Number.isFinite(value)) words.set(name, value);
   if (map.slips) words.set("friction", "coulomb");
   if (map.settle > 0) words.set("settle", Math.min(map.settle, element("settle").max));
+  for (const spread of map.spreads) words.append("made", spreadWord(spread));
+  if (map.spreads.length > 0) words.set("samples", map.samples);
+  for (const { field, least, most } of map.goals) {
+    if (field === "spurious_first_jump" && least === "first_lift_off_is_the_jump") { words.set("real", ""); continue; }
+    for (const [sign, bound] of [["least", least], ["most", most]]) if (bound !== null) words.append("goal", `${field}:${sign}:${bound}`);
+  }
   return `live&${words.toString().replaceAll("%3A", ":")}`;
 }
 
@@ -416,6 +433,6 @@ function addressed(map, words) {
     toggle.textContent = live ? "back to the file's map" : "compute the map here: every parameter a slider";
     toggle.addEventListener("click", () => { location.hash = live ? "" : liveFrom(data); location.reload(); });
     if (live) startLive(data.for_live, module, solver);
-    else start(await readMap(), solver);
+    else start(await readMap(), solver, madeTeller(module, element("worker").textContent));
   } catch (error) { complain(error); }
 })();

@@ -22,7 +22,7 @@ async function solverOf(module) {
     return names;
   };
   const parameters = namesBy(leapmap.parameter_name), columns = namesBy(leapmap.column_name);
-  const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name), rowNames = namesBy(leapmap.row_name);
+  const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name), rowNames = namesBy(leapmap.row_name), madeNames = namesBy(leapmap.made_name);
   const doubles = (pointer, n) => new Float64Array(leapmap.memory.buffer, pointer, n);
   const defaults = Object.fromEntries(parameters.map((name, i) => [name, doubles(leapmap.parameter_values(), parameters.length)[i]]));
   const rows = (names, pointer, n) => {
@@ -70,6 +70,22 @@ async function solverOf(module) {
       doubles(leapmap.places(count), places.length).set(places);
       leapmap.solve_places(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second), count);
       return doubles(leapmap.rows(), count * rowNames.length).slice();
+    },
+    /**
+     * The same designs as made: of each what `asked` names as fields, one after the other. asked: {fields, samples, seed, spreads: [{name, law,
+     * width, percent}], goals: [{field, least, most}], jumps, settle, growth}.
+     */
+    solveMade(design, slips, tolerance, first, second, places, asked) {
+      give(design);
+      ask(asked);
+      leapmap.ask_made(asked.samples, asked.seed);
+      for (const { name, law, width, percent } of asked.spreads) leapmap.ask_spread(parameters.indexOf(name), law === "uniform" ? 1 : 0, width, Number(percent));
+      for (const { field, least, most } of asked.goals) leapmap.ask_goal(fields.indexOf(field), least ?? -Infinity, most ?? Infinity);
+      for (const name of asked.fields) leapmap.ask_field(madeNames.indexOf(name));
+      const count = places.length / 2;
+      doubles(leapmap.places(count), places.length).set(places);
+      leapmap.solve_made(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second), count);
+      return doubles(leapmap.rows(), count * asked.fields.length).slice();
     },
     /**
      * Heights of the jumps that `count` hoops go on making, which differ in one parameter: after `settle` jumps `keep` of each, hoop by

@@ -19,6 +19,20 @@ function bisected({ design, slips, tolerance, first, second, ends, begins, codes
   return parts;
 }
 
+const made = ({ design, slips, tolerance, first, second, places, asked }) => solver.solveMade(design, slips, tolerance, first, second, places, asked.made);
+
+/** What is asked of designs, row by row: as drawn, and behind that as made. */
+function asked(order) {
+  const drawn = solver.solvePlaces(order.design, order.slips, order.tolerance, order.first, order.second, order.places, order.asked);
+  if (!order.asked.made) return drawn;
+  const asMade = made(order), wide = solver.rowNames.length, more = order.asked.made.fields.length, rows = new Float64Array(drawn.length + asMade.length);
+  for (let i = 0; i * wide < drawn.length; ++i) {
+    rows.set(drawn.subarray(i * wide, (i + 1) * wide), i * (wide + more));
+    rows.set(asMade.subarray(i * more, (i + 1) * more), i * (wide + more) + wide);
+  }
+  return rows;
+}
+
 onmessage = async ({ data }) => {
   try {
     if (data.module) {
@@ -26,7 +40,7 @@ onmessage = async ({ data }) => {
       postMessage({ ready: true });
       return;
     }
-    const rows = data.ends ? bisected(data) : solver.solvePlaces(data.design, data.slips, data.tolerance, data.first, data.second, data.places, data.asked);
+    const rows = data.ends ? bisected(data) : data.only === "made" ? made(data) : asked(data);
     postMessage({ generation: data.generation, rows }, [rows.buffer]);
   } catch (error) { postMessage({ error: String(error.message ?? error), generation: data.generation }); }  // of an async function onerror hears nothing
 };

@@ -64,7 +64,7 @@ void print_outcome(const Outcome& outcome, const Scene& scene) {
 /// As the map has it at its designs.
 void print_made(const Spec& spec, const Design& design) {
   MadeColumns columns(scatter_fields_of(spec));
-  ScatterSolver(spec, points_of(spec.scatter)).solve({&design, 1}, columns);
+  scatter_solver_of(spec, points_of(spec.scatter)).solve({&design, 1}, columns);
   say("as made, {} hoops\n", spec.scatter.samples);
   for (const Field* field : columns.fields())
     say("  {:<20} {:<14.8g} {}\n", field->name, columns.column(*field)[0],

@@ -231,7 +231,7 @@ Estimate yield_of(const Question& question, const Design& design) {
   Spec many = question.one;
   many.output.fields = {"yield", "yield_error"};
   MadeColumns columns(scatter_fields_of(many));
-  ScatterSolver(many, points_of(many.scatter)).solve({&design, 1}, columns);
+  scatter_solver_of(many, points_of(many.scatter)).solve({&design, 1}, columns);
   return {columns.column(*find_field("yield"))[0], columns.column(*find_field("yield_error"))[0]};
 }
 

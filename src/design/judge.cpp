@@ -74,7 +74,7 @@ Bench::Bench(const Question& question, const std::shared_ptr<const SobolPoints>&
   goals_ = goal_checks(goals);
   if (!points) return;
   const Spec many = spec_of_many(question);
-  scatter_.emplace(many, points);
+  scatter_.emplace(scatter_solver_of(many, points));
   columns_ = MadeColumns(scatter_fields_of(many));
 }
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "numerics/sobol_points.hpp"
 
-#include <gsl/gsl_qrng.h>
-
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <new>
 #include <random>
+
+#include "numerics/sobol_sequence.hpp"
 
 namespace leapmap {
 namespace {
@@ -20,26 +18,21 @@ constexpr double student = 2.1314 / 1.9600;  // of 95 %, with 15 degrees of free
 
 SobolPoints::SobolPoints(std::size_t dimensions, std::size_t samples, std::uint64_t seed)
     : samples_(samples), columns_(dimensions, std::vector<double>(samples)) {
-  assert(dimensions <= most_dimensions && samples % replicates == 0);
+  assert(dimensions <= most_sobol_dimensions && samples % replicates == 0);
   if (dimensions == 0) return;
   constexpr int bits = 52;  // so that half a step more is a double, too
-  const std::unique_ptr<gsl_qrng, void (*)(gsl_qrng*)> sequence(
-      gsl_qrng_alloc(gsl_qrng_sobol, static_cast<unsigned>(dimensions)), gsl_qrng_free);
-  if (!sequence) throw std::bad_alloc();
   std::mt19937_64 random(seed);
   std::vector<std::array<std::uint64_t, replicates>> shifts(dimensions);
   for (auto& of_dimension : shifts)
     for (std::uint64_t& shift : of_dimension) shift = random() >> (64 - bits);
-  std::array<double, most_dimensions> point{};  // GSL leaves out the sequence's first, which is zero
-  for (std::size_t i = 0; i < a_replicate(); ++i) {
+  const std::vector<double> points = sobol_sequence(dimensions, a_replicate());
+  for (std::size_t i = 0; i < a_replicate(); ++i)
     for (std::size_t d = 0; d < dimensions; ++d) {
-      const auto digits = static_cast<std::uint64_t>(std::ldexp(point[d], bits));
+      const auto digits = static_cast<std::uint64_t>(std::ldexp(points[i * dimensions + d], bits));
       for (std::size_t r = 0; r < replicates; ++r)
         columns_[d][r * a_replicate() + i] =
             std::ldexp(static_cast<double>(digits ^ shifts[d][r]) + 0.5, -bits);
     }
-    gsl_qrng_get(sequence.get(), point.data());
-  }
 }
 
 double error_of(double whole, std::span<const double> replicates, std::span<const std::size_t> counts) {

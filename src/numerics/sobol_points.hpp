@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Points that fill a cube evenly: GSL's Sobol' sequence, moved by a random digital shift in each of 16
+/// Points that fill a cube evenly: Sobol's sequence, moved by a random digital shift in each of 16
 /// replicates, so that each replicate is fair for itself and their spread measures the error of their mean.
 #pragma once
 
@@ -15,14 +15,14 @@ namespace leapmap {
 class SobolPoints {
  public:
   static constexpr std::size_t replicates = 16;
-  static constexpr std::size_t most_dimensions = 40;  ///< of GSL's sequence
 
   /// So many samples or a few more: as many in each replicate.
   static constexpr std::size_t whole(std::size_t samples) {
     return (samples + replicates - 1) / replicates * replicates;
   }
 
-  /// samples: a whole number of points for each replicate. The same seed, the same points.
+  /// dimensions: up to most_sobol_dimensions; samples: a whole number of points for each replicate. The same
+  /// seed, the same points.
   SobolPoints(std::size_t dimensions, std::size_t samples, std::uint64_t seed);
 
   std::size_t dimensions() const { return columns_.size(); }

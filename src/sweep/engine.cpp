@@ -43,7 +43,7 @@ BlockSolver::BlockSolver(const Spec& spec, std::size_t most_designs,
       gradients_(gradients_of(spec)),
       made_(scatter_fields_of(spec)),
       outcomes_(most_designs) {
-  if (!spec.scatter.spreads.empty()) scatter_.emplace(spec, points);
+  if (!spec.scatter.spreads.empty()) scatter_.emplace(scatter_solver_of(spec, points));
 }
 
 Solved BlockSolver::solve(std::span<const Design> designs) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sweep/made_hoops.hpp"
 
-#include <gsl/gsl_cdf.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "numerics/normal_law.hpp"
 
 namespace leapmap {
 namespace {
@@ -27,13 +27,17 @@ MadeHoops::MadeHoops(const Scatter& scatter, std::shared_ptr<const SobolPoints> 
     : points_(std::move(points)) {
   assert(points_->dimensions() >= scatter.spreads.size());
   for (const Spread& spread : scatter.spreads) {
-    const auto parameter = std::ranges::find(parameters(), spread.parameter, &Parameter::name);
+    const auto all = parameters();
+    const auto parameter = std::find_if(all.begin(), all.end(),
+                                        [&](const Parameter& each) { return each.name == spread.parameter; });
     spreads_.push_back({&*parameter, std::get<double Design::*>(parameter->member), spread.law, spread.width,
                         spread.percent, 0});
   }
   for (Made& spread : spreads_)
-    spread.dimension = static_cast<std::size_t>(std::ranges::count_if(
-        spreads_, [&](const Made& other) { return other.parameter < spread.parameter; }));
+    spread.dimension =
+        static_cast<std::size_t>(std::count_if(spreads_.begin(), spreads_.end(), [&](const Made& other) {
+          return other.parameter < spread.parameter;
+        }));
   columns_.assign(spreads_.size(), std::vector<Column>(points_->dimensions()));
   now_.resize(spreads_.size());
 }
@@ -58,7 +62,7 @@ CutLaw MadeHoops::law(std::size_t k, const Design& drawn) const {
   if (width == 0.0) return cut;
   cut.from = std::clamp((range.least - value) / width, -end, end);
   cut.to = std::clamp((range.most - value) / width, -end, end);
-  cut.left = spread.law == Spread::Law::normal ? gsl_cdf_ugaussian_P(cut.to) - gsl_cdf_ugaussian_P(cut.from)
+  cut.left = spread.law == Spread::Law::normal ? normal_share(cut.to) - normal_share(cut.from)
                                                : 0.5 * (cut.to - cut.from);
   return cut;
 }
@@ -70,9 +74,10 @@ const std::vector<double>& MadeHoops::deviations(std::size_t k, std::size_t dime
   column.law = law;
   column.deviations.resize(samples());
   const bool normal = spreads_[k].law == Spread::Law::normal;
-  const double before = normal ? gsl_cdf_ugaussian_P(law.from) : 0.0;
-  std::ranges::transform(points_->column(dimension), column.deviations.begin(), [&](double u) {
-    return normal ? gsl_cdf_ugaussian_Pinv(before + u * law.left) : law.from + u * (law.to - law.from);
+  const double before = normal ? normal_share(law.from) : 0.0;
+  const auto along = points_->column(dimension);
+  std::transform(along.begin(), along.end(), column.deviations.begin(), [&](double u) {
+    return normal ? normal_quantile(before + u * law.left) : law.from + u * (law.to - law.from);
   });
   return column.deviations;
 }
@@ -90,7 +95,7 @@ double MadeHoops::draw(const Design& drawn, std::span<const std::size_t> from_di
 }
 
 void MadeHoops::fill(std::size_t first, std::span<Design> made) const {
-  std::ranges::fill(made, drawn_);
+  std::fill(made.begin(), made.end(), drawn_);
   for (std::size_t k = 0; k < spreads_.size(); ++k) {
     const Made& spread = spreads_[k];
     const double value = value_drawn(spread, drawn_), width = width_of(spread, drawn_);

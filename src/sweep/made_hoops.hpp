@@ -22,6 +22,9 @@ struct CutLaw {
   double left;  ///< the share of the law between them
 };
 
+/// How much of a law has to be left at least: what is drawn at the end of a range, as L/R = 1, loses half.
+inline constexpr double least_left = 0.499;
+
 /// One a thread. Needs points of at least as many dimensions as the scatter has spreads.
 class MadeHoops {
  public:

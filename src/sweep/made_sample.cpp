@@ -68,8 +68,8 @@ Estimate MadeShare::share() const {
   const auto all = static_cast<double>(samples_), each = all / SobolPoints::replicates;
   const double whole = static_cast<double>(counted()) / all;
   std::array<double, SobolPoints::replicates> parts;
-  std::ranges::transform(counts_, parts.begin(),
-                         [&](std::size_t n) { return static_cast<double>(n) / each; });
+  std::transform(counts_.begin(), counts_.end(), parts.begin(),
+                 [&](std::size_t n) { return static_cast<double>(n) / each; });
   std::array<std::size_t, SobolPoints::replicates> alike;
   alike.fill(1);
   return {whole, std::hypot(error_of(whole, parts, alike), resolution(all))};
@@ -104,7 +104,8 @@ double MadeSample::error_of_quantile(double share) {
   std::size_t first = 0;
   for (std::size_t r = 0; r < parts.size(); ++r) {
     const auto some = std::span(values_).subspan(first, counts_[r]);
-    const auto below = static_cast<double>(std::ranges::count_if(some, [&](double v) { return v <= whole; }));
+    const auto below =
+        static_cast<double>(std::count_if(some.begin(), some.end(), [&](double v) { return v <= whole; }));
     parts[r] = counts_[r] > 0 ? below / static_cast<double>(counts_[r]) : 0.0;
     first += counts_[r];
   }
@@ -131,7 +132,7 @@ double MadeSample::error_of_moments(Statistic statistic) {
     first += counts_[r];
   }
   std::array<double, SobolPoints::replicates> without;
-  std::ranges::transform(parts, without.begin(), [&](const Moments& part) {
+  std::transform(parts.begin(), parts.end(), without.begin(), [&](const Moments& part) {
     const double count = whole.count - part.count, average = (whole.sum - part.sum) / count;
     return statistic == Statistic::mean
                ? average
@@ -141,7 +142,8 @@ double MadeSample::error_of_moments(Statistic statistic) {
 }
 
 double MadeSample::error(Statistic statistic) {
-  const auto told = std::ranges::count_if(counts_, [](std::size_t count) { return count > 0; });
+  const auto told =
+      std::count_if(counts_.begin(), counts_.end(), [](std::size_t count) { return count > 0; });
   if (2 * static_cast<std::size_t>(told) < counts_.size()) return nan;
   const double share = quantile_of(statistic);
   return share > 0.0 ? error_of_quantile(share) : error_of_moments(statistic);
@@ -165,7 +167,8 @@ void MadeTally::clear() {
 }
 
 bool MadeTally::reaches_all(const Outcome& outcome) const {
-  return std::ranges::all_of(goals_, [&](const GoalCheck& goal) { return goal.reached(outcome); });
+  return std::all_of(goals_.begin(), goals_.end(),
+                     [&](const GoalCheck& goal) { return goal.reached(outcome); });
 }
 
 void MadeTally::add(const Outcome& outcome, std::size_t replicate) {
@@ -188,7 +191,7 @@ Estimate MadeTally::known(const Estimate& share) const {
 }
 
 MadeSample& MadeTally::of(double Outcome::*quantity) {
-  const auto found = std::ranges::find(quantities_, quantity);
+  const auto found = std::find(quantities_.begin(), quantities_.end(), quantity);
   assert(found != quantities_.end());
   return samples_[static_cast<std::size_t>(found - quantities_.begin())];
 }

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "leapmap/errors.hpp"
@@ -54,8 +52,6 @@ void check_spread(const Spec& spec, const Spread& spread) {
   for (const double value : values) {
     Design drawn = spec.design;
     drawn.*std::get<ParameterSlot>(parameter.slot).member = value;
-    // What is drawn at the end of a range, as L/R = 1, loses half.
-    constexpr double least_left = 0.499;
     if (const double left = hoops.law(0, drawn).left; !(left >= least_left))
       refuse(spec, "scatter", spread.parameter,
              fmt::format("leaves the domain around {}{}: {:.3g} % of it lies where no hoop can be", value,
@@ -115,14 +111,7 @@ std::vector<const Field*> scatter_fields_of(const Spec& spec) {
 }
 
 std::vector<const Field*> quantities_of_made(const Spec& spec) {
-  const std::vector<const Field*> made = scatter_fields_of(spec);
-  std::vector<const Field*> quantities;
-  for (const Field& field : map_fields())
-    if (const auto* quantity = std::get_if<Quantity>(&field.source))
-      if (std::ranges::any_of(
-              made, [&](const Field* row) { return std::get<OfMade>(row->source).of == quantity->member; }))
-        quantities.push_back(&field);
-  return quantities;
+  return quantities_of(scatter_fields_of(spec));
 }
 
 void check_scatter(const Spec& spec) {
@@ -158,48 +147,10 @@ Spec spec_of_made(const Spec& spec, const std::vector<const Field*>& quantities)
   return made;
 }
 
-MadeColumns::MadeColumns(std::vector<const Field*> fields)
-    : fields_(std::move(fields)), columns_(fields_.size()) {}
-
-void MadeColumns::begin(std::size_t designs) {
-  for (std::vector<double>& column : columns_)
-    column.assign(designs, std::numeric_limits<double>::quiet_NaN());
-}
-
-std::span<const double> MadeColumns::column(const Field& field) const {
-  const auto found = std::ranges::find(fields_, &field);
-  assert(found != fields_.end());
-  return columns_[static_cast<std::size_t>(found - fields_.begin())];
-}
-
-ScatterSolver::ScatterSolver(const Spec& spec, std::shared_ptr<const SobolPoints> points)
-    : hoops_(spec.scatter, std::move(points)),
-      solver_(make_solver(spec_of_made(spec, quantities_of_made(spec)))),
-      tally_(spec.goals, quantities_of_made(spec), hoops_.samples()),
-      made_(std::min(made_at_once, hoops_.samples())),
-      outcomes_(made_.size()) {}
-
-double ScatterSolver::tell(const OfMade& what) {
-  if (what.statistic == Statistic::cut_off) return cut_off_;
-  if (what.statistic == Statistic::unsolved) return tally_.failed();
-  if (what.statistic == Statistic::yield) return what.error ? tally_.yield().error : tally_.yield().value;
-  return what.error ? tally_.error(what.statistic, what.of) : tally_.tell(what.statistic, what.of);
-}
-
-void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns) {
-  columns.begin(designs.size());
-  for (std::size_t i = 0; i < designs.size(); ++i) {
-    tally_.clear();
-    cut_off_ = hoops_.draw(designs[i]);
-    for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
-      const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
-      hoops_.fill(first, std::span(made_).first(count));
-      solver_(std::span(made_).first(count), std::span(outcomes_).first(count));
-      for (std::size_t k = 0; k < count; ++k) tally_.add(outcomes_[k], (first + k) / hoops_.a_replicate());
-    }
-    for (std::size_t f = 0; f < columns.fields().size(); ++f)
-      columns.put(f, i, tell(std::get<OfMade>(columns.fields()[f]->source)));
-  }
+ScatterSolver scatter_solver_of(const Spec& spec, std::shared_ptr<const SobolPoints> points) {
+  const std::vector<const Field*> quantities = quantities_of_made(spec);
+  return {spec.scatter, std::move(points), spec.goals, quantities,
+          make_solver(spec_of_made(spec, quantities))};
 }
 
 }  // namespace leapmap

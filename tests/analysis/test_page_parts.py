@@ -226,7 +226,7 @@ def test_hoops_as_made_jump_along_on_a_live_map(page):
     page.find_element("id", "ghosts").click()
     told = lambda words: WebDriverWait(page, 10).until(lambda b: words in b.find_element("id", "ghosts-told").text)
     told("of 20 jump")
-    give(page, "#ghosts-width", "20")
+    give(page, "#spreads input", "20")
     told("of 20 jump")
     page.find_element("id", "ghosts").click()
     assert page.find_element("id", "ghosts-told").text == ""

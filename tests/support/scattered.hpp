@@ -36,7 +36,7 @@ inline std::map<std::string, std::vector<double>> columns_of(Spec spec, const st
     spec.output.fields.emplace_back(error);
   spec.output.fields.emplace_back("jump_height");
   MadeColumns columns(scatter_fields_of(spec));
-  ScatterSolver(spec, points_of(spec.scatter)).solve(designs, columns);
+  scatter_solver_of(spec, points_of(spec.scatter)).solve(designs, columns);
   std::map<std::string, std::vector<double>> found;
   for (const Field* field : columns.fields()) {
     const auto values = columns.column(*field);

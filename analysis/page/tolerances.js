@@ -1,0 +1,169 @@
+// Hoops as made after the designs of a map: by which tolerances, how many, and what of them is asked of the solver.
+
+const USUAL_SPREADS = ["mass_ratio", "offset_ratio", "inertia_factor"].map((name) => ({ name, law: "normal", width: 1, percent: true }));
+const LAWS = ["normal", "uniform"];  // in the solver's order
+
+/** A tolerance as the address has it. */
+const spreadWord = ({ name, law, width, percent }) => [name, law, Number(width.toPrecision(12)), ...(percent ? ["percent"] : [])].join(":");
+
+/** Goals as the solver takes them: by numbers, where a map's goals are words that a code stands for. Null: the page's solver knows one of them not. */
+function numberedGoals(goals, codes) {
+  const number = (field, value) => (codes[field]?.includes(value) ? codes[field].indexOf(value) : value);
+  const numbered = goals.map(({ field, least, most }) => ({ field, least: number(field, least), most: number(field, most) }));
+  return numbered.every(({ field, least, most }) => field in codes && [least, most].every((v) => v === null || Number.isFinite(v))) ? numbered : null;
+}
+
+/**
+ * What the solver is to be asked of hoops as made, so that all such fields of a map have numbers. goals: {field, least, most} that a hoop is to
+ * reach, null: no such bound; without any it is to jump.
+ */
+function madeAsked(map, goals) {
+  const fields = map.fields.filter((field) => field.made).map(({ name }) => name);
+  const wants = (what) => goals.some(({ field }) => costOf({ name: field, gait: field.startsWith("gait_") }) === what);
+  const jumped = map.solver.codes.status.indexOf("jumped");
+  return {
+    fields, samples: map.samples, seed: map.seed, spreads: map.spreads.map((spread) => ({ ...spread })), goals: goals.length > 0 ? goals : [{ field: "status", least: jumped, most: jumped }],
+    jumps: map.jumps, settle: wants("settle") ? map.settle : 0, growth: map.jumps > 1 && wants("growth"),
+  };
+}
+
+/** A thread that tells what becomes of hoops made after one design, as that may take long: (order, done); who asks again is answered alone. */
+function madeTeller(module, workerText) {
+  const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
+  let worker = null;
+  return (order, done) => {
+    worker?.terminate();
+    worker = new Worker(url);
+    worker.onmessage = ({ data }) => {
+      if (data.ready) return;
+      if (data.error) complain(data.error); else done(data.rows);
+    };
+    worker.onerror = (event) => complain(event);
+    worker.postMessage({ module });
+    worker.postMessage(order);
+  };
+}
+
+/** By which tolerances hoops of a live map are made, and how many; changed(): others are wanted. */
+function tolerancesPart(map, solver, changed) {
+  const part = element("tolerances"), list = element("spreads"), samples = element("samples"), rows = [];
+  const usualSamples = map.samples;
+  part.hidden = false;
+  const offered = () => Object.keys(LIVE_RANGES).filter((name) => name in map.parameters && !NO_LIVE_AXIS.includes(name) && (map.slips || !SLIPPING.includes(name)));
+  const factor = ({ name, percent }) => (!percent && map.parameters[name].unit === "°" ? 180 / Math.PI : 1);
+
+  function take() {
+    map.spreads = rows.map(({ spread }) => spread);
+    changed();
+    noteAddress();
+  }
+
+  function row(asked) {
+    const spread = { ...asked }, item = document.createElement("li"), [name, law, unit] = [0, 1, 2].map(() => document.createElement("select"));
+    const number = document.createElement("input"), away = document.createElement("button"), each = { spread, item };
+    const show = () => {
+      const taken = rows.map((other) => other.spread.name), own = map.parameters[spread.name].unit;
+      name.replaceChildren();
+      offered().filter((other) => other === spread.name || !taken.includes(other)).forEach((other) => option(name, other, map.parameters[other].label.split(" [")[0]));
+      unit.replaceChildren();
+      option(unit, "%", "%");
+      option(unit, "own", own || "of its own");
+      name.value = spread.name;
+      law.value = spread.law;
+      unit.value = spread.percent ? "%" : "own";
+      if (document.activeElement !== number) number.value = Number((spread.width * factor(spread)).toPrecision(6));
+    };
+    each.show = show;
+    option(law, "normal", "normal, σ =");
+    option(law, "uniform", "anywhere within ±");
+    Object.assign(number, { type: "number", min: 0, step: "any" });
+    Object.assign(away, { type: "button", textContent: "×" });
+    name.setAttribute("aria-label", "tolerance: of what");
+    law.setAttribute("aria-label", "tolerance: how it is spread");
+    number.setAttribute("aria-label", "tolerance: how much");
+    unit.setAttribute("aria-label", "tolerance: unit");
+    away.setAttribute("aria-label", "remove this tolerance");
+    name.addEventListener("change", () => { spread.name = name.value; showAll(); take(); });
+    law.addEventListener("change", () => { spread.law = law.value; take(); });
+    unit.addEventListener("change", () => {
+      const shown = spread.width * factor(spread);
+      spread.percent = unit.value === "%";
+      spread.width = shown / factor(spread);
+      take();
+    });
+    stepsOf(number, () => 2 * Number(number.value) || 1);
+    number.addEventListener("change", () => {
+      const good = number.value !== "" && number.checkValidity();
+      number.setAttribute("aria-invalid", String(!good));
+      notice(good ? "" : "A tolerance is a number, 0 or more.");
+      if (!good) return;
+      spread.width = Number(number.value) / factor(spread);
+      take();
+    });
+    away.addEventListener("click", () => { rows.splice(rows.indexOf(each), 1); item.remove(); showAll(); take(); });
+    item.append(name, law, number, unit, away);
+    list.append(item);
+    rows.push(each);
+  }
+  const add = element("spread-add");
+  function showAll() {
+    for (const { show } of rows) show();
+    add.disabled = rows.length >= offered().length;
+  }
+  function begin(spreads) {
+    rows.length = 0;
+    list.replaceChildren();
+    for (const spread of spreads) row(spread);
+    showAll();
+  }
+  add.addEventListener("click", () => {
+    const name = offered().find((other) => !rows.some(({ spread }) => spread.name === other)), angle = map.parameters[name].unit === "°";
+    row({ name, law: "normal", width: angle ? Math.PI / 180 : 1, percent: !angle });
+    showAll();
+    take();
+  });
+  samples.addEventListener("change", () => {
+    const good = samples.value !== "" && samples.checkValidity();
+    samples.setAttribute("aria-invalid", String(!good));
+    notice(good ? "" : `How many hoops are made must be ${samples.step} times a whole number, from ${samples.min} to ${samples.max}.`);
+    if (!good) return;
+    map.samples = Number(samples.value);
+    changed();
+    noteAddress();
+  });
+  begin(map.spreads);
+
+  const usual = USUAL_SPREADS.map(spreadWord).join();
+  function spreadOf(word) {
+    const [name, law, width, percent] = word.split(":");
+    return offered().includes(name) && LAWS.includes(law) && width !== "" && Number(width) >= 0 && Number.isFinite(Number(width)) && [undefined, "percent"].includes(percent)
+      ? { name, law, width: Number(width), percent: percent === "percent" } : null;
+  }
+  return {
+    /** Another model: other parameters may scatter. */
+    remodel() {
+      begin(rows.map(({ spread }) => spread).filter(({ name }) => offered().includes(name)));
+      map.spreads = rows.map(({ spread }) => spread);
+    },
+    write(words) {
+      const told = map.spreads.map(spreadWord);
+      if (told.join() !== usual) for (const word of told.length > 0 ? told : ["none"]) words.append("made", word);
+      if (map.samples !== usualSamples) words.set("samples", map.samples);
+    },
+    read(words) {
+      const asked = words.getAll("made"), spreads = [];
+      for (const word of asked.filter((each) => each !== "none")) {
+        const spread = spreadOf(word);
+        if (spread && !spreads.some(({ name }) => name === spread.name)) spreads.push(spread);
+        else notice(`The address asks for a tolerance that cannot be: ${word}`);
+      }
+      begin(asked.length > 0 ? spreads : USUAL_SPREADS);
+      map.spreads = rows.map(({ spread }) => spread);
+      samples.value = words.get("samples") ?? usualSamples;
+      samples.setAttribute("aria-invalid", "false");
+      if (samples.value === "" || !samples.checkValidity()) { samples.value = usualSamples; notice(`The address asks for samples=${words.get("samples")}, which cannot be, and is left out.`); }
+      map.samples = Number(samples.value);
+      if (asked.length > 0) part.open = true;
+    },
+  };
+}

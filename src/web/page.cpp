@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "web/page.hpp"
+
+#include <memory>
+#include <variant>
+
+#include "coulomb/coulomb.hpp"
+#include "coulomb/model.hpp"
+#include "gait/error_growth.hpp"
+#include "gait/settle.hpp"
+#include "model/parameters.hpp"
+#include "rolling/exact.hpp"
+#include "rolling/model.hpp"
+
+namespace leapmap::web {
+namespace {
+
+double& value_of(const Parameter& parameter, Design& design, Scene& scene) {
+  const auto* of_design = std::get_if<double Design::*>(&parameter.member);
+  return of_design ? design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
+}
+
+Solver first_jump_solver(const Scene& scene, double tolerance) {
+  if (scene.friction == Friction::coulomb)
+    return one_by_one(std::make_shared<CoulombSolver<double>>(tolerance), scene);
+  return [solver = std::make_shared<ExactSolver<Batch>>(tolerance), scene](std::span<const Design> designs,
+                                                                           std::span<Outcome> outcomes) {
+    solver->solve(designs, scene, outcomes);
+  };
+}
+
+DualJumpSolver dual_solver(const Scene& scene, double tolerance) {
+  return scene.friction == Friction::coulomb ? coulomb::dual_jumps(scene, tolerance)
+                                             : rolling::dual_jumps(scene, tolerance);
+}
+
+const Parameter& parameter_of(int number) { return leapmap::parameters()[static_cast<std::size_t>(number)]; }
+
+void fill(std::span<const double> values, Design& design, Scene& scene) {
+  const auto all = leapmap::parameters();
+  for (std::size_t i = 0; i < all.size(); ++i) value_of(all[i], design, scene) = values[i];
+}
+
+}  // namespace
+
+Page page;
+
+Page::Page() {
+  Design design;
+  Scene scene;
+  for (const Parameter& parameter : leapmap::parameters())
+    parameters.push_back(value_of(parameter, design, scene));
+}
+
+Design Page::design() const {
+  Design design;
+  Scene scene;
+  fill(parameters, design, scene);
+  return design;
+}
+
+Scene Page::scene(int friction) const {
+  Design design;
+  Scene scene;
+  fill(parameters, design, scene);
+  scene.friction = static_cast<Friction>(friction);
+  scene.jumps = jumps, scene.settle = settle;
+  return scene;
+}
+
+double Design::*member_of_design(int parameter) {
+  const auto* member = std::get_if<double Design::*>(&parameter_of(parameter).member);
+  return member ? *member : nullptr;
+}
+
+const Field& field_of(int number) { return map_fields()[static_cast<std::size_t>(number)]; }
+
+const std::vector<const Field*>& row_fields() {
+  static const std::vector<const Field*> fields = [] {
+    std::vector<const Field*> fields;
+    for (const Field& field : map_fields())
+      if (!std::holds_alternative<Word>(field.source)) fields.push_back(&field);
+    return fields;
+  }();
+  return fields;
+}
+
+PlacedDesigns placed_designs(int first, int second) {
+  PlacedDesigns placed;
+  const auto x = member_of_design(first), y = member_of_design(second);
+  if (!x || !y) return placed;
+  for (std::size_t i = 0; 2 * i < page.places.size(); ++i) {
+    const double a = page.places[2 * i], b = page.places[2 * i + 1];
+    if (!parameter_of(first).range.holds(a) || !parameter_of(second).range.holds(b)) continue;
+    placed.designs.push_back(page.design());
+    placed.designs.back().*x = a, placed.designs.back().*y = b;
+    placed.which.push_back(i);
+  }
+  return placed;
+}
+
+JumpSolver<double> jump_solver(const Scene& scene, double tolerance, const Wanted& wanted) {
+  if (scene.friction == Friction::coulomb)
+    return jumps_one_by_one<double>(std::make_shared<CoulombSolver<double>>(tolerance), scene);
+  return [solver = std::make_shared<ExactSolver<Batch>>(tolerance, wanted), scene](
+             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+             std::span<Outcome> outcomes) { solver->solve(start, designs, states, scene, outcomes); };
+}
+
+Solver solver_of(const Scene& scene, double tolerance) {
+  return scene.jumps > 1 ? in_sequence(jump_solver(scene, tolerance), scene)
+                         : first_jump_solver(scene, tolerance);
+}
+
+void tell_more(const Scene& scene, double tolerance, std::span<const Design> designs,
+               std::span<Outcome> outcomes) {
+  const Scene alone = each_jump_alone(scene);
+  if (page.tells_growth && scene.jumps > 1)
+    ErrorGrowth(scene, dual_solver(alone, tolerance)).tell(designs, outcomes);
+  if (scene.settle > 0)
+    GaitSolver(scene, {jump_solver(alone, tolerance, untimed), jump_solver(alone, tolerance),
+                       dual_solver(alone, tolerance)})
+        .solve(designs, outcomes);
+}
+
+/// Names by number, null after the last.
+LEAPMAP_EXPORT const char* parameter_name(int i) {
+  const auto all = leapmap::parameters();
+  return i >= 0 && static_cast<std::size_t>(i) < all.size() ? all[static_cast<std::size_t>(i)].name.data()
+                                                            : nullptr;
+}
+LEAPMAP_EXPORT const char* field_name(int i) {
+  const auto fields = map_fields();
+  return i >= 0 && static_cast<std::size_t>(i) < fields.size()
+             ? fields[static_cast<std::size_t>(i)].name.data()
+             : nullptr;
+}
+
+/// What a code of a field means; null: it is no code, or there is none so large.
+LEAPMAP_EXPORT const char* code_name(int field, int code) {
+  const auto* codes = std::get_if<leapmap::Code>(&field_of(field).source);
+  return codes && static_cast<std::size_t>(code) < codes->names.size()
+             ? codes->names[static_cast<std::size_t>(code)].data()
+             : nullptr;
+}
+
+/// The ranges of parameters.
+LEAPMAP_EXPORT double parameter_least(int i) { return parameter_of(i).range.least; }
+LEAPMAP_EXPORT double parameter_most(int i) { return parameter_of(i).range.most; }
+/// Their values, which the page sets; at first leapmap's defaults.
+LEAPMAP_EXPORT double* parameter_values() { return page.parameters.data(); }
+
+/// What solve and solve_places tell of a hoop: so many jumps at most, the gait after `settle` of them if that
+/// is above zero, and how errors grow, which only a sequence has.
+LEAPMAP_EXPORT void ask(int jumps, int settle, int growth) {
+  page.jumps = std::clamp(static_cast<long>(jumps), 1l, most_jumps);
+  page.settle = std::max(settle, 0);
+  page.tells_growth = growth != 0;
+}
+
+}  // namespace leapmap::web
