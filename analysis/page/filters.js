@@ -8,9 +8,14 @@ function filtersPart(map, view, changed, best) {
   const list = element("goals"), told = element("goals-told"), goals = [];  // bounds in the fields' own units
   const real = element("goal-real"), find = element("goal-best");
 
+  const isOfHoop = (field) => !field.made && field.name !== "agility";
+  /** Of a live map's yield the goals of a hoop are a part: it is shown whether the hoop as drawn reaches them or not. */
+  const isInYield = () => map.live && view.view.field.name === "yield";
+
   function keeps(k) {
-    if (real.checked && map.codes.spurious_first_jump?.values[k] !== 0) return false;
+    if (real.checked && !isInYield() && map.codes.spurious_first_jump?.values[k] !== 0) return false;
     return goals.every(({ field, sign, bound }) => {
+      if (isInYield() && isOfHoop(field)) return true;
       const v = field.values[k];
       return v === v && (sign === "most" ? v <= bound : v >= bound);
     });
@@ -25,8 +30,6 @@ function filtersPart(map, view, changed, best) {
     noteAddress();
   }
 
-  const isOfHoop = (field) => !field.made && field.name !== "agility";
-
   // Of multipliers the least by size is the most stable.
   const isMultiplier = () => view.view.field.name === "gait_multiplier";
   const better = (a, b) => (isMultiplier() ? Math.abs(a) < Math.abs(b) : LOWER_IS_BETTER.includes(view.view.field.name) ? a < b : a > b);
@@ -38,8 +41,9 @@ function filtersPart(map, view, changed, best) {
     const n = map.fields[0].values.length;
     let left = 0;
     for (let k = 0; k < n; ++k) if (keeps(k)) ++left;
-    const without = map.asked.made && goals.some(({ field }) => !field.made && !isOfHoop(field)) ? "; agility is no goal of hoops as made" : "";
-    told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs are left${without}`;
+    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field))) ? "; goals of a hoop are counted in the yield" : "";
+    const without = map.asked.made && goals.some(({ field }) => field.name === "agility") ? "; agility is no goal of hoops as made" : "";
+    told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs are left${inYield}${without}`;
   }
 
   function row(asked = {}) {
