@@ -152,7 +152,7 @@ function start(map, solver, teller) {
     const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
-      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
+      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? `${shown.made ? "of the hoop as drawn " : ""}the first lift-off is spurious` : ""];
     element("place").textContent = placeText(map, index);
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notes].filter((w) => w).join("; ");
     tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The machine of contact_phases.hpp, for any way of rolling and sliding: it tells which phase comes next, is
-/// told how that ended, and flies and lands by itself.
+/// The machine of contact_phases.hpp, for any way of rolling, sliding and flying: it tells which phase comes
+/// next, is told how that ended, and lands by itself.
 #pragma once
 
 #include <cmath>
@@ -46,11 +46,18 @@ ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const
                                                      : ContactPhase::slides_forwards;
 }
 
-/// A contact that goes on: what rolls or slides next, and which way it slides (1, -1; 0: it rolls).
+/// What comes next, and which way it slides (1, -1; 0: it does not).
 struct NextPhase {
   Phase phase;
   int direction;
 };
+
+/// The flight of a hoop that leaves the plane, or rebounds from it.
+template <class S>
+Flight<S> flight_from(const Hoop<S>& hoop, const ContactState<S>& at) {
+  const LiftOff<S> lift_off{at.time, at.angle, at.spin};
+  return at.normal > S(0) ? fly_off(hoop, lift_off, at.normal) : fly(hoop, lift_off);
+}
 
 /// One design on its way through its phases. Nothing for a next phase: it has ended.
 template <class S>
@@ -74,7 +81,7 @@ class PhaseMachine {
     return next == ContactPhase::leaves ? ended_as(Status::airborne_at_release) : go_on(next);
   }
 
-  /// On from the end of the phase that was told last, in which the hoop moved `to` there.
+  /// On from the end of the rolling or sliding that was told last, in which the hoop moved `to` there.
   std::optional<NextPhase> after(PhaseEnd end, const ContactState<S>& to) {
     using std::abs;
     driven_ += hoop_.drive * (to.angle - at_.angle);
@@ -105,6 +112,26 @@ class PhaseMachine {
     return ended_as(Status::failed, "a phase could not be solved to the tolerance");
   }
 
+  /// On from the flight that was told last: it lands, unless that was it.
+  std::optional<NextPhase> after(const Flight<S>& flight) {
+    const LiftOff<S> lift_off{at_.time, at_.angle, at_.spin};
+    if (sinks_without_motor(flight, trig(at_.angle))) return ended_as(Status::indeterminate);
+    begin_phase(Phase::flight, 0);
+    const bool jumps = look_at(lift_off, flight);
+    at_ = after_flight(hoop_, at_, flight.flight_time);
+    if (!jumps && !(std::abs(at_.travel) < runway_)) return ended_as(Status::no_jump);
+    const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
+                                    contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
+    at_.spin = landing.after.spin, at_.slip = landing.after.slip;
+    at_.normal = landing.after.normal;
+    if (jumps) {
+      outcome_.landing_spin = static_cast<double>(at_.spin);
+      return ended_as(Status::jumped);
+    }
+    // A flight that rounding made of n0 = 0 takes no time; it is contact.
+    return go_on(phase_after_landing(flight.flight_time > S(0) ? Leaving::always : Leaving::never));
+  }
+
   const Hoop<S>& hoop() const { return hoop_; }
   const Contact<S>& contact() const { return contact_; }
   /// How far the centre may travel.
@@ -119,21 +146,17 @@ class PhaseMachine {
     return at_.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
   }
 
-  /// Flies and lands, as often as it leaves, up to the next phase of contact.
   std::optional<NextPhase> go_on(ContactPhase next) {
-    while (sequence_.count() < most_phases) {
-      if (next != ContactPhase::leaves) {
-        slides_ = next != ContactPhase::rolls;
-        const NextPhase phase{slides_ ? Phase::sliding : Phase::rolling,
-                              !slides_                                ? 0
-                              : next == ContactPhase::slides_forwards ? 1
-                                                                      : -1};
-        if (begin_phase(phase.phase, phase.direction)) return ended_as(Status::stalled);
-        return phase;
-      }
-      if (const Status status = fly_and_land(next); status != Status::not_computed) return ended_as(status);
-    }
-    return ended_as(Status::failed, "more phases than a design may go through");
+    if (sequence_.count() >= most_phases)
+      return ended_as(Status::failed, "more phases than a design may go through");
+    if (next == ContactPhase::leaves) return NextPhase{Phase::flight, 0};
+    slides_ = next != ContactPhase::rolls;
+    const NextPhase phase{slides_ ? Phase::sliding : Phase::rolling, !slides_ ? 0
+                                                                     : next == ContactPhase::slides_forwards
+                                                                         ? 1
+                                                                         : -1};
+    if (begin_phase(phase.phase, phase.direction)) return ended_as(Status::stalled);
+    return phase;
   }
 
   /// Returns whether the hoop rocks to rest: the phase is then its last.
@@ -157,31 +180,6 @@ class PhaseMachine {
     outcome_.failure = reason;
     outcome_.phase_sequence = sequence_.code();
     return std::nullopt;
-  }
-
-  /// Flies, and lands unless that was it. Returns how the design ends, or not_computed if it goes on as
-  /// `next`.
-  Status fly_and_land(ContactPhase& next) {
-    const LiftOff<S> lift_off{at_.time, at_.angle, at_.spin};
-    const Flight<S> flight = at_.normal > S(0) ? fly_off(hoop_, lift_off, at_.normal) : fly(hoop_, lift_off);
-    const Trig<S> phi = trig(at_.angle);
-    if (sinks_without_motor(flight, phi)) return Status::indeterminate;
-    begin_phase(Phase::flight, 0);
-    const bool jumps = look_at(lift_off, flight);
-    at_ = after_flight(hoop_, at_, flight.flight_time);
-    if (!jumps && !(std::abs(at_.travel) < runway_)) return Status::no_jump;
-    const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
-                                    contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
-    at_.spin = landing.after.spin, at_.slip = landing.after.slip;
-    at_.normal = landing.after.normal;
-    if (jumps) {
-      outcome_.landing_spin = static_cast<double>(at_.spin);
-      return Status::jumped;
-    }
-    // A flight that rounding made of n0 = 0 takes no time; it is contact.
-    const Leaving leaving = flight.flight_time > S(0) ? Leaving::always : Leaving::never;
-    next = phase_after_landing(leaving);
-    return Status::not_computed;
   }
 
   /// Whether it is the motor alone that lifted the hoop off: in flight it idles, and the plane is in the way.
@@ -224,6 +222,10 @@ Outcome go_through_phases(Start start, const Design& design, ContactState<S>& fr
                           const CoulombObserver& observer, const Roll& roll, const Slide& slide) {
   PhaseMachine<S> machine(design, from, scene, observer);
   for (auto next = machine.begin(start); next;) {
+    if (next->phase == Phase::flight) {
+      next = machine.after(flight_from(machine.hoop(), machine.at()));
+      continue;
+    }
     ContactState<S> at = machine.at();
     const PhaseEnd end =
         next->phase == Phase::rolling

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coulomb/coulomb_lanes.hpp"
 
+#include <algorithm>
+
 namespace leapmap {
 
 template <class T>
@@ -35,11 +37,15 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       machine.emplace(designs[design], states[design], scene, nobody);
       settle(place, machine->begin(start));
     }
-    ended_.clear();
-    if (sliding_.waiting() >= width || rolling_.waiting() == 0)
+    ended_.clear(), flown_.clear();
+    if (flying_.size() >= width || sliding_.waiting() + rolling_.waiting() == 0)
+      fly_some();
+    else if (sliding_.waiting() >= width || rolling_.waiting() == 0)
       sliding_.pass(ended_);
     else
       rolling_.pass(ended_);
+    for (const Flown& flown : flown_)
+      settle(flown.place, on_their_way_[flown.place].machine->after(flown.flight));
     for (const EndedPhase<S>& phase : ended_)
       settle(phase.place, on_their_way_[phase.place].machine->after(phase.end, phase.at));
   }
@@ -49,10 +55,39 @@ template <class T>
 void CoulombLanes<T>::go_on(std::uint32_t place, const NextPhase& next) {
   const PhaseMachine<S>& machine = *on_their_way_[place].machine;
   const Contact<S>& contact = machine.contact();
-  if (next.phase == Phase::rolling)
+  if (next.phase == Phase::flight)
+    flying_.push_back(place);
+  else if (next.phase == Phase::rolling)
     rolling_.begin(place, machine.hoop(), contact.mu_static, machine.at(), machine.runway());
   else
     sliding_.begin(place, machine.hoop(), contact.mu_kinetic, machine.at(), machine.runway(), next.direction);
+}
+
+template <class T>
+void CoulombLanes<T>::fly_some() {
+  constexpr std::size_t width = Lanes<T>::count;
+  const std::size_t count = std::min(width, flying_.size()), first = flying_.size() - count;
+  if (count == 0) return;
+  LaneArray<T> cos_slope, rho, angle, spin;
+  for (std::size_t i = 0; i < width; ++i) {
+    const PhaseMachine<S>& machine = *on_their_way_[flying_[first + (i < count ? i : 0)]].machine;
+    cos_slope[i] = machine.hoop().cos_slope, rho[i] = machine.hoop().rho;
+    angle[i] = machine.at().angle, spin[i] = machine.at().spin;
+  }
+  Hoop<T> hoop{};  // of which a flight takes these two
+  hoop.cos_slope = Lanes<T>::load(cos_slope.data()), hoop.rho = Lanes<T>::load(rho.data());
+  const Flight<T> flights =
+      fly(hoop, LiftOff<T>{T(S(0)), Lanes<T>::load(angle.data()), Lanes<T>::load(spin.data())});
+  const auto height = lanes_of(flights.height), apex_time = lanes_of(flights.apex_time),
+             flight_time = lanes_of(flights.flight_time), dip = lanes_of(flights.dip);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t place = flying_[first + i];
+    const PhaseMachine<S>& machine = *on_their_way_[place].machine;
+    const bool rebounds = machine.at().normal > S(0);
+    flown_.push_back({place, rebounds ? flight_from(machine.hoop(), machine.at())
+                                      : Flight<S>{height[i], apex_time[i], flight_time[i], dip[i]}});
+  }
+  flying_.resize(first);
 }
 
 #ifdef LEAPMAP_KERNELS

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Many designs with Coulomb friction at once: each goes through its phases (coulomb_automaton.hpp), and
-/// those that slide, or roll, do so side by side in lanes.
+/// those that slide, roll or fly do so side by side in lanes.
 #pragma once
 
 #include <cstdint>
@@ -37,13 +37,20 @@ class CoulombLanes {
     std::size_t design;
     std::optional<PhaseMachine<S>> machine;
   };
+  struct Flown {
+    std::uint32_t place;
+    Flight<S> flight;
+  };
   void go_on(std::uint32_t place, const NextPhase& next);
+  /// Lets some of those that have left the plane fly, and adds them to flown_.
+  void fly_some();
 
   RollingLanes<T> rolling_;
   SlidingLanes<T> sliding_;
   std::vector<OnItsWay> on_their_way_ = std::vector<OnItsWay>(most_on_their_way);
-  std::vector<std::uint32_t> free_;
+  std::vector<std::uint32_t> free_, flying_;  // places
   std::vector<EndedPhase<S>> ended_;
+  std::vector<Flown> flown_;
   std::vector<ContactState<S>> releases_;
 };
 

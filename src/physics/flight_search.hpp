@@ -266,11 +266,15 @@ template <class T>
 Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
   using std::abs;
   // y depends on phi and w only through cos(phi + w t) and sin(phi) w: turning backwards is the mirror image.
-  const T angle = lift_off.spin < T(0) ? -lift_off.angle : lift_off.angle;
+  const T angle = select(lift_off.spin < T(0), -lift_off.angle, lift_off.angle);
   const Toss<T> toss = toss_of(hoop, angle, trig(angle), T(abs(lift_off.spin)));
-  const Ascent<T> ascent = ascend(toss, true);
-  if (!(ascent.height > T(0))) return {};
-  return scaled(descend(toss, ascent, true), hoop, lift_off.spin);
+  const Ascent<T> ascent = ascend(toss, MaskOf<T>(true));
+  const MaskOf<T> flies = ascent.height > T(0);
+  if (!any(flies)) return {};
+  const Flight<T> flight = scaled(descend(toss, ascent, flies), hoop, lift_off.spin);
+  const auto of_flying = [&](const T& value) { return select(flies, value, T(0)); };
+  return {of_flying(flight.height), of_flying(flight.apex_time), of_flying(flight.flight_time),
+          of_flying(flight.dip)};
 }
 
 /// The whole flight of a rebound, which leaves with normal velocity v_n > 0. Where gravity wins over the
