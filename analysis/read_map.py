@@ -100,6 +100,14 @@ class Map:
                 raise NotAMap(f"{self.path}: is damaged: its spec says scatter.{name} = {law}") from None
         return made
 
+    def sampling(self):
+        """How many hoops are made after each design, and the seed of the points they are made by."""
+        told = self.spec().get("scatter", {})
+        numbers = [told.get(key, usual) for key, usual in (("samples", 1024), ("seed", 1))]
+        if not all(isinstance(number, int) and 0 <= number <= most for number, most in zip(numbers, (1 << 20, 10**15))):
+            raise NotAMap(f"{self.path}: is damaged: its spec says scatter.samples, scatter.seed = {numbers}")
+        return numbers
+
     def goals(self):
         """What hoops of the map must do: {field: (at least, at most)}, None: no bound, or a phase_sequence's letters twice."""
         goals = {field: goal for field, goal in self.spec().get("goal", {}).items() if field not in ("maximize", "minimize")}

@@ -129,7 +129,7 @@ function start(map, solver, teller) {
     const { outcome, title, design } = own, { field } = view.view, v = outcome[field.name];
     said = "";
     element("place").textContent = title;
-    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ")}`;
+    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : v === undefined ? (map.asked.made ? "being solved" : "not told") : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ")}`;
     tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name]) ? toldIn(outcome[f.name], f.unit, design) : ""));
     speak();
     Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });

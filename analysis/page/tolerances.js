@@ -19,11 +19,11 @@ function numberedGoals(goals, codes) {
  */
 function madeAsked(map, goals) {
   const fields = map.fields.filter((field) => field.made).map(({ name }) => name);
-  const wants = (what) => goals.some(({ field }) => costOf({ name: field, gait: field.startsWith("gait_") }) === what);
   const jumped = map.solver.codes.status.indexOf("jumped");
   return {
     fields, samples: map.samples, seed: map.seed, spreads: map.spreads.map((spread) => ({ ...spread })), goals: goals.length > 0 ? goals : [{ field: "status", least: jumped, most: jumped }],
-    jumps: map.jumps, settle: wants("settle") ? map.settle : 0, growth: map.jumps > 1 && wants("growth"),
+    jumps: map.jumps, settle: goals.some(({ field }) => field.startsWith("gait_")) ? map.settle : 0,
+    growth: map.jumps > 1 && goals.some(({ field }) => field === "sequence_condition"),
   };
 }
 
@@ -54,6 +54,8 @@ function tolerancesPart(map, solver, changed) {
 
   function take() {
     map.spreads = rows.map(({ spread }) => spread);
+    const nothing = map.spreads.find(({ name, width, percent }) => percent && width > 0 && map.fixed[name] === 0 && !map.axes.some((axis) => axis.name === name));
+    notice(nothing ? `${map.parameters[nothing.name].label} is 0, of which ${short(nothing.width)} % is nothing: give its tolerance in its own unit.` : "");
     changed();
     noteAddress();
   }

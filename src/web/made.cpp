@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Hoops as made after the designs of a map: how many do what they must, and how high they jump.
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -17,6 +18,7 @@ struct Asked {
   Scatter scatter;
   std::vector<Goal> goals;
   std::vector<const Field*> fields;
+  std::uint64_t seed = 1;  // of 64 bits, which a long has not here
 };
 Asked asked;
 
@@ -41,7 +43,7 @@ LEAPMAP_EXPORT const char* made_name(int i) {
 /// yet, nothing is to be reached and nothing told.
 LEAPMAP_EXPORT void ask_made(int samples, double seed) {
   asked = {};
-  asked.scatter.seed = static_cast<long>(seed);
+  asked.seed = static_cast<std::uint64_t>(seed);
   asked.scatter.samples =
       static_cast<long>(SobolPoints::whole(static_cast<std::size_t>(std::max(samples, 1))));
 }
@@ -66,9 +68,8 @@ LEAPMAP_EXPORT void solve_made(int friction, double tolerance, int first, int se
   const std::size_t wide = asked.fields.size();
   page.rows.assign(static_cast<std::size_t>(count) * wide, Outcome::none);
   const auto [designs, which] = placed_designs(first, second);
-  const auto points = std::make_shared<const SobolPoints>(asked.scatter.spreads.size(),
-                                                          static_cast<std::size_t>(asked.scatter.samples),
-                                                          static_cast<std::uint64_t>(asked.scatter.seed));
+  const auto points = std::make_shared<const SobolPoints>(
+      asked.scatter.spreads.size(), static_cast<std::size_t>(asked.scatter.samples), asked.seed);
   const MadeHoops laws(asked.scatter, points);
   ScatterSolver solver(asked.scatter, points, asked.goals, quantities_of(asked.fields),
                        [scene, tolerance, jumps = solver_of(scene, tolerance)](std::span<const Design> some,
