@@ -8,7 +8,8 @@ function filtersPart(map, view, changed, best) {
   const list = element("goals"), told = element("goals-told"), goals = [];  // bounds in the fields' own units
   const real = element("goal-real"), find = element("goal-best");
 
-  const isOfHoop = (field) => !field.made && field.name !== "agility";
+  /** Whether a hoop as made can be asked to reach a goal of it: agility is none of the solver's, and some are of the other model. */
+  const isOfHoop = (field) => !field.made && field.name !== "agility" && applies(map, field);
   /** Of a live map's yield the goals of a hoop are a part: it is shown whether the hoop as drawn reaches them or not. */
   const isInYield = () => map.live && view.view.field.name === "yield";
 
@@ -41,8 +42,9 @@ function filtersPart(map, view, changed, best) {
     const n = map.fields[0].values.length;
     let left = 0;
     for (let k = 0; k < n; ++k) if (keeps(k)) ++left;
-    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field))) ? "; goals of a hoop are counted in the yield" : "";
-    const without = map.asked.made && goals.some(({ field }) => field.name === "agility") ? "; agility is no goal of hoops as made" : "";
+    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field))) ? "; nothing is dimmed for goals that the yield counts" : "";
+    const others = map.asked.made ? goals.filter(({ field }) => !field.made && !isOfHoop(field)).map(({ field }) => field.label.split(":")[0]) : [];
+    const without = others.length > 0 ? `; no goal of hoops as made: ${[...new Set(others)].join(", ")}` : "";
     told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs are left${inYield}${without}`;
   }
 
@@ -85,14 +87,14 @@ function filtersPart(map, view, changed, best) {
     const { field } = view.view, n = field.values.length;
     let at = -1;
     for (let k = 0; k < n; ++k) if (keeps(k) && field.values[k] === field.values[k] && (at < 0 || better(field.values[k], field.values[at]))) at = k;
-    if (at < 0) { told.textContent = "no design on this map reaches every goal"; return; }
+    if (at < 0) { told.textContent = "no design solved on this map reaches every goal"; return; }
     const index = [];
     for (let k = map.axes.length - 1, rest = at; k >= 0; --k) { const length = map.axes[k].values.length; index[k] = rest % length; rest = Math.floor(rest / length); }
     best(index);
   });
   return {
     tell,
-    /** What a hoop as made is to reach: all but what is of many of them, and agility, which the solver does not tell. */
+    /** What a hoop as made is to reach. */
     ofHoops: () => [
       ...goals.filter(({ field, bound }) => isOfHoop(field) && Number.isFinite(bound)).map(({ field, sign, bound }) => ({ field: field.name, least: sign === "least" ? bound : null, most: sign === "most" ? bound : null })),
       ...(real.checked ? [{ field: "spurious_first_jump", least: 0, most: 0 }] : []),
@@ -106,11 +108,13 @@ function filtersPart(map, view, changed, best) {
       goals.length = 0;
       list.replaceChildren();
       real.checked = words.has("real");
+      const unknown = [];
       for (const [name, sign, bound] of words.getAll("goal").map((text) => text.split(":"))) {
         const field = map.fields.find((each) => each.name === name);
         if (field && ["least", "most"].includes(sign) && bound !== "" && Number.isFinite(Number(bound))) row({ field, sign, bound: Number(bound) });
-        else notice(`The address asks for a goal that cannot be: ${name}`);
+        else unknown.push(name);
       }
+      if (unknown.length > 0) notice(`The address asks for goals that this map cannot have; it leaves them out: ${unknown.join(", ")}`);
       if (goals.length > 0 || real.checked) element("filters").open = true;
       update();
     },

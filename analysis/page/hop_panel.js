@@ -5,9 +5,10 @@ const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20
 /**
  * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome, design):
  * a hoop is shown that is none of the map's designs; otherUnits(): everything is to be told anew; pinned(): other designs are; followed():
- * a live map's hoops are followed for another number of jumps; teller: tells of hoops as made.
+ * a live map's hoops are followed for another number of jumps; teller: tells of hoops as
+ * made; toldMore(outcome): more is known of the hoop that is none of the map's.
  */
-function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller }) {
+function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller, toldMore }) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
@@ -89,20 +90,20 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller 
   const commandPieces = (design) => hopCommand(design, map, solver.defaults, chosen.jumps);
 
   /** Of a hoop that is none of the map's, what the map's readout tells. */
-  function tellOwn() {
+  function ownOutcome() {
     const { design, story: { outcome } } = now;
-    ofItsOwn(element("hop-title").textContent, { ...outcome, ...now.asMade, agility: 2 * design.radius * outcome.jump_height / (outcome.jump_time + outcome.apex_time) }, design);
+    return { ...outcome, ...now.asMade, agility: 2 * design.radius * outcome.jump_height / (outcome.jump_time + outcome.apex_time) };
   }
+  const tellOwn = () => ofItsOwn(element("hop-title").textContent, ownOutcome(), now.design);
 
   /** Of such a hoop what is told of hoops made after it, once that is known. */
   function tellAsMade(design) {
     const { made } = map.asked;
-    if (!made || !map.fields.some((field) => field.made && isTold(map, field))) return;
+    if (!made || !toldFields(map).some((field) => field.made)) return;
     const places = Float64Array.of(design.slope, design.mass_ratio);
-    teller({ only: "made", design, slips: map.slips, tolerance: map.tolerance, first: "slope", second: "mass_ratio", places, asked: { made } }, (row) => {
-      if (design !== now.design || now.source[0] === "design") return;
-      now.asMade = Object.fromEntries(made.fields.map((name, k) => [name, row[k]]));
-      tellOwn();
+    teller.tell({ design, slips: map.slips, tolerance: map.tolerance, first: "slope", second: "mass_ratio", places, made }, (row) => {
+      now.asMade = Object.fromEntries(made.fields.map((name, k) => [name, row ? row[k] : NaN]));
+      toldMore(ownOutcome());
     });
   }
 
@@ -118,6 +119,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller 
     now.asked = { ...map.asked, jumps: chosen.jumps };
     now.story = solver.solve(design, map.slips, map.tolerance, 0, now.asked);
     now.asMade = {};
+    teller.drop();
     if (now.source[0] !== "design") { tellOwn(); tellAsMade(design); }
     now.time = 0;
     tell();
@@ -127,27 +129,41 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller 
     showGradient(design);
   }
 
+  const goalsOfHoops = () => (map.live ? map.hoopGoals() : map.goals);
+  /** What hoops that jump along are asked, so that goals can be told of. */
+  const ghostsAsked = () => { const { settle, growth } = madeAsked(map, goalsOfHoops()); return { settle, growth }; };
+  function countGhosts() {
+    const outcomes = now.ghosts.filter(({ pin }) => pin === undefined).map(({ story }) => story.outcome), goals = goalsOfHoops();
+    if (outcomes.length === 0) return;
+    const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, goals, solver.codes)).length;
+    element("ghosts-told").textContent = `: ${jump} of ${GHOSTS} jump` + (goals.length ? `, ${reach} reach every goal` : "");
+  }
+  /** Goals are others: hoops that jump along are counted anew, and solved anew if more has to be known of them. */
+  function recount() {
+    if (!now.story || !ghosts.checked) return;
+    if (JSON.stringify(ghostsAsked()) === now.ghostsAsked) countGhosts(); else haunt();
+  }
+
   /** Draws the hoop, and solves those that jump along: those pinned, and as made, of which it says how many jump. A slice at a time, as friction takes its time. */
   async function haunt() {
     const mine = ++now.haunting, made = ghosts.checked ? madeAfter(now.design, map.spreads, solver.ranges, GHOSTS) : [];
     const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin })) : []), ...made.map((design) => ({ design }))], found = [];
     now.ghosts = [];
+    now.ghostsAsked = JSON.stringify(ghostsAsked());
     element("ghosts-told").textContent = made.length > 0 ? ": solving" : "";
     scrub.max = end();
     draw();
     if (wanted.length === 0) return;
     let begun = performance.now();
     for (const each of wanted) {
-      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, { jumps: chosen.jumps }) }); } catch (error) { element("ghosts-told").textContent = ""; notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
+      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, { ...ghostsAsked(), jumps: chosen.jumps }) }); } catch (error) { element("ghosts-told").textContent = ""; notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
       if (performance.now() - begun < SLICE) continue;
       await new Promise((go) => { setTimeout(go); });
       if (mine !== now.haunting) return;  // others are wanted by now
       begun = performance.now();
     }
     now.ghosts = found;
-    const outcomes = found.filter(({ pin }) => pin === undefined).map(({ story }) => story.outcome);
-    const jump = outcomes.filter((o) => o.status === "jumped").length, goals = map.live ? map.hoopGoals() : map.goals, reach = outcomes.filter((o) => reachesAll(o, goals, solver.codes)).length;
-    if (outcomes.length > 0) element("ghosts-told").textContent = `: ${jump} of ${GHOSTS} jump` + (goals.length ? `, ${reach} reach every goal` : "");
+    countGhosts();
     scrub.max = end();
     now.time = Math.min(now.time, end());
     draw();
@@ -296,7 +312,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller 
     if (source[0] === "paper" && (other || NO_LIVE_AXIS.some((name) => design[name] !== map.fixed[name]))) paper(true);
     else if (source[0] === "hoop" && (other || design.radius !== map.fixed.radius)) begin(design, element("hop-title").textContent, source, true);
   };
-  return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", follow, haunt: () => { if (now.story) haunt(); } };
+  return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", follow, recount, haunt: () => { if (now.story) haunt(); } };
 }
 
 /** Numbers of a design as an address has them, name:value,name:value; kinetic friction that follows the static has none. */

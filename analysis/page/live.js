@@ -2,6 +2,7 @@
 
 const LIVE_SHAPE = [200, 150];
 const COARSEST = 8;  // cells a side of the blocks that the first picture has
+const SLOW = 2000;   // what a hoop costs (costEach) of which a job is one
 const REST = 150;    // ms without a change after which cliffs are looked for
 /** What parameters can be moved between: their values as the solver takes them. */
 const LIVE_RANGES = {
@@ -40,15 +41,26 @@ function liveMap(given, solver, state) {
 /** What the solver is to be asked of each hoop of a live map, so that all that is wanted has numbers. */
 function toAsk(map) {
   const wants = (what) => map.wanted().some((field) => costOf(field) === what);
-  return { jumps: map.jumps, settle: wants("settle") ? map.settle : 0, growth: map.jumps > 1 && wants("growth"), made: wants("made") ? madeAsked(map, map.hoopGoals()) : null };
+  return { jumps: map.jumps, settle: wants("settle") ? map.settle : 0, growth: map.jumps > 1 && wants("growth"), made: wants("made") ? madeWanted(map) : null };
 }
-const isCostly = ({ settle, growth, made }) => settle > 0 || growth || made !== null;
-/** How many jumps a hoop of the map takes, roughly. */
-const jumpsOf = ({ settle, growth, made }) => (settle > 0 ? 20 + settle / 5 : 1) + (growth ? 20 : 0) + (made ? made.samples / 8 * jumpsOf({ ...made, made: null }) : 0);
-/** Whether hoops are made by the tolerances and goals that a live map has now. */
-const isAsMade = (map) => JSON.stringify(map.asked.made) === JSON.stringify(madeAsked(map, map.hoopGoals()));
-/** Whether a live map has, or will have, numbers of a field. */
-const isTold = (map, field) => !map.live || costOf(field) === null || (field.made ? isAsMade(map) : Boolean(map.asked[costOf(field)]));
+/** What hoops as made are asked by the tolerances and goals that a live map has now: what was asked last, if it is the same. */
+function madeWanted(map) {
+  const wanted = madeAsked(map, map.hoopGoals());
+  return JSON.stringify(wanted) === JSON.stringify(map.asked.made) ? map.asked.made : wanted;
+}
+const isAsMade = (map) => map.asked.made !== null && map.asked.made === madeWanted(map);
+/**
+ * What a hoop of the map costs, in whole first jumps, as measured: a jump of those let go by costs a fifth, as its time is not asked for, and a
+ * hoop made an eighth, as little is told of each.
+ */
+const costEach = ({ settle, growth, made }) => 1 + (settle > 0 ? 20 + settle / 5 : 0) + (growth ? 20 : 0) + (made ? made.samples / 8 * made.jumps * costEach({ ...made, made: null }) : 0);
+const isCostly = (asked) => costEach(asked) > 1;
+/** The fields of which a live map has, or will have, numbers. */
+function toldFields(map) {
+  if (!map.live) return map.fields;
+  const made = isAsMade(map);
+  return map.fields.filter((field) => costOf(field) === null || (field.made ? made : Boolean(map.asked[costOf(field)])));
+}
 
 /** An axis with its values, evenly from one bound to the other. */
 function liveAxis(given, { name, from, to, count }) {
@@ -100,8 +112,9 @@ function settleMap(map) {
 }
 
 /**
- * Solves a live map on all cores, anew by begin(). onPicture(what): there is more to see: "part" of the map, the "whole", or its "cliffs" too; "none" yet.
- * onProgress(share, left): of a map that takes many jumps, or many hoops of each design, so much is solved, and the rest will take so long [s].
+ * Solves a live map on all cores, anew by begin(). onPicture(what): there is more to see: "part" of the map, the "whole", or its "cliffs" too;
+ * or "none" of a new one yet, of which the numbers of the last are "cleared" where it takes long.
+ * onProgress(share, left): of a map that takes many jumps, or many hoops of each design, so much is solved, and the rest will take so long [s]; NaN: no more will be.
  */
 function liveEngine(map, module, workerText, onPicture, onProgress) {
   const [nx, ny] = LIVE_SHAPE, level = new Uint8Array(nx * ny);
@@ -174,8 +187,8 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     const job = worker.jobs.shift();
     feed(worker);
     if (data.error) {
-      complain(data.error);
-      if (data.generation === now.generation) { now.rushing = false; onProgress(1, 0); }
+      notice(`The map cannot be solved on: ${data.error}`);
+      if (data.generation === now.generation) { now.rushing = false; onProgress(NaN, 0); }
       return;
     }
     if (data.generation !== now.generation) return;
@@ -196,13 +209,20 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     if (whole) now.resting = setTimeout(() => beginCliffs(1), REST);
   }
 
-  for (let i = 0; i < count; ++i) {
+  function newWorker() {
     const worker = new Worker(url);
     Object.assign(worker, { jobs: [], ready: false });
-    workers.push(worker);
     worker.onmessage = (event) => receive(worker, event);
     worker.onerror = (event) => complain(event);
     worker.postMessage({ module });
+    return worker;
+  }
+  for (let i = 0; i < count; ++i) workers.push(newWorker());
+
+  /** Of what one job may take seconds nobody waits for the end. */
+  function dropSlowJobs() {
+    if (!now.order || costEach(now.order.asked) <= SLOW) return;
+    workers.forEach((worker, i) => { if (worker.jobs.length > 0) { worker.terminate(); workers[i] = newWorker(); } });
   }
 
   /**
@@ -212,11 +232,15 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
   function begin() {
     now.again = now.rushing;
     if (now.rushing) return;
+    dropSlowJobs();
     map.asked = toAsk(map);
-    now.rushing = !isCostly(map.asked) || (!map.slips && jumpsOf(map.asked) <= 60);
+    now.rushing = !isCostly(map.asked) || (!map.slips && costEach(map.asked) <= 61);
     now.solved = 0;
     onProgress(1, 0);
-    onPicture("none");
+    // Where the first picture takes its time, numbers of other settings do not stand until then.
+    const clears = isCostly(map.asked) && !now.rushing;
+    if (clears) for (const field of map.fields) if (costOf(field)) field.values.fill(NaN);
+    onPicture(clears ? "cleared" : "none");
     // One picture is of one set of numbers, whatever is turned meanwhile.
     now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, asked: map.asked, first: map.axes[0].name, second: map.axes[1].name };
     now.values = map.axes.map((axis) => axis.values);
@@ -229,7 +253,7 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
       const cells = [];
       for (let i = 0; i < nx; i += side)
         for (let j = 0; j < ny; j += side) if (side === COARSEST || i % (2 * side) || j % (2 * side)) cells.push(i * ny + j);
-      const most = Math.min(Math.max(1, Math.floor((map.slips ? 200 : 2000) / jumpsOf(map.asked))), Math.ceil(cells.length / count));
+      const most = Math.min(Math.max(1, Math.floor((map.slips ? 200 : 2000) / costEach(map.asked))), Math.ceil(cells.length / count));
       now.left.push(0);
       for (let first = 0; first < cells.length; first += most) {
         now.queue.push({ stage, side, cells: cells.slice(first, first + most) });

@@ -33,7 +33,7 @@ function madeAfter(design, scatter, ranges, count, seed = 1) {
 /** Whether an outcome reaches every goal: [{field, least, most}]; codes: {field: names in the order of its codes}. */
 function reachesAll(outcome, goals, codes) {
   return goals.every(({ field, least, most }) => {
-    const number = (value) => (codes[field].includes(value) ? codes[field].indexOf(value) : value);
+    const number = (value) => (Object.hasOwn(codes, field) && codes[field].includes(value) ? codes[field].indexOf(value) : value);
     const value = number(outcome[field]);
     return (least === null || value >= number(least)) && (most === null || value <= number(most));
   });

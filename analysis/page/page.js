@@ -66,7 +66,7 @@ function startLive(given, module, solver) {
   let page = null, settled = 0, again = false;
   const engine = liveEngine(map, module, element("worker").textContent, (what) => {
     const { dataset } = element("map");
-    if (what === "none") { Object.assign(dataset, NOTHING_YET); return; }
+    if (what === "none" || what === "cleared") { Object.assign(dataset, NOTHING_YET); page?.begun(what === "cleared"); return; }
     dataset.coarse = "true";
     if (!page) page = start(map, solver, teller);  // which may begin anew, by what the address wants
     if (what === "rough cliffs") page.view.overlayCliffs(); else page.repaint(what === "part");
@@ -74,7 +74,7 @@ function startLive(given, module, solver) {
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   }, (share, left) => {
-    element("subtitle").textContent = share < 1 ? `${(100 * share).toFixed(0)} % of the designs are solved; ${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
+    element("subtitle").textContent = Number.isNaN(share) ? "Solving has stopped" : share < 1 ? `${(100 * share).toFixed(0)} % of the designs are solved; ${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
   });
   const begin = map.refresh = () => { Object.assign(element("map").dataset, NOTHING_YET); engine.begin(); };
   settleMap(map);
@@ -95,9 +95,8 @@ function startLive(given, module, solver) {
 }
 
 function start(map, solver, teller) {
-  map.defaults = solver.defaults;
+  Object.assign(map, { solver, defaults: solver.defaults });
   // Of a file's map a hoop of one's own is told what the map's designs are.
-  map.solver = solver;
   map.asked ??= askedOfFile(map);
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
@@ -112,7 +111,7 @@ function start(map, solver, teller) {
 
   let said = "", own = null, points = false;  // what the readout tells; the hoop beside, if it is none of the map's; whether one points at the map
   /** Of every quantity but the one shown a row, whether there is a number or none, so that nothing below moves. */
-  const tellOthers = (textOf) => element("others").replaceChildren(...map.fields.filter((f) => f !== view.view.field && applies(map, f) && isTold(map, f)).map((f) => {
+  const tellOthers = (textOf) => element("others").replaceChildren(...toldFields(map).filter((f) => f !== view.view.field && applies(map, f)).map((f) => {
     const pair = document.createElement("div"), name = document.createElement("dt"), value = document.createElement("dd");
     name.textContent = f.label.split(":")[0];
     value.textContent = textOf(f) || "–";
@@ -140,6 +139,7 @@ function start(map, solver, teller) {
     pinned: () => view.paint(),
     followed() { offerFields(); map.refresh?.(); },
     teller,
+    toldMore(outcome) { if (own) own.outcome = outcome; if (own && !points) tellOwn(); },
   });
   let drawCuts = () => {}, filters = null;
   const told = (index) => {
@@ -149,12 +149,13 @@ function start(map, solver, teller) {
     drawCuts();
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
     const number = (f) => (f.values[at] === f.values[at] ? (map.live && f.log ? short(f.values[at], 6) : f.values[at].toFixed(decimalsOf(f.step))) : "");
-    const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : "none");
+    const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : map.live && costOf(f) && canvas.dataset.coarse !== "true" ? "being solved" : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
-      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? `${shown.made ? "of the hoop as drawn " : ""}the first lift-off is spurious` : ""];
+      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
     element("place").textContent = placeText(map, index);
-    element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notes].filter((w) => w).join("; ");
+    const notesSaid = notes.filter((w) => w).map((note) => (shown.made ? `as drawn: ${note}` : note));
+    element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notesSaid].join("; ");
     tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));
     speak();
     const { dataset } = element("readout");
@@ -199,7 +200,7 @@ function start(map, solver, teller) {
     const { asked } = map, wanted = toAsk(map), isThere = element("map").dataset.whole === "true";
     element("settle").parentElement.hidden = wanted.settle === 0;
     const lacks = (wanted.settle && wanted.settle !== asked.settle) || (wanted.growth && !asked.growth) || (wanted.made && !isAsMade(map));
-    if (!lacks && (isThere || !isCostly(asked) || isCostly(wanted))) return;
+    if (!lacks && (isThere || costEach(wanted) >= costEach(asked))) return;
     map.refresh();
     chosen.follow();
   };
@@ -255,35 +256,7 @@ function start(map, solver, teller) {
     }));
   }
 
-  function legend() {
-    const entry = (words, colour, image) => {
-      const item = document.createElement("li"), swatch = document.createElement("span");
-      swatch.className = "swatch";
-      swatch.style.background = image ?? colour;
-      item.append(swatch, words);
-      return item;
-    };
-    const items = [];
-    const { field } = view.view, showsSpurious = isOfFirstJump(field) && map.codes.spurious_first_jump?.values.includes(1);
-    if (showsSpurious && !map.columns) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
-    map.codes.status?.shown.forEach(({ colour, words }, k) => {
-      if (map.codes.status.meanings[k] !== "jumped" && map.codes.status.values.includes(k)) items.push(entry(words, colour));
-    });
-    if (field.gait) items.push(entry(field.name === "gait_period" ? "no gait is found" : "no gait: none is found, or the hoop comes to an end", "#ffffff"));
-    const symbol = (words, sign, colour) => {
-      const item = document.createElement("li"), mark = document.createElement("span");
-      mark.textContent = sign;
-      mark.style.color = colour;
-      item.append(mark, ` ${words}`);
-      return item;
-    };
-    if (showsSpurious && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
-    if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
-    items.push(symbol("pointed at", "⊕", tones.ink), symbol("shown beside", "⊕", tones.mark));
-    if (!field.gait) for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
-      items.push(symbol(map.cliff_words[kind], kind in DASHES ? "╌" : "—", tones.ink));
-    element("legend").replaceChildren(...items);
-  }
+  const legend = () => showLegend(map, view);
 
   // Begin where the paper's hoop is, if it is on the map, else in the middle.
   if (!map.columns) map.axes.forEach((axis, k) => {
@@ -300,9 +273,9 @@ function start(map, solver, teller) {
   saveButtons("map", canvas, pictureName, (like) => view.paintOn(like.getContext("2d")));
   element("cuts").hidden = Boolean(map.columns);
   if (!map.columns) drawCuts = cutsPart(map, view);
-  filters = map.columns ? null : filtersPart(map, view, () => { tellWanted(); view.paint(); }, (index) => { view.view.index = index; arrange(); view.paint(); view.pick(); });
+  filters = map.columns ? null : filtersPart(map, view, () => { tellWanted(); view.paint(); chosen.recount(); }, (index) => { view.view.index = index; arrange(); view.paint(); view.pick(); });
   element("filters").hidden = Boolean(map.columns);
-  const tolerances = map.live ? tolerancesPart(map, solver, () => { tellWanted(); filters.tell(); said = ""; tellShown(); chosen.haunt(); }) : null;
+  const tolerances = map.live ? tolerancesPart(map, () => { tellWanted(); filters.tell(); said = ""; tellShown(); chosen.haunt(); }) : null;
   if (tolerances) addressPart(tolerances);
   if (filters) addressPart(filters);
   const tellUnits = () => {
@@ -378,6 +351,11 @@ function start(map, solver, teller) {
       tellShown();
       drawCuts();
     },
+    /** Another map is begun: a hoop that is none of it is told what is asked now. */
+    begun(cleared) {
+      if (cleared) this.repaint(true);
+      if (!chosen.isOfMap()) chosen.follow();
+    },
     /** The hoop shown, of the same place on another map. */
     again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true); else chosen.follow(); },
     /** Another model: what is told of a hoop is another. */
@@ -387,8 +365,9 @@ function start(map, solver, teller) {
 
 /** What the solver is to be asked of a hoop of one's own beside a file's map, so that all its fields are told. */
 function askedOfFile(map) {
-  const has = (cost) => map.fields.some((f) => costOf(f) === cost), settle = Math.min(map.settle, element("settle").max), goals = numberedGoals(map.goals, map.solver.codes);
-  return { jumps: map.jumps, settle: has("settle") ? settle : 0, growth: has("growth"), made: has("made") && goals ? madeAsked({ ...map, settle }, goals) : null };
+  const has = (cost) => map.fields.some((f) => costOf(f) === cost), settle = Math.min(map.settle, element("settle").max);
+  const goals = has("made") ? numberedGoals(map.goals, map.solver.codes) : null;
+  return { jumps: map.jumps, settle: has("settle") ? settle : 0, growth: has("growth"), made: goals && madeAsked({ ...map, settle }, goals) };
 }
 
 /** The address of the live map that a file's map begins at: its two longest axes, the rest as it stands. */
@@ -401,10 +380,13 @@ function liveFrom(map) {
   if (map.slips) words.set("friction", "coulomb");
   if (map.settle > 0) words.set("settle", Math.min(map.settle, element("settle").max));
   for (const spread of map.spreads) words.append("made", spreadWord(spread));
-  if (map.spreads.length > 0) words.set("samples", map.samples);
+  if (map.spreads.length > 0) words.set("samples", Math.min(map.samples, element("samples").max));
+  if (map.spreads.length > 0 && map.seed !== 1) words.set("seed", map.seed);
   for (const { field, least, most } of map.goals) {
-    if (field === "spurious_first_jump" && least === "first_lift_off_is_the_jump") { words.set("real", ""); continue; }
-    for (const [sign, bound] of [["least", least], ["most", most]]) if (bound !== null) words.append("goal", `${field}:${sign}:${bound}`);
+    if (field === "spurious_first_jump" && least === "first_lift_off_is_the_jump") words.set("real", "");
+    else if (field === "status" && least === "jumped") continue;  // what any other goal takes, and what counts where there is none
+    else if (typeof (least ?? most) === "string") words.append("goal", `${field}:is:${least}`);  // which is said to be left out
+    else for (const [sign, bound] of [["least", least], ["most", most]]) if (bound !== null) words.append("goal", `${field}:${sign}:${bound}`);
   }
   return `live&${words.toString().replaceAll("%3A", ":")}`;
 }

@@ -1,4 +1,4 @@
-// leapmap itself, compiled to WebAssembly (src/web/leapmap_wasm.cpp).
+// leapmap itself, compiled to WebAssembly (src/web).
 
 const loadModule = async (text) => WebAssembly.compile(await unpacked(text));
 

@@ -1,16 +1,16 @@
 // Hoops as made after the designs of a map: by which tolerances, how many, and what of them is asked of the solver.
 
 const USUAL_SPREADS = ["mass_ratio", "offset_ratio", "inertia_factor"].map((name) => ({ name, law: "normal", width: 1, percent: true }));
-const LAWS = ["normal", "uniform"];  // in the solver's order
+const LAWS = ["normal", "uniform"];
 
 /** A tolerance as the address has it. */
 const spreadWord = ({ name, law, width, percent }) => [name, law, Number(width.toPrecision(12)), ...(percent ? ["percent"] : [])].join(":");
 
 /** Goals as the solver takes them: by numbers, where a map's goals are words that a code stands for. Null: the page's solver knows one of them not. */
 function numberedGoals(goals, codes) {
-  const number = (field, value) => (codes[field]?.includes(value) ? codes[field].indexOf(value) : value);
+  const number = (field, value) => (Object.hasOwn(codes, field) && codes[field].includes(value) ? codes[field].indexOf(value) : value);
   const numbered = goals.map(({ field, least, most }) => ({ field, least: number(field, least), most: number(field, most) }));
-  return numbered.every(({ field, least, most }) => field in codes && [least, most].every((v) => v === null || Number.isFinite(v))) ? numbered : null;
+  return numbered.every(({ field, least, most }) => Object.hasOwn(codes, field) && [least, most].every((v) => v === null || Number.isFinite(v))) ? numbered : null;
 }
 
 /**
@@ -22,30 +22,36 @@ function madeAsked(map, goals) {
   const jumped = map.solver.codes.status.indexOf("jumped");
   return {
     fields, samples: map.samples, seed: map.seed, spreads: map.spreads.map((spread) => ({ ...spread })), goals: goals.length > 0 ? goals : [{ field: "status", least: jumped, most: jumped }],
-    jumps: map.jumps, settle: goals.some(({ field }) => field.startsWith("gait_")) ? map.settle : 0,
+    jumps: goals.some(({ field }) => ["jumps", "sequence_condition"].includes(field)) ? map.jumps : 1, settle: goals.some(({ field }) => field.startsWith("gait_")) ? map.settle : 0,
     growth: map.jumps > 1 && goals.some(({ field }) => field === "sequence_condition"),
   };
 }
 
-/** A thread that tells what becomes of hoops made after one design, as that may take long: (order, done); who asks again is answered alone. */
+/**
+ * A thread that tells what becomes of hoops made after one design, as that may take long: tell(order, done) calls done(row), null if it cannot be
+ * told, unless something else is asked, or drop() called, before that.
+ */
 function madeTeller(module, workerText) {
   const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
   let worker = null;
-  return (order, done) => {
-    worker?.terminate();
+  const drop = () => { worker?.terminate(); worker = null; };
+  function tell(order, done) {
+    drop();
     worker = new Worker(url);
+    const fail = (error) => { drop(); notice(`Hoops as made cannot be told: ${error.message ?? error}`); done(null); };
     worker.onmessage = ({ data }) => {
-      if (data.ready) return;
-      if (data.error) complain(data.error); else done(data.rows);
+      if (data.ready) worker.postMessage(order);
+      else if (data.error) fail(data.error);
+      else { drop(); done(data.rows); }
     };
-    worker.onerror = (event) => complain(event);
+    worker.onerror = fail;
     worker.postMessage({ module });
-    worker.postMessage(order);
-  };
+  }
+  return { tell, drop };
 }
 
 /** By which tolerances hoops of a live map are made, and how many; changed(): others are wanted. */
-function tolerancesPart(map, solver, changed) {
+function tolerancesPart(map, changed) {
   const part = element("tolerances"), list = element("spreads"), samples = element("samples"), rows = [];
   const usualSamples = map.samples;
   part.hidden = false;
@@ -62,7 +68,7 @@ function tolerancesPart(map, solver, changed) {
 
   function row(asked) {
     const spread = { ...asked }, item = document.createElement("li"), [name, law, unit] = [0, 1, 2].map(() => document.createElement("select"));
-    const number = document.createElement("input"), away = document.createElement("button"), each = { spread, item };
+    const number = document.createElement("input"), away = document.createElement("button"), each = { spread, away };
     const show = () => {
       const taken = rows.map((other) => other.spread.name), own = map.parameters[spread.name].unit;
       name.replaceChildren();
@@ -70,6 +76,12 @@ function tolerancesPart(map, solver, changed) {
       unit.replaceChildren();
       option(unit, "%", "%");
       option(unit, "own", own || "of its own");
+      const words = map.parameters[spread.name].label.split(" [")[0];
+      name.setAttribute("aria-label", `tolerance of ${words}: of what`);
+      law.setAttribute("aria-label", `tolerance of ${words}: how it is spread`);
+      number.setAttribute("aria-label", `tolerance of ${words}: how much`);
+      unit.setAttribute("aria-label", `tolerance of ${words}: unit`);
+      away.setAttribute("aria-label", `remove the tolerance of ${words}`);
       name.value = spread.name;
       law.value = spread.law;
       unit.value = spread.percent ? "%" : "own";
@@ -80,19 +92,17 @@ function tolerancesPart(map, solver, changed) {
     option(law, "uniform", "anywhere within ±");
     Object.assign(number, { type: "number", min: 0, step: "any" });
     Object.assign(away, { type: "button", textContent: "×" });
-    name.setAttribute("aria-label", "tolerance: of what");
-    law.setAttribute("aria-label", "tolerance: how it is spread");
-    number.setAttribute("aria-label", "tolerance: how much");
-    unit.setAttribute("aria-label", "tolerance: unit");
-    away.setAttribute("aria-label", "remove this tolerance");
-    name.addEventListener("change", () => { spread.name = name.value; showAll(); take(); });
-    law.addEventListener("change", () => { spread.law = law.value; take(); });
-    unit.addEventListener("change", () => {
+    /** The number shown stays, whatever it is of. */
+    const change = (what) => {
       const shown = spread.width * factor(spread);
-      spread.percent = unit.value === "%";
+      Object.assign(spread, what);
       spread.width = shown / factor(spread);
+      showAll();
       take();
-    });
+    };
+    name.addEventListener("change", () => change({ name: name.value }));
+    law.addEventListener("change", () => change({ law: law.value }));
+    unit.addEventListener("change", () => change({ percent: unit.value === "%" }));
     stepsOf(number, () => 2 * Number(number.value) || 1);
     number.addEventListener("change", () => {
       const good = number.value !== "" && number.checkValidity();
@@ -102,10 +112,18 @@ function tolerancesPart(map, solver, changed) {
       spread.width = Number(number.value) / factor(spread);
       take();
     });
-    away.addEventListener("click", () => { rows.splice(rows.indexOf(each), 1); item.remove(); showAll(); take(); });
+    away.addEventListener("click", () => {
+      const at = rows.indexOf(each);
+      rows.splice(at, 1);
+      item.remove();
+      showAll();
+      (rows[at]?.away ?? add).focus();
+      take();
+    });
     item.append(name, law, number, unit, away);
     list.append(item);
     rows.push(each);
+    each.focus = () => number.focus();
   }
   const add = element("spread-add");
   function showAll() {
@@ -120,8 +138,9 @@ function tolerancesPart(map, solver, changed) {
   }
   add.addEventListener("click", () => {
     const name = offered().find((other) => !rows.some(({ spread }) => spread.name === other)), angle = map.parameters[name].unit === "°";
-    row({ name, law: "normal", width: angle ? Math.PI / 180 : 1, percent: !angle });
+    row({ name, law: "normal", width: angle ? Math.PI / 180 : 1, percent: !angle && map.fixed[name] !== 0 });
     showAll();
+    rows.at(-1).focus();
     take();
   });
   samples.addEventListener("change", () => {
@@ -151,6 +170,7 @@ function tolerancesPart(map, solver, changed) {
       const told = map.spreads.map(spreadWord);
       if (told.join() !== usual) for (const word of told.length > 0 ? told : ["none"]) words.append("made", word);
       if (map.samples !== usualSamples) words.set("samples", map.samples);
+      if (map.seed !== 1) words.set("seed", map.seed);
     },
     read(words) {
       const asked = words.getAll("made"), spreads = [];
@@ -165,6 +185,8 @@ function tolerancesPart(map, solver, changed) {
       samples.setAttribute("aria-invalid", "false");
       if (samples.value === "" || !samples.checkValidity()) { samples.value = usualSamples; notice(`The address asks for samples=${words.get("samples")}, which cannot be, and is left out.`); }
       map.samples = Number(samples.value);
+      map.seed = /^\d{1,15}$/.test(words.get("seed") ?? "1") ? Number(words.get("seed") ?? 1) : 1;
+      if (words.has("seed") && String(map.seed) !== words.get("seed")) notice(`The address asks for seed=${words.get("seed")}, which cannot be, and is left out.`);
       if (asked.length > 0) part.open = true;
     },
   };

@@ -1,4 +1,4 @@
-// A thread of a live map: solves the designs that it is sent, and finds where outcomes change between two.
+// A thread of the page: solves the designs that it is sent, as drawn and as made, and finds where outcomes change between two.
 
 let solver = null;
 
@@ -19,13 +19,13 @@ function bisected({ design, slips, tolerance, first, second, ends, begins, codes
   return parts;
 }
 
-const made = ({ design, slips, tolerance, first, second, places, asked }) => solver.solveMade(design, slips, tolerance, first, second, places, asked.made);
+const solvedAsMade = ({ design, slips, tolerance, first, second, places, made }) => solver.solveMade(design, slips, tolerance, first, second, places, made);
 
 /** What is asked of designs, row by row: as drawn, and behind that as made. */
-function asked(order) {
-  const drawn = solver.solvePlaces(order.design, order.slips, order.tolerance, order.first, order.second, order.places, order.asked);
-  if (!order.asked.made) return drawn;
-  const asMade = made(order), wide = solver.rowNames.length, more = order.asked.made.fields.length, rows = new Float64Array(drawn.length + asMade.length);
+function solvedAsAsked(order) {
+  const { made } = order.asked, drawn = solver.solvePlaces(order.design, order.slips, order.tolerance, order.first, order.second, order.places, order.asked);
+  if (!made) return drawn;
+  const asMade = solvedAsMade({ ...order, made }), wide = solver.rowNames.length, more = made.fields.length, rows = new Float64Array(drawn.length + asMade.length);
   for (let i = 0; i * wide < drawn.length; ++i) {
     rows.set(drawn.subarray(i * wide, (i + 1) * wide), i * (wide + more));
     rows.set(asMade.subarray(i * more, (i + 1) * more), i * (wide + more) + wide);
@@ -40,7 +40,7 @@ onmessage = async ({ data }) => {
       postMessage({ ready: true });
       return;
     }
-    const rows = data.ends ? bisected(data) : data.only === "made" ? made(data) : asked(data);
+    const rows = data.ends ? bisected(data) : data.asked ? solvedAsAsked(data) : solvedAsMade(data);
     postMessage({ generation: data.generation, rows }, [rows.buffer]);
   } catch (error) { postMessage({ error: String(error.message ?? error), generation: data.generation }); }  // of an async function onerror hears nothing
 };

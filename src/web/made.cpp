@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <utility>
-#include <variant>
+#include <string>
 
 #include "model/parameters.hpp"
 #include "sweep/scatter_solver.hpp"
@@ -18,7 +17,7 @@ struct Asked {
   Scatter scatter;
   std::vector<Goal> goals;
   std::vector<const Field*> fields;
-  std::uint64_t seed = 1;  // of 64 bits, which a long has not here
+  std::uint64_t seed = 1;  // in place of scatter.seed, a long, which is too short for it here
 };
 Asked asked;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "web/page.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <variant>
 
@@ -150,7 +151,7 @@ LEAPMAP_EXPORT double parameter_most(int i) { return parameter_of(i).range.most;
 /// Their values, which the page sets; at first leapmap's defaults.
 LEAPMAP_EXPORT double* parameter_values() { return page.parameters.data(); }
 
-/// What solve and solve_places tell of a hoop: so many jumps at most, the gait after `settle` of them if that
+/// What solve, solve_places and solve_made tell of a hoop: so many jumps at most, the gait after `settle` of them if that
 /// is above zero, and how errors grow, which only a sequence has.
 LEAPMAP_EXPORT void ask(int jumps, int settle, int growth) {
   page.jumps = std::clamp(static_cast<long>(jumps), 1l, most_jumps);

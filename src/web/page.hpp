@@ -40,7 +40,7 @@ extern Page page;
 /// The member that the page's parameter of that number is; nullptr: it is none of a design.
 double Design::*member_of_design(int parameter);
 
-/// A field's number among map_fields().
+/// The field of a number among map_fields().
 const Field& field_of(int number);
 
 /// What a map computed on the page tells of each design: all numbers and codes.

@@ -359,9 +359,9 @@ def test_a_file_s_map_as_made_tells_a_hoop_of_ones_own_and_goes_live_with_its_to
     assert float(browser.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(at[0], abs=1e-4)
     browser.find_element("id", "live-toggle").click()
     WebDriverWait(browser, 20).until(lambda b: b.execute_script("return !!window.explorer?.map.live"))
-    asked = browser.execute_script("const { map } = window.explorer; return [map.spreads, map.samples, map.hoopGoals()]")
+    asked = browser.execute_script("const { map } = window.explorer; return [map.spreads, map.samples, map.seed, map.hoopGoals()]")
     assert asked == [[{"name": "slope", "law": "normal", "width": pytest.approx(math.radians(2)), "percent": False}, {"name": "mass_ratio", "law": "uniform", "width": 8, "percent": True}],
-                     64, [{"field": "jump_height", "least": 0.3, "most": None}, {"field": "spurious_first_jump", "least": 0, "most": 0}]]
+                     64, 5, [{"field": "jump_height", "least": 0.3, "most": None}, {"field": "spurious_first_jump", "least": 0, "most": 0}]]
 
 
 def gait_of_a_hoop_of_ones_own(browser):

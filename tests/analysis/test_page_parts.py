@@ -228,6 +228,14 @@ def test_hoops_as_made_jump_along_on_a_live_map(page):
     told("of 20 jump")
     give(page, "#spreads input", "20")
     told("of 20 jump")
+    page.execute_script("document.getElementById('filters').open = true; document.getElementById('goal-add').click()")
+    give(page, "#goals input", "1", "input")  # mm
+    told("reach every goal")
+    assert " 0 reach" not in page.find_element("id", "ghosts-told").text
+    give(page, "#goals input", "1000", "input")
+    told(" 0 reach every goal")
+    page.find_element("css selector", "#goals button").click()
+    WebDriverWait(page, 10).until(lambda b: "reach" not in b.find_element("id", "ghosts-told").text)
     page.find_element("id", "ghosts").click()
     assert page.find_element("id", "ghosts-told").text == ""
 

@@ -1,0 +1,32 @@
+// What the map's signs and colours mean.
+
+/** Lists the signs and colours that the map has now. */
+function showLegend(map, view) {
+  const entry = (words, colour, image) => {
+    const item = document.createElement("li"), swatch = document.createElement("span");
+    swatch.className = "swatch";
+    swatch.style.background = image ?? colour;
+    item.append(swatch, words);
+    return item;
+  };
+  const items = [];
+  const { field } = view.view, showsSpurious = isOfFirstJump(field) && map.codes.spurious_first_jump?.values.includes(1);
+  if (showsSpurious && !map.columns) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+  map.codes.status?.shown.forEach(({ colour, words }, k) => {
+    if (map.codes.status.meanings[k] !== "jumped" && map.codes.status.values.includes(k)) items.push(entry(words, colour));
+  });
+  if (field.gait) items.push(entry(field.name === "gait_period" ? "no gait is found" : "no gait: none is found, or the hoop comes to an end", "#ffffff"));
+  const symbol = (words, sign, colour) => {
+    const item = document.createElement("li"), mark = document.createElement("span");
+    mark.textContent = sign;
+    mark.style.color = colour;
+    item.append(mark, ` ${words}`);
+    return item;
+  };
+  if (showsSpurious && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
+  if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
+  items.push(symbol("pointed at", "⊕", tones.ink), symbol("shown beside", "⊕", tones.mark));
+  if (!field.gait) for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
+    items.push(symbol(map.cliff_words[kind], kind in DASHES ? "╌" : "—", tones.ink));
+  element("legend").replaceChildren(...items);
+}
