@@ -55,11 +55,13 @@ const isAsMade = (map) => map.asked.made !== null && map.asked.made === madeWant
  */
 const costEach = ({ settle, growth, made }) => 1 + (settle > 0 ? 20 + settle / 5 : 0) + (growth ? 20 : 0) + (made ? made.samples / 8 * made.jumps * costEach({ ...made, made: null }) : 0);
 const isCostly = (asked) => costEach(asked) > 1;
+/** Whether what is asked of each hoop tells a field. */
+const isAsked = (map, field) => costOf(field) === null || Boolean(map.asked[costOf(field)]);
 /** The fields of which a live map has, or will have, numbers. */
 function toldFields(map) {
   if (!map.live) return map.fields;
   const made = isAsMade(map);
-  return map.fields.filter((field) => costOf(field) === null || (field.made ? made : Boolean(map.asked[costOf(field)])));
+  return map.fields.filter((field) => isAsked(map, field) && (!field.made || made));
 }
 
 /** An axis with its values, evenly from one bound to the other. */
@@ -71,19 +73,20 @@ function liveAxis(given, { name, from, to, count }) {
 /** Puts what rows tell of designs, cell by cell, into all fields: each in a block of `side` cells, but for cells that know better. */
 function putRows(map, rows, cells, side, level) {
   const [nx, ny] = LIVE_SHAPE, names = [...map.solver.rowNames, ...(map.asked.made?.fields ?? [])], wide = names.length, column = (name) => names.indexOf(name), radius = map.fixed.radius;
-  const [height, time, apex] = ["jump_height", "jump_time", "apex_time"].map(column), columns = map.fields.map((field) => column(field.name));
+  const [height, time, apex] = ["jump_height", "jump_time", "apex_time"].map(column), fields = map.fields.filter((field) => isAsked(map, field)), columns = fields.map((field) => column(field.name));
   const codes = OUTCOME_CODES.map(([name, none]) => ({ at: column(name), none, values: map.codes[name].values }));
-  const told = new Float64Array(map.fields.length);
+  const told = new Float64Array(fields.length);
+  for (const field of fields) field.isFilled = true;
   for (let n = 0; n < cells.length; ++n) {
     const at = cells[n], row = n * wide, i0 = Math.floor(at / ny), j0 = at % ny;
     for (let f = 0; f < told.length; ++f)
-      told[f] = columns[f] >= 0 ? rows[row + columns[f]] : map.fields[f].made ? NaN : 2 * radius * rows[row + height] / (rows[row + time] + rows[row + apex]);
+      told[f] = columns[f] >= 0 ? rows[row + columns[f]] : 2 * radius * rows[row + height] / (rows[row + time] + rows[row + apex]);
     for (let i = i0; i < Math.min(nx, i0 + side); ++i)
       for (let j = j0; j < Math.min(ny, j0 + side); ++j) {
         const k = i * ny + j;
         if (k !== at && level[k] <= side) continue;
         level[k] = k === at ? 0 : side;
-        for (let f = 0; f < told.length; ++f) map.fields[f].values[k] = told[f];
+        for (let f = 0; f < told.length; ++f) fields[f].values[k] = told[f];
         for (const code of codes) { const v = rows[row + code.at]; code.values[k] = v === v ? v : code.none; }
       }
   }
@@ -97,6 +100,8 @@ function outcomesDiffer({ codes: { status, spurious_first_jump: spurious, candid
 /** Scales and isolines after the values that are there, and the cells that differ from the next: cliffs. */
 function settleMap(map) {
   for (const field of map.fields) {
+    if (field.isScaled && !field.isFilled) continue;
+    field.isScaled = true;
     let low = Infinity, high = -Infinity;
     for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
     if (!(low <= high)) [low, high] = field.log ? [1, 10] : [0, 1];
@@ -239,7 +244,11 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     onProgress(1, 0);
     // Where the first picture takes its time, numbers of other settings do not stand until then.
     const clears = isCostly(map.asked) && !now.rushing;
-    if (clears) for (const field of map.fields) if (costOf(field)) field.values.fill(NaN);
+    for (const field of map.fields) {
+      if (!field.isFilled || (isAsked(map, field) && !(clears && costOf(field)))) continue;
+      field.values.fill(NaN);
+      field.isFilled = false;
+    }
     onPicture(clears ? "cleared" : "none");
     // One picture is of one set of numbers, whatever is turned meanwhile.
     now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips, tolerance: map.tolerance, asked: map.asked, first: map.axes[0].name, second: map.axes[1].name };
