@@ -94,11 +94,12 @@ function filtersPart(map, view, changed, best) {
   });
   return {
     tell,
-    /** What a hoop as made is to reach. */
-    ofHoops: () => [
-      ...goals.filter(({ field, bound }) => isOfHoop(field) && Number.isFinite(bound)).map(({ field, sign, bound }) => ({ field: field.name, least: sign === "least" ? bound : null, most: sign === "most" ? bound : null })),
-      ...(real.checked ? [{ field: "spurious_first_jump", least: 0, most: 0 }] : []),
-    ],
+    /** What a hoop as made is to reach; to jump, too, as some goals are reached without. */
+    ofHoops() {
+      const all = [...goals.filter(({ field, bound }) => isOfHoop(field) && Number.isFinite(bound)).map(({ field, sign, bound }) => ({ field: field.name, least: sign === "least" ? bound : null, most: sign === "most" ? bound : null })),
+        ...(real.checked ? [{ field: "spurious_first_jump", least: 0, most: 0 }] : [])];
+      return all.length > 0 ? [...all, jumping(map)] : [];
+    },
     fields: () => goals.map(({ field }) => field),
     write(words) {
       for (const { field, sign, bound } of goals) words.append("goal", `${field.name}:${sign}:${Number(bound.toPrecision(12))}`);

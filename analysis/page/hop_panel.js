@@ -5,8 +5,8 @@ const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20
 /**
  * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome, design):
  * a hoop is shown that is none of the map's designs; otherUnits(): everything is to be told anew; pinned(): other designs are; followed():
- * a live map's hoops are followed for another number of jumps; teller: tells of hoops as
- * made; toldMore(outcome): more is known of the hoop that is none of the map's.
+ * a live map's hoops are followed for another number of jumps; teller: tells of hoops as made; toldMore(outcome): more is known of the hoop that
+ * is none of the map's.
  */
 function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller, toldMore }) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -131,7 +131,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
 
   const goalsOfHoops = () => (map.live ? map.hoopGoals() : map.goals);
   /** What hoops that jump along are asked, so that goals can be told of. */
-  const ghostsAsked = () => { const { settle, growth } = madeAsked(map, goalsOfHoops()); return { settle, growth }; };
+  const ghostsAsked = () => { const { jumps, settle, growth } = madeAsked(map, goalsOfHoops()); return { jumps: Math.max(jumps, chosen.jumps), settle, growth }; };
+  const ghostsKey = () => JSON.stringify([ghostsAsked(), map.spreads]);
   function countGhosts() {
     const outcomes = now.ghosts.filter(({ pin }) => pin === undefined).map(({ story }) => story.outcome), goals = goalsOfHoops();
     if (outcomes.length === 0) return;
@@ -141,7 +142,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   /** Goals are others: hoops that jump along are counted anew, and solved anew if more has to be known of them. */
   function recount() {
     if (!now.story || !ghosts.checked) return;
-    if (JSON.stringify(ghostsAsked()) === now.ghostsAsked) countGhosts(); else haunt();
+    if (ghostsKey() === now.ghostsKey) countGhosts(); else haunt();
   }
 
   /** Draws the hoop, and solves those that jump along: those pinned, and as made, of which it says how many jump. A slice at a time, as friction takes its time. */
@@ -149,14 +150,14 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     const mine = ++now.haunting, made = ghosts.checked ? madeAfter(now.design, map.spreads, solver.ranges, GHOSTS) : [];
     const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin })) : []), ...made.map((design) => ({ design }))], found = [];
     now.ghosts = [];
-    now.ghostsAsked = JSON.stringify(ghostsAsked());
+    now.ghostsKey = ghostsKey();
     element("ghosts-told").textContent = made.length > 0 ? ": solving" : "";
     scrub.max = end();
     draw();
     if (wanted.length === 0) return;
     let begun = performance.now();
     for (const each of wanted) {
-      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, { ...ghostsAsked(), jumps: chosen.jumps }) }); } catch (error) { element("ghosts-told").textContent = ""; notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
+      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, ghostsAsked()) }); } catch (error) { element("ghosts-told").textContent = ""; notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
       if (performance.now() - begun < SLICE) continue;
       await new Promise((go) => { setTimeout(go); });
       if (mine !== now.haunting) return;  // others are wanted by now

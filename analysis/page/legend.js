@@ -12,8 +12,12 @@ function showLegend(map, view) {
   const items = [];
   const { field } = view.view, showsSpurious = isOfFirstJump(field) && map.codes.spurious_first_jump?.values.includes(1);
   if (showsSpurious && !map.columns) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+  // Of hoops as made a number stands wherever there are some.
+  const bare = field.made && new Set(map.codes.status?.values.filter((_, k) => Number.isNaN(field.values[k])));
   map.codes.status?.shown.forEach(({ colour, words }, k) => {
-    if (map.codes.status.meanings[k] !== "jumped" && map.codes.status.values.includes(k)) items.push(entry(words, colour));
+    const jumped = map.codes.status.meanings[k] === "jumped";
+    if (!jumped && (bare ? bare.has(k) : map.codes.status.values.includes(k))) items.push(entry(words, colour));
+    if (jumped && bare && bare.has(k)) items.push(entry("not told: more than half of a tolerance lies where no hoop can be", "#ffffff"));
   });
   if (field.gait) items.push(entry(field.name === "gait_period" ? "no gait is found" : "no gait: none is found, or the hoop comes to an end", "#ffffff"));
   const symbol = (words, sign, colour) => {

@@ -45,8 +45,10 @@ function toAsk(map) {
 }
 /** What hoops as made are asked by the tolerances and goals that a live map has now: what was asked last, if it is the same. */
 function madeWanted(map) {
-  const wanted = madeAsked(map, map.hoopGoals());
-  return JSON.stringify(wanted) === JSON.stringify(map.asked.made) ? map.asked.made : wanted;
+  const { made } = map.asked, isSame = (wanted) => JSON.stringify(wanted) === JSON.stringify(made), whole = madeAsked(map, map.hoopGoals());
+  if (isSame(whole)) return made;
+  const wanted = map.wanted().some(({ name }) => name === "yield") ? whole : madeAsked(map, [], false);  // which goals that change leave as it is
+  return isSame(wanted) ? made : wanted;
 }
 const isAsMade = (map) => map.asked.made !== null && map.asked.made === madeWanted(map);
 /**
@@ -56,7 +58,7 @@ const isAsMade = (map) => map.asked.made !== null && map.asked.made === madeWant
 const costEach = ({ settle, growth, made }) => 1 + (settle > 0 ? 20 + settle / 5 : 0) + (growth ? 20 : 0) + (made ? made.samples / 8 * made.jumps * costEach({ ...made, made: null }) : 0);
 const isCostly = (asked) => costEach(asked) > 1;
 /** Whether what is asked of each hoop tells a field. */
-const isAsked = (map, field) => costOf(field) === null || Boolean(map.asked[costOf(field)]);
+const isAsked = (map, field) => (field.made ? Boolean(map.asked.made?.fields.includes(field.name)) : costOf(field) === null || Boolean(map.asked[costOf(field)]));
 /** The fields of which a live map has, or will have, numbers. */
 function toldFields(map) {
   if (!map.live) return map.fields;
@@ -193,7 +195,9 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     feed(worker);
     if (data.error) {
       notice(`The map cannot be solved on: ${data.error}`);
-      if (data.generation === now.generation) { now.rushing = false; onProgress(NaN, 0); }
+      if (data.generation !== now.generation) return;
+      Object.assign(now, { generation: now.generation + 1, queue: [], rushing: false });
+      if (now.again) begin(); else onProgress(NaN, 0);
       return;
     }
     if (data.generation !== now.generation) return;
@@ -202,7 +206,12 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     now.solved += job.cells.length;
     if (isCostly(map.asked)) onProgress(now.solved / (nx * ny), (performance.now() - now.begun) / 1000 * (nx * ny / now.solved - 1));
     const last = --now.left[job.stage] === 0;
-    if (last && job.stage === 0) { now.timing = { coarse: performance.now() - now.begun }; map.curves = []; beginCliffs(COARSEST); show("part"); } else if (!now.rushing && now.left[0] === 0) goOn();  // the first picture has its cliffs
+    if (last && job.stage === 0) {
+      now.timing = { coarse: performance.now() - now.begun };
+      map.curves = [];
+      beginCliffs(COARSEST);
+      if (data.generation === now.generation) show("part");  // else there were none, and another map is begun
+    } else if (!now.rushing && now.left[0] === 0) goOn();  // the first picture has its cliffs
   }
 
   /** More designs are there. */
@@ -245,9 +254,15 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     // Where the first picture takes its time, numbers of other settings do not stand until then.
     const clears = isCostly(map.asked) && !now.rushing;
     for (const field of map.fields) {
-      if (!field.isFilled || (isAsked(map, field) && !(clears && costOf(field)))) continue;
+      if (!field.isFilled || (isAsked(map, field) && !clears)) continue;
       field.values.fill(NaN);
       field.isFilled = false;
+    }
+    if (clears) {
+      map.curves = [];
+      map.codes.status.values.fill(map.codes.status.meanings.indexOf("not_computed"));
+      map.codes.spurious_first_jump.values.fill(255);
+      for (const { values } of [map.codes.candidates, map.codes.cliffs]) values.fill(0);
     }
     onPicture(clears ? "cleared" : "none");
     // One picture is of one set of numbers, whatever is turned meanwhile.

@@ -97,6 +97,7 @@ function startLive(given, module, solver) {
 function start(map, solver, teller) {
   Object.assign(map, { solver, defaults: solver.defaults });
   // Of a file's map a hoop of one's own is told what the map's designs are.
+  map.settle = Math.min(map.settle, element("settle").max);
   map.asked ??= askedOfFile(map);
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
@@ -154,7 +155,7 @@ function start(map, solver, teller) {
     const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
       : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
     element("place").textContent = placeText(map, index);
-    const notesSaid = notes.filter((w) => w).map((note) => (shown.made ? `as drawn: ${note}` : note));
+    const notesSaid = notes.filter((w) => w && text(shown) !== "being solved").map((note) => (shown.made ? `as drawn: ${note}` : note));
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notesSaid].join("; ");
     tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));
     speak();
@@ -365,9 +366,9 @@ function start(map, solver, teller) {
 
 /** What the solver is to be asked of a hoop of one's own beside a file's map, so that all its fields are told. */
 function askedOfFile(map) {
-  const has = (cost) => map.fields.some((f) => costOf(f) === cost), settle = Math.min(map.settle, element("settle").max);
+  const has = (cost) => map.fields.some((f) => costOf(f) === cost);
   const goals = has("made") ? numberedGoals(map.goals, map.solver.codes) : null;
-  return { jumps: map.jumps, settle: has("settle") ? settle : 0, growth: has("growth"), made: goals && madeAsked({ ...map, settle }, goals) };
+  return { jumps: map.jumps, settle: has("settle") ? map.settle : 0, growth: has("growth"), made: goals && madeAsked(map, goals) };
 }
 
 /** The address of the live map that a file's map begins at: its two longest axes, the rest as it stands. */

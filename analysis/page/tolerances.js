@@ -13,15 +13,20 @@ function numberedGoals(goals, codes) {
   return numbered.every(({ field, least, most }) => Object.hasOwn(codes, field) && [least, most].every((v) => v === null || Number.isFinite(v))) ? numbered : null;
 }
 
+/** The goal to jump. */
+function jumping(map) {
+  const jumped = map.solver.codes.status.indexOf("jumped");
+  return { field: "status", least: jumped, most: jumped };
+}
+
 /**
  * What the solver is to be asked of hoops as made, so that all such fields of a map have numbers. goals: {field, least, most} that a hoop is to
- * reach, null: no such bound; without any it is to jump.
+ * reach, null: no such bound; without any it is to jump. yields: whether the yield is among them, which goals are for.
  */
-function madeAsked(map, goals) {
-  const fields = map.fields.filter((field) => field.made).map(({ name }) => name);
-  const jumped = map.solver.codes.status.indexOf("jumped");
+function madeAsked(map, goals, yields = true) {
+  const fields = map.fields.filter((field) => field.made && (yields || field.name !== "yield")).map(({ name }) => name);
   return {
-    fields, samples: map.samples, seed: map.seed, spreads: map.spreads.map((spread) => ({ ...spread })), goals: goals.length > 0 ? goals : [{ field: "status", least: jumped, most: jumped }],
+    fields, samples: map.samples, seed: map.seed, spreads: map.spreads.map((spread) => ({ ...spread })), goals: goals.length > 0 ? goals : [jumping(map)],
     jumps: goals.some(({ field }) => ["jumps", "sequence_condition"].includes(field)) ? map.jumps : 1, settle: goals.some(({ field }) => field.startsWith("gait_")) ? map.settle : 0,
     growth: map.jumps > 1 && goals.some(({ field }) => field === "sequence_condition"),
   };
@@ -85,7 +90,9 @@ function tolerancesPart(map, changed) {
       name.value = spread.name;
       law.value = spread.law;
       unit.value = spread.percent ? "%" : "own";
-      if (document.activeElement !== number) number.value = Number((spread.width * factor(spread)).toPrecision(6));
+      if (document.activeElement === number) return;
+      number.value = Number((spread.width * factor(spread)).toPrecision(6));
+      number.setAttribute("aria-invalid", "false");
     };
     each.show = show;
     option(law, "normal", "normal, σ =");
@@ -163,7 +170,9 @@ function tolerancesPart(map, changed) {
   return {
     /** Another model: other parameters may scatter. */
     remodel() {
-      begin(rows.map(({ spread }) => spread).filter(({ name }) => offered().includes(name)));
+      const all = rows.map(({ spread }) => spread), dropped = all.filter(({ name }) => !offered().includes(name));
+      if (dropped.length > 0) notice(`A hoop that never slips has no tolerance of: ${dropped.map(({ name }) => map.parameters[name].label).join(", ")}`);
+      begin(all.filter((spread) => !dropped.includes(spread)));
       map.spreads = rows.map(({ spread }) => spread);
     },
     write(words) {
@@ -179,7 +188,8 @@ function tolerancesPart(map, changed) {
         if (spread && !spreads.some(({ name }) => name === spread.name)) spreads.push(spread);
         else notice(`The address asks for a tolerance that cannot be: ${word}`);
       }
-      begin(asked.length > 0 ? spreads : USUAL_SPREADS);
+      const sigma = Number(words.get("sigma"));  // as addresses had it before each tolerance had its own word
+      begin(asked.length > 0 ? spreads : USUAL_SPREADS.map((spread) => (sigma > 0 ? { ...spread, width: sigma } : spread)));
       map.spreads = rows.map(({ spread }) => spread);
       samples.value = words.get("samples") ?? usualSamples;
       samples.setAttribute("aria-invalid", "false");

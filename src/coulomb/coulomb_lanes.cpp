@@ -38,6 +38,11 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       settle(place, machine->begin(start));
     }
     ended_.clear(), flown_.clear();
+    for (const std::uint32_t place : rebounding_) {
+      const PhaseMachine<S>& machine = *on_their_way_[place].machine;
+      flown_.push_back({place, flight_from(machine.hoop(), machine.at())});
+    }
+    rebounding_.clear();
     if (flying_.size() >= width || sliding_.waiting() + rolling_.waiting() == 0)
       fly_some();
     else if (sliding_.waiting() >= width || rolling_.waiting() == 0)
@@ -56,7 +61,7 @@ void CoulombLanes<T>::go_on(std::uint32_t place, const NextPhase& next) {
   const PhaseMachine<S>& machine = *on_their_way_[place].machine;
   const Contact<S>& contact = machine.contact();
   if (next.phase == Phase::flight)
-    flying_.push_back(place);
+    (machine.at().normal > S(0) ? rebounding_ : flying_).push_back(place);
   else if (next.phase == Phase::rolling)
     rolling_.begin(place, machine.hoop(), contact.mu_static, machine.at(), machine.runway());
   else
@@ -80,13 +85,8 @@ void CoulombLanes<T>::fly_some() {
       fly(hoop, LiftOff<T>{T(S(0)), Lanes<T>::load(angle.data()), Lanes<T>::load(spin.data())});
   const auto height = lanes_of(flights.height), apex_time = lanes_of(flights.apex_time),
              flight_time = lanes_of(flights.flight_time), dip = lanes_of(flights.dip);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t place = flying_[first + i];
-    const PhaseMachine<S>& machine = *on_their_way_[place].machine;
-    const bool rebounds = machine.at().normal > S(0);
-    flown_.push_back({place, rebounds ? flight_from(machine.hoop(), machine.at())
-                                      : Flight<S>{height[i], apex_time[i], flight_time[i], dip[i]}});
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    flown_.push_back({flying_[first + i], {height[i], apex_time[i], flight_time[i], dip[i]}});
   flying_.resize(first);
 }
 

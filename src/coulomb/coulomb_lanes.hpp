@@ -42,13 +42,13 @@ class CoulombLanes {
     Flight<S> flight;
   };
   void go_on(std::uint32_t place, const NextPhase& next);
-  /// Lets some of those that have left the plane fly, and adds them to flown_.
+  /// Lets some of flying_ fly, and adds them to flown_.
   void fly_some();
 
   RollingLanes<T> rolling_;
   SlidingLanes<T> sliding_;
   std::vector<OnItsWay> on_their_way_ = std::vector<OnItsWay>(most_on_their_way);
-  std::vector<std::uint32_t> free_, flying_;  // places
+  std::vector<std::uint32_t> free_, flying_, rebounding_;  // places; rebounds fly by themselves
   std::vector<EndedPhase<S>> ended_;
   std::vector<Flown> flown_;
   std::vector<ContactState<S>> releases_;

@@ -361,7 +361,7 @@ def test_a_file_s_map_as_made_tells_a_hoop_of_ones_own_and_goes_live_with_its_to
     WebDriverWait(browser, 20).until(lambda b: b.execute_script("return !!window.explorer?.map.live"))
     asked = browser.execute_script("const { map } = window.explorer; return [map.spreads, map.samples, map.seed, map.hoopGoals()]")
     assert asked == [[{"name": "slope", "law": "normal", "width": pytest.approx(math.radians(2)), "percent": False}, {"name": "mass_ratio", "law": "uniform", "width": 8, "percent": True}],
-                     64, 5, [{"field": "jump_height", "least": 0.3, "most": None}, {"field": "spurious_first_jump", "least": 0, "most": 0}]]
+                     64, 5, [{"field": "jump_height", "least": 0.3, "most": None}, {"field": "spurious_first_jump", "least": 0, "most": 0}, {"field": "status", "least": 1, "most": 1}]]
 
 
 def gait_of_a_hoop_of_ones_own(browser):
