@@ -5,11 +5,11 @@
 #   install_packages.sh tests   for the tests and benchmarks as well
 set -eu
 packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev libcli11-dev libxsimd-dev
-  libdeflate-dev zlib1g-dev libeigen3-dev libpagmo-dev libnlopt-cxx-dev emscripten
+  libdeflate-dev zlib1g-dev libeigen3-dev libpagmo-dev libnlopt-cxx-dev libboost-dev emscripten
   pybind11-dev python3-dev python3 python3-numpy python3-h5py python3-matplotlib python3-xarray"
 if [ "${1:-main}" = tests ]; then
   packages="$packages libgtest-dev libbenchmark-dev clang-format clang libclang-rt-14-dev libomp-dev hdf5-tools netcdf-bin
-    libboost-dev python3-scipy python3-openturns python3-pytest python3-netcdf4 python3-h5netcdf python3-selenium
+    python3-scipy python3-openturns python3-pytest python3-netcdf4 python3-h5netcdf python3-selenium
     chromium chromium-driver poppler-utils qemu-user slurm-wlm munge parallel"
 fi
 missing=""
