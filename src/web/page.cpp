@@ -151,8 +151,8 @@ LEAPMAP_EXPORT double parameter_most(int i) { return parameter_of(i).range.most;
 /// Their values, which the page sets; at first leapmap's defaults.
 LEAPMAP_EXPORT double* parameter_values() { return page.parameters.data(); }
 
-/// What solve, solve_places and solve_made tell of a hoop: so many jumps at most, the gait after `settle` of them if that
-/// is above zero, and how errors grow, which only a sequence has.
+/// What solve, solve_places and solve_made tell of a hoop: so many jumps at most, the gait after `settle` of
+/// them if that is above zero, and how errors grow, which only a sequence has.
 LEAPMAP_EXPORT void ask(int jumps, int settle, int growth) {
   page.jumps = std::clamp(static_cast<long>(jumps), 1l, most_jumps);
   page.settle = std::max(settle, 0);
