@@ -35,19 +35,22 @@ function writeLive(words, map, defaults) {
     if (value !== defaults[name] && Number.isFinite(value) && !map.axes.some((axis) => axis.name === name)) words.set(name, String(value));
 }
 
+/** The parameters that a live map's model has, and those of them that are of the design itself. */
+const liveParameters = (map) => Object.keys(LIVE_RANGES).filter((name) => name in map.parameters && (map.slips || !SLIPPING.includes(name)));
+const designParameters = (map) => liveParameters(map).filter((name) => !NO_LIVE_AXIS.includes(name));
+
 /** Builds the controls. changed(what): "map" if the map is another, "model" if the model is. Returns what the address wants of them. */
 function liveControls(map, solver, changed) {
   const box = element("live-controls"), sliders = element("live-sliders"), model = element("live-model");
   const axisInputs = ["x", "y"].map((key) => ({ name: element(`live-${key}`), from: element(`live-${key}-from`), to: element(`live-${key}-to`) }));
   box.hidden = false;
   const unitOf = (name) => map.parameters[name].unit, factor = (name) => (unitOf(name) === "°" ? 180 / Math.PI : 1);
-  const here = () => Object.keys(LIVE_RANGES).filter((name) => name in map.parameters && (map.slips || !SLIPPING.includes(name)));
 
   function showAxes() {
     axisInputs.forEach((inputs, k) => {
       const axis = map.axes[k];
       inputs.name.replaceChildren();
-      here().filter((name) => !NO_LIVE_AXIS.includes(name)).forEach((name) => option(inputs.name, name, map.parameters[name].label));
+      designParameters(map).forEach((name) => option(inputs.name, name, map.parameters[name].label));
       inputs.name.value = axis.name;
       inputs.from.value = Number((axis.from * factor(axis.name)).toPrecision(6));
       inputs.to.value = Number((axis.to * factor(axis.name)).toPrecision(6));
@@ -82,7 +85,7 @@ function liveControls(map, solver, changed) {
   });
 
   function showSliders() {
-    const rows = here().filter((name) => !map.axes.some((axis) => axis.name === name)).map((name) => {
+    const rows = liveParameters(map).filter((name) => !map.axes.some((axis) => axis.name === name)).map((name) => {
       const { label, unit } = map.parameters[name], [low, high] = LIVE_RANGES[name];
       const row = document.createElement("label"), words = document.createElement("span"), slider = document.createElement("input"), number = document.createElement("input");
       words.textContent = withUnit(label.split(" [")[0], unit ? `[${unit}]` : "");
@@ -149,25 +152,28 @@ function liveControls(map, solver, changed) {
   };
 }
 
-/** How many jumps a live map lets go by before it looks for gaits. */
-function settlePart(map) {
-  const input = element("settle"), usual = map.settle;
+/** A whole number that the map, its input and the address's word call alike; what: what it counts, changed(): it is another. */
+function countPart(map, name, what, changed) {
+  const input = element(name), usual = map[name];
   input.addEventListener("change", () => {
     const good = input.value !== "" && input.checkValidity();
     input.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `How many jumps go by before a gait is looked for must be a whole number from ${input.min} to ${input.max}.`);
+    notice(good ? "" : `${what} must be ${input.step > 1 ? `${input.step} times ` : ""}a whole number from ${input.min} to ${input.max}.`);
     if (!good) return;
-    map.settle = Number(input.value);
-    map.refresh();
+    map[name] = Number(input.value);
+    changed();
     noteAddress();
   });
   return {
-    write(words) { if (map.settle !== usual) words.set("settle", map.settle); },
+    write(words) { if (map[name] !== usual) words.set(name, map[name]); },
     read(words) {
-      input.value = words.get("settle") ?? usual;
+      input.value = words.get(name) ?? usual;
       input.setAttribute("aria-invalid", "false");
-      if (input.value === "" || !input.checkValidity()) { input.value = usual; notice(`The address asks for settle=${words.get("settle")}, which cannot be, and is left out.`); }
-      map.settle = Number(input.value);
+      if (input.value === "" || !input.checkValidity()) { input.value = usual; notice(`The address asks for ${name}=${words.get(name)}, which cannot be, and is left out.`); }
+      map[name] = Number(input.value);
     },
   };
 }
+
+/** How many jumps a live map lets go by before it looks for gaits. */
+const settlePart = (map) => countPart(map, "settle", "How many jumps go by before a gait is looked for", () => map.refresh());

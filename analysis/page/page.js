@@ -150,12 +150,13 @@ function start(map, solver, teller) {
     drawCuts();
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
     const number = (f) => (f.values[at] === f.values[at] ? (map.live && f.log ? short(f.values[at], 6) : f.values[at].toFixed(decimalsOf(f.step))) : "");
-    const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : map.live && costOf(f) && canvas.dataset.coarse !== "true" ? "being solved" : "none");
+    const isSolving = (f) => map.live && costOf(f) && !number(f) && canvas.dataset.coarse !== "true";
+    const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : isSolving(f) ? "being solved" : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
       : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
     element("place").textContent = placeText(map, index);
-    const notesSaid = notes.filter((w) => w && text(shown) !== "being solved").map((note) => (shown.made ? `as drawn: ${note}` : note));
+    const notesSaid = notes.filter((w) => w && !isSolving(shown)).map((note) => (shown.made ? `as drawn: ${note}` : note));
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notesSaid].join("; ");
     tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));
     speak();

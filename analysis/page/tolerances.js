@@ -57,10 +57,8 @@ function madeTeller(module, workerText) {
 
 /** By which tolerances hoops of a live map are made, and how many; changed(): others are wanted. */
 function tolerancesPart(map, changed) {
-  const part = element("tolerances"), list = element("spreads"), samples = element("samples"), rows = [];
-  const usualSamples = map.samples;
+  const part = element("tolerances"), list = element("spreads"), rows = [];
   part.hidden = false;
-  const offered = () => Object.keys(LIVE_RANGES).filter((name) => name in map.parameters && !NO_LIVE_AXIS.includes(name) && (map.slips || !SLIPPING.includes(name)));
   const factor = ({ name, percent }) => (!percent && map.parameters[name].unit === "°" ? 180 / Math.PI : 1);
 
   function take() {
@@ -77,7 +75,7 @@ function tolerancesPart(map, changed) {
     const show = () => {
       const taken = rows.map((other) => other.spread.name), own = map.parameters[spread.name].unit;
       name.replaceChildren();
-      offered().filter((other) => other === spread.name || !taken.includes(other)).forEach((other) => option(name, other, map.parameters[other].label.split(" [")[0]));
+      designParameters(map).filter((other) => other === spread.name || !taken.includes(other)).forEach((other) => option(name, other, map.parameters[other].label.split(" [")[0]));
       unit.replaceChildren();
       option(unit, "%", "%");
       option(unit, "own", own || "of its own");
@@ -135,7 +133,7 @@ function tolerancesPart(map, changed) {
   const add = element("spread-add");
   function showAll() {
     for (const { show } of rows) show();
-    add.disabled = rows.length >= offered().length;
+    add.disabled = rows.length >= designParameters(map).length;
   }
   function begin(spreads) {
     rows.length = 0;
@@ -144,33 +142,25 @@ function tolerancesPart(map, changed) {
     showAll();
   }
   add.addEventListener("click", () => {
-    const name = offered().find((other) => !rows.some(({ spread }) => spread.name === other)), angle = map.parameters[name].unit === "°";
+    const name = designParameters(map).find((other) => !rows.some(({ spread }) => spread.name === other)), angle = map.parameters[name].unit === "°";
     row({ name, law: "normal", width: angle ? Math.PI / 180 : 1, percent: !angle && map.fixed[name] !== 0 });
     showAll();
     rows.at(-1).focus();
     take();
   });
-  samples.addEventListener("change", () => {
-    const good = samples.value !== "" && samples.checkValidity();
-    samples.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `How many hoops are made must be ${samples.step} times a whole number, from ${samples.min} to ${samples.max}.`);
-    if (!good) return;
-    map.samples = Number(samples.value);
-    changed();
-    noteAddress();
-  });
+  const samples = countPart(map, "samples", "How many hoops are made of each design", changed);
   begin(map.spreads);
 
   const usual = USUAL_SPREADS.map(spreadWord).join();
   function spreadOf(word) {
     const [name, law, width, percent] = word.split(":");
-    return offered().includes(name) && LAWS.includes(law) && width !== "" && Number(width) >= 0 && Number.isFinite(Number(width)) && [undefined, "percent"].includes(percent)
+    return designParameters(map).includes(name) && LAWS.includes(law) && width !== "" && Number(width) >= 0 && Number.isFinite(Number(width)) && [undefined, "percent"].includes(percent)
       ? { name, law, width: Number(width), percent: percent === "percent" } : null;
   }
   return {
     /** Another model: other parameters may scatter. */
     remodel() {
-      const all = rows.map(({ spread }) => spread), dropped = all.filter(({ name }) => !offered().includes(name));
+      const all = rows.map(({ spread }) => spread), dropped = all.filter(({ name }) => !designParameters(map).includes(name));
       if (dropped.length > 0) notice(`A hoop that never slips has no tolerance of: ${dropped.map(({ name }) => map.parameters[name].label).join(", ")}`);
       begin(all.filter((spread) => !dropped.includes(spread)));
       map.spreads = rows.map(({ spread }) => spread);
@@ -178,7 +168,7 @@ function tolerancesPart(map, changed) {
     write(words) {
       const told = map.spreads.map(spreadWord);
       if (told.join() !== usual) for (const word of told.length > 0 ? told : ["none"]) words.append("made", word);
-      if (map.samples !== usualSamples) words.set("samples", map.samples);
+      samples.write(words);
       if (map.seed !== 1) words.set("seed", map.seed);
     },
     read(words) {
@@ -191,10 +181,7 @@ function tolerancesPart(map, changed) {
       const sigma = Number(words.get("sigma"));  // as addresses had it before each tolerance had its own word
       begin(asked.length > 0 ? spreads : USUAL_SPREADS.map((spread) => (sigma > 0 ? { ...spread, width: sigma } : spread)));
       map.spreads = rows.map(({ spread }) => spread);
-      samples.value = words.get("samples") ?? usualSamples;
-      samples.setAttribute("aria-invalid", "false");
-      if (samples.value === "" || !samples.checkValidity()) { samples.value = usualSamples; notice(`The address asks for samples=${words.get("samples")}, which cannot be, and is left out.`); }
-      map.samples = Number(samples.value);
+      samples.read(words);
       map.seed = /^\d{1,15}$/.test(words.get("seed") ?? "1") ? Number(words.get("seed") ?? 1) : 1;
       if (words.has("seed") && String(map.seed) !== words.get("seed")) notice(`The address asks for seed=${words.get("seed")}, which cannot be, and is left out.`);
       if (asked.length > 0) part.open = true;

@@ -67,6 +67,12 @@ CutLaw MadeHoops::law(std::size_t k, const Design& drawn) const {
   return cut;
 }
 
+bool MadeHoops::can_make(const Design& drawn) const {
+  for (std::size_t k = 0; k < spreads_.size(); ++k)
+    if (!(law(k, drawn).left >= least_left)) return false;
+  return true;
+}
+
 const std::vector<double>& MadeHoops::deviations(std::size_t k, std::size_t dimension, const CutLaw& law) {
   Column& column = columns_[k][dimension];
   if (!column.deviations.empty() && column.law.from == law.from && column.law.to == law.to)

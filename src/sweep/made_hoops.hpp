@@ -43,6 +43,8 @@ class MadeHoops {
 
   /// The law of spread k around this drawing.
   CutLaw law(std::size_t k, const Design& drawn) const;
+  /// Whether of each law as much is left as has to be.
+  bool can_make(const Design& drawn) const;
 
  private:
   struct Made {

@@ -52,10 +52,10 @@ void check_spread(const Spec& spec, const Spread& spread) {
   for (const double value : values) {
     Design drawn = spec.design;
     drawn.*std::get<ParameterSlot>(parameter.slot).member = value;
-    if (const double left = hoops.law(0, drawn).left; !(left >= least_left))
+    if (!hoops.can_make(drawn))
       refuse(spec, "scatter", spread.parameter,
              fmt::format("leaves the domain around {}{}: {:.3g} % of it lies where no hoop can be", value,
-                         option->unit == "rad" ? " rad" : "", 100.0 * (1.0 - left)),
+                         option->unit == "rad" ? " rad" : "", 100.0 * (1.0 - hoops.law(0, drawn).left)),
              fmt::format("a smaller width; the parameter is {}", allowed_values(parameter)));
   }
 }

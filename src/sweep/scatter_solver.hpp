@@ -42,6 +42,7 @@ class ScatterSolver {
   /// quantities: of which the columns are, besides shares; solver: tells these and what the goals are of.
   ScatterSolver(const Scatter& scatter, std::shared_ptr<const SobolPoints> points,
                 const std::vector<Goal>& goals, const std::vector<const Field*>& quantities, Solver solver);
+  bool can_make(const Design& drawn) const { return hoops_.can_make(drawn); }
   /// Fills in the columns of designs.size() designs.
   void solve(std::span<const Design> designs, MadeColumns& columns);
 

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "model/parameters.hpp"
 #include "sweep/scatter_solver.hpp"
 #include "web/page.hpp"
 
@@ -21,22 +20,10 @@ struct Asked {
 };
 Asked asked;
 
-/// Whether so little of each law is cut off that a sweep would take the design.
-bool can_be_made(const MadeHoops& hoops, const Design& design) {
-  for (std::size_t k = 0; k < hoops.spreads(); ++k)
-    if (hoops.law(k, design).left < least_left) return false;
-  return true;
-}
-
 }  // namespace
 
 /// A field of hoops as made by number, null after the last.
-LEAPMAP_EXPORT const char* made_name(int i) {
-  const auto fields = scatter_fields();
-  return i >= 0 && static_cast<std::size_t>(i) < fields.size()
-             ? fields[static_cast<std::size_t>(i)].name.data()
-             : nullptr;
-}
+LEAPMAP_EXPORT const char* made_name(int i) { return name_at(scatter_fields(), i); }
 
 /// Asks anew: so many hoops after each drawing, or a few more, as whole replicates need; nothing scatters
 /// yet, nothing is to be reached and nothing told.
@@ -49,8 +36,7 @@ LEAPMAP_EXPORT void ask_made(int samples, double seed) {
 /// A parameter of a design scatters. law: a Spread::Law's number; percent: the width is in per cent.
 LEAPMAP_EXPORT void ask_spread(int parameter, int law, double width, int percent) {
   asked.scatter.spreads.push_back(
-      {std::string(leapmap::parameters()[static_cast<std::size_t>(parameter)].name),
-       static_cast<Spread::Law>(law), width, percent != 0});
+      {std::string(parameter_of(parameter).name), static_cast<Spread::Law>(law), width, percent != 0});
 }
 LEAPMAP_EXPORT void ask_goal(int field, double at_least, double at_most) {
   asked.goals.push_back({std::string(field_of(field).name), at_least, at_most});
@@ -69,7 +55,6 @@ LEAPMAP_EXPORT void solve_made(int friction, double tolerance, int first, int se
   const auto [designs, which] = placed_designs(first, second);
   const auto points = std::make_shared<const SobolPoints>(
       asked.scatter.spreads.size(), static_cast<std::size_t>(asked.scatter.samples), asked.seed);
-  const MadeHoops laws(asked.scatter, points);
   ScatterSolver solver(asked.scatter, points, asked.goals, quantities_of(asked.fields),
                        [scene, tolerance, jumps = solver_of(scene, tolerance)](std::span<const Design> some,
                                                                                std::span<Outcome> outcomes) {
@@ -78,7 +63,7 @@ LEAPMAP_EXPORT void solve_made(int friction, double tolerance, int first, int se
                        });
   MadeColumns columns(asked.fields);
   for (std::size_t k = 0; k < which.size(); ++k) {
-    if (!can_be_made(laws, designs[k])) continue;
+    if (!solver.can_make(designs[k])) continue;
     solver.solve({&designs[k], 1}, columns);
     for (std::size_t f = 0; f < wide; ++f)
       page.rows[which[k] * wide + f] = columns.column(*asked.fields[f])[0];

@@ -9,7 +9,6 @@
 #include "coulomb/model.hpp"
 #include "gait/error_growth.hpp"
 #include "gait/settle.hpp"
-#include "model/parameters.hpp"
 #include "rolling/exact.hpp"
 #include "rolling/model.hpp"
 
@@ -34,8 +33,6 @@ DualJumpSolver dual_solver(const Scene& scene, double tolerance) {
   return scene.friction == Friction::coulomb ? coulomb::dual_jumps(scene, tolerance)
                                              : rolling::dual_jumps(scene, tolerance);
 }
-
-const Parameter& parameter_of(int number) { return leapmap::parameters()[static_cast<std::size_t>(number)]; }
 
 void fill(std::span<const double> values, Design& design, Scene& scene) {
   const auto all = leapmap::parameters();
@@ -68,6 +65,8 @@ Scene Page::scene(int friction) const {
   scene.jumps = jumps, scene.settle = settle;
   return scene;
 }
+
+const Parameter& parameter_of(int number) { return leapmap::parameters()[static_cast<std::size_t>(number)]; }
 
 double Design::*member_of_design(int parameter) {
   const auto* member = std::get_if<double Design::*>(&parameter_of(parameter).member);
@@ -125,17 +124,8 @@ void tell_more(const Scene& scene, double tolerance, std::span<const Design> des
 }
 
 /// Names by number, null after the last.
-LEAPMAP_EXPORT const char* parameter_name(int i) {
-  const auto all = leapmap::parameters();
-  return i >= 0 && static_cast<std::size_t>(i) < all.size() ? all[static_cast<std::size_t>(i)].name.data()
-                                                            : nullptr;
-}
-LEAPMAP_EXPORT const char* field_name(int i) {
-  const auto fields = map_fields();
-  return i >= 0 && static_cast<std::size_t>(i) < fields.size()
-             ? fields[static_cast<std::size_t>(i)].name.data()
-             : nullptr;
-}
+LEAPMAP_EXPORT const char* parameter_name(int i) { return name_at(leapmap::parameters(), i); }
+LEAPMAP_EXPORT const char* field_name(int i) { return name_at(map_fields(), i); }
 
 /// What a code of a field means; null: it is no code, or there is none so large.
 LEAPMAP_EXPORT const char* code_name(int field, int code) {

@@ -14,6 +14,7 @@
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
 #include "model/fields.hpp"
+#include "model/parameters.hpp"
 #include "trajectory/sequence.hpp"
 #include "trajectory/solver.hpp"
 
@@ -37,11 +38,21 @@ struct Page {
 };
 extern Page page;
 
+/// The parameter of a number.
+const Parameter& parameter_of(int number);
+
 /// The member that the page's parameter of that number is; nullptr: it is none of a design.
 double Design::*member_of_design(int parameter);
 
 /// The field of a number among map_fields().
 const Field& field_of(int number);
+
+/// The name of the row of that number in a table, null after the last.
+template <class Row>
+const char* name_at(std::span<const Row> rows, int i) {
+  return i >= 0 && static_cast<std::size_t>(i) < rows.size() ? rows[static_cast<std::size_t>(i)].name.data()
+                                                             : nullptr;
+}
 
 /// What a map computed on the page tells of each design: all numbers and codes.
 const std::vector<const Field*>& row_fields();
