@@ -121,7 +121,8 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.indeterminate = !(panel.least_pivot > Value(Number(0)));
   if (all(panel.indeterminate)) return;
 
-  panel.growth = grid_.integrals(a);
+  const typename Grid::Integrated growth = grid_.integrated(a);
+  panel.growth = growth.running;
   Values grown_by;
   Values& driven = panel.driven_rate;
   for (std::size_t i = 0; i < nodes; i += width) {
@@ -129,10 +130,11 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     put(grown, grown_by, i);
     put(get(b, i) * reciprocal(grown), driven, i);
   }
-  panel.driven = grid_.integrals(driven);
+  const typename Grid::Integrated drives = grid_.integrated(driven);
+  panel.driven = drives.running;
   const S start_u = from.spin * from.spin, start_force = slide.free_force;
   const S start_y = panel.start_y = by_force ? start_force : start_u;
-  const S end_growth = exp(grid_.integral(a)), end_driven = grid_.integral(driven);
+  const S end_growth = exp(growth.whole), end_driven = drives.whole;
   const S end_y = end_growth * (start_y + end_driven);
   const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
     return by_force ? y : free_normal_force(hoop_at, at, y);
@@ -163,7 +165,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S end_weight = S(2) * stretch.curve * stretch.span * (stretch.begin + stretch.span);
   const S start_weight = S(2) * stretch.curve * stretch.span * stretch.begin;
   const Value of_one = by_force ? Value(Number(1)) : largest_part(S(S(1) + start_u));
-  const Value spin_tail = largest<Value>({grid_.tail(a), grid_.tail(driven) / of_one});
+  const Value spin_tail = largest<Value>({growth.tail, drives.tail / of_one});
   const Value roundings = slide.rounding_at_end(end.pivot);
   panel.spin_excess =
       select(panel.indeterminate, panel.excess, Value(spin_tail / (Value(tolerance_) + roundings)));
@@ -186,20 +188,21 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.slip.start = {
       from.slip, start_rate * sliding_motion(hoop, start_phi, start_u, friction, start, start_force).slip};
 
-  const Values slipped = grid_.integrals(panel.slip.rate);
+  const typename Grid::Integrated slips = grid_.integrated(panel.slip.rate);
   Values slip_time;
   for (std::size_t i = 0; i < nodes; ++i) {
-    panel.slip.value[i] = from.slip + slipped[i];
+    panel.slip.value[i] = from.slip + slips.running[i];
     slip_time[i] = panel.slip.value[i] * time_rate[i];
     panel.travel.rate[i] = way * weight[i] + slip_time[i];
   }
   panel.travel.start = {from.travel, way * start_weight + from.slip * start_rate};
-  const Values carried = grid_.integrals(slip_time);
-  for (std::size_t i = 0; i < nodes; ++i) panel.travel.value[i] = from.travel + way * angle[i] + carried[i];
+  const typename Grid::Integrated carries = grid_.integrated(slip_time);
+  for (std::size_t i = 0; i < nodes; ++i)
+    panel.travel.value[i] = from.travel + way * angle[i] + carries.running[i];
   const S duration = grid_.integral(time_rate);
   panel.end.time = from.time + duration;
-  panel.end.slip = from.slip + grid_.integral(panel.slip.rate);
-  panel.end.travel = from.travel + way * length + grid_.integral(slip_time);
+  panel.end.slip = from.slip + slips.whole;
+  panel.end.travel = from.travel + way * length + carries.whole;
   panel.slip.end = {panel.end.slip,
                     end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
   panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
@@ -209,7 +212,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const Value noise = roundings + Value(Number(16) * std::numeric_limits<Number>::epsilon()) * lost;
   const Value excess =
       largest<Value>({spin_tail, Value(Number(0.1)) * grid_.tail(time_rate) / largest_part(duration),
-                      grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
+                      slips.tail / largest_part(S(S(1) + abs(from.slip)))}) /
       (Value(tolerance_) + noise);
   panel.excess = select(panel.indeterminate | panel.spin_vanishes, panel.excess, excess);
 }

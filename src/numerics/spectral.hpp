@@ -26,6 +26,7 @@ struct SpectralPanel {
   /// Nodes in a T; one where its lanes are panels of their own.
   static constexpr std::size_t width = std::is_same_v<T, S> ? 1 : Lanes<T>::count;
   static_assert(n % width == 0);
+  static_assert(n % 2 == 0);
   Numbers node, weight;
   std::array<Numbers, n>
       running;  ///< integral of the j-th cardinal polynomial from 0 to node i is running[j][i]
@@ -68,12 +69,37 @@ struct SpectralPanel {
       const long double x = rule.node[j];
       barycentric[j] = Number((j % 2 == 0 ? 1 : -1) * std::sqrt(x * (1 - x) * rule.weight[j]));
     }
+    for (std::size_t j = 0; j < half; ++j)
+      for (std::size_t i = 0; i < half; ++i) {
+        const Number one = running[j][i], opposite = running[n - 1 - j][i];
+        running_of_sums_[j][i] = (one + opposite) / 2, running_of_differences_[j][i] = (one - opposite) / 2;
+      }
   }
 
   /// Integrals of f from 0 to each node.
-  Values integrals(const Values& f) const { return product(running, f); }
+  Values integrals(const Values& f) const {
+    if constexpr (width > 1) {
+      return product(running, f);
+    } else {
+      return integrals(fold(f));
+    }
+  }
   /// Integral of f over the panel.
   S integral(const Values& f) const { return dot(weight, f); }
+  /// Both, and f's tail, for less than they cost one by one.
+  struct Integrated {
+    Values running;
+    S whole;
+    ValueOf<S> tail;
+  };
+  Integrated integrated(const Values& f) const {
+    if constexpr (width > 1) {
+      return {integrals(f), integral(f), tail(f)};
+    } else {
+      const Folded folded = fold(f);
+      return {integrals(folded), dot(weight, folded.sum), tail(folded)};
+    }
+  }
   /// f's values at node i and at as many after it as a T holds.
   static T at(const Values& f, std::size_t i) {
     if constexpr (width == 1) {
@@ -122,7 +148,7 @@ struct SpectralPanel {
   /// A bound of f's fourth derivative: that of a Legendre polynomial is largest at the panel's ends.
   S fourth_derivative_bound(const Values& f) const {
     using std::abs;
-    const Values coefficients = product(expansion, f);
+    const Values coefficients = legendre_coefficients(f);
     T bound(Number(0));
     for (std::size_t k = 0; k < n; k += width) bound += times(fourth.data() + k, T(abs(at(coefficients, k))));
     return sum(bound);
@@ -134,6 +160,60 @@ struct SpectralPanel {
   }
 
  private:
+  static constexpr std::size_t half = n / 2;
+  using Halves = std::array<S, half>;
+  /// Sums and differences of the values at x and 1 - x, for the nodes below 1/2. Of Legendre's polynomials the
+  /// even ones see the sums alone, the odd ones the differences; so do their integrals, but for the whole of
+  /// the sums: half of the products are left.
+  struct Folded {
+    Halves sum, difference;
+  };
+  static Folded fold(const Values& f) {
+    Folded folded;
+    for (std::size_t j = 0; j < half; ++j)
+      folded.sum[j] = f[j] + f[n - 1 - j], folded.difference[j] = f[j] - f[n - 1 - j];
+    return folded;
+  }
+  Values integrals(const Folded& f) const {
+    constexpr std::size_t rows = half % 6 == 0 ? 6 : 1;  // their sums stay in registers
+    const S whole = dot(weight, f.sum);
+    Values values;
+    for (std::size_t first = 0; first < half; first += rows) {
+      std::array<S, rows> even, odd;  // about the panel's middle, of f
+      even.fill(S(Number(0))), odd.fill(S(Number(0)));
+      for (std::size_t j = 0; j < half; ++j)
+        for (std::size_t i = 0; i < rows; ++i) {
+          even[i] += times(&running_of_sums_[j][first + i], f.sum[j]);
+          odd[i] += times(&running_of_differences_[j][first + i], f.difference[j]);
+        }
+      for (std::size_t i = 0; i < rows; ++i) {
+        values[first + i] = odd[i] + even[i];
+        values[n - 1 - first - i] = odd[i] + (whole - even[i]);
+      }
+    }
+    return values;
+  }
+  ValueOf<S> tail(const Folded& f) const {
+    return larger(largest_part(dot(last_but_one, f.sum)), largest_part(dot(last, f.difference)));
+  }
+  Values legendre_coefficients(const Values& f) const {
+    if constexpr (width > 1) {
+      return product(expansion, f);
+    } else {
+      constexpr std::size_t rows = half % 6 == 0 ? 6 : 1;
+      const Folded folded = fold(f);
+      Values coefficients;
+      for (std::size_t first = 0; first < n; first += 2 * rows) {
+        std::array<S, 2 * rows> sums;
+        sums.fill(S(Number(0)));
+        for (std::size_t j = 0; j < half; ++j)
+          for (std::size_t k = 0; k < 2 * rows; ++k)
+            sums[k] += times(&expansion[j][first + k], k % 2 == 0 ? folded.sum[j] : folded.difference[j]);
+        std::copy(sums.begin(), sums.end(), coefficients.begin() + static_cast<std::ptrdiff_t>(first));
+      }
+      return coefficients;
+    }
+  }
   /// The sum of the matrix's columns, column j times f[j].
   static Values product(const std::array<Numbers, n>& columns, const Values& f) {
     // So many rows at once that their sums stay in registers.
@@ -172,6 +252,13 @@ struct SpectralPanel {
     for (std::size_t i = 0; i < n; i += width) products += times(a.data() + i, at(b, i));
     return sum(products);
   }
+  static S dot(const Numbers& a, const Halves& b) {
+    S products(Number(0));
+    for (std::size_t j = 0; j < half; ++j) products += times(&a[j], b[j]);
+    return products;
+  }
+
+  std::array<std::array<Number, half>, half> running_of_sums_, running_of_differences_;
 };
 
 }  // namespace leapmap
