@@ -18,6 +18,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
                             const Scene& scene, std::span<Outcome> outcomes) {
   const CoulombObserver nobody;
   constexpr std::size_t width = Lanes<T>::count;
+  find_pivot_zeros(designs, scene);
   free_.clear();
   for (std::size_t place = most_on_their_way; place-- > 0;)
     free_.push_back(static_cast<std::uint32_t>(place));
@@ -57,6 +58,33 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
 }
 
 template <class T>
+void CoulombLanes<T>::find_pivot_zeros(std::span<const Design> designs, const Scene& scene) {
+  constexpr std::size_t width = Lanes<T>::count;
+  pivot_zeros_.resize(designs.size());
+  for (std::size_t first = 0; first < designs.size(); first += width) {
+    const std::size_t count = std::min(width, designs.size() - first);
+    const auto lanes = [&](const auto& number_of) {
+      LaneArray<T> numbers;
+      for (std::size_t i = 0; i < width; ++i) numbers[i] = number_of(designs[first + (i < count ? i : 0)]);
+      return Lanes<T>::load(numbers.data());
+    };
+    const auto parameter = [&](double Design::*member) {
+      return lanes([&](const Design& design) { return S(design.*member); });
+    };
+    const Hoop<T> hoop =
+        derive(parameter(&Design::slope), parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
+               parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
+    const PivotZeros<T> zeros = pivot_zeros(
+        hoop, lanes([&](const Design& design) { return contact_of<S>(design, scene).mu_kinetic; }));
+    for (std::size_t k = 0; k < zeros.angle.size(); ++k) {
+      const auto angles = lanes_of(zeros.angle[k]), heights = lanes_of(zeros.height[k]);
+      for (std::size_t i = 0; i < count; ++i)
+        pivot_zeros_[first + i].angle[k] = angles[i], pivot_zeros_[first + i].height[k] = heights[i];
+    }
+  }
+}
+
+template <class T>
 void CoulombLanes<T>::go_on(std::uint32_t place, const NextPhase& next) {
   const PhaseMachine<S>& machine = *on_their_way_[place].machine;
   const Contact<S>& contact = machine.contact();
@@ -65,7 +93,8 @@ void CoulombLanes<T>::go_on(std::uint32_t place, const NextPhase& next) {
   else if (next.phase == Phase::rolling)
     rolling_.begin(place, machine.hoop(), contact.mu_static, machine.at(), machine.runway());
   else
-    sliding_.begin(place, machine.hoop(), contact.mu_kinetic, machine.at(), machine.runway(), next.direction);
+    sliding_.begin(place, machine.hoop(), contact.mu_kinetic, pivot_zeros_[on_their_way_[place].design],
+                   machine.at(), machine.runway(), next.direction);
 }
 
 template <class T>

@@ -41,6 +41,7 @@ class CoulombLanes {
     std::uint32_t place;
     Flight<S> flight;
   };
+  void find_pivot_zeros(std::span<const Design> designs, const Scene& scene);
   void go_on(std::uint32_t place, const NextPhase& next);
   /// Lets some of flying_ fly, and adds them to flown_.
   void fly_some();
@@ -52,6 +53,7 @@ class CoulombLanes {
   std::vector<EndedPhase<S>> ended_;
   std::vector<Flown> flown_;
   std::vector<ContactState<S>> releases_;
+  std::vector<PivotZeros<S>> pivot_zeros_;  // of the designs
 };
 
 }  // namespace leapmap

@@ -19,6 +19,33 @@ constexpr double near_edge = 0.3;            // nearer to Painleve's edge n0 nee
 constexpr double shortest_steep = 0.15;      // a panel that comes nearer is shortened down to this [rad]
 constexpr double shortest_vanishing = 0.01;  // and one on which the spin vanishes, nobody knows where
 
+/// A panel's tail goes about as r^-nodes, r the sum of the half-axes of the ellipse that its functions are
+/// smooth in, in half-panels; with what they grow to there, some hundred times that. Returns (r + 1 / r) / 2,
+/// the distances to the panel's ends summed up there, in panels.
+double stretch_for(double tolerance) {
+  return std::cosh(std::log(1500.0 / tolerance) / 24);
+}
+
+/// How much of the way to an angle `length` on a slide's pivot stays above `least`, as some looks tell.
+template <class T>
+T way_to_edge(const Hoop<T>& hoop, const T& friction, const Trig<T>& phi, const T& way, const T& least,
+              const T& length) {
+  using S = ScalarOf<T>;
+  constexpr int looks = 8;
+  const T step = length * T(S(1) / S(looks));
+  const SinCos<T> turned = sincos_of(way * step);
+  T sine = phi.sin, cosine = phi.cos, clear = length, before(std::numeric_limits<S>::max());
+  for (int k = 1; k <= looks; ++k) {
+    const T last = sine;
+    sine = sine * turned.cos + cosine * turned.sin, cosine = cosine * turned.cos - last * turned.sin;
+    const T arm = hoop.rho * sine, spare = hoop.Ic + arm * (arm - friction * (T(S(1)) - hoop.rho * cosine)) - least;
+    const MaskOf<T> first = (spare <= T(S(0))) & (clear == length);
+    clear = select(first, step * (T(S(k)) - spare / (spare - before)), clear);
+    before = spare;
+  }
+  return clear;
+}
+
 /// In the order in which SlidingLeg looks at them, as of two at the same place the first counts.
 constexpr std::array guards{PhaseEnd::lifts_off, PhaseEnd::slip_ends, PhaseEnd::runway_ends,
                             PhaseEnd::runway_ends};
@@ -32,7 +59,9 @@ SlidingLanes<T>::SlidingLanes(double tolerance, std::size_t most)
       slides_(most),
       hoops_(most),
       states_(most),
+      zeros_(most),
       stretches_(most) {
+  clear_of_zeros_ = stretch_for(panels_.tolerance());
   for (std::size_t k = 0; k < looks_a_turn; ++k) {
     const Trig<S> phi = trig(S(2) * pi_of<S> * S(k) / S(looks_a_turn));
     sin_[k] = phi.sin, cos_[k] = phi.cos;
@@ -59,7 +88,8 @@ ScalarOf<T> SlidingLanes<T>::least_pivot(const Hoop<S>& hoop, const S& friction)
 
 template <class T>
 void SlidingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic,
-                            const ContactState<S>& at, const S& runway, int direction) {
+                            const PivotZeros<S>& zeros, const ContactState<S>& at, const S& runway,
+                            int direction) {
   const S friction = direction > 0 ? mu_kinetic : -mu_kinetic;
   slides_[place] = {runway,           mu_kinetic, least_pivot(hoop, friction), direction, false, false,
                     PhaseEnd::failed, 0};
@@ -68,8 +98,13 @@ void SlidingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& m
                            &place, 1);
   states_.template store<S>(
       {at.time, at.travel, at.angle, at.spin, at.slip,
-       free_normal_force(hoop, trig(at.angle), S(at.spin * at.spin)), friction, S(first_angle)},
+       free_normal_force(hoop, trig(at.angle), S(at.spin * at.spin)), friction, S(longest_angle)},
       &place, 1);
+  const S side = S(direction);
+  const auto& [angle, height] = zeros;
+  zeros_.template store<S>({side * angle[0], side * angle[1], side * angle[2], side * angle[3], height[0],
+                            height[1], height[2], height[3]},
+                           &place, 1);
   waiting_.push_back(place);
 }
 
@@ -165,8 +200,10 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
 
   const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, drive, thrust] =
       hoops_.template load<T>(index.data());
-  const auto [time, travel, angle, spin, slip, force, friction, length] =
+  const auto [time, travel, angle, spin, slip, force, friction, longest] =
       states_.template load<T>(index.data());
+  const auto [zero_0, zero_1, zero_2, zero_3, height_0, height_1, height_2, height_3] =
+      zeros_.template load<T>(index.data());
   const auto [shift, begin, span, curve] = stretches_.template load<T>(index.data());
   const typename Panels::Slide slide{
       {sin_slope, cos_slope, rho, clearance, Ic, J_min, drive, thrust}, friction, {}, {}, force};
@@ -179,6 +216,14 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
   const MaskOf<T> at_rest = spin == zero, turns = !(at_rest & (start.angular == zero));
   const T way = select((spin < zero) | (at_rest & (start.angular < zero)), -one, one);
   const T rise = way * start.angular;
+  T length =
+      resolved_length(PivotZeros<T>{{zero_0, zero_1, zero_2, zero_3}, {height_0, height_1, height_2, height_3}},
+                      angle, way, Panels::stretch_of(spin, rise, longest).shift, clear_of_zeros_, longest);
+  const T steepest = Lanes<T>::load(pivots.data());
+  if (any(steepest > zero)) {
+    const T clear = T(S(0.98)) * way_to_edge(slide.hoop, friction, phi, way, steepest, length);
+    length = select(steepest > zero, smaller(larger(clear, T(S(shortest_steep))), length), length);
+  }
   const auto usual = Panels::stretch_of(spin, rise, length);
   const typename Panels::Stretch stretch{select(is_given, shift, usual.shift),
                                          select(is_given, begin, usual.begin),

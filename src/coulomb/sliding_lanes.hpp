@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "coulomb/ended_phase.hpp"
+#include "coulomb/pivot_zeros.hpp"
 #include "coulomb/sliding_leg.hpp"
 #include "numerics/rows.hpp"
 
@@ -24,9 +25,9 @@ class SlidingLanes {
   /// tolerance: as of SlidingLeg. most: designs on their way at once.
   SlidingLanes(double tolerance, std::size_t most);
 
-  /// Begins a slide, which the passes to come take on.
-  void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic, const ContactState<S>& at,
-             const S& runway, int direction);
+  /// Begins a slide, which the passes to come take on. zeros: of the pivot, sliding downhill.
+  void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic, const PivotZeros<S>& zeros,
+             const ContactState<S>& at, const S& runway, int direction);
   std::size_t waiting() const { return waiting_.size(); }
   /// Takes some slides a panel further, and adds those that end to `ended`.
   void pass(std::vector<EndedPhase<S>>& ended);
@@ -66,11 +67,13 @@ class SlidingLanes {
   static constexpr std::size_t looks_a_turn = 48;
 
   Panels panels_;
+  S clear_of_zeros_;  ///< how far panels keep from the pivot's zeros (resolved_length's stretch)
   SlidingLeg<S> leg_;
   std::array<S, looks_a_turn> sin_, cos_;  // of one turn
   std::vector<Slide> slides_;
   PackedRows<S, 8> hoops_, states_;  // states: time, travel, angle, spin, slip; n0, friction, panel's length
-  PackedRows<S, 4> stretches_;       // where given
+  PackedRows<S, 8> zeros_;
+  PackedRows<S, 4> stretches_;  // where given
   std::vector<std::uint32_t> waiting_;
   Panel panel_;
 };

@@ -116,6 +116,7 @@ class SlidingPanels {
   void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
 
   const Grid& grid() const { return grid_; }
+  Number tolerance() const { return tolerance_; }
 
  private:
   Number tolerance_;
