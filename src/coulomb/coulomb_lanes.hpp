@@ -21,7 +21,8 @@ class CoulombLanes {
   using S = ScalarOf<T>;
 
   /// tolerance: relative, of times; angles, spins and heights follow.
-  explicit CoulombLanes(double tolerance) : rolling_(tolerance), sliding_(tolerance, most_on_their_way) {}
+  explicit CoulombLanes(double tolerance)
+      : rolling_(tolerance, most_on_their_way), sliding_(tolerance, most_on_their_way) {}
 
   /// Solves designs[i] into outcomes[i].
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);

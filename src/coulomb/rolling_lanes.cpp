@@ -13,9 +13,12 @@ constexpr double longest_panel = 2.8, shortest_panel = 0.1;  // [rad]; a phase w
 }  // namespace
 
 template <class T>
-RollingLanes<T>::RollingLanes(double tolerance)
+RollingLanes<T>::RollingLanes(double tolerance, std::size_t most)
     : tolerance_(std::max(S(tolerance) * S(0.1), S(1000) * std::numeric_limits<S>::epsilon())),
-      leg_(tolerance) {}
+      leg_(tolerance),
+      timed_(most),
+      motions_(most),
+      clocks_(most) {}
 
 template <class T>
 void RollingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_static,
@@ -25,6 +28,15 @@ void RollingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& m
 
 template <class T>
 void RollingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
+  if (timing_.size() >= width || waiting_.empty())
+    time_panels(ended);
+  else
+    find_ends(ended);
+}
+
+template <class T>
+void RollingLanes<T>::find_ends(std::vector<EndedPhase<S>>& ended) {
+  bracketed_.clear();
   while (!waiting_.empty() && bracketed_.size() < width) {
     Bracketed found;
     if (bracket(waiting_.back(), found))
@@ -33,9 +45,7 @@ void RollingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
       alone(waiting_.back(), ended);
     waiting_.pop_back();
   }
-  if (bracketed_.empty()) return;
-  roll(bracketed_, ended);
-  bracketed_.clear();
+  if (!bracketed_.empty()) polish_ends(bracketed_, ended);
 }
 
 template <class T>
@@ -78,7 +88,7 @@ bool RollingLanes<T>::bracket(const Phase& phase, Bracketed& found) const {
 }
 
 template <class T>
-void RollingLanes<T>::roll(std::span<const Bracketed> phases, std::vector<EndedPhase<S>>& ended) {
+void RollingLanes<T>::polish_ends(std::span<const Bracketed> phases, std::vector<EndedPhase<S>>& ended) {
   using std::sqrt;
   const auto lanes = [&](const auto& number_of) {
     LaneArray<T> numbers;
@@ -126,69 +136,103 @@ void RollingLanes<T>::roll(std::span<const Bracketed> phases, std::vector<EndedP
   const T guess = from + (to - from) * from_value / (from_value - to_value);
   const T angle =
       select(falls, polish_root(guard_at, from, to, guess, MaskOf<T>(false), resolution, falls), to);
-  const T x = angle - roll.release, taken = duration(roll, x);
+  const T x = angle - roll.release;
   const T spin =
       way * sqrt(larger(vis_viva_past_release(roll, x), zero) / contact_inertia(roll.hoop, trig(angle)));
-  const auto times = lanes_of(of_state(&ContactState<S>::time) + taken),
-             travels = lanes_of(of_state(&ContactState<S>::travel) + way * x), angles = lanes_of(way * angle),
-             spins = lanes_of(spin), took = lanes_of(taken);
-  for (std::size_t i = 0; i < phases.size(); ++i) {
-    const Bracketed& now = phases[i];
-    // Where it slips at once there is no way to time.
-    if (!(took[i] > S(0)) || !std::isfinite(spins[i])) {
-      alone(now.phase, ended);
-      continue;
-    }
-    const PhaseEnd end = now.way < S(0) ? turned_over(now.end) : now.end;
-    ended.push_back({now.phase.place, end, {times[i], travels[i], angles[i], spins[i]}});
-  }
-}
 
-/// In panels as long as the nodes resolve. The error of an integral goes as the tail's square, which holds
-/// where no needle hides between nodes: J has one, half as wide as d, cosh d = 1 + J_min / (2 rho), at phi =
-/// 0.
-template <class T>
-T RollingLanes<T>::duration(const Roll<T>& roll, const T& length) const {
-  using std::sqrt;
-  const T zero(S(0)), two(S(2)), half(S(0.5));
-  // E's zero before the start.
-  T shift = select(roll.push > zero, T(-roll.released / (two * roll.push)), T(-length));
-  MaskOf<T> nearing = (shift > -length) & (shift < zero);
+  // x = shift + q^2 takes out E's zero before the start, where the spin is small and grows.
+  const T two(S(2)), half(S(0.5)), longest = T(S(longest_panel));
+  T shift = select(roll.push > zero, T(-roll.released / (two * roll.push)), T(-x));
+  MaskOf<T> nearing = (shift > -x) & (shift < zero);
   for (int k = 0; k < 4 && any(nearing); ++k) {
     const T push = torque(roll.hoop, trig(T(roll.release + shift)));
     nearing = nearing & (push > zero);
     shift = select(nearing, T(shift - vis_viva_past_release(roll, shift) / (two * push)), shift);
-    nearing = nearing & (shift > -length) & (shift < zero);
+    nearing = nearing & (shift > -x) & (shift < zero);
   }
-  shift = larger(T(-length), smaller(shift, zero));
-  const T end = sqrt(length - shift), longest = T(S(longest_panel));
+  shift = larger(T(-x), smaller(shift, zero));
+  // J has a needle at phi = 0, half as wide as d, cosh d = 1 + J_min / (2 rho). A narrow one may hide between
+  // nodes, so that the tail itself is asked for, and not its square.
   const MaskOf<T> has_needle = !(roll.hoop.J_min > T(S(0.04)) * roll.hoop.rho);
-  const T resolving = select(has_needle, T(tolerance_), T(S(0.03 * std::sqrt(tolerance_))));
-  T sum(S(0)), from = sqrt(-shift), panel = select(has_needle, half * longest, longest);
-  MaskOf<T> solved = length > zero;
-  for (MaskOf<T> under_way = solved & (from < end); any(under_way); under_way = solved & (from < end)) {
-    T to = sqrt(from * from + panel);
-    to = select(to * to + T(S(0.3)) * panel > end * end, end, to);
-    typename SpectralPanel<T, nodes>::Values f;
-    T least_E(std::numeric_limits<S>::max());
-    for (std::size_t i = 0; i < nodes; ++i) {
-      const T q = from + (to - from) * T(panel_.node[i]), x = shift + q * q;
-      const Trig<T> turned = trig(x);
-      const T E = vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned));
-      const T J = contact_inertia(roll.hoop, trig(T(roll.release + x)));
-      f[i] = two * q * slowness(J, E);
-      least_E = smaller(least_E, E);
+
+  std::array<std::uint32_t, width> index;
+  for (std::size_t i = 0; i < width; ++i) index[i] = phases[i < phases.size() ? i : 0].phase.place;
+  const Trig<T>& phi = roll.release_trig;
+  const T rho2 = two * roll.hoop.rho;
+  motions_.template store<T>({roll.released, two * roll.push, rho2 * sin_from_vertical(roll.hoop, phi),
+                              -rho2 * cos_from_vertical(roll.hoop, phi), roll.hoop.J_min, rho2,
+                              rho2 * phi.versine, rho2 * phi.sin},
+                             index.data(), phases.size());
+  clocks_.template store<T>(
+      {shift, sqrt(x - shift), sqrt(-shift), zero, select(has_needle, half * longest, longest),
+       select(has_needle, T(tolerance_), T(S(0.03 * std::sqrt(tolerance_)))),
+       abs(roll.hoop.thrust), zero},
+      index.data(), phases.size());
+  const auto travels = lanes_of(of_state(&ContactState<S>::travel) + way * x), angles = lanes_of(way * angle),
+             spins = lanes_of(spin), ways_on = lanes_of(x);
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    const Bracketed& now = phases[i];
+    // Where it slips at once there is no way to time.
+    if (!(ways_on[i] > S(0)) || !std::isfinite(spins[i])) {
+      alone(now.phase, ended);
+      continue;
     }
-    const T whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);
-    const T rounding = T(S(16) * std::numeric_limits<S>::epsilon()) *
-                       (T(S(4)) + roll.released + two * to * to * T(abs(roll.hoop.thrust))) / least_E;
-    const MaskOf<T> resolved = under_way & (tail <= larger(resolving, smaller(rounding, T(S(1e-4)))) * whole);
-    sum = select(resolved, sum + whole, sum);
-    from = select(resolved, to, from);
-    panel = select(under_way & !resolved, half * panel, panel);
-    solved = solved & (panel > T(S(shortest_panel)));
+    timed_[now.phase.place] = {now.phase,
+                               now.way < S(0) ? turned_over(now.end) : now.end,
+                               {now.phase.at.time, travels[i], angles[i], spins[i]}};
+    timing_.push_back(now.phase.place);
   }
-  return select(solved, sum, T(std::numeric_limits<S>::quiet_NaN()));
+}
+
+/// By panels as long as the nodes resolve. The error of an integral goes as the tail's square, which holds
+/// where no needle hides between nodes.
+template <class T>
+void RollingLanes<T>::time_panels(std::vector<EndedPhase<S>>& ended) {
+  using std::sqrt;
+  if (timing_.empty()) return;
+  const std::size_t count = std::min(width, timing_.size()), first = timing_.size() - count;
+  std::array<std::uint32_t, width> index;
+  for (std::size_t i = 0; i < width; ++i) index[i] = timing_[first + (i < count ? i : 0)];
+  timing_.resize(first);
+  const auto [released, push2, by_sine, by_versine, J_min, by_turned, J_cos, J_sin] =
+      motions_.template load<T>(index.data());
+  const auto [shift, end, from, so_far, length, resolving, thrust, spare] =
+      clocks_.template load<T>(index.data());
+  const T two(S(2));
+  T to = sqrt(from * from + length);
+  to = select(to * to + T(S(0.3)) * length > end * end, end, to);
+  const T span = to - from;
+  typename SpectralPanel<T, nodes>::Values f;
+  T least_E(std::numeric_limits<S>::max());
+  for (std::size_t i = 0; i < nodes; ++i) {
+    // E and J as vis_viva_past_release and contact_inertia have them, turned on from the start.
+    const T q = from + span * T(panel_.node[i]), x = shift + q * q;
+    const Trig<T> turned = trig(x);
+    const T E = released + push2 * x + by_sine * x_minus_sin(x, turned) + by_versine * turned.versine;
+    const T J = J_min + by_turned * turned.versine + J_cos * turned.cos + J_sin * turned.sin;
+    f[i] = two * q * slowness(J, E);
+    least_E = smaller(least_E, E);
+  }
+  const T whole = span * panel_.integral(f), tail = span * panel_.tail(f);
+  const T rounding = T(S(16) * std::numeric_limits<S>::epsilon()) *
+                     (T(S(4)) + released + two * to * to * thrust) / least_E;
+  const MaskOf<T> resolved = tail <= larger(resolving, smaller(rounding, T(S(1e-4)))) * whole;
+  const T sum = select(resolved, so_far + whole, so_far), at = select(resolved, to, from),
+          next = select(resolved, length, T(S(0.5)) * length);
+  clocks_.template store<T>({shift, end, at, sum, next, resolving, thrust, spare}, index.data(), count);
+  const unsigned done = Lanes<T>::bits(resolved & (to >= end)), too_short = Lanes<T>::bits(!(next > T(S(shortest_panel))));
+  const auto taken = lanes_of(sum);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Timed& now = timed_[index[i]];
+    if (done >> i & 1u) {
+      ended.push_back({index[i], now.end, now.at});
+      ended.back().at.time += taken[i];
+    } else if (too_short >> i & 1u) {
+      alone(now.phase, ended);
+    } else {
+      timing_.push_back(index[i]);
+    }
+  }
 }
 
 #ifdef LEAPMAP_KERNELS

@@ -11,6 +11,7 @@
 
 #include "coulomb/ended_phase.hpp"
 #include "coulomb/rolling_leg.hpp"
+#include "numerics/rows.hpp"
 
 namespace leapmap {
 
@@ -19,14 +20,14 @@ class RollingLanes {
  public:
   using S = ScalarOf<T>;
 
-  /// tolerance: as of RollingLeg.
-  explicit RollingLanes(double tolerance);
+  /// tolerance: as of RollingLeg. most: phases at once, and places.
+  RollingLanes(double tolerance, std::size_t most);
 
   /// Adds a phase to those that the passes to come roll.
   void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_static, const ContactState<S>& at,
              const S& runway);
-  std::size_t waiting() const { return waiting_.size(); }
-  /// Rolls some, and adds them to `ended`.
+  std::size_t waiting() const { return waiting_.size() + timing_.size(); }
+  /// Takes some a step further, and adds those that end to `ended`.
   void pass(std::vector<EndedPhase<S>>& ended);
 
  private:
@@ -48,11 +49,19 @@ class RollingLanes {
     S from, to;  ///< the same where the end is there
     S from_value, to_value;
   };
+  /// A phase whose end is known, up to which it is timed panel by panel.
+  struct Timed {
+    Phase phase;
+    PhaseEnd end;
+    ContactState<S> at;  ///< there; its time is that of the phase's beginning
+  };
   bool bracket(const Phase& phase, Bracketed& found) const;
   void alone(const Phase& phase, std::vector<EndedPhase<S>>& ended) const;
-  void roll(std::span<const Bracketed> phases, std::vector<EndedPhase<S>>& ended);
-  /// How long it takes to roll so far. NaN: the panels do not resolve it.
-  T duration(const Roll<T>& roll, const T& length) const;
+  /// Finds where some phases end that wait.
+  void find_ends(std::vector<EndedPhase<S>>& ended);
+  void polish_ends(std::span<const Bracketed> phases, std::vector<EndedPhase<S>>& ended);
+  /// Times some phases a panel further.
+  void time_panels(std::vector<EndedPhase<S>>& ended);
 
   S tolerance_;
   RollingLeg<S> leg_;
@@ -60,6 +69,10 @@ class RollingLanes {
   SpectralPanel<T, nodes> panel_;
   std::vector<Phase> waiting_;
   std::vector<Bracketed> bracketed_;
+  std::vector<std::uint32_t> timing_;  // places
+  std::vector<Timed> timed_;           // by place, and below: E and J as functions of the angle from there
+  PackedRows<S, 8> motions_;           // E's four coefficients, J's, and thrust
+  PackedRows<S, 8> clocks_;            // shift; in q: the end, how far it is timed; time; the next panel's length
 };
 
 }  // namespace leapmap
