@@ -15,8 +15,8 @@ using namespace panel_lengths;
 namespace {
 
 constexpr int most_panels = 1'000;           // of a slide in lanes: beyond, it goes on by itself
-constexpr double near_edge = 0.3;            // nearer to Painleve's edge n0 needs care [rad]
-constexpr double shortest_steep = 0.15;      // a panel that comes nearer is shortened down to this [rad]
+constexpr double near_edge = 0.05;            // nearer to Painleve's edge n0 needs care [rad]
+constexpr double shortest_steep = 0.05;      // a panel that comes nearer is shortened down to this [rad]
 constexpr double shortest_vanishing = 0.01;  // and one on which the spin vanishes, nobody knows where
 
 /// A panel's tail goes about as r^-nodes, r the sum of the half-axes of the ellipse that its functions are
