@@ -68,7 +68,7 @@ void ExactSolver<T>::solve_block(Start start, std::span<const Design> designs,
     }
   if (wanted_.descent || !states.empty()) land(block_, jumped_, outcomes, states);
   const double second = time_unit(scene);
-  for (Outcome& outcome : outcomes) to_seconds(outcome, second);
+  for (const std::uint32_t i : lifted_) to_seconds(outcomes[i], second);
 }
 
 /// The next interval of each design still searching; without one it is to be scanned on, or its search is

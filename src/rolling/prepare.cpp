@@ -9,19 +9,6 @@
 
 namespace leapmap {
 
-namespace {
-
-/// Makes all of them new: by copies of what is done, each twice as long as the one before, as a copy of one
-/// is too short to be quick.
-void clear(std::span<Outcome> outcomes) {
-  if (outcomes.empty()) return;
-  outcomes.front() = Outcome{};
-  for (std::size_t done = 1; done < outcomes.size(); done *= 2)
-    std::copy_n(outcomes.begin(), std::min(done, outcomes.size() - done), outcomes.subspan(done).begin());
-}
-
-}  // namespace
-
 template <class B>
 void prepare(std::span<const Design> designs, std::span<const ContactState<ScalarOf<B>>> landed,
              const Scene& scene, Block<B>& block, std::span<Outcome> outcomes) {
@@ -29,7 +16,7 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
   using T = WideOf<B>;
   using std::abs, std::atan2;
   block.searching.clear(), block.bouncing.clear();
-  clear(outcomes);
+  for (Outcome& outcome : outcomes) outcome = Outcome{};
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
     const std::size_t count = std::min(Lanes<T>::count, designs.size() - first);
     DesignLanes<T> index;

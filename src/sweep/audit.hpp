@@ -64,8 +64,8 @@ AuditReport begin_audit(const Spec& spec);
 /// Solves samples again, one after the other, and compares. One a thread.
 class Auditor {
  public:
-  /// Keeps a reference to spec. The referee sees one design in so many; 0: one in ten, or all of an audit of
-  /// thirty or fewer.
+  /// Keeps a reference to spec. The referee sees one design in so many; 0: one in ten, but of large audits no
+  /// more than some two hundred, and all of one of thirty or fewer.
   explicit Auditor(const Spec& spec, std::size_t referee_every = 0);
   /// Adds what a sample comes to. An error is beyond the tolerance if it is larger than numerics.tolerance (a
   /// hundred times that for an adaptive stepper, whose tolerance is per step; no less than 1e-11, the audit's
