@@ -72,8 +72,8 @@ PivotZeros<T> pivot_zeros(const Hoop<T>& hoop, const T& friction) {
 /// (sliding_panel.hpp), for all zeros to stay outside of its ellipse: that on which the distances to the
 /// panel's ends sum up to `stretch` times the panel. way: 1 or -1.
 ///
-/// A zero at q0 + xi + i eta, q0 the panel's beginning, is a = |xi + i eta| away from it, so that it is on the
-/// ellipse of the panel of length u where a + |xi - u + i eta| = stretch u: u = 2 (stretch a - xi) /
+/// A zero at q0 + xi + i eta, q0 the panel's beginning, is a = |xi + i eta| away from it, so that it is on
+/// the ellipse of the panel of length u where a + |xi - u + i eta| = stretch u: u = 2 (stretch a - xi) /
 /// (stretch^2 - 1).
 template <class T>
 T resolved_length(const PivotZeros<T>& zeros, const T& angle, const T& way, const T& shift,

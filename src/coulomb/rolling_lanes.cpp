@@ -159,14 +159,13 @@ void RollingLanes<T>::polish_ends(std::span<const Bracketed> phases, std::vector
   for (std::size_t i = 0; i < width; ++i) index[i] = phases[i < phases.size() ? i : 0].phase.place;
   const Trig<T>& phi = roll.release_trig;
   const T rho2 = two * roll.hoop.rho;
-  motions_.template store<T>({roll.released, two * roll.push, rho2 * sin_from_vertical(roll.hoop, phi),
-                              -rho2 * cos_from_vertical(roll.hoop, phi), roll.hoop.J_min, rho2,
-                              rho2 * phi.versine, rho2 * phi.sin},
-                             index.data(), phases.size());
+  motions_.template store<T>(
+      {roll.released, two * roll.push, rho2 * sin_from_vertical(roll.hoop, phi),
+       -rho2 * cos_from_vertical(roll.hoop, phi), roll.hoop.J_min, rho2, rho2 * phi.versine, rho2 * phi.sin},
+      index.data(), phases.size());
   clocks_.template store<T>(
       {shift, sqrt(x - shift), sqrt(-shift), zero, select(has_needle, half * longest, longest),
-       select(has_needle, T(tolerance_), T(S(0.03 * std::sqrt(tolerance_)))),
-       abs(roll.hoop.thrust), zero},
+       select(has_needle, T(tolerance_), T(S(0.03 * std::sqrt(tolerance_)))), abs(roll.hoop.thrust), zero},
       index.data(), phases.size());
   const auto travels = lanes_of(of_state(&ContactState<S>::travel) + way * x), angles = lanes_of(way * angle),
              spins = lanes_of(spin), ways_on = lanes_of(x);
@@ -214,13 +213,14 @@ void RollingLanes<T>::time_panels(std::vector<EndedPhase<S>>& ended) {
     least_E = smaller(least_E, E);
   }
   const T whole = span * panel_.integral(f), tail = span * panel_.tail(f);
-  const T rounding = T(S(16) * std::numeric_limits<S>::epsilon()) *
-                     (T(S(4)) + released + two * to * to * thrust) / least_E;
+  const T rounding =
+      T(S(16) * std::numeric_limits<S>::epsilon()) * (T(S(4)) + released + two * to * to * thrust) / least_E;
   const MaskOf<T> resolved = tail <= larger(resolving, smaller(rounding, T(S(1e-4)))) * whole;
   const T sum = select(resolved, so_far + whole, so_far), at = select(resolved, to, from),
           next = select(resolved, length, T(S(0.5)) * length);
   clocks_.template store<T>({shift, end, at, sum, next, resolving, thrust, spare}, index.data(), count);
-  const unsigned done = Lanes<T>::bits(resolved & (to >= end)), too_short = Lanes<T>::bits(!(next > T(S(shortest_panel))));
+  const unsigned done = Lanes<T>::bits(resolved & (to >= end)),
+                 too_short = Lanes<T>::bits(!(next > T(S(shortest_panel))));
   const auto taken = lanes_of(sum);
   for (std::size_t i = 0; i < count; ++i) {
     const Timed& now = timed_[index[i]];

@@ -72,7 +72,7 @@ class RollingLanes {
   std::vector<std::uint32_t> timing_;  // places
   std::vector<Timed> timed_;           // by place, and below: E and J as functions of the angle from there
   PackedRows<S, 8> motions_;           // E's four coefficients, J's, and thrust
-  PackedRows<S, 8> clocks_;            // shift; in q: the end, how far it is timed; time; the next panel's length
+  PackedRows<S, 8> clocks_;  // shift; in q: the end, how far it is timed; time; the next panel's length
 };
 
 }  // namespace leapmap

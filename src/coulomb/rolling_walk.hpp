@@ -132,6 +132,7 @@ class RollingWalk {
       const Trig<S> phi = trig(S(2) * std::numbers::pi_v<S> * S(k % nodes_a_turn) / S(nodes_a_turn));
       sin_[k] = phi.sin, cos_[k] = phi.cos, versine_[k] = phi.versine;
     }
+    for (std::size_t k = 0; k < counted_.size(); ++k) counted_[k] = S(k);
   }
 
   /// Calls ends(left, right) where the leg may end between two looks, until that returns true, or up to
@@ -148,11 +149,17 @@ class RollingWalk {
       const auto first = static_cast<std::size_t>((node % turn + turn) % turn);
       const Trig<T> phi{Lanes<T>::load(sin_.data() + first), Lanes<T>::load(cos_.data() + first),
                         Lanes<T>::load(versine_.data() + first)};
-      for (std::size_t k = 0; k < width; ++k) looks.angle[k + 1] = S(node + static_cast<long>(k)) * step;
-      const T E = vis_viva(rolls, Lanes<T>::load(looks.angle.data() + 1), phi);
+      const T angles = (T(S(node)) + Lanes<T>::load(counted_.data())) * T(step);
+      Lanes<T>::store(angles, looks.angle.data() + 1);
+      const T E = vis_viva(rolls, angles, phi);
       looks.put_lanes({E, T(S(2)) * torque(rolls.hoop, phi)},
                       stick_guards(rolls.hoop, phi, E, T(view.mu_static())));
       const unsigned clear = looks.clear_of_ends();
+      constexpr unsigned all_clear = (1u << width) - 1u;
+      if (clear == all_clear && looks.angle[1] > looks.angle[0] && looks.angle[width] < last) {
+        looks.put(0, looks.at(width));
+        continue;
+      }
       std::size_t left = 0;
       for (std::size_t k = 1; k <= width; ++k) {
         const bool is_last = !(looks.angle[k] < last);
@@ -170,6 +177,7 @@ class RollingWalk {
   static constexpr std::size_t nodes_a_turn = 48;
   /// One turn, and as many nodes more as there may be lanes.
   std::array<S, nodes_a_turn + 16> sin_, cos_, versine_;
+  std::array<S, Lanes<T>::count> counted_;  // 0, 1, 2, ...
 };
 
 }  // namespace leapmap

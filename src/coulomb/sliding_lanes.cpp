@@ -15,16 +15,14 @@ using namespace panel_lengths;
 namespace {
 
 constexpr int most_panels = 1'000;           // of a slide in lanes: beyond, it goes on by itself
-constexpr double near_edge = 0.05;            // nearer to Painleve's edge n0 needs care [rad]
+constexpr double near_edge = 0.05;           // nearer to Painleve's edge n0 needs care [rad]
 constexpr double shortest_steep = 0.05;      // a panel that comes nearer is shortened down to this [rad]
 constexpr double shortest_vanishing = 0.01;  // and one on which the spin vanishes, nobody knows where
 
 /// A panel's tail goes about as r^-nodes, r the sum of the half-axes of the ellipse that its functions are
 /// smooth in, in half-panels; with what they grow to there, some hundred times that. Returns (r + 1 / r) / 2,
 /// the distances to the panel's ends summed up there, in panels.
-double stretch_for(double tolerance) {
-  return std::cosh(std::log(1500.0 / tolerance) / 24);
-}
+double stretch_for(double tolerance) { return std::cosh(std::log(1500.0 / tolerance) / 24); }
 
 /// How much of the way to an angle `length` on a slide's pivot stays above `least`, as some looks tell.
 template <class T>
@@ -38,7 +36,8 @@ T way_to_edge(const Hoop<T>& hoop, const T& friction, const Trig<T>& phi, const 
   for (int k = 1; k <= looks; ++k) {
     const T last = sine;
     sine = sine * turned.cos + cosine * turned.sin, cosine = cosine * turned.cos - last * turned.sin;
-    const T arm = hoop.rho * sine, spare = hoop.Ic + arm * (arm - friction * (T(S(1)) - hoop.rho * cosine)) - least;
+    const T arm = hoop.rho * sine,
+            spare = hoop.Ic + arm * (arm - friction * (T(S(1)) - hoop.rho * cosine)) - least;
     const MaskOf<T> first = (spare <= T(S(0))) & (clear == length);
     clear = select(first, step * (T(S(k)) - spare / (spare - before)), clear);
     before = spare;
@@ -216,9 +215,9 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
   const MaskOf<T> at_rest = spin == zero, turns = !(at_rest & (start.angular == zero));
   const T way = select((spin < zero) | (at_rest & (start.angular < zero)), -one, one);
   const T rise = way * start.angular;
-  T length =
-      resolved_length(PivotZeros<T>{{zero_0, zero_1, zero_2, zero_3}, {height_0, height_1, height_2, height_3}},
-                      angle, way, Panels::stretch_of(spin, rise, longest).shift, clear_of_zeros_, longest);
+  T length = resolved_length(
+      PivotZeros<T>{{zero_0, zero_1, zero_2, zero_3}, {height_0, height_1, height_2, height_3}}, angle, way,
+      Panels::stretch_of(spin, rise, longest).shift, clear_of_zeros_, longest);
   const T steepest = Lanes<T>::load(pivots.data());
   if (any(steepest > zero)) {
     const T clear = T(S(0.98)) * way_to_edge(slide.hoop, friction, phi, way, steepest, length);

@@ -162,9 +162,9 @@ struct SpectralPanel {
  private:
   static constexpr std::size_t half = n / 2;
   using Halves = std::array<S, half>;
-  /// Sums and differences of the values at x and 1 - x, for the nodes below 1/2. Of Legendre's polynomials the
-  /// even ones see the sums alone, the odd ones the differences; so do their integrals, but for the whole of
-  /// the sums: half of the products are left.
+  /// Sums and differences of the values at x and 1 - x, for the nodes below 1/2. Of Legendre's polynomials
+  /// the even ones see the sums alone, the odd ones the differences; so do their integrals, but for the whole
+  /// of the sums: half of the products are left.
   struct Folded {
     Halves sum, difference;
   };
