@@ -88,6 +88,33 @@ TEST(Spectral, TheFourthDerivativeIsBounded) {
   }
 }
 
+/// Lanes take the even and the odd part apart, one panel the nodes side by side.
+TEST(Spectral, IntegralsInLanesAreThoseOfOnePanel) {
+  using Wide = SpectralPanel<Batch, n>;
+  static const Panel panel;
+  static const Wide wide;
+  Panel::Values values;
+  Wide::Values in_lanes;
+  for (std::size_t i = 0; i < n; ++i) {
+    values[i] = std::exp(panel.node[i]) * std::cos(5.0 * panel.node[i] + 0.3);
+    in_lanes[i] = Batch(values[i]);
+  }
+  const Panel::Integrated one = panel.integrated(values);
+  const Wide::Integrated many = wide.integrated(in_lanes);
+  constexpr double roundings = 1e-15;  // of values of about 1
+  for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(lanes_of(many.running[i])[0], one.running[i], roundings);
+  EXPECT_NEAR(lanes_of(many.whole)[0], one.whole, roundings);
+  EXPECT_NEAR(lanes_of(many.tail)[0], one.tail, 10.0 * roundings);
+  EXPECT_NEAR(lanes_of(wide.fourth_derivative_bound(in_lanes))[0] / panel.fourth_derivative_bound(values),
+              1.0, 1e-9);  // coefficients of 1e-15 by up to 1e7
+  // The integral itself, e^x (cos y + 5 sin y) / 26, y = 5 x + 0.3.
+  const auto primitive = [](double x) {
+    return std::exp(x) * (std::cos(5.0 * x + 0.3) + 5.0 * std::sin(5.0 * x + 0.3)) / 26.0;
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    EXPECT_NEAR(one.running[i], primitive(panel.node[i]) - primitive(0.0), roundings);
+}
+
 TEST(PlainFall, InLanesItIsWhereOnePanelAloneHasIt) {
   using Wide = SpectralPanel<Batch, n>;
   const Wide wide;
