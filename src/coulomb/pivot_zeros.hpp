@@ -45,7 +45,7 @@ PivotZeros<T> pivot_zeros(const Hoop<T>& hoop, const T& friction) {
   using std::abs, std::atan2, std::log, std::sqrt;
   using S = ScalarOf<T>;
   using C = pivot_zeros_detail::Complex<T>;
-  constexpr int iterations = 7;
+  constexpr int iterations = 9;
   const T one(S(1)), zero(S(0)), two(S(2)), rho = hoop.rho, m = friction;
   const C first{one, m};
   const C a = C{zero, -two * m / rho} / first, b = C{T(S(4)) * hoop.Ic / (rho * rho) + two, zero} / first,
