@@ -6,12 +6,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "physics/parameters.hpp"
 
 namespace leapmap {
 
-/// The zeros at angle[k] +- i height[k], modulo a turn; to a few digits, which is enough for a length.
+/// The zeros at angle[k] +- i height[k], modulo a turn; one off the real axis comes twice. Nearly all to
+/// three digits or more, which is enough for a length; where two all but meet they are rough, or not numbers.
 template <class T>
 struct PivotZeros {
   std::array<T, 4> angle, height;

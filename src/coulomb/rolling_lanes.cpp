@@ -165,7 +165,7 @@ void RollingLanes<T>::polish_ends(std::span<const Bracketed> phases, std::vector
       index.data(), phases.size());
   clocks_.template store<T>(
       {shift, sqrt(x - shift), sqrt(-shift), zero, select(has_needle, half * longest, longest),
-       select(has_needle, T(tolerance_), T(S(0.03 * std::sqrt(tolerance_)))), abs(roll.hoop.thrust), zero},
+       select(has_needle, T(tolerance_), T(S(0.03 * std::sqrt(tolerance_)))), abs(roll.hoop.thrust)},
       index.data(), phases.size());
   const auto travels = lanes_of(of_state(&ContactState<S>::travel) + way * x), angles = lanes_of(way * angle),
              spins = lanes_of(spin), ways_on = lanes_of(x);
@@ -188,15 +188,13 @@ void RollingLanes<T>::polish_ends(std::span<const Bracketed> phases, std::vector
 template <class T>
 void RollingLanes<T>::time_panels(std::vector<EndedPhase<S>>& ended) {
   using std::sqrt;
-  if (timing_.empty()) return;
   const std::size_t count = std::min(width, timing_.size()), first = timing_.size() - count;
   std::array<std::uint32_t, width> index;
   for (std::size_t i = 0; i < width; ++i) index[i] = timing_[first + (i < count ? i : 0)];
   timing_.resize(first);
   const auto [released, push2, by_sine, by_versine, J_min, by_turned, J_cos, J_sin] =
       motions_.template load<T>(index.data());
-  const auto [shift, end, from, so_far, length, resolving, thrust, spare] =
-      clocks_.template load<T>(index.data());
+  const auto [shift, end, from, so_far, length, resolving, thrust] = clocks_.template load<T>(index.data());
   const T two(S(2));
   T to = sqrt(from * from + length);
   to = select(to * to + T(S(0.3)) * length > end * end, end, to);
@@ -218,7 +216,7 @@ void RollingLanes<T>::time_panels(std::vector<EndedPhase<S>>& ended) {
   const MaskOf<T> resolved = tail <= larger(resolving, smaller(rounding, T(S(1e-4)))) * whole;
   const T sum = select(resolved, so_far + whole, so_far), at = select(resolved, to, from),
           next = select(resolved, length, T(S(0.5)) * length);
-  clocks_.template store<T>({shift, end, at, sum, next, resolving, thrust, spare}, index.data(), count);
+  clocks_.template store<T>({shift, end, at, sum, next, resolving, thrust}, index.data(), count);
   const unsigned done = Lanes<T>::bits(resolved & (to >= end)),
                  too_short = Lanes<T>::bits(!(next > T(S(shortest_panel))));
   const auto taken = lanes_of(sum);

@@ -70,9 +70,9 @@ class RollingLanes {
   std::vector<Phase> waiting_;
   std::vector<Bracketed> bracketed_;
   std::vector<std::uint32_t> timing_;  // places
-  std::vector<Timed> timed_;           // by place, and below: E and J as functions of the angle from there
-  PackedRows<S, 8> motions_;           // E's four coefficients, J's, and thrust
-  PackedRows<S, 8> clocks_;  // shift; in q: the end, how far it is timed; time; the next panel's length
+  std::vector<Timed> timed_;           // by place, as all below
+  PackedRows<S, 8> motions_;  // four coefficients each of E and J, as functions of the angle from the start
+  PackedRows<S, 7> clocks_;   // shift; in q: the end, how far it is timed; time; a panel; how fine; thrust
 };
 
 }  // namespace leapmap

@@ -17,12 +17,16 @@ namespace {
 constexpr int most_panels = 1'000;           // of a slide in lanes: beyond, it goes on by itself
 constexpr double near_edge = 0.05;           // nearer to Painleve's edge n0 needs care [rad]
 constexpr double shortest_steep = 0.05;      // a panel that comes nearer is shortened down to this [rad]
+constexpr double shortest_by_zeros = 0.01;   // of a panel for the pivot's zeros, as some are rough [rad]
 constexpr double shortest_vanishing = 0.01;  // and one on which the spin vanishes, nobody knows where
 
-/// A panel's tail goes about as r^-nodes, r the sum of the half-axes of the ellipse that its functions are
-/// smooth in, in half-panels; with what they grow to there, some hundred times that. Returns (r + 1 / r) / 2,
-/// the distances to the panel's ends summed up there, in panels.
-double stretch_for(double tolerance) { return std::cosh(std::log(1500.0 / tolerance) / 24); }
+/// A panel's tail goes about as grown r^-nodes, r the sum of the half-axes of the ellipse that its functions
+/// are smooth in, in half-panels, and `grown` what they come to there. Returns (r + 1 / r) / 2, the distances
+/// to the panel's ends summed up there, in panels.
+double stretch_for(double tolerance, std::size_t nodes) {
+  constexpr double grown = 1500.0;  // with less more panels are refused than longer ones save
+  return std::cosh(std::log(grown / tolerance) / static_cast<double>(nodes));
+}
 
 /// How much of the way to an angle `length` on a slide's pivot stays above `least`, as some looks tell.
 template <class T>
@@ -32,17 +36,21 @@ T way_to_edge(const Hoop<T>& hoop, const T& friction, const Trig<T>& phi, const 
   constexpr int looks = 8;
   const T step = length * T(S(1) / S(looks));
   const SinCos<T> turned = sincos_of(way * step);
-  T sine = phi.sin, cosine = phi.cos, clear = length, before(std::numeric_limits<S>::max());
+  const auto spare_at = [&](const T& s, const T& c) {
+    const T arm = hoop.rho * s;
+    return hoop.Ic + arm * (arm - friction * (T(S(1)) - hoop.rho * c)) - least;
+  };
+  T sine = phi.sin, cosine = phi.cos, clear = length, before = spare_at(sine, cosine);
+  const MaskOf<T> is_there = before <= T(S(0));
   for (int k = 1; k <= looks; ++k) {
     const T last = sine;
     sine = sine * turned.cos + cosine * turned.sin, cosine = cosine * turned.cos - last * turned.sin;
-    const T arm = hoop.rho * sine,
-            spare = hoop.Ic + arm * (arm - friction * (T(S(1)) - hoop.rho * cosine)) - least;
+    const T spare = spare_at(sine, cosine);
     const MaskOf<T> first = (spare <= T(S(0))) & (clear == length);
     clear = select(first, step * (T(S(k)) - spare / (spare - before)), clear);
     before = spare;
   }
-  return clear;
+  return select(is_there, T(S(0)), clear);
 }
 
 /// In the order in which SlidingLeg looks at them, as of two at the same place the first counts.
@@ -60,7 +68,7 @@ SlidingLanes<T>::SlidingLanes(double tolerance, std::size_t most)
       states_(most),
       zeros_(most),
       stretches_(most) {
-  clear_of_zeros_ = stretch_for(panels_.tolerance());
+  clear_of_zeros_ = stretch_for(panels_.tolerance(), Panels::nodes);
   for (std::size_t k = 0; k < looks_a_turn; ++k) {
     const Trig<S> phi = trig(S(2) * pi_of<S> * S(k) / S(looks_a_turn));
     sin_[k] = phi.sin, cos_[k] = phi.cos;
@@ -181,7 +189,7 @@ auto SlidingLanes<T>::rest(const typename Panels::Stretch& stretch, const Panel&
 
 template <class T>
 void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
-  using std::abs;
+  using std::abs, std::sqrt;
   if (waiting_.empty()) return;
   const std::size_t count = std::min(width, waiting_.size()), first = waiting_.size() - count;
   std::array<std::uint32_t, width> index;
@@ -215,15 +223,17 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
   const MaskOf<T> at_rest = spin == zero, turns = !(at_rest & (start.angular == zero));
   const T way = select((spin < zero) | (at_rest & (start.angular < zero)), -one, one);
   const T rise = way * start.angular;
+  auto usual = Panels::stretch_of(spin, rise, longest);
   T length = resolved_length(
       PivotZeros<T>{{zero_0, zero_1, zero_2, zero_3}, {height_0, height_1, height_2, height_3}}, angle, way,
-      Panels::stretch_of(spin, rise, longest).shift, clear_of_zeros_, longest);
+      usual.shift, clear_of_zeros_, longest);
+  length = larger(length, smaller(longest, T(S(shortest_by_zeros))));
   const T steepest = Lanes<T>::load(pivots.data());
   if (any(steepest > zero)) {
     const T clear = T(S(0.98)) * way_to_edge(slide.hoop, friction, phi, way, steepest, length);
     length = select(steepest > zero, smaller(larger(clear, T(S(shortest_steep))), length), length);
   }
-  const auto usual = Panels::stretch_of(spin, rise, length);
+  usual.span = sqrt(length - usual.shift) - usual.begin;
   const typename Panels::Stretch stretch{select(is_given, shift, usual.shift),
                                          select(is_given, begin, usual.begin),
                                          select(is_given, span, usual.span), select(is_given, curve, one)};
@@ -264,9 +274,9 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
   const T shrunk = length * select(unresolved, shrunk_by(panel_.spin_excess),
                                    select(is_steep, T(S(0.5)), shrunk_by(panel_.excess)));
   const T grown =
-      smaller(length * larger(change(panel_.excess, Panels::nodes, S(2)), one), T(S(longest_angle)));
+      smaller(larger(longest, length * change(panel_.excess, Panels::nodes, S(2))), T(S(longest_angle)));
   const T next_length = select(goes_on & !is_given, grown,
-                               select(halfway, T(S(0.5)) * there.length, select(shrinks, shrunk, length)));
+                               select(halfway, T(S(0.5)) * there.length, select(shrinks, shrunk, longest)));
   const auto next = [&](const T& then, const T& now) { return select(goes_on, then, now); };
   states_.template store<T>(
       {next(panel_.end.time, time), next(panel_.end.travel, travel), next(panel_.end.angle, angle),

@@ -71,7 +71,7 @@ class SlidingLanes {
   SlidingLeg<S> leg_;
   std::array<S, looks_a_turn> sin_, cos_;  // of one turn
   std::vector<Slide> slides_;
-  PackedRows<S, 8> hoops_, states_;  // states: time, travel, angle, spin, slip; n0, friction, panel's length
+  PackedRows<S, 8> hoops_, states_;  // states: time, travel, angle, spin, slip; n0, friction, longest panel
   PackedRows<S, 8> zeros_;
   PackedRows<S, 4> stretches_;  // where given
   std::vector<std::uint32_t> waiting_;

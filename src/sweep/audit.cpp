@@ -17,8 +17,9 @@
 namespace leapmap {
 namespace {
 
-constexpr double usual_referee_every = 10, most_refereed = 200;  // so many: to some
-constexpr double own_error = 1e-11;  // an integration's at that tolerance, over a few revolutions
+constexpr std::size_t usual_referee_every = 10;
+constexpr double most_refereed = 200;  // designs that the referee judges of a large audit, about
+constexpr double own_error = 1e-11;    // an integration's at that tolerance, over a few revolutions
 constexpr double adaptive_slack = 100.0;
 
 /// splitmix64: a well-mixed number from a counter.
@@ -197,9 +198,8 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
       allowed_(begin_audit(spec).allowed_error) {
   if (referee_every == 0) {
     const double audited = spec.numerics.audit * static_cast<double>(Tiling(shape_of(spec)).designs());
-    referee_every_ = audited <= 3.0 * usual_referee_every
-                         ? 1
-                         : static_cast<std::size_t>(std::max(usual_referee_every, audited / most_refereed));
+    const auto large = static_cast<std::size_t>(audited / most_refereed);
+    referee_every_ = audited <= 3.0 * usual_referee_every ? 1 : std::max(usual_referee_every, large);
   }
 }
 

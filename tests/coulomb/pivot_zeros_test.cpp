@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <complex>
+#include <numbers>
 #include <random>
 
 #include "physics/sliding.hpp"
