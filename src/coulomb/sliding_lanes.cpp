@@ -37,8 +37,7 @@ T way_to_edge(const Hoop<T>& hoop, const T& friction, const Trig<T>& phi, const 
   const T step = length * T(S(1) / S(looks));
   const SinCos<T> turned = sincos_of(way * step);
   const auto spare_at = [&](const T& s, const T& c) {
-    const T arm = hoop.rho * s;
-    return hoop.Ic + arm * (arm - friction * (T(S(1)) - hoop.rho * c)) - least;
+    return sliding_coefficients(hoop, Trig<T>{s, c, T(S(1)) - c}, friction).pivot - least;
   };
   T sine = phi.sin, cosine = phi.cos, clear = length, before = spare_at(sine, cosine);
   const MaskOf<T> is_there = before <= T(S(0));

@@ -161,6 +161,7 @@ struct SpectralPanel {
 
  private:
   static constexpr std::size_t half = n / 2;
+  static constexpr std::size_t rows = half % 6 == 0 ? 6 : 1;  // at once: their sums stay in registers
   using Halves = std::array<S, half>;
   /// Sums and differences of the values at x and 1 - x, for the nodes below 1/2. Of Legendre's polynomials
   /// the even ones see the sums alone, the odd ones the differences; so do their integrals, but for the whole
@@ -175,7 +176,6 @@ struct SpectralPanel {
     return folded;
   }
   Values integrals(const Folded& f) const {
-    constexpr std::size_t rows = half % 6 == 0 ? 6 : 1;  // their sums stay in registers
     const S whole = dot(weight, f.sum);
     Values values;
     for (std::size_t first = 0; first < half; first += rows) {
@@ -200,7 +200,6 @@ struct SpectralPanel {
     if constexpr (width > 1) {
       return product(expansion, f);
     } else {
-      constexpr std::size_t rows = half % 6 == 0 ? 6 : 1;
       const Folded folded = fold(f);
       Values coefficients;
       for (std::size_t first = 0; first < n; first += 2 * rows) {
@@ -217,16 +216,16 @@ struct SpectralPanel {
   /// The sum of the matrix's columns, column j times f[j].
   static Values product(const std::array<Numbers, n>& columns, const Values& f) {
     // So many rows at once that their sums stay in registers.
-    constexpr std::size_t all = n / width, rows = all <= 8 ? all : all % 8 == 0 ? 8 : 6;
-    static_assert(all % rows == 0);
+    constexpr std::size_t all = n / width, rows_at_once = all <= 8 ? all : all % 8 == 0 ? 8 : 6;
+    static_assert(all % rows_at_once == 0);
     Values values;
-    for (std::size_t first = 0; first < all; first += rows) {
-      std::array<T, rows> sums;
+    for (std::size_t first = 0; first < all; first += rows_at_once) {
+      std::array<T, rows_at_once> sums;
       sums.fill(T(Number(0)));
       for (std::size_t j = 0; j < n; ++j)
-        for (std::size_t i = 0; i < rows; ++i)
+        for (std::size_t i = 0; i < rows_at_once; ++i)
           sums[i] += times(columns[j].data() + (first + i) * width, T(f[j]));
-      for (std::size_t i = 0; i < rows; ++i) put(sums[i], values, (first + i) * width);
+      for (std::size_t i = 0; i < rows_at_once; ++i) put(sums[i], values, (first + i) * width);
     }
     return values;
   }
