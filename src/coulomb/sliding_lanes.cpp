@@ -270,12 +270,17 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
       is_steep, T(S(shortest_steep)),
       select(panel_.spin_vanishes, T(S(shortest_vanishing)), T(S(shortest_angle)) * (one + T(abs(angle)))));
   const MaskOf<T> shrinks = turns & !is_given & !solved & !stops & (length > least);
+  // A panel to where the spin vanishes that its nodes do not resolve: half of the way first.
+  const MaskOf<T> falls_back = turns & is_given & !is_last & !is_steep & !solved &
+                               (stretch.length() > T(S(shortest_vanishing)));
   const T shrunk = length * select(unresolved, shrunk_by(panel_.spin_excess),
                                    select(is_steep, T(S(0.5)), shrunk_by(panel_.excess)));
   const T grown =
       smaller(larger(longest, length * change(panel_.excess, Panels::nodes, S(2))), T(S(longest_angle)));
-  const T next_length = select(goes_on & !is_given, grown,
-                               select(halfway, T(S(0.5)) * there.length, select(shrinks, shrunk, longest)));
+  const MaskOf<T> halves = halfway | falls_back;
+  const T half = T(S(0.5)) * select(halfway, there.length, stretch.length());
+  const T next_length =
+      select(goes_on & !is_given, grown, select(halves, half, select(shrinks, shrunk, longest)));
   const auto next = [&](const T& then, const T& now) { return select(goes_on, then, now); };
   states_.template store<T>(
       {next(panel_.end.time, time), next(panel_.end.travel, travel), next(panel_.end.angle, angle),
@@ -290,7 +295,7 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
 
   const unsigned done = Lanes<T>::bits(solved & is_last), ends = Lanes<T>::bits(comes),
                  ends_inside = Lanes<T>::bits(sharp), ends_at_rest = Lanes<T>::bits(stops & !halfway),
-                 on = Lanes<T>::bits(goes_on | shrinks | halfway), lasts = Lanes<T>::bits(too_long);
+                 on = Lanes<T>::bits(goes_on | shrinks | halves), lasts = Lanes<T>::bits(too_long);
   const auto lanes_of_state = [](const ContactState<T>& at) {
     return std::array{lanes_of(at.time), lanes_of(at.travel), lanes_of(at.angle), lanes_of(at.spin),
                       lanes_of(at.slip)};
