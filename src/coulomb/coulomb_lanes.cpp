@@ -63,19 +63,12 @@ void CoulombLanes<T>::find_pivot_zeros(std::span<const Design> designs, const Sc
   pivot_zeros_.resize(designs.size());
   for (std::size_t first = 0; first < designs.size(); first += width) {
     const std::size_t count = std::min(width, designs.size() - first);
-    const auto lanes = [&](const auto& number_of) {
-      LaneArray<T> numbers;
-      for (std::size_t i = 0; i < width; ++i) numbers[i] = number_of(designs[first + (i < count ? i : 0)]);
-      return Lanes<T>::load(numbers.data());
+    const auto design_of = [&](std::size_t i) -> const Design& {
+      return designs[first + (i < count ? i : 0)];
     };
-    const auto parameter = [&](double Design::*member) {
-      return lanes([&](const Design& design) { return S(design.*member); });
-    };
-    const Hoop<T> hoop =
-        derive(parameter(&Design::slope), parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
-               parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
-    const PivotZeros<T> zeros = pivot_zeros(
-        hoop, lanes([&](const Design& design) { return contact_of<S>(design, scene).mu_kinetic; }));
+    const T mu_kinetic =
+        gathered<T>([&](std::size_t i) { return contact_of<S>(design_of(i), scene).mu_kinetic; });
+    const PivotZeros<T> zeros = pivot_zeros(derive_gathered<T>(design_of), mu_kinetic);
     for (std::size_t k = 0; k < zeros.angle.size(); ++k) {
       const auto angles = lanes_of(zeros.angle[k]), heights = lanes_of(zeros.height[k]);
       for (std::size_t i = 0; i < count; ++i)
@@ -102,16 +95,19 @@ void CoulombLanes<T>::fly_some() {
   constexpr std::size_t width = Lanes<T>::count;
   const std::size_t count = std::min(width, flying_.size()), first = flying_.size() - count;
   if (count == 0) return;
-  LaneArray<T> cos_slope, rho, angle, spin;
-  for (std::size_t i = 0; i < width; ++i) {
-    const PhaseMachine<S>& machine = *on_their_way_[flying_[first + (i < count ? i : 0)]].machine;
-    cos_slope[i] = machine.hoop().cos_slope, rho[i] = machine.hoop().rho;
-    angle[i] = machine.at().angle, spin[i] = machine.at().spin;
-  }
+  const auto machine_of = [&](std::size_t i) -> const PhaseMachine<S>& {
+    return *on_their_way_[flying_[first + (i < count ? i : 0)]].machine;
+  };
+  const auto of_hoop = [&](S Hoop<S>::*member) {
+    return gathered<T>([&](std::size_t i) { return machine_of(i).hoop().*member; });
+  };
+  const auto of_state = [&](S ContactState<S>::*member) {
+    return gathered<T>([&](std::size_t i) { return machine_of(i).at().*member; });
+  };
   Hoop<T> hoop{};  // of which a flight takes these two
-  hoop.cos_slope = Lanes<T>::load(cos_slope.data()), hoop.rho = Lanes<T>::load(rho.data());
+  hoop.cos_slope = of_hoop(&Hoop<S>::cos_slope), hoop.rho = of_hoop(&Hoop<S>::rho);
   const Flight<T> flights =
-      fly(hoop, LiftOff<T>{T(S(0)), Lanes<T>::load(angle.data()), Lanes<T>::load(spin.data())});
+      fly(hoop, LiftOff<T>{T(S(0)), of_state(&ContactState<S>::angle), of_state(&ContactState<S>::spin)});
   const auto height = lanes_of(flights.height), apex_time = lanes_of(flights.apex_time),
              flight_time = lanes_of(flights.flight_time), dip = lanes_of(flights.dip);
   for (std::size_t i = 0; i < count; ++i)

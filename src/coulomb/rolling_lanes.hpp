@@ -6,12 +6,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "coulomb/ended_phase.hpp"
 #include "coulomb/rolling_leg.hpp"
-#include "numerics/rows.hpp"
+#include "coulomb/timed_rolls.hpp"
 
 namespace leapmap {
 
@@ -26,12 +25,12 @@ class RollingLanes {
   /// Adds a phase to those that the passes to come roll.
   void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_static, const ContactState<S>& at,
              const S& runway);
-  std::size_t waiting() const { return waiting_.size() + timing_.size(); }
+  std::size_t waiting() const { return waiting_.size() + timed_rolls_.waiting(); }
   /// Takes some a step further, and adds those that end to `ended`.
   void pass(std::vector<EndedPhase<S>>& ended);
 
  private:
-  static constexpr std::size_t width = Lanes<T>::count, nodes = 24;
+  static constexpr std::size_t width = Lanes<T>::count;
 
   struct Phase {
     std::uint32_t place;
@@ -49,8 +48,8 @@ class RollingLanes {
     S from, to;  ///< the same where the end is there
     S from_value, to_value;
   };
-  /// A phase whose end is known, up to which it is timed panel by panel.
-  struct Timed {
+  /// A phase whose end is known, up to which it is to be timed.
+  struct Untimed {
     Phase phase;
     PhaseEnd end;
     ContactState<S> at;  ///< there; its time is that of the phase's beginning
@@ -59,20 +58,18 @@ class RollingLanes {
   void alone(const Phase& phase, std::vector<EndedPhase<S>>& ended) const;
   /// Finds where some phases end that wait.
   void find_ends(std::vector<EndedPhase<S>>& ended);
-  void polish_ends(std::span<const Bracketed> phases, std::vector<EndedPhase<S>>& ended);
+  /// To their last digits, of those in bracketed_.
+  void polish_ends(std::vector<EndedPhase<S>>& ended);
   /// Times some phases a panel further.
-  void time_panels(std::vector<EndedPhase<S>>& ended);
+  void time_some(std::vector<EndedPhase<S>>& ended);
 
-  S tolerance_;
   RollingLeg<S> leg_;
   RollingWalk<S> walk_;
-  SpectralPanel<T, nodes> panel_;
+  TimedRolls<T> timed_rolls_;
   std::vector<Phase> waiting_;
   std::vector<Bracketed> bracketed_;
-  std::vector<std::uint32_t> timing_;  // places
-  std::vector<Timed> timed_;           // by place, as all below
-  PackedRows<S, 8> motions_;  // four coefficients each of E and J, as functions of the angle from the start
-  PackedRows<S, 7> clocks_;   // shift; in q: the end, how far it is timed; time; a panel; how fine; thrust
+  std::vector<Untimed> untimed_;  // by place
+  std::vector<typename TimedRolls<T>::Timed> timed_;
 };
 
 }  // namespace leapmap

@@ -271,8 +271,8 @@ void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
       select(panel_.spin_vanishes, T(S(shortest_vanishing)), T(S(shortest_angle)) * (one + T(abs(angle)))));
   const MaskOf<T> shrinks = turns & !is_given & !solved & !stops & (length > least);
   // A panel to where the spin vanishes that its nodes do not resolve: half of the way first.
-  const MaskOf<T> falls_back = turns & is_given & !is_last & !is_steep & !solved &
-                               (stretch.length() > T(S(shortest_vanishing)));
+  const MaskOf<T> falls_back =
+      turns & is_given & !is_last & !is_steep & !solved & (stretch.length() > T(S(shortest_vanishing)));
   const T shrunk = length * select(unresolved, shrunk_by(panel_.spin_excess),
                                    select(is_steep, T(S(0.5)), shrunk_by(panel_.excess)));
   const T grown =

@@ -90,6 +90,14 @@ LaneArray<T> lanes_of(const T& value) {
   return lanes;
 }
 
+/// number_of(i) in lane i.
+template <class T, class F>
+T gathered(const F& number_of) {
+  LaneArray<T> lanes;
+  for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = static_cast<ScalarOf<T>>(number_of(i));
+  return Lanes<T>::load(lanes.data());
+}
+
 template <class T>
 T select(bool mask, const T& a, const T& b) {
   return mask ? a : b;

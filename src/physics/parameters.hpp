@@ -47,6 +47,16 @@ Hoop<T> derive(const Design& design) {
                 T(design.drive_torque));
 }
 
+/// Of design_of(i) in lane i.
+template <class T, class F>
+Hoop<T> derive_gathered(const F& design_of) {
+  const auto parameter = [&](double Design::*member) {
+    return gathered<T>([&](std::size_t i) { return design_of(i).*member; });
+  };
+  return derive(parameter(&Design::slope), parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
+                parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
+}
+
 /// The same hoop in every lane.
 template <class T>
 Hoop<T> widened(const Hoop<ScalarOf<T>>& hoop) {

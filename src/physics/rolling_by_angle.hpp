@@ -69,6 +69,29 @@ Roll<T> widened(const Roll<ScalarOf<T>>& roll) {
           .push = T(roll.push)};
 }
 
+/// That of roll_of(i) in lane i.
+template <class T, class F>
+Roll<T> gathered_roll(const F& roll_of) {
+  using S = ScalarOf<T>;
+  const auto of_roll = [&](S Roll<S>::*member) {
+    return gathered<T>([&](std::size_t i) { return roll_of(i).*member; });
+  };
+  const auto of_hoop = [&](S Hoop<S>::*member) {
+    return gathered<T>([&](std::size_t i) { return roll_of(i).hoop.*member; });
+  };
+  const auto of_trig = [&](S Trig<S>::*member) {
+    return gathered<T>([&](std::size_t i) { return roll_of(i).release_trig.*member; });
+  };
+  return {.hoop = {of_hoop(&Hoop<S>::sin_slope), of_hoop(&Hoop<S>::cos_slope), of_hoop(&Hoop<S>::rho),
+                   of_hoop(&Hoop<S>::clearance), of_hoop(&Hoop<S>::Ic), of_hoop(&Hoop<S>::J_min),
+                   of_hoop(&Hoop<S>::drive), of_hoop(&Hoop<S>::thrust)},
+          .release = of_roll(&Roll<S>::release),
+          .release_trig = {of_trig(&Trig<S>::sin), of_trig(&Trig<S>::cos), of_trig(&Trig<S>::versine)},
+          .released = of_roll(&Roll<S>::released),
+          .level = of_roll(&Roll<S>::level),
+          .push = of_roll(&Roll<S>::push)};
+}
+
 /// E at an angle, accurate to a few roundings of its largest term.
 template <class T>
 T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {
@@ -103,6 +126,42 @@ template <class T>
 T vis_viva_past_release(const Roll<T>& roll, const T& x) {
   const Trig<T> turned = trig(x);
   return vis_viva_past_release(roll, x, turned, x_minus_sin(x, turned));
+}
+
+/// The same, and J, for many angles x of one roll: by x's sine and versine, with factors that do not depend
+/// on x. Of J near a needle at phi = 0 it is the rounding of rho, not of J, that remains.
+template <class T>
+struct PastRelease {
+  T released, push2, by_sine, by_versine;  ///< of E
+  T J_min, by_turned, J_cos, J_sin;        ///< of J
+
+  /// sqrt(J / E). X: T, or a number that all lanes share.
+  template <class X>
+  T slowness_at(const X& x, const Trig<X>& turned, const X& x_less_sin) const {
+    return slowness(inertia(turned), vis_viva(x, turned, x_less_sin));
+  }
+  template <class X>
+  T vis_viva(const X& x, const Trig<X>& turned, const X& x_less_sin) const {
+    return released + push2 * x + by_sine * x_less_sin + by_versine * turned.versine;
+  }
+  template <class X>
+  T inertia(const Trig<X>& turned) const {
+    return J_min + by_turned * turned.versine + J_cos * turned.cos + J_sin * turned.sin;
+  }
+};
+
+template <class T>
+PastRelease<T> past_release(const Roll<T>& roll) {
+  const Trig<T>& phi = roll.release_trig;
+  const T rho2 = T(2) * roll.hoop.rho;
+  return {.released = roll.released,
+          .push2 = T(2) * roll.push,
+          .by_sine = rho2 * sin_from_vertical(roll.hoop, phi),
+          .by_versine = -rho2 * cos_from_vertical(roll.hoop, phi),
+          .J_min = roll.hoop.J_min,
+          .by_turned = rho2,
+          .J_cos = rho2 * phi.versine,
+          .J_sin = rho2 * phi.sin};
 }
 
 /// Where E is least for the first time after the release, or, where E falls from turn to turn, least for the

@@ -31,21 +31,21 @@ T vis_viva_at_panel(const Roll<T>& roll, const T& panel) {
 }  // namespace
 
 template <class B, class T>
-void begin_leg(Block<B>& block, const DesignLanes<T>& index, std::size_t count, const LegStart<T>& leg) {
+void begin_leg(Block<B>& block, const DesignLanes<T>& index, std::size_t count, const Roll<T>& roll,
+               const Roll<T>& release, const LegStart<T>& leg) {
   using S = ScalarOf<T>;
   using std::abs, std::floor;
   const T two_pi(S(2) * pi_of<S>);
-  const Roll<T>& roll = leg.roll;
 
   // Energy that is used up ends a leg; it rises or falls from turn to turn, so that one minimum decides.
-  const FirstMinimum<T> ahead = first_minimum(leg.release, leg.slope);
-  const T least = least_vis_viva(leg.release, ahead);
+  const FirstMinimum<T> ahead = first_minimum(release, leg.slope);
+  const T least = least_vis_viva(release, ahead);
   const MaskOf<T> runs_down = ahead.is_real & !leg.last & ((least <= T(0)) | (roll.hoop.thrust < T(0)));
   T reach(0), end = leg.end;
   MaskOf<T> turns = !(end == end);
   if (any(runs_down)) {
-    reach = turning_distance(leg.release, ahead, runs_down);
-    const T turn = leg.release.release + reach;
+    reach = turning_distance(release, ahead, runs_down);
+    const T turn = release.release + reach;
     // At the runway's end but for rounding it turns, too.
     turns = runs_down & (turn - end <= T(S(8) * std::numeric_limits<S>::epsilon()) * larger(T(1), abs(end)));
     end = select(turns, turn, end);
@@ -53,7 +53,7 @@ void begin_leg(Block<B>& block, const DesignLanes<T>& index, std::size_t count, 
   // How near E comes to zero on the way, for the clock.
   T lowest = smaller(least, vis_viva_at_panel(roll, RollingTime<T>::first_panel(roll))),
     minimum = ahead.angle;
-  if (any(roll.release < leg.release.release)) {
+  if (any(roll.release < release.release)) {
     minimum = first_minimum(roll, leg.slope).angle;
     lowest = smaller(lowest, vis_viva_past_release(roll, minimum - roll.release));
   }
@@ -85,43 +85,37 @@ void begin_leg(Block<B>& block, const DesignLanes<T>& index, std::size_t count, 
 template <class T>
 void turn_round(Block<T>& block, const DesignList& designs, const Scene& scene) {
   using S = ScalarOf<T>;
+  using Found = typename Block<T>::Found;
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
     const std::size_t count = std::min(Lanes<T>::count, designs.size() - first);
     const DesignLanes<T> index = lanes_from<T>(designs, first);
-    LaneArray<T> turns, releases, energies, reaches, legs, travelled;
-    for (std::size_t i = 0; i < index.size(); ++i) {
-      const auto& found = block.found[index[i]];
-      turns[i] = found.turn, releases[i] = found.release, energies[i] = found.released;
-      reaches[i] = found.reach, legs[i] = S(found.leg + 1), travelled[i] = found.travelled;
-    }
-    const MaskOf<T> third = Lanes<T>::load(legs.data()) > T(2);
+    const auto of_found = [&](auto Found::*member) {
+      return gathered<T>([&](std::size_t i) { return block.found[index[i]].*member; });
+    };
+    const MaskOf<T> third = of_found(&Found::leg) > T(1);  // the next one
     const Roll<T> before = block.template load_path<T>(index.data());
-    const T release = Lanes<T>::load(releases.data());
+    const T released_at = of_found(&Found::release);
 
     // At rest where it turned, and at the same level, so that G has the same signs as before.
     const Hoop<T> hoop = seen(before.hoop, T(-1));
-    LegStart<T> leg;
-    leg.slope = slope_of(hoop);
-    leg.roll = begin_roll(hoop, -Lanes<T>::load(turns.data()), T(0));
-    leg.roll.level = before.level;
-    leg.release = begin_roll(hoop, -release, T(0));
-    leg.release.released = Lanes<T>::load(energies.data());
-    leg.release.level = before.level;
-    leg.end = select(third, release,
-                     T(S(2) * pi_of<S>) * T(S(scene.runway)) + Lanes<T>::load(travelled.data()) - release);
-    leg.above = lift(leg.roll, leg.roll.release).value > T(0);
-    leg.last = third;
+    Roll<T> roll = begin_roll(hoop, T(-of_found(&Found::turn)), T(0)),
+            release = begin_roll(hoop, T(-released_at), T(0));
+    roll.level = release.level = before.level;
+    release.released = of_found(&Found::released);
+    const T runway_end = T(S(2) * pi_of<S>) * T(S(scene.runway)) + of_found(&Found::travelled) - released_at;
+    const LegStart<T> leg{slope_of(hoop), select(third, released_at, runway_end),
+                          lift(roll, roll.release).value > T(0), third};
     for (std::size_t i = 0; i < count; ++i) {
       auto& found = block.found[index[i]];
       ++found.leg, found.way = -found.way;
     }
-    begin_leg(block, index, count, leg);
+    begin_leg(block, index, count, roll, release, leg);
   }
 }
 
-#define LEAPMAP_INSTANTIATE(T)                                                      \
-  template void begin_leg<T>(Block<T>&, const DesignLanes<WideOf<T>>&, std::size_t, \
-                             const LegStart<WideOf<T>>&);                           \
+#define LEAPMAP_INSTANTIATE(T)                                                                              \
+  template void begin_leg<T>(Block<T>&, const DesignLanes<WideOf<T>>&, std::size_t, const Roll<WideOf<T>>&, \
+                             const Roll<WideOf<T>>&, const LegStart<WideOf<T>>&);                           \
   template void turn_round<T>(Block<T>&, const DesignList&, const Scene&);
 #ifdef LEAPMAP_KERNELS
 LEAPMAP_INSTANTIATE(Batch)

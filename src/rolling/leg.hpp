@@ -10,18 +10,17 @@ namespace leapmap {
 /// A leg as it begins.
 template <class T>
 struct LegStart {
-  Roll<T> roll;
-  Roll<T> release;  ///< the design's release, seen as on this leg; the hoop turns round beyond it
   T slope;          ///< theta, as seen on this leg
   T end;            ///< of the leg, unless it turns round before
   MaskOf<T> above;  ///< G > 0 at its start
   MaskOf<T> last;   ///< it does not turn again
 };
 
-/// Stores the first `count` lanes' rolls, finds where the legs end, and begins their searches. T: the
-/// block's, or two of them.
+/// Stores the first `count` lanes' rolls, finds where the legs end, and begins their searches. release: the
+/// design's, seen as on this leg; the hoop turns round beyond it. T: the block's, or two of them.
 template <class B, class T>
-void begin_leg(Block<B>& block, const DesignLanes<T>& index, std::size_t count, const LegStart<T>& leg);
+void begin_leg(Block<B>& block, const DesignLanes<T>& index, std::size_t count, const Roll<T>& roll,
+               const Roll<T>& release, const LegStart<T>& leg);
 
 /// The next leg of designs that turn round.
 template <class T>

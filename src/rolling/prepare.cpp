@@ -23,20 +23,17 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
     for (std::size_t i = 0; i < index.size(); ++i)
       index[i] = static_cast<std::uint32_t>(first + (i < count ? i : 0));
     const auto parameter = [&](double Design::*member) {
-      LaneArray<T> lanes;
-      for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = S(designs[index[i]].*member);
-      return Lanes<T>::load(lanes.data());
+      return gathered<T>([&](std::size_t i) { return designs[index[i]].*member; });
+    };
+    const auto of_landing = [&](S ContactState<S>::*member) {
+      return gathered<T>([&](std::size_t i) { return landed[index[i]].*member; });
     };
     // Of where it sets out: of the landing, or of the release.
     const auto start = [&](S ContactState<S>::*member, double Design::*released) {
-      if (landed.empty()) return parameter(released);
-      LaneArray<T> lanes;
-      for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = landed[index[i]].*member;
-      return Lanes<T>::load(lanes.data());
+      return landed.empty() ? parameter(released) : of_landing(member);
     };
-    const T slope = parameter(&Design::slope);
-    const Hoop<T> hoop = derive(slope, parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
-                                parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
+    const Hoop<T> hoop =
+        derive_gathered<T>([&](std::size_t i) -> const Design& { return designs[index[i]]; });
     const T spin = start(&ContactState<S>::spin, &Design::release_spin);
     // A release many turns from 0 is taken back to the first, so that angles have digits to spare.
     const T release_angle = start(&ContactState<S>::angle, &Design::release_angle);
@@ -54,12 +51,7 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
     const unsigned in_the_air = Lanes<T>::bits(!(force > T(0))), at_rest = Lanes<T>::bits(sets_out == T(0));
     const auto releases = lanes_of(roll.release), released = lanes_of(roll.released), ways = lanes_of(way),
                turns_back = lanes_of(release_angle - nearest);
-    T travelled(0);
-    if (!landed.empty()) {
-      LaneArray<T> lanes;
-      for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = landed[index[i]].travel;
-      travelled = way * Lanes<T>::load(lanes.data());
-    }
+    const T travelled = landed.empty() ? T(0) : way * of_landing(&ContactState<S>::travel);
     const auto travels = lanes_of(travelled);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t design = index[i];
@@ -89,7 +81,8 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
       }
     }
     const T end = roll.release + T(S(2) * pi_of<S>) * T(S(scene.runway)) - travelled;
-    begin_leg(block, index, count, LegStart<T>{roll, roll, way * slope, end, force > T(0), !(end == end)});
+    begin_leg(block, index, count, roll, roll,
+              LegStart<T>{way * parameter(&Design::slope), end, force > T(0), !(end == end)});
   }
 }
 

@@ -111,8 +111,6 @@ template <class T>
 T RollingTime<T>::stretched(const Roll<T>& roll, const Quiet<T>& quiet, const NodesNeeded<T>& needed,
                             const T& span, MaskOf<T>& hard) {
   using std::floor, std::sqrt;
-  const Hoop<T>& hoop = roll.hoop;
-  const T rho2 = T(2) * hoop.rho;
   const auto [bend, discriminant, root, real, x1] = parabola_at_release(roll);
   hard = hard | !(real | (-discriminant > T(4) * bend * bend));
 
@@ -138,32 +136,24 @@ T RollingTime<T>::stretched(const Roll<T>& roll, const Quiet<T>& quiet, const No
   const auto nodes = lanes_of(nodes_for(growth, hard));
   const int n = static_cast<int>(*std::max_element(nodes.begin(), nodes.end()));
 
-  // E as in vis_viva_past_release, and J likewise turned on from the release
-  const Trig<T>& phi0 = roll.release_trig;
-  const T by_sine = rho2 * sin_from_vertical(hoop, phi0), by_versine = -rho2 * cos_from_vertical(hoop, phi0);
-  const T push2 = T(2) * roll.push, J_cos = rho2 * phi0.versine, J_sin = rho2 * phi0.sin;
-  const auto slowness_at = [&](const auto& x, const auto& turned, const auto& x_less_sin) {
-    const T E = roll.released + push2 * x + by_sine * x_less_sin + by_versine * turned.versine;
-    const T J = hoop.J_min + rho2 * turned.versine + J_cos * turned.cos + J_sin * turned.sin;
-    return slowness(J, E);
-  };
+  const PastRelease<T> past = past_release(roll);
   const S first_span = lanes_of(span)[0];
   T total(0);
   if (all((q0 == T(0)) & (span == T(first_span)))) {
     for (const SharedNode& node : start_from_rest(first_span, n))
-      total = total + node.weight * slowness_at(node.x, node.trig, node.x_less_sin);
+      total = total + node.weight * past.slowness_at(node.x, node.trig, node.x_less_sin);
     if constexpr (has_derivatives<T>) {  // of the span, which the nodes do not have
       const auto at_end =
-          value_of(slowness_at(first_span, trig(first_span), x_minus_sin(first_span, trig(first_span))));
+          value_of(past.slowness_at(first_span, trig(first_span), x_minus_sin(first_span, trig(first_span))));
       total = total + span.through(at_end - at_end, at_end);
     }
     return total;
   }
   const GaussRule<S>& rule = rule_of<S>(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const T past = reach * rule.node[i], x = past * (T(2) * q0 + past);
+    const T q = reach * rule.node[i], x = q * (T(2) * q0 + q);  // q: less q0
     const Trig<T> turned = trig(x);
-    total = total + rule.weight[i] * (q0 + past) * slowness_at(x, turned, x_minus_sin(x, turned));
+    total = total + rule.weight[i] * (q0 + q) * past.slowness_at(x, turned, x_minus_sin(x, turned));
   }
   return T(2) * reach * total;
 }
