@@ -49,12 +49,13 @@ void RollingLanes<T>::alone(const Phase& phase, std::vector<EndedPhase<S>>& ende
 /// Where one guard alone falls through zero between two looks, or none up to the runway's end.
 template <class T>
 bool RollingLanes<T>::bracket(const Phase& phase, Bracketed& found) const {
-  const S sets_out = setting_out(phase.hoop, trig(phase.at.angle), phase.at.spin);
+  const Trig<S> phi = trig(phase.at.angle);
+  const S sets_out = setting_out(phase.hoop, phi, phase.at.spin);
   if (sets_out == S(0)) return false;
   found.phase = phase;
   found.way = sets_out < S(0) ? S(-1) : S(1);
-  found.roll =
-      begin_roll(seen(phase.hoop, found.way), S(found.way * phase.at.angle), std::abs(phase.at.spin));
+  found.roll = begin_roll(seen(phase.hoop, found.way), S(found.way * phase.at.angle),
+                          Trig<S>{found.way * phi.sin, phi.cos, phi.versine}, std::abs(phase.at.spin));
   const S last = found.roll.release + (phase.runway - found.way * phase.at.travel);
   found.end = PhaseEnd::runway_ends;
   found.from = found.to = last, found.from_value = S(1), found.to_value = S(-1);

@@ -46,9 +46,9 @@ T setting_out(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin) {
   return select(spin * spin == T(0), torque(hoop, phi), spin);
 }
 
+/// phi: trig(release).
 template <class T>
-Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
-  const Trig<T> phi = trig(release);
+Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const Trig<T>& phi, const T& spin) {
   const T released = spin * spin * contact_inertia(hoop, phi);
   return {.hoop = hoop,
           .release = release,
@@ -56,6 +56,10 @@ Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
           .released = released,
           .level = released - T(2) * (release * hoop.thrust + hoop.rho * cos_from_vertical(hoop, phi)),
           .push = torque(hoop, phi)};
+}
+template <class T>
+Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
+  return begin_roll(hoop, release, trig(release), spin);
 }
 
 /// The same roll in every lane.
