@@ -14,11 +14,6 @@ import style
 from read_map import NotAMap
 from style import plt
 
-try:
-    import leapmap
-except ImportError:
-    leapmap = None
-
 CLOUD, SHOWN = 200_000, 15_000
 NUMBERS = ("#b2182b", "#2166ac", "#1b7837")
 
@@ -48,10 +43,11 @@ def pieces(problem, found):
     return [slice(a, b) for a, b in zip(ends, ends[1:])]
 
 
-def draw_hoop(axis, design, fixed, colour):
+def draw_hoop(axis, leapmap, design, fixed, colour):
     """The hoop at some moments of its jump, on its slope."""
     motion = leapmap.trace(**fixed, **design, interval=2e-3)
-    slope, size, radius = design.get("slope", fixed.get("slope", 0.4)), design.get("offset_ratio", fixed.get("offset_ratio", 1.0)), 0.041
+    hoop = {**fixed, **design}
+    slope, size, radius = hoop["slope"], hoop["offset_ratio"], hoop["radius"]
     t, start, end = np.asarray(motion.t), float(motion.outcome.jump_time), np.asarray(motion.t)[-1]
     down, up = np.array([np.cos(slope), -np.sin(slope)]), np.array([np.sin(slope), np.cos(slope)])
     x0 = np.interp(start, t, motion.x)
@@ -68,6 +64,7 @@ def draw_hoop(axis, design, fixed, colour):
 
 
 def chart(path, seed):
+    leapmap = style.leapmap_module()
     problem = leapmap.DesignProblem(path)
     if len(problem.objectives) != 2:
         raise NotAMap(f"{path}: has {len(problem.objectives)} objectives; a front is of two")
@@ -98,7 +95,7 @@ def chart(path, seed):
         design = {n: float(found.parameters[n][i]) for n in problem.names}
         beside = figure.add_subplot(grid[k, 1])
         if found.outcomes.jump_height[i] > 0:
-            draw_hoop(beside, design, spec, NUMBERS[k])
+            draw_hoop(beside, leapmap, design, spec, NUMBERS[k])
         words = ", ".join(f"{planes.axis_label(n)} {shown(n, v):.4g}" for n, v in design.items() if n not in problem.objectives)
         beside.set_title(textwrap.fill(f"{k + 1}: {words}; {label(first)} {y[i]:.4g}, {label(second)} {x[i]:.4g}", 52), fontsize=7.5, color=NUMBERS[k])
     axis.set_xlabel(label(second))
@@ -113,8 +110,6 @@ def main():
     p = style.parser(__doc__, "a spec of two objectives, for example sweeps/questions/height_against_time.toml", "_front")
     p.add_argument("--seed", type=int, default=1)
     arguments = p.parse_args()
-    if leapmap is None:
-        raise NotAMap("front_chart: needs the Python module leapmap; export PYTHONPATH=build/release/python")
     try:
         figure = chart(arguments.source, arguments.seed)
     except ValueError as error:

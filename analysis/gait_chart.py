@@ -16,14 +16,6 @@ from style import plt
 TRANSIENT = 50  # jumps that are not drawn
 
 
-def leapmap_module():
-    try:
-        import leapmap
-    except ImportError:
-        raise OSError("needs leapmap's Python module; set PYTHONPATH to build/release/python") from None
-    return leapmap
-
-
 def draw_return_map(axis, leapmap, hoop, runway):
     gaits = leapmap.gaits(**hoop, runway=5.0)
     returns = gaits["returns"]
@@ -76,7 +68,7 @@ def main():
     p.add_argument("--from", dest="least", type=float, default=2.0, help="least slope on the right, in degrees")
     p.add_argument("--to", dest="most", type=float, default=22.0, help="largest slope on the right, in degrees")
     arguments = p.parse_args()
-    leapmap = leapmap_module()
+    leapmap = style.leapmap_module()
     hoop = {"slope": np.radians(arguments.slope), "mass_ratio": arguments.mass_ratio, "offset_ratio": arguments.offset_ratio}
     figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 5.4), layout="constrained")
     draw_return_map(left, leapmap, hoop, 50.0)

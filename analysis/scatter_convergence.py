@@ -16,14 +16,6 @@ MOST = 1 << 20
 COUNTS = [16 << k for k in range(1, 13)]
 
 
-def module():
-    try:
-        import leapmap
-    except ImportError as error:
-        raise NotAMap(f"leapmap's Python module is not there ({error}); allowed: with PYTHONPATH=build/release/python") from None
-    return leapmap
-
-
 def yields(leapmap, spec, goals, samples, seed):
     """The yield and its stated error, from a map of the one design."""
     m = leapmap.sweep(spec, in_memory=True, samples=samples, seed=seed, audit=0, fields=["yield", "yield_error"], **goals)
@@ -36,7 +28,7 @@ def main():
     p.add_argument("--at-least", type=float, metavar="HEIGHT", help="the goal of jump_height, in place of the spec's")
     arguments = p.parse_args()
     goals = {} if arguments.at_least is None else {"goal.jump_height": {"at_least": arguments.at_least}}
-    leapmap = module()
+    leapmap = style.leapmap_module()
     try:
         made = leapmap.scatter(arguments.source, samples=32, **goals)
         truth, _ = yields(leapmap, arguments.source, goals, MOST, 12345)

@@ -22,6 +22,15 @@ plt.rcParams.update({
 })
 
 
+def leapmap_module():
+    """The module leapmap, for charts that solve."""
+    try:
+        import leapmap
+    except ImportError as error:
+        raise OSError(f"needs leapmap's Python module ({error}); allowed: with PYTHONPATH=build/release/python") from None
+    return leapmap
+
+
 class _Parser(argparse.ArgumentParser):
     suffix = None
 

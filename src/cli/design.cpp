@@ -188,9 +188,10 @@ std::string json_of(const Question& question, const FoundDesign& found) {
       "    {{\"yield\": {}, \"parameters\": {{{}}}, \"objectives\": {{{}}}, \"fields\": {{{}}},\n     "
       "\"gradients\": "
       "{{{}}}, "
-      "\"binds\": [{}], \"cliff\": {}, \"hop\": \"{}\"}}",
+      "\"binds\": [{}], \"cliff\": {}, \"hop\": {}}}",
       yield, fmt::join(parameters, ", "), fmt::join(objectives, ", "), fmt::join(fields, ", "),
-      fmt::join(gradients, ", "), fmt::join(binds, ", "), cliff, hop_command(question.one, found.design));
+      fmt::join(gradients, ", "), fmt::join(binds, ", "), cliff,
+      json_string(command_of(question, found.design)));
 }
 
 void print_json(const Spec& spec, const Question& question, const FoundDesigns& found) {
@@ -323,8 +324,8 @@ void add_design(CLI::App& app, int& status) {
       "miss is told, "
       "and no file is written.\n"
       "Examples:\n"
-      "  leapmap design sweeps/question.toml -o maps/best.h5\n"
-      "  leapmap design sweeps/front.toml -o maps/front.h5 --csv front.csv");
+      "  leapmap design sweeps/questions/highest.toml -o maps/best.h5\n"
+      "  leapmap design sweeps/questions/height_against_mass.toml -o maps/front.h5 --csv front.csv");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -107,10 +107,14 @@ int run(const GaitArguments& arguments) {
     throw InputError(
         "--most-period: has no use with friction, where only what the release settles on is told; allowed: "
         "gait.most_period");
-  const bool names_settle = std::ranges::any_of(overrides, [](const std::string& text) {
-    return text.starts_with("gait.settle=") || text.starts_with("settle=");
-  });
-  if (names_settle && spec.scene.settle == 0)
+  const auto names = [&](const std::string& section, const std::string& key) {
+    return std::ranges::any_of(overrides, [&](const std::string& text) {
+      return text.starts_with(section + "." + key + "=") || text.starts_with(key + "=");
+    });
+  };
+  if (names("scene", "jumps"))
+    throw InputError("scene.jumps: has no use here, where jumps go on for ever; allowed: gait.settle");
+  if (names("gait", "settle") && spec.scene.settle == 0)
     throw InputError("gait.settle = 0: leaves nothing to tell; allowed: a number of jumps, 500 by default");
   if (spec.scene.settle == 0) spec.scene.settle = 500;
   spec.scene.jumps = 1;

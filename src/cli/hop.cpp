@@ -311,6 +311,7 @@ void add_hop(CLI::App& app, int& status) {
   command
       ->add_option("--trace-interval", arguments->trace_interval,
                    "seconds between its samples; default 0.001")
+      ->needs("--trace")
       ->check(CLI::Range(1e-9, 1e9));
   command
       ->add_option("--mass", arguments->mass,

@@ -277,14 +277,17 @@ void add_info(CLI::App& app, int& status) {
   auto arguments = std::make_shared<InfoArguments>();
   command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")->required();
   command->add_flag("--spec", arguments->only_spec, "print the resolved spec that made it, and nothing else");
-  command->add_flag("--failed", arguments->failed,
-                    "list the failed designs, each as the command that reproduces it");
+  command
+      ->add_flag("--failed", arguments->failed,
+                 "list the failed designs, each as the command that reproduces it")
+      ->excludes("--spec");
   command
       ->add_option("--at", arguments->at,
                    "AXIS=VALUE,...: tell a design's outcome and gradient, and the nearest cliffs around it")
       ->excludes("--spec")
       ->excludes("--failed");
   command->add_option("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
+      ->needs("--failed")
       ->check(CLI::Range(0.0, 1e15));
   add_no_lock(*command, arguments->locking);
   command->footer(

@@ -41,7 +41,7 @@ int run(int argc, char** argv) {
       "  leapmap sweep sweeps/slope_mass_ratio.toml        a map of 61,696 designs\n"
       "  leapmap info maps/slope_mass_ratio.h5             what is in it\n"
       "  leapmap boundaries sweeps/slope_mass_ratio.toml   where its outcomes jump, to rounding\n"
-      "  leapmap design sweeps/question.toml               the hoop that does what you need, best\n"
+      "  leapmap design sweeps/questions/highest.toml      the hoop that does what you need, best\n"
       "  leapmap fit film.csv                              release and friction that explain a measured "
       "motion\n"
       "  leapmap check maps/slope_mass_ratio.h5            whether it is what was written, and right\n"

@@ -21,6 +21,19 @@ void flush_out() {
 
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
+std::string json_string(std::string_view text) {
+  std::string told = "\"";
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) {
+      told += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+      continue;
+    }
+    if (c == '"' || c == '\\') told += '\\';
+    told += c;
+  }
+  return told + '"';
+}
+
 void tell(const std::string& line) { std::fputs(("leapmap: " + printable(line) + "\n").c_str(), stderr); }
 
 void tell_of_folder(const std::string& path) {

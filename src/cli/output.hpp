@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace leapmap::cli {
@@ -23,6 +24,8 @@ void say(fmt::format_string<T...> form, T&&... values) {
 
 /// A number as JSON has it: null where it is not finite.
 std::string json_number(double value);
+/// A text as JSON has it, quoted.
+std::string json_string(std::string_view text);
 
 /// A line on stderr, control characters escaped. A terminal that is gone or a log on a full disk is no reason
 /// to stop.

@@ -43,17 +43,16 @@ void tell_resumed(const std::string& map, std::size_t done, std::size_t total) {
   flush_out();
 }
 
-/// Says what a sweep came to. Returns the exit status.
+/// Says what a sweep came to. file: the map, or the shard's. Returns the exit status.
 int tell_report(const SweepArguments& arguments, const Spec& spec, const std::string& map,
-                const Report& report) {
+                const std::string& file, const Report& report) {
   if (!report.whole) {
     tell(fmt::format("interrupted after {} of {} designs, which {} keeps; go on by: {}", grouped(report.done),
-                     grouped(report.designs), part_of(map),
-                     sweep_command(arguments, arguments.shard ? arguments.map : map, "--resume")));
+                     grouped(report.designs), part_of(file), sweep_command(arguments, map, "--resume")));
     return 128 + noted_signal();
   }
-  if (!report.durable) tell_of_folder(map);
-  if (report.was_whole && !arguments.quiet) say("map      {} is whole already\n", map);
+  if (!report.durable) tell_of_folder(file);
+  if (report.was_whole && !arguments.quiet) say("map      {} is whole already\n", file);
   if (arguments.shard && report.designs == 0 && !arguments.quiet) {
     say("solved   nothing: there are fewer tiles than shards, and shard {} has none\n",
         text_of(*arguments.shard));
@@ -71,7 +70,7 @@ int tell_report(const SweepArguments& arguments, const Spec& spec, const std::st
   else if (failed)
     say("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", shell_quoted(map),
         sweep_command(arguments, map, "--retry-failed"));
-  say("map      {}\n", map);
+  say("map      {}\n", file);
   return status;
 }
 
@@ -103,7 +102,7 @@ int run(const SweepArguments& arguments) {
   try {
     const Report report = sweep(spec, map, options);
     progress.reset();
-    return tell_report(arguments, spec, file, report);
+    return tell_report(arguments, spec, map, file, report);
   } catch (const KeptError& error) {
     throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by: {}",
                               error.what(), grouped(error.kept), grouped(error.designs),
@@ -120,7 +119,7 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
   if (arguments.shard) command += " --shard " + text_of(*arguments.shard);
   for (const std::string& set : arguments.overrides) command += " --set " + shell_quoted(set);
   if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
-  if (arguments.commit_interval != SweepArguments{}.commit_interval)
+  if (how == "--resume" && arguments.commit_interval != SweepArguments{}.commit_interval)
     command += fmt::format(" --commit-interval {}", arguments.commit_interval);
   if (arguments.locking != Locking::required) command += " --no-lock";
   if (!uses_best_instruction_set()) {
@@ -199,8 +198,8 @@ void add_sweep(CLI::App& app, int& status) {
       ->check(CLI::Range(1, most_threads));
   auto* resume = command->add_flag("--resume", arguments->resume,
                                    "go on with the MAP.part that an interrupted sweep left, if there is one");
-  command->add_flag("--overwrite", arguments->overwrite,
-                    "replace an existing map; without --resume its .part as well");
+  auto* overwrite = command->add_flag("--overwrite", arguments->overwrite,
+                                      "replace an existing map; without --resume its .part as well");
   command
       ->add_flag(
           "--retry-failed", arguments->retry_failed,
@@ -208,11 +207,13 @@ void add_sweep(CLI::App& app, int& status) {
           "gsl-rk8pd if it was made by exact, at tolerance 1e-12; or as --set says, if that is another way "
           "than "
           "the map's (method, tolerance, max_steps, ...)")
-      ->excludes(resume);
+      ->excludes(resume)
+      ->excludes(overwrite);
   command
       ->add_option("--commit-interval", arguments->commit_interval,
                    "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
                    "hand; default: 1")
+      ->excludes(command->get_option("--retry-failed"))
       ->check(CLI::Range(0.0, 86400.0));
   command
       ->add_option_function<std::string>(

@@ -71,8 +71,7 @@ std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling&
 }
 
 /// Of parts for jobs of their own: how long the longest takes and how large its file is, and how many of them
-/// a time limit asks for. seconds: of the whole map.
-/// seconds: of the whole map on one thread.
+/// a time limit asks for. seconds: of the whole map on one thread.
 void print_shards(const SweepArguments& arguments, const Spec& spec, const std::string& map,
                   const MapLayout& layout, const Tiling& tiling, double seconds) {
   constexpr double spare = 0.8;  // of the time limit: machines differ, and jobs start and end

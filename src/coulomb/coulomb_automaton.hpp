@@ -86,7 +86,8 @@ class PhaseMachine {
     using std::abs;
     driven_ += hoop_.drive * (to.angle - at_.angle);
     if (slides_) slipped_ += abs((to.travel - at_.travel) - (to.angle - at_.angle));
-    at_ = to;
+    const S turned_in_flight = at_.turned_in_flight;
+    at_ = to, at_.turned_in_flight = turned_in_flight;
     switch (end) {
       case PhaseEnd::slips_forwards:
       case PhaseEnd::slips_backwards:

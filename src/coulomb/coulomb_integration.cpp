@@ -56,15 +56,12 @@ int jacobian(double, const double y[], double* dfdy, double dfdt[], void* params
 Sample<double> hold(const Hoop<double>& hoop, double mu, double sign, const Y& y) {
   const Trig<double> phi = trig(y[0]);
   const double w = y[1], a = angular_acceleration(hoop, phi, w);
-  const auto gradient = acceleration_gradient(hoop, phi, w, a);
-  const double jerk = gradient.by_angle * w + gradient.by_spin * a;
-  const double F_rate =
-      (1.0 - hoop.rho * phi.cos) * jerk + hoop.rho * (3.0 * phi.sin * w * a + phi.cos * w * w * w);
   const double N = normal_force(hoop, phi, w, a), F = friction_force(hoop, phi, w, a);
   // raised by some roundings, as stick_guards are
   const double slack = 32.0 * std::numeric_limits<double>::epsilon() *
                        (mu * std::abs(N) + std::abs(F) + std::abs(hoop.sin_slope));
-  return {mu * N - sign * F + slack, mu * normal_force_rate(hoop, phi, w, a) - sign * F_rate};
+  return {mu * N - sign * F + slack,
+          mu * normal_force_rate(hoop, phi, w, a) - sign * friction_force_rate(hoop, phi, w, a)};
 }
 
 /// n0 of a sliding hoop and its rate.
@@ -76,12 +73,8 @@ Sample<double> lift(const CoulombIntegration::System& system, const Y& y, const 
 
 /// Ic + rho s q and its rate.
 Sample<double> pivot(const CoulombIntegration::System& system, const Y& y) {
-  const Hoop<double>& hoop = system.hoop;
-  const Trig<double> phi = trig(y[0]);
-  const double q = hoop.rho * phi.sin - system.friction * (1.0 - hoop.rho * phi.cos);
-  const double q_rate = hoop.rho * (phi.cos - system.friction * phi.sin);
-  return {sliding_coefficients(hoop, phi, system.friction).pivot,
-          hoop.rho * y[1] * (phi.cos * q + phi.sin * q_rate)};
+  const Sample<double> by_angle = pivot_by_angle(system.hoop, trig(y[0]), system.friction);
+  return {by_angle.value, y[1] * by_angle.rate};
 }
 
 CoulombIntegration::Guard guard_of_runway(double runway) {

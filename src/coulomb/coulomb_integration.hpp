@@ -45,7 +45,7 @@ class CoulombIntegration {
   /// What the right-hand sides work on.
   struct System {
     Hoop<double> hoop;
-    double friction;  ///< mu_kinetic sign(v), while sliding
+    double friction;  ///< mu_kinetic sign(v) while sliding, infinity while rolling
     long evaluations = 0;
   };
 

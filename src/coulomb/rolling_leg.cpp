@@ -6,10 +6,11 @@
 #include <limits>
 #include <numbers>
 
+#include "coulomb/roll_timing.hpp"
+
 namespace leapmap {
 template <class S>
-RollingLeg<S>::RollingLeg(double tolerance)
-    : tolerance_(std::max(S(tolerance) * S(0.1), S(1000) * std::numeric_limits<S>::epsilon())) {}
+RollingLeg<S>::RollingLeg(double tolerance) : tolerance_(panel_tolerance<S>(tolerance)) {}
 
 template <class S>
 PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at, const S& runway,
@@ -85,16 +86,7 @@ S RollingLeg<S>::duration_near_rest(const Roll<S>& roll, const S& length) const 
 
 template <class S>
 S RollingLeg<S>::duration(const Roll<S>& roll, const S& length) const {
-  // x = shift + q^2 takes out E's zero before the start, where the spin is small and grows. Newton's method
-  // from the start comes to it from above where E is convex; where it does not, any shift will do.
-  S shift = roll.push > S(0) ? -roll.released / (S(2) * roll.push) : -length;
-  for (int k = 0; k < 4 && shift > -length && shift < S(0); ++k) {
-    const S push = torque(roll.hoop, trig(S(roll.release + shift)));
-    if (!(push > S(0))) break;
-    shift -= vis_viva_past_release(roll, shift) / (S(2) * push);
-  }
-  shift = std::clamp(shift, -length, S(0));
-  const S begin = std::sqrt(-shift);
+  const S shift = zero_before_release(roll, length), begin = std::sqrt(-shift);
   S sum(0), from = begin;
   const S end = std::sqrt(length - shift);
   int panels = 0;
@@ -128,12 +120,10 @@ S RollingLeg<S>::duration(const Roll<S>& roll, const S& shift, const S& from, co
   const S whole = (to - from) * panel_.integral(f), tail = (to - from) * panel_.tail(f);
   // The tail itself, and not its square, which the error goes as where f is smooth: a narrow needle of little
   // weight between the nodes shows in the tail alone.
-  // Beside a stall E is a difference of near equals: what its roundings make of the time no panel resolves.
   const auto least = lanes_of(least_E);
-  const S rounding = S(16) * std::numeric_limits<S>::epsilon() *
-                     (S(4) + roll.released + S(2) * to * to * std::abs(roll.hoop.thrust)) /
-                     *std::min_element(least.begin(), least.end());
-  if (tail <= std::max(std::max(tolerance_, std::min(rounding, S(1e-4))) * whole, enough)) return whole;
+  const S rounding = time_rounding(roll.released, S(std::abs(roll.hoop.thrust)), to,
+                                   *std::min_element(least.begin(), least.end()));
+  if (tail <= std::max(std::max(tolerance_, rounding) * whole, enough)) return whole;
   if (halvings == most_halvings || ++panels > most_panels || !(whole > S(0)))
     return std::numeric_limits<S>::quiet_NaN();
   // Parts need be no better than a tenth of that of the whole, so that roundings are not halved for ever.

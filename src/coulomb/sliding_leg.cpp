@@ -150,7 +150,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       if (!std::isnan(left)) longest = std::min(longest, S(share_of_edge) * left);
     }
     typename Panels::Stretch stretch{};
-    bool by_angle = at.spin != S(0) || start.angular > S(0);
+    bool by_angle = at.spin != S(0) || start.angular != S(0);
     if (by_angle) {
       length = std::min(length, longest);
       const S shortest = S(shortest_angle) * (slide.edge ? slide.left : S(1) + std::abs(at.angle));

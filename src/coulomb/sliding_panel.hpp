@@ -47,9 +47,10 @@ class SlidingPanels {
     Value least_pivot;
     Value spin_excess;  ///< the nodes resolve y if at most 1, also where the spin vanishes
     ContactState<S> end;
-    S turned;      ///< from start to end
-    Value excess;  ///< the nodes resolve it if at most 1; infinity: it could not be solved
-    Mask indeterminate, spin_vanishes;
+    S turned;            ///< from start to end
+    Value excess;        ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    Mask indeterminate;  ///< the pivot is not above zero somewhere: the equations have no answer there
+    Mask spin_vanishes;  ///< w^2 is not above zero somewhere
   };
   /// A panel by angle: |phi - from| = shift + curve q^2, q from begin to begin + span.
   struct Stretch {
@@ -102,6 +103,9 @@ class SlidingPanels {
     const S root = sqrt(length);
     return {length, -root, root, S(-1)};
   }
+  /// Solves a panel by angle. Where it is indeterminate, only `excess` holds besides; where the spin
+  /// vanishes, excess, spin_excess, start_y and the driven ones do: the rest is the panel's that was there
+  /// before.
   void solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                       Panel& panel) const;
   /// A state inside a panel, and whether it has kept its digits.
@@ -113,6 +117,8 @@ class SlidingPanels {
   /// start, and where the spin is small against those at its ends.
   Inside state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const Panel& panel,
                   const S& place) const;
+  /// Solves a panel of that duration. It has no growth and nothing driven; where it is indeterminate only
+  /// `excess` holds.
   void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
 
   const Grid& grid() const { return grid_; }

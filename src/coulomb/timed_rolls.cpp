@@ -5,34 +5,18 @@
 #include <cmath>
 #include <limits>
 
+#include "coulomb/roll_timing.hpp"
+
 namespace leapmap {
 namespace {
 
 constexpr double longest_panel = 2.8, shortest_panel = 0.1;  // [rad]
 
-/// A place x in [-length, 0] near E's zero before the release, where the spin is small and grows. Newton's
-/// method from the release comes to it from above where E is convex; where it does not, any place will do.
-template <class T>
-T zero_before_release(const Roll<T>& roll, const T& length) {
-  const T zero(ScalarOf<T>(0)), two(ScalarOf<T>(2));
-  T x = select(roll.push > zero, T(-roll.released / (two * roll.push)), T(-length));
-  MaskOf<T> nearing = (x > -length) & (x < zero);
-  for (int k = 0; k < 4 && any(nearing); ++k) {
-    const T push = torque(roll.hoop, trig(T(roll.release + x)));
-    nearing = nearing & (push > zero);
-    x = select(nearing, T(x - vis_viva_past_release(roll, x) / (two * push)), x);
-    nearing = nearing & (x > -length) & (x < zero);
-  }
-  return larger(T(-length), smaller(x, zero));
-}
-
 }  // namespace
 
 template <class T>
 TimedRolls<T>::TimedRolls(double tolerance, std::size_t most)
-    : tolerance_(std::max(S(tolerance) * S(0.1), S(1000) * std::numeric_limits<S>::epsilon())),
-      motions_(most),
-      clocks_(most) {}
+    : tolerance_(panel_tolerance<S>(tolerance)), motions_(most), clocks_(most) {}
 
 template <class T>
 void TimedRolls<T>::begin(const Roll<T>& rolls, const T& x, const Places& places, unsigned which) {
@@ -42,7 +26,6 @@ void TimedRolls<T>::begin(const Roll<T>& rolls, const T& x, const Places& places
   const MaskOf<T> has_needle = !(rolls.hoop.J_min > T(S(0.04)) * rolls.hoop.rho);
   const T longest = select(has_needle, T(S(0.5 * longest_panel)), T(S(longest_panel)));
   const T resolving = select(has_needle, T(tolerance_), T(S(0.03) * std::sqrt(tolerance_)));
-  // x = shift + q^2 takes E's zero out.
   const T shift = zero_before_release(rolls, x);
   const auto [released, push2, by_sine, by_versine, J_min, by_turned, J_cos, J_sin] = past_release(rolls);
   motions_.template store<T>({released, push2, by_sine, by_versine, J_min, by_turned, J_cos, J_sin},
@@ -81,9 +64,8 @@ void TimedRolls<T>::pass(std::vector<Timed>& timed) {
     least_E = smaller(least_E, E);
   }
   const T whole = span * panel_.integral(f), tail = span * panel_.tail(f);
-  const T rounding =
-      T(S(16) * std::numeric_limits<S>::epsilon()) * (T(S(4)) + released + two * to * to * thrust) / least_E;
-  const MaskOf<T> resolved = tail <= larger(resolving, smaller(rounding, T(S(1e-4)))) * whole;
+  const T rounding = time_rounding(released, thrust, to, least_E);
+  const MaskOf<T> resolved = tail <= larger(resolving, rounding) * whole;
   const T sum = select(resolved, so_far + whole, so_far), at = select(resolved, to, from),
           next = select(resolved, length, T(S(0.5)) * length);
   clocks_.template store<T>({shift, end, at, sum, next, resolving, thrust}, index.data(), count);

@@ -80,7 +80,8 @@ Explained::Explained(const Measurements& measured, const Spec& spec, Friction fr
   free_ = std::move(asked);
   if (spec.axes.empty()) {
     free_by_default();
-    if (spec_.design.mu_kinetic == spec_.design.mu_static)
+    const bool frees_friction = std::ranges::find(free_, "mu_static", &FreeParameter::name) != free_.end();
+    if (frees_friction && spec_.design.mu_kinetic == spec_.design.mu_static)
       spec_.design.mu_kinetic = usual.mu_kinetic;  // follows it
   }
   if (free_.empty())
@@ -134,6 +135,11 @@ void Explained::free_by_default() {
              free_parameter("release_spin", spin * second - 0.5, spin * second + 0.5)};
   }
   if (model_of(spec_.scene).slips) free_.push_back(free_parameter("mu_static", 0.05, 1.5));
+  // What was given stays as it is.
+  std::erase_if(free_, [&](const FreeParameter& one) {
+    constexpr Design usual;
+    return spec_.design.*one.member != usual.*one.member;
+  });
 }
 
 Design Explained::design_at(std::span<const double> at) const {

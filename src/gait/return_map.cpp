@@ -136,8 +136,7 @@ bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const De
     if (outcome.status != Status::jumped) return false;
     orbit.jumps.push_back(jump_of(outcome, at.spin));
     orbit.landings.push_back(reduced(at));
-    const double turned_in_flights = outcome.jump_spin * outcome.flight_time / second;
-    work += hoop.drive * ((at.angle - from.angle) - turned_in_flights);
+    work += hoop.drive * ((at.angle - from.angle) - at.turned_in_flight);
     orbit.height += outcome.jump_height / period;
     time += at.time * second, travel += at.travel;
     const bool is_back = between(start, orbit.landings.back()).lpNorm<Eigen::Infinity>() < 1e-8;

@@ -14,7 +14,7 @@
 
 namespace leapmap {
 
-/// Part `number`, from 1, of so many parts of a map.
+/// Part `number`, from 1, of so many parts of a map, at most 10 000.
 struct Shard {
   std::size_t number = 1, of = 1;
 };
@@ -24,8 +24,9 @@ struct SweepOptions {
   bool resume = false;           ///< go on with the MAP.part that an earlier sweep left, if there is one
   bool overwrite = false;        ///< replace an existing map; without resume its .part as well
   int threads = 0;               ///< 0: as many as OpenMP offers
-  double commit_interval = 1.0;  ///< [s]; kill -9 or a power cut loses no more than that and tiles in hand
-  bool lock = true;              ///< false: do without locks where the file system has none
+  double commit_interval =
+      1.0;           ///< [s] >= 0; kill -9 or a power cut loses no more than that and tiles in hand
+  bool lock = true;  ///< false: do without locks where the file system has none
   /// Told how many designs of how many are in the map: once before the first is solved, from the caller's
   /// thread; then after each tile, from the thread that writes.
   std::function<void(std::size_t done, std::size_t total)> progress{};
@@ -45,8 +46,8 @@ struct Report {
   std::optional<AuditReport> audit{};  ///< of the whole map; unset: numerics.audit is 0
 };
 
-/// Solves spec into the map `path`. Throws InputError if the spec is not allowed, or the file is there and
-/// may not be replaced; KeptError if the file cannot be written any more; IoError.
+/// Solves spec into the map `path`. Throws InputError if spec or options are not allowed, or the file is
+/// there and may not be replaced; KeptError if the file cannot be written any more; IoError.
 Report sweep(const Spec& spec, const std::string& path, const SweepOptions& options = {});
 
 /// A map could not be written any more.
@@ -72,8 +73,10 @@ struct RetryOptions {
 
 /// Solves the designs with status failed in a finished map again: as options.how says if that is another way
 /// than the map's, else by the method that audits it; and stores what comes out in a copy that takes the
-/// map's place once it is whole. Returns nullopt if stopped; the map is unchanged then. Throws InputError if
-/// the map is not whole, holds no status or is in use; BrokenFile if it is not what was written; IoError.
+/// map's place once it is whole. Derivatives and numbers of hoops as made are not solved for again: of these
+/// designs they stay as they are, not a number. Returns nullopt if stopped; the map is unchanged then. Throws
+/// InputError if the map is not whole, holds no status or is in use; BrokenFile if it is not what was
+/// written; IoError.
 std::optional<RetryReport> retry_failed(const std::string& path, const RetryOptions& options = {});
 
 }  // namespace leapmap

@@ -71,6 +71,10 @@ void JournaledFile::open(Locking locking) {
   if (!S_ISREG(status_of(descriptor_, path_).st_mode))
     throw InputError(path_ + ": is a device, a pipe or a folder; allowed: a file");
   lock(locking);
+  if (access_ != Access::read && status_of(descriptor_, path_).st_nlink > 1)
+    throw InputError(path_ +
+                     ": is a file with more names than this, which would be changed, too; allowed: a "
+                     "file of one name; if the other is what you want, remove this one");
   if (access_ == Access::create) return cut(descriptor_, path_, 0);
   committed_ = stored_ = static_cast<std::uint64_t>(status_of(descriptor_, path_).st_size);
   seal_ = read_seal(descriptor_, path_, stored_);
@@ -205,7 +209,7 @@ bool JournaledFile::rename(const std::string& path, bool replace) {
   if (!replace) failed = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);
   if (!replace && failed != 0 && (errno == EINVAL || errno == ENOSYS)) {  // unknown to the file system
     failed = ::link(path_.c_str(), path.c_str());                         // which spares what is there, too
-    if (failed == 0) ::unlink(path_.c_str());
+    if (failed == 0 && ::unlink(path_.c_str()) != 0) fail_with_errno(path_, "cannot be removed");
   }
   if (replace) failed = std::rename(path_.c_str(), path.c_str());
   if (failed != 0) fail_with_errno(path, "cannot be given its name");

@@ -38,8 +38,6 @@ herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* context) n
   }
 }
 
-constexpr std::size_t most_axis_values = 1'000'000;  // what a spec takes
-
 MapReader::Dimension read_dimension(hid_t dataset, const std::string& name) {
   const std::vector<hsize_t> shape = hdf5::shape_of(dataset);
   if (shape.size() != 1 || shape[0] == 0)
@@ -47,7 +45,7 @@ MapReader::Dimension read_dimension(hid_t dataset, const std::string& name) {
   hdf5::bytes_in_memory(dataset, name);
   MapReader::Dimension dimension{name, hdf5::read_text(dataset, "units"), shape[0], {}};
   if (name == "design") return dimension;
-  if (shape[0] > most_axis_values)
+  if (shape[0] > static_cast<hsize_t>(most_axis_values))
     throw IoError(fmt::format("{}: has {} values; allowed: at most {}", name, shape[0], most_axis_values));
   dimension.values.resize(shape[0]);
   check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, dimension.values.data()),
@@ -75,9 +73,11 @@ void MapReader::survey(Accept accept) {
   if (filetype != map_filetype && filetype != shard_filetype)
     throw IoError(
         fmt::format("{}: is not a leapmap map (its attribute filetype is not \"{}\")", path_, map_filetype));
-  if (const std::int64_t major = hdf5::read_integers(file_, "version")[0]; major > format_major)
+  const std::vector<std::int64_t> version = hdf5::read_integers(file_, "version");
+  if (version.size() != 2) throw IoError(path_ + ": its version is not two numbers");
+  if (version[0] > format_major)
     throw IoError(fmt::format("{}: has format version {}; this program reads up to {}: use a newer leapmap",
-                              path_, major, format_major));
+                              path_, version[0], format_major));
 
   Names names;
   const herr_t listed = H5Literate(file_, H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect_name, &names);
@@ -106,7 +106,7 @@ void MapReader::survey(Accept accept) {
     throw IoError(path_ + ": is a list and has other dimensions than design");
   double designs = 1.0;
   for (const Dimension& dimension : dimensions_) designs *= static_cast<double>(dimension.size);
-  if (designs > 1e12) throw IoError(path_ + ": says that it holds more than 10^12 designs");
+  if (designs > most_designs) throw IoError(path_ + ": says that it holds more than 10^12 designs");
   std::vector<hsize_t> expected;
   for (const Dimension& dimension : dimensions_) expected.push_back(dimension.size);
   if (has_labels_ && hdf5::shape_of(open(label_name)) != expected)

@@ -48,6 +48,9 @@ class MapReader {
   /// The names of a list's designs; empty: it has none. Throws IoError.
   std::vector<std::string> labels() const;
 
+  /// As it was opened.
+  const std::string& path() const { return path_; }
+
   /// The shards in which the values of a virtual map lie, beside it; none: they are its own.
   const std::vector<std::string>& shards() const { return shards_; }
 

@@ -2,6 +2,7 @@
 /// What files of ours call themselves, and their version.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 namespace leapmap {
@@ -19,6 +20,10 @@ inline constexpr const char* shards_attribute = "shards";
 /// sources.
 inline constexpr const char* shard_checksums_attribute = "shard_checksums";
 inline constexpr const char* tiles_checksum_attribute = "tiles_checksum";
+/// An axis is held in memory, and told in the resolved spec.
+inline constexpr std::int64_t most_axis_values = 1'000'000;
+/// A map of more is terabytes: surely a typing error.
+inline constexpr double most_designs = 1e12;
 inline constexpr int format_major = 1;  ///< readers refuse a newer one
 /// 1: f4; 2: compression, status_counts, the NeXus group; 3: Coulomb friction's fields; 4: a checksum of each
 /// chunk and of the file, the audit's state; 5: the referee; 6: labels of a list; 7: derivatives; 8: hoops as

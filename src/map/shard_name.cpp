@@ -11,6 +11,15 @@
 namespace leapmap {
 namespace {
 
+bool is_part(const Shard& shard) {
+  return shard.number >= 1 && shard.number <= shard.of && shard.of <= most_shards;
+}
+
+[[noreturn]] void refuse_shard(std::string_view text) {
+  throw InputError(fmt::format(
+      "--shard {}: is no part of a whole; allowed: I/N with I from 1 to N, N at most {}", text, most_shards));
+}
+
 /// Two whole numbers I and N, 1 <= I <= N, with something between them.
 std::optional<Shard> shard_in(std::string_view text, std::string_view between) {
   Shard shard{0, 0};
@@ -20,8 +29,7 @@ std::optional<Shard> shard_in(std::string_view text, std::string_view between) {
     return error == std::errc() && end == digits.data() + digits.size();
   };
   if (middle == text.npos || !number(text.substr(0, middle), shard.number) ||
-      !number(text.substr(middle + between.size()), shard.of) || shard.number < 1 ||
-      shard.number > shard.of || shard.of > most_shards)
+      !number(text.substr(middle + between.size()), shard.of) || !is_part(shard))
     return std::nullopt;
   return shard;
 }
@@ -30,8 +38,11 @@ std::optional<Shard> shard_in(std::string_view text, std::string_view between) {
 
 Shard parse_shard(std::string_view text) {
   if (const auto shard = shard_in(text, "/")) return *shard;
-  throw InputError(fmt::format(
-      "--shard {}: is no part of a whole; allowed: I/N with I from 1 to N, N at most {}", text, most_shards));
+  refuse_shard(text);
+}
+
+void check_shard(const Shard& shard) {
+  if (!is_part(shard)) refuse_shard(text_of(shard));
 }
 
 std::string text_of(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.of); }

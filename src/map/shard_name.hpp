@@ -15,6 +15,9 @@ inline constexpr std::size_t most_shards = 10'000;
 
 /// From "3/16". Throws InputError.
 Shard parse_shard(std::string_view text);
+
+/// Throws InputError unless it is one: 1 <= number <= of <= most_shards.
+void check_shard(const Shard& shard);
 std::string text_of(const Shard& shard);
 
 /// The file of a shard, beside the map that it is part of: MAP.3-of-16.h5 of MAP.h5.

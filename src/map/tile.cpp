@@ -100,4 +100,9 @@ void unravel(std::size_t index, const std::vector<std::size_t>& extent, std::vec
   }
 }
 
+std::size_t place_along(const std::vector<std::size_t>& extent, std::size_t index, std::size_t dimension) {
+  for (std::size_t i = extent.size(); i-- > dimension + 1;) index /= extent[i];
+  return index % extent[dimension];
+}
+
 }  // namespace leapmap

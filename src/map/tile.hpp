@@ -52,5 +52,7 @@ class Tiling {
 
 /// The position of design `index` of a block (in C order) along each of its dimensions.
 void unravel(std::size_t index, const std::vector<std::size_t>& extent, std::vector<std::size_t>& position);
+/// That along one of them.
+std::size_t place_along(const std::vector<std::size_t>& extent, std::size_t index, std::size_t dimension);
 
 }  // namespace leapmap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Gauss-Legendre rules of any length, on any scalar, and how long they must be.
+/// Gauss-Legendre rules of any length, on any scalar.
 #pragma once
 
 #include <cmath>

@@ -123,9 +123,7 @@ struct SpectralPanel {
       return Lanes<T>::load(numbers.data() + i);
     }
   }
-  /// f at x in [0, 1], by the barycentric formula.
-  S value(const Values& f, const S& x) const { return values<1>({&f}, x)[0]; }
-  /// The same of several functions, for little more than one of them costs.
+  /// Several functions at x in [0, 1], by the barycentric formula, for little more than one of them costs.
   template <std::size_t count>
   std::array<S, count> values(const std::array<const Values*, count>& functions, const S& x) const {
     std::array<T, count> above;

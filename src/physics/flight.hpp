@@ -16,7 +16,7 @@
 
 namespace leapmap {
 
-/// Where a flight begins: both contact constraints are dropped with the contact point at rest.
+/// Where a flight begins, both contact constraints dropped; how the contact point moves is told beside it.
 template <class T>
 struct LiftOff {
   T time;   ///< since release [sqrt(R/g)]

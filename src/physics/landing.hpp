@@ -33,7 +33,7 @@ struct LandingImpulse {
   S friction, normal;
 };
 
-/// The contact velocities answer impulses by W: slip += Wtt Pt + Wtn Pn, normal += Wtn Pt + Wnn Pn.
+/// What a landing leaves, and the impulses that made it.
 template <class S>
 struct Landing {
   ContactVelocity<S> after;
@@ -41,11 +41,12 @@ struct Landing {
   bool sticks;  ///< slip is zero, held by friction
 };
 
-/// Routh's path: while the normal impulse grows, friction opposes slip with mu times it, until slip is used
-/// up; then it holds the contact if |Wtn / Wtt| <= mu, else slip goes on towards sign(Wtn). Compression ends
-/// where the normal velocity is zero; restitution adds its share of the normal impulse until there. It always
-/// ends: where sliding alone would not end compression, it ends itself. Of a rebound slower than rest_speed
-/// the normal velocity counts as none.
+/// The contact velocities answer impulses by W: slip += Wtt Pt + Wtn Pn, normal += Wtn Pt + Wnn Pn. The
+/// impulses go Routh's path: while the normal impulse grows, friction opposes slip with mu times it, until
+/// slip is used up; then it holds the contact if |Wtn / Wtt| <= mu, else slip goes on towards sign(Wtn).
+/// Compression ends where the normal velocity is zero; restitution adds its share of the normal impulse until
+/// there. It always ends: where sliding alone would not end compression, it ends itself. Of a rebound slower
+/// than rest_speed the normal velocity counts as none.
 template <class S>
 Landing<S> land(const Hoop<S>& hoop, const Trig<S>& phi, const ContactVelocity<S>& before, const S& mu,
                 const S& restitution, const S& rest_speed) {

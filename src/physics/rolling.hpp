@@ -81,7 +81,8 @@ T normal_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& 
 /// (12) lambda_f, the friction force over the weight, positive downhill.
 template <class T>
 T friction_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
-  return (T(1) - hoop.rho * phi.cos) * acceleration + hoop.rho * phi.sin * spin * spin - hoop.sin_slope;
+  const T arm = hoop.clearance + hoop.rho * phi.versine;  // 1 - rho cos phi
+  return arm * acceleration + hoop.rho * phi.sin * spin * spin - hoop.sin_slope;
 }
 
 /// Partial derivatives of angular_acceleration by angle and by spin.
@@ -99,12 +100,26 @@ AccelerationGradient<T> acceleration_gradient(const Hoop<T>& hoop, const Trig<T>
       T(-2) * hoop.rho * phi.sin * spin / J};
 }
 
-/// d/dt of normal_force along the motion, by the chain rule with phi''' = gradient . (w, phi'').
+/// phi''' along the motion, by the chain rule.
+template <class T>
+T angular_jerk(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
+  const AccelerationGradient<T> gradient = acceleration_gradient(hoop, phi, spin, acceleration);
+  return gradient.by_angle * spin + gradient.by_spin * acceleration;
+}
+
+/// d/dt of normal_force along the motion.
 template <class T>
 T normal_force_rate(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
-  const AccelerationGradient<T> gradient = acceleration_gradient(hoop, phi, spin, acceleration);
-  const T jerk = gradient.by_angle * spin + gradient.by_spin * acceleration;
+  const T jerk = angular_jerk(hoop, phi, spin, acceleration);
   return hoop.rho * (phi.sin * (jerk - spin * spin * spin) + T(3) * phi.cos * spin * acceleration);
+}
+
+/// The same of friction_force.
+template <class T>
+T friction_force_rate(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
+  const T arm = hoop.clearance + hoop.rho * phi.versine;
+  return arm * angular_jerk(hoop, phi, spin, acceleration) +
+         hoop.rho * spin * (T(3) * phi.sin * acceleration + phi.cos * spin * spin);
 }
 
 /// Kinetic energy over (m + m_p) g R, (3) under (1) and (2).

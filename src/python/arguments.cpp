@@ -32,10 +32,6 @@ bool is_numbers(const py::handle& value, const py::array& array) {
          !py::module_::import("numpy").attr("ma").attr("isMaskedArray")(value).cast<bool>();
 }
 
-/// Of the scene.
-constexpr std::array<std::pair<std::string_view, long Scene::*>, 3> whole_numbers{
-    {{"jumps", &Scene::jumps}, {"settle", &Scene::settle}, {"most_period", &Scene::most_period}}};
-
 const Parameter& parameter_of(const std::string& name) {
   for (const Parameter& parameter : parameters())
     if (parameter.name == name) return parameter;

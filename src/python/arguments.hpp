@@ -4,9 +4,11 @@
 
 #include <pybind11/numpy.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,10 @@
 #include "leapmap/scene.hpp"
 
 namespace leapmap::python {
+
+/// Numbers of the scene that are whole.
+inline constexpr std::array<std::pair<std::string_view, long Scene::*>, 3> whole_numbers{
+    {{"jumps", &Scene::jumps}, {"settle", &Scene::settle}, {"most_period", &Scene::most_period}}};
 
 /// The designs of one call: one number or one array for each parameter, of shapes that broadcast.
 class Designs {

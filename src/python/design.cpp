@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -14,7 +16,7 @@
 #include "leapmap/fit.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
-
+#include "python/arguments.hpp"
 #include "python/calls.hpp"
 #include "python/results.hpp"
 
@@ -103,6 +105,11 @@ class Problem {
     for (const Objective& objective : question_.objectives) names.push_back(objective.name);
     return names;
   }
+  std::vector<std::string> names_of_free() const {
+    std::vector<std::string> names;
+    for (const FreeParameter& parameter : question_.free) names.push_back(parameter.name);
+    return names;
+  }
   std::size_t evaluations() const { return judge_.evaluations(); }
   /// What is not free, as leapmap.solve takes it.
   py::dict fixed() const {
@@ -118,6 +125,8 @@ class Problem {
       if (!is_free && !std::isnan(value) && has(scene.friction, parameter.only_of))
         numbers[py::str(std::string(parameter.name))] = value;
     }
+    for (const auto& [key, member] : whole_numbers)
+      if (scene.*member != Scene{}.*member) numbers[py::str(std::string(key))] = scene.*member;
     return numbers;
   }
 
@@ -127,7 +136,10 @@ class Problem {
     const auto count = static_cast<std::size_t>(places.ndim() == 2 ? places.shape(0) : 0),
                dimensions = question_.dimensions();
     if (places.ndim() != 2 || static_cast<std::size_t>(places.shape(1)) != dimensions)
-      throw InputError("a design is a row with a number for each free parameter");
+      throw InputError(
+          fmt::format("a design is a row with a number for each free parameter; allowed: {} "
+                      "numbers a row: {}",
+                      dimensions, fmt::join(names_of_free(), ", ")));
     const double* given = places.data();
     std::vector<Design> designs(count, question_.one.design);
     for (std::size_t i = 0; i < count; ++i)
@@ -135,7 +147,8 @@ class Problem {
         const FreeParameter& parameter = question_.free[k];
         const double value = given[i * dimensions + k];
         if (!(value >= parameter.side.low && value <= parameter.side.high))
-          throw InputError(parameter.name + " is outside its bounds; allowed: what get_bounds tells");
+          throw InputError(fmt::format("{} = {} is outside its bounds; allowed: from {} to {}",
+                                       parameter.name, value, parameter.side.low, parameter.side.high));
         designs[i].*parameter.member = value;
       }
     std::vector<Verdict> verdicts(count);

@@ -62,7 +62,8 @@ Outcome Integration<Model>::solve(Start start, const Design& design, ContactStat
                         {.time = outcome.jump_time,
                          .travel = outcome.jump_distance,
                          .angle = outcome.jump_angle,
-                         .spin = outcome.jump_spin},
+                         .spin = outcome.jump_spin,
+                         .turned_in_flight = from.turned_in_flight},
                         outcome.flight_time);
     from.spin = spin_after_holding(hoop, trig(from.angle), from.slip + from.spin, from.normal, from.spin);
     from.slip = from.normal = 0.0;

@@ -122,13 +122,14 @@ void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> ou
         after_flight(roll.hoop, ContactState<W>{.angle = off.angle, .spin = off.spin}, flight.flight_time);
     const W spin = spin_after_holding(roll.hoop, trig(end.angle), end.slip + end.spin, end.normal, end.spin);
     const auto lift_offs = lanes_of(off.angle), angles = lanes_of(end.angle), travels = lanes_of(end.travel),
-               spins = lanes_of(spin);
+               spins = lanes_of(spin), turned = lanes_of(end.turned_in_flight);
     for (std::size_t i = 0; i < count; ++i) {
       const auto& found = block.found[index[i]];
       auto& state = states[index[i]];
       state.travel += (found.way * lift_offs[i] + found.turned_back - state.angle) + found.way * travels[i];
       state.angle = found.way * angles[i] + found.turned_back;
       state.spin = found.way * spins[i];
+      state.turned_in_flight += found.way * turned[i];
       state.time += landings[i] + (outcomes[index[i]].candidates == 1 ? found.first_time : found.jump_time);
     }
   }

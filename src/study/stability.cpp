@@ -49,7 +49,7 @@ Expected expected_of(const StabilitySubject& subject) {
     }
     expected.condition += worst;
   }
-  // What four ulps move by more than that no method in double can be asked for.
+  // What so many ulps move by more than that no method in double can be asked for.
   if (ulps * epsilon * expected.condition > most_error) expected.decided = false;
   if (expected.truth.witness == Witness::integration) expected.condition = nan;  // not known by long double
   return expected;

@@ -8,7 +8,9 @@
 #include <memory>
 #include <mutex>
 
+#include "map/hdf5.hpp"
 #include "model/fields.hpp"
+#include "numerics/mixed.hpp"
 #include "referee/referee.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
@@ -21,14 +23,6 @@ constexpr std::size_t usual_referee_every = 10;
 constexpr double most_refereed = 200;  // designs that the referee judges of a large audit, about
 constexpr double own_error = 1e-11;    // an integration's at that tolerance, over a few revolutions
 constexpr double adaptive_slack = 100.0;
-
-/// splitmix64: a well-mixed number from a counter.
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 
 using Difference = AuditDifference;
 
@@ -86,7 +80,7 @@ std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Ti
     // One at random from each of `count` equal shares of the tile.
     const std::size_t begin = i * tile.count / count, end = std::max(begin + 1, (i + 1) * tile.count / count);
     if (begin >= first + designs) break;
-    const std::size_t one = begin + mix(before + i) % (end - begin);
+    const std::size_t one = begin + mixed(before + i) % (end - begin);
     if (one >= first && one < first + designs) drawn.push_back(one);
   }
   return drawn;
@@ -128,6 +122,11 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
           map.read(std::string(find_gradient(of, differentiable[by])->name), tile);
       for (std::size_t i = 0; i < samples.size(); ++i) samples[i].gradient.push_back(values[drawn[i]]);
     }
+  // A design that was settled later has none.
+  if (hdf5::has_attribute(map.file(), "retry_designs"))
+    for (AuditSample& sample : samples)
+      if (std::ranges::all_of(sample.gradient, [](double value) { return std::isnan(value); }))
+        sample.gradient.clear();
   for (const Field* each : fields_of(spec.scene)) {
     const Field& field = *each;
     if (samples.empty() || !map.has(std::string(field.name))) continue;
@@ -286,7 +285,7 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
   std::optional<Verdict> ruling;
   // Where an integration convicts exact, the referee is asked for its opinion.
   const bool second_opinion = verdict.convicts() && resolved_method(spec_.numerics) == "exact";
-  if (mix(number) % referee_every_ == 0 || second_opinion) ruling = verdict_of(referee_, design, ours);
+  if (mixed(number) % referee_every_ == 0 || second_opinion) ruling = verdict_of(referee_, design, ours);
   const bool acquitted = ruling && !ruling->undecided && !ruling->convicts();
   if (verdict.convicts() && acquitted) verdict.undecided = true;
   // Of flags two of three decide. Numbers may be wrong by a formula that the second method shares.

@@ -95,13 +95,13 @@ auto GaitAuditor::verdict_on(const Design& design, const Outcome& ours, AuditRep
   report.gait_max_error = std::max(report.gait_max_error, error);
   if (error > allowed_ * growth.back()) return Verdict::wrong;
 
+  if (std::isnan(ours.gait_multiplier)) return Verdict::right;  // it is not stored
   // Of fourth order, by steps of one and two and by steps of two and four.
   const double near = work_->multiplier(design, orbit, step),
                far = work_->multiplier(design, orbit, 2.0 * step),
                farthest = work_->multiplier(design, orbit, 4.0 * step), right = (4.0 * near - far) / 3.0,
                coarser = (4.0 * far - farthest) / 3.0, size = 1.0 + std::abs(right),
                doubt = std::abs(right - coarser) / size;
-  if (std::isnan(ours.gait_multiplier)) return Verdict::right;  // it is not stored
   if (!(doubt <= settled)) return Verdict::undecided;
   const double off = std::abs(ours.gait_multiplier - right) / size;
   report.multiplier_max_error = std::max(report.multiplier_max_error, off);

@@ -8,6 +8,7 @@
 
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "numerics/mixed.hpp"
 #include "sweep/solver.hpp"
 
 namespace leapmap {
@@ -54,7 +55,7 @@ void GradientAuditor::look_at(std::size_t number, const Design& design, const Ou
                               std::span<const double> gradient, AuditReport& report) const {
   const std::size_t parameters = wanted_.by.size();
   if (parameters == 0 || ours.candidates == 0) return;
-  const std::size_t j = number * 7 % parameters;
+  const std::size_t j = mixed(number) % parameters;
   const auto parameter = differentiable[wanted_.by[j]];
   if (std::isnan(design.*parameter)) return;
   if (parameter == &Design::mu_kinetic && kinetic_follows(design)) return;  // it is not free

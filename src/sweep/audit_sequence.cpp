@@ -60,7 +60,8 @@ std::size_t SequenceAuditor::sure_of(const AuditSolver& judge, const Design& des
   for (const Outcome& beside : outcomes_beside(judge, design, spec_, true)) {
     if (beside.jumps() != theirs.jumps() || beside.sequence_end != theirs.sequence_end)
       sure = std::min({sure, beside.jumps(), theirs.jumps()});
-    for (std::size_t jump = 2; jump <= std::min(sure, growth.size()); ++jump)
+    const std::size_t made = std::min({theirs.jumps(), beside.jumps(), growth.size()});
+    for (std::size_t jump = 2; jump <= std::min(sure, made); ++jump)
       if (error_of(beside, theirs, jump, false) > allowed_ * growth[jump - 1]) sure = jump - 1;
   }
   return sure;
@@ -71,16 +72,20 @@ void SequenceAuditor::look_at(std::size_t number, const Design& design, const Ou
   if (!growth_ || ours.status != Status::jumped) return;
   const std::size_t made = ours.jumps();
   std::vector<double> growth = growth_->along(design, made);
-  growth.erase(std::ranges::find_if(growth, [](double g) { return !(g <= audited_growth); }), growth.end());
+  const bool stops_short = growth.size() < made;  // exact makes no such jump: does the second method?
+  const auto beyond = std::ranges::find_if(growth, [](double g) { return !(g <= audited_growth); });
+  const bool can_tell_all = beyond == growth.end();
+  growth.erase(beyond, growth.end());
   // The jumps that can be told and, if these are all, how they end.
-  const bool whole = growth.size() == made;
-  const std::size_t told = whole ? std::min(made + 1, static_cast<std::size_t>(scene_.jumps)) : growth.size();
+  const bool whole = can_tell_all && !stops_short;
+  const std::size_t told = whole ? std::min(made + 1, static_cast<std::size_t>(scene_.jumps))
+                                 : growth.size() + (can_tell_all ? 1 : 0);
   std::size_t compared = 1;
   if (told > 1) {
     const AuditSolver judge = second(told);
     const Outcome theirs = solved(judge.solve, design);
     if (theirs.status != Status::jumped) return;  // which is told of the first jump
-    const std::size_t mine = std::min(made, told), both = std::min(mine, theirs.jumps());
+    const std::size_t mine = std::min(made, told), both = std::min({mine, theirs.jumps(), growth.size()});
     std::vector<double> errors(both + 1, 0.0);
     std::size_t first_wrong = both + 1;
     for (std::size_t jump = both; jump >= 2; --jump) {
@@ -88,7 +93,7 @@ void SequenceAuditor::look_at(std::size_t number, const Design& design, const Ou
       if (errors[jump] > allowed_) first_wrong = jump;
     }
     const bool gave_up = theirs.sequence_end == Status::failed || ours.sequence_end == Status::failed;
-    const bool same_end = theirs.jumps() == mine && (made > told || theirs.sequence_end == ours.sequence_end);
+    const bool same_end = theirs.jumps() == mine && (!whole || theirs.sequence_end == ours.sequence_end);
     const bool wrong = first_wrong <= both || !(same_end || gave_up);
     const std::size_t sure = wrong ? sure_of(judge, design, theirs, growth) : both + 1;
     compared = std::min(both, sure);

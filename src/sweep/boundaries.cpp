@@ -92,12 +92,6 @@ std::vector<Edge> edges_of(const std::vector<std::size_t>& shape, const std::vec
   return edges;
 }
 
-std::size_t place_along(const std::vector<std::size_t>& shape, std::size_t design, std::size_t axis) {
-  std::vector<std::size_t> position;
-  unravel(design, shape, position);
-  return position[axis];
-}
-
 /// Bisects the edges on all threads, some hundred side by side.
 std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, const BoundaryOptions& options,
                           std::size_t designs) {

@@ -78,8 +78,7 @@ class Plane {
       if (there == on_edge_.end()) return;
       std::vector<std::size_t> some = there->second;
       // By place on the edge, from its first design on.
-      const bool rises = rises_along(cliffs_[some[0]].axis);
-      if (forwards != rises) std::ranges::reverse(some);
+      if (forwards != rises_along(cliffs_[some[0]])) std::ranges::reverse(some);
       found.insert(found.end(), some.begin(), some.end());
     };
     add(edge(design, true), true);
@@ -89,9 +88,11 @@ class Plane {
     return found;
   }
 
-  bool rises_along(std::size_t axis) const {
-    const std::vector<double>& values = boundaries_.axes[axis].values;
-    return values.size() < 2 || values[1] > values[0];
+  /// Whether values rise on the edge that a cliff lies on.
+  bool rises_along(const Cliff& cliff) const {
+    const std::vector<double>& values = boundaries_.axes[cliff.axis].values;
+    const std::size_t k = place_along(shape_, cliff.design, cliff.axis);
+    return values[k + 1] > values[k];
   }
 
   /// Neighbours around the cell between the same outcomes are joined, so that no two joints cross; what is

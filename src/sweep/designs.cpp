@@ -90,6 +90,10 @@ std::string hop_command(const Spec& spec, const Design& design) {
     if (const auto* member = std::get_if<double Scene::*>(&parameter.member);
         member && has(spec.scene.friction, parameter.only_of))
       command += fmt::format(" --set {}={}", parameter.name, spec.scene.**member);
+  if (spec.scene.jumps > 1) command += fmt::format(" --set scene.jumps={}", spec.scene.jumps);
+  if (spec.scene.settle > 0)
+    command += fmt::format(" --set gait.settle={} --set gait.most_period={} --set gait.tolerance={}",
+                           spec.scene.settle, spec.scene.most_period, spec.scene.gait_tolerance);
   command += fmt::format(" --set method={} --set tolerance={}", resolved_method(spec.numerics),
                          spec.numerics.tolerance);
   if (spec.numerics.absolute_tolerance > 0.0)

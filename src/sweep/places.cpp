@@ -5,11 +5,12 @@
 #include <omp.h>
 #include <sched.h>
 
+#include <new>
 #include <vector>
 
 namespace leapmap {
 
-void leave_place() {
+void leave_place() noexcept try {
   if (omp_get_proc_bind() == omp_proc_bind_false || omp_get_num_places() == 0) return;
   cpu_set_t everywhere;
   CPU_ZERO(&everywhere);
@@ -19,8 +20,9 @@ void leave_place() {
     for (const int processor : processors)
       if (processor < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(processor), &everywhere);
   }
-  sched_setaffinity(0, sizeof everywhere,
-                    &everywhere);  // where that is not allowed it shares its place, no more
+  // Where that is not allowed it shares its place, no more.
+  sched_setaffinity(0, sizeof everywhere, &everywhere);
+} catch (const std::bad_alloc&) {  // it shares its place
 }
 
 std::string told_places() {

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "leapmap/errors.hpp"
+#include "map/schema.hpp"
 #include "model/model.hpp"
 #include "support/posix.hpp"
 #include "sweep/point_list.hpp"
@@ -18,9 +19,6 @@
 
 namespace leapmap {
 namespace {
-
-constexpr std::int64_t most_designs =
-    1'000'000'000'000;  // a map of 10^12 designs is terabytes: surely a typing error
 
 /// Puts one key's value where its option says.
 struct Assign {
@@ -264,9 +262,9 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
                     origin_of(spec), spec.axes.front().key));
   double designs = 1.0;
   for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
-  if (designs > static_cast<double>(most_designs))
-    throw InputError(fmt::format("{}: {:.3g} designs; allowed: at most {:.0e}", origin_of(spec), designs,
-                                 static_cast<double>(most_designs)));
+  if (designs > most_designs)
+    throw InputError(
+        fmt::format("{}: {:.3g} designs; allowed: at most {:.0e}", origin_of(spec), designs, most_designs));
   return spec;
 }
 

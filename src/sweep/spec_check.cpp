@@ -6,6 +6,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/layout.hpp"
+#include "map/schema.hpp"
 #include "model/model.hpp"
 #include "support/printable.hpp"
 #include "sweep/options.hpp"
@@ -105,6 +106,18 @@ void check_labels(const Spec& spec) {
              fmt::format("at most {} bytes of printable UTF-8", most_label_bytes));
 }
 
+void check_axes(const Spec& spec) {
+  for (const Axis& axis : spec.axes) {
+    if (axis.values.size() > static_cast<std::size_t>(most_axis_values))
+      refuse(spec, axis.key, fmt::format("has {} values", axis.values.size()),
+             fmt::format("up to {}", most_axis_values));
+    std::vector<double> sorted = axis.values;
+    std::ranges::sort(sorted);
+    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+      refuse(spec, axis.key, fmt::format("has the value {} twice", *twice), "each once");
+  }
+}
+
 void check_count(const Spec& spec) {
   if (!spec.axes.empty() && (!spec.list.columns.empty() || !spec.points.empty()))
     refuse(spec, "points", "and an axis exclude each other", "one of them");
@@ -113,7 +126,8 @@ void check_count(const Spec& spec) {
   if (spec.axes.empty() && spec.list.count == 0) refuse(spec, "list", "has no designs", "one or more");
   double designs = 1.0;
   for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
-  if (designs > 1e12) refuse(spec, "axes", fmt::format("make {:.3g} designs", designs), "at most 1e12");
+  if (designs > most_designs)
+    refuse(spec, "axes", fmt::format("make {:.3g} designs", designs), "at most 1e12");
 }
 
 }  // namespace
@@ -154,6 +168,7 @@ void check_spec(const Spec& spec) {
   check_scatter(spec);
   check_count(spec);
   check_values(spec, spec.axes);
+  check_axes(spec);
   check_values(spec, spec.list.columns);
   if (spec.axes.empty())
     for (const Axis& column : spec.list.columns)

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "leapmap/errors.hpp"
+#include "map/schema.hpp"
 #include "sweep/spacing.hpp"
 
 namespace leapmap {
@@ -65,6 +66,9 @@ constexpr std::string_view axis_forms =
 std::vector<double> to_list(const Entry& entry, const toml::table& table) {
   const toml::array* array = table["values"].as_array();
   if (!array || array->empty()) refuse(entry, "'values' is not a list of numbers", axis_forms);
+  if (array->size() > static_cast<std::size_t>(most_axis_values))
+    refuse(entry, fmt::format("'values' are {} numbers", array->size()),
+           fmt::format("up to {}", most_axis_values));
   std::vector<double> values;
   for (const toml::node& node : *array) values.push_back(to_number(entry, node, "values"));
   std::vector<double> sorted = values;

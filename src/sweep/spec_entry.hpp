@@ -14,8 +14,6 @@
 namespace leapmap {
 
 inline constexpr const char* command_line = "command line";  ///< as an Entry's place
-inline constexpr std::int64_t most_axis_values =
-    1'000'000;  ///< an axis is held in memory and told in the resolved spec
 
 /// One key: where it stands, and its value.
 struct Entry {

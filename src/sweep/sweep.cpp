@@ -168,6 +168,10 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
         fmt::format("{}: goal.{} has no use in a map of hoops as drawn; allowed: with a parameter in "
                     "[scatter]",
                     origin_of(spec), spec.goals.front().field));
+  if (asked.shard) check_shard(*asked.shard);
+  if (!(asked.commit_interval >= 0.0))
+    throw InputError(fmt::format("commit_interval = {} is out of range; allowed: a number of seconds >= 0",
+                                 asked.commit_interval));
   SweepOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
   if (path.empty())

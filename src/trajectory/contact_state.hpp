@@ -15,8 +15,9 @@ struct ContactState {
   S time = S(0);    ///< since release [sqrt(R/g)]
   S travel = S(0);  ///< x, of the hoop's centre since release [R]
   S angle = S(0), spin = S(0);
-  S slip = S(0);    ///< v = x' - w
-  S normal = S(0);  ///< v_n with which a flight begins: of a rebound above zero
+  S slip = S(0);              ///< v = x' - w
+  S normal = S(0);            ///< v_n with which a flight begins: of a rebound above zero
+  S turned_in_flight = S(0);  ///< since release [rad]: a motor idles there
 };
 
 /// A state without whole turns, time and travel, on which nothing depends that comes after it.
@@ -31,8 +32,13 @@ ContactState<S> reduced(const ContactState<S>& at) {
 
 template <class S>
 ContactState<double> in_double(const ContactState<S>& at) {
-  return {static_cast<double>(at.time), static_cast<double>(at.travel), static_cast<double>(at.angle),
-          static_cast<double>(at.spin), static_cast<double>(at.slip),   static_cast<double>(at.normal)};
+  return {static_cast<double>(at.time),
+          static_cast<double>(at.travel),
+          static_cast<double>(at.angle),
+          static_cast<double>(at.spin),
+          static_cast<double>(at.slip),
+          static_cast<double>(at.normal),
+          static_cast<double>(at.turned_in_flight)};
 }
 
 /// Mechanical energy over (m + m_p) g R, but for a constant: (3) and (4) with the constraint (1) released;
@@ -56,7 +62,8 @@ ContactState<S> after_flight(const Hoop<S>& hoop, const ContactState<S>& at, con
           at.angle + at.spin * flight_time,
           at.spin,
           travel.rate - at.spin,
-          height_above_plane(hoop, phi, at.spin, flight_time, at.normal).rate};
+          height_above_plane(hoop, phi, at.spin, flight_time, at.normal).rate,
+          at.turned_in_flight + at.spin * flight_time};
 }
 
 }  // namespace leapmap

@@ -187,6 +187,51 @@ TEST(Gaits, LoseWhatTheSlopeAndTheMotorGive) {
   EXPECT_NEAR(lost / static_cast<double>(same->jumps.size()), outcome.gait_energy_lost, 1e-10);
 }
 
+/// A hoop that rebounds: each of its jumps goes through low hops, in which the motor idles as in high ones.
+TEST(Gaits, LoseThatWithFrictionAndReboundsToo) {
+  Scene scene = gait_scene(Friction::coulomb);
+  scene.runway = 20.0, scene.settle = 400;
+  const Design hoop{.slope = 0.2747,
+                    .mass_ratio = 1.6424,
+                    .offset_ratio = 0.6251,
+                    .release_angle = 3.0,
+                    .release_spin = 1.0,
+                    .drive_torque = -0.0724,
+                    .mu_static = 0.8148,
+                    .restitution = 0.2416};
+  const Outcome outcome = solve(hoop, scene);
+  ASSERT_GE(outcome.gait_period, 1);
+  ASSERT_LE(outcome.gait_period, 16);
+  CoulombSolver<double> solver(1e-12);
+  const Scene alone = each_jump_alone(scene);
+  ContactState<double> at = released<double>(hoop);
+  for (int k = 0; k < 400; ++k) {
+    ASSERT_EQ(solver.solve(k == 0 ? Start::release : Start::landing, hoop, at, alone).status, Status::jumped);
+    at = reduced(at);
+  }
+  // Once round, phase by phase: what contact turns, and how far all of it goes.
+  double turned = 0.0, travel = 0.0;
+  int hops = 0;
+  for (int k = 0; k < outcome.gait_period; ++k) {
+    std::vector<std::pair<Phase, double>> begun;
+    CoulombObserver observer;
+    observer.phase = [&](Phase phase, const ContactState<double>& state, int) {
+      begun.emplace_back(phase, state.angle);
+      hops += phase == Phase::flight;
+    };
+    solver.solve(Start::landing, hoop, at, alone, observer);
+    begun.emplace_back(Phase::flight, at.angle);
+    for (std::size_t i = 0; i + 1 < begun.size(); ++i)
+      if (begun[i].first != Phase::flight) turned += begun[i + 1].second - begun[i].second;
+    travel += at.travel;
+    at = reduced(at);
+  }
+  EXPECT_GT(hops, 3 * outcome.gait_period) << "or it tests nothing";
+  const double lost = travel * std::sin(hoop.slope) + hoop.drive_torque * turned;
+  // The hoop has settled to some 1e-9.
+  EXPECT_NEAR(outcome.gait_energy_lost, lost / outcome.gait_period, 1e-8);
+}
+
 TEST(Gaits, ReturnToThemselvesStableOrNot) {
   Scene scene = unit;
   scene.runway = short_runway;

@@ -278,6 +278,19 @@ TEST(JournaledFile, RenamesItselfAndNobodyElse) {
   EXPECT_FALSE(fs::exists(folder / "named"));
 }
 
+TEST(JournaledFile, WritesNoFileThatHasAnotherNameToo) {
+  const testing::TemporaryFolder folder;
+  write_rounds(folder / "file", 1);
+  fs::create_hard_link(folder / "file", folder / "file.part");
+  const auto before = bytes_of(folder / "file");
+  for (const Access access : {Access::change, Access::create})
+    EXPECT_THROW(JournaledFile(folder / "file.part", access), InputError);
+  EXPECT_EQ(bytes_of(folder / "file"), before);
+  EXPECT_NO_THROW(JournaledFile(folder / "file", Access::read));
+  fs::remove(folder / "file.part");
+  EXPECT_NO_THROW(JournaledFile(folder / "file", Access::change));
+}
+
 TEST(JournaledFile, IsAFileAndNothingElse) {
   const testing::TemporaryFolder folder;
   for (const Access access : {Access::read, Access::change, Access::create})

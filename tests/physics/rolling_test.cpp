@@ -129,5 +129,47 @@ TEST(Rolling, VersineKeepsItsRelativeAccuracyNearZero) {
   EXPECT_NEAR(trig(angle).versine / 5e-19, 1.0, 1e-15);
 }
 
+TEST(Rolling, FrictionKeepsItsDigitsWhereTheMassIsOnTheRimOfNearlyNothing) {
+  Design design{.slope = 0.4, .mass_ratio = 1e12, .offset_ratio = 1.0};
+  for (const double angle : {1e-7, 1e-6, 1e-4, 0.1}) {
+    const auto force = [&]<class T>(T) {
+      const Hoop<T> hoop = derive<T>(design);
+      const Trig<T> phi = trig(T(angle));
+      const T spin = std::sqrt(T(0.8) / contact_inertia(hoop, phi)),
+              acceleration = angular_acceleration(hoop, phi, spin);
+      return std::pair{friction_force(hoop, phi, spin, acceleration),
+                       friction_force_rate(hoop, phi, spin, acceleration)};
+    };
+    const auto found = force(0.0);
+    const auto right = force(0.0L);
+    // Some roundings of its terms, which the textbook's 1 - rho cos(phi) loses by the thousand.
+    EXPECT_NEAR(found.first / static_cast<double>(right.first), 1.0, 1e-12) << angle;
+    EXPECT_NEAR(found.second / static_cast<double>(right.second), 1.0, 1e-11) << angle;
+  }
+}
+
+TEST(Rolling, TheRateOfFrictionIsThatOfItsDifferences) {
+  std::mt19937_64 random(5);
+  for (int i = 0; i < 500; ++i) {
+    const Hoop<long double> hoop =
+        derive<long double>(Design{.slope = testing::uniform(random, 0.1, 0.8),
+                                   .mass_ratio = testing::uniform(random, 0.5, 10.0),
+                                   .offset_ratio = testing::uniform(random, 0.3, 1.0)});
+    const long double angle = testing::uniform(random, 0.0, 6.0), spin = testing::uniform(random, -3.0, 3.0);
+    const long double acceleration = angular_acceleration(hoop, trig(angle), spin), h = 1e-5L;
+    // Along the motion, to second order in h.
+    const auto force = [&](long double t) {
+      const long double there = angle + t * (spin + 0.5L * t * acceleration),
+                        turning = spin + t * (acceleration +
+                                              0.5L * t * angular_jerk(hoop, trig(angle), spin, acceleration));
+      const Trig<long double> phi = trig(there);
+      return friction_force(hoop, phi, turning, angular_acceleration(hoop, phi, turning));
+    };
+    const long double rate = friction_force_rate(hoop, trig(angle), spin, acceleration),
+                      difference = (force(h) - force(-h)) / (2.0L * h);
+    EXPECT_NEAR(static_cast<double>(rate), static_cast<double>(difference), 1e-6 * (1.0 + std::abs(static_cast<double>(rate))));
+  }
+}
+
 }  // namespace
 }  // namespace leapmap

@@ -81,6 +81,21 @@ TEST(AuditOfSequences, SeesAWrongJump) {
   EXPECT_TRUE(convicted([](Outcome& outcome) { outcome.sequence_end = Status::stalled; }));
 }
 
+TEST(AuditOfSequences, SeesAJumpThatNobodyMakes) {
+  const Spec spec = lively_grid("sticking", {"jumps=5"});
+  auto samples = solved_all(spec);
+  const std::size_t all = samples.size();
+  std::erase_if(samples, [](const AuditSample& sample) {
+    const Outcome& outcome = sample.outcome;
+    return outcome.later_jumps.empty() || outcome.later_jumps.size() > 3;
+  });
+  ASSERT_GE(samples.size(), 1u) << "of " << all;
+  for (AuditSample& sample : samples) sample.outcome.later_jumps.push_back(sample.outcome.later_jumps.back());
+  const AuditReport report = audit(spec, samples, 0);
+  EXPECT_GE(report.sequences_wrong, 1u)
+      << "of " << samples.size() << ", not all of which integration is sure of";
+}
+
 TEST(AuditOfSequences, ConvictsNobodyWhereTheSecondMethodGivesUp) {
   // A heavy mass near Painleve's edge, where integration fails after the first jump and exact makes six.
   const Spec spec =

@@ -11,6 +11,7 @@
 
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
+#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -225,6 +226,29 @@ TEST(Audit, DoesNotTakeADesignThatFailedForADisagreement) {
   EXPECT_EQ(report.failed, static_cast<std::size_t>(failed));
   EXPECT_LT(report.failed, report.designs);
   EXPECT_EQ(report.flag_mismatches + report.beyond_tolerance, 0u);
+}
+
+TEST(Audit, LooksAtDerivativesByEveryParameter) {
+  const Spec spec = read_spec("", {"slope={from=0.3,to=0.6,count=10}", "mass_ratio={from=1,to=4,count=10}",
+                                   "offset_ratio=0.8", "gradients=[\"jump_height\"]", "audit=1"});
+  const DesignSpace space(spec);
+  std::vector<Design> designs;
+  for (std::size_t i = 0; i < 100; ++i) designs.push_back(space.at(i));
+  std::vector<Outcome> outcomes(designs.size());
+  Gradients gradients(gradients_of(spec));
+  make_gradient_solver(spec)(designs, outcomes, gradients);
+  const std::size_t parameters = gradients.wanted().by.size();
+  ASSERT_EQ(parameters, 7u);
+  for (std::size_t spoiled = 0; spoiled <= parameters; ++spoiled) {  // the last one: none
+    std::vector<AuditSample> samples;
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      samples.push_back({i, outcomes[i]});
+      for (std::size_t j = 0; j < parameters; ++j)
+        samples.back().gradient.push_back(gradients.column(0, j)[i] + (j == spoiled ? 0.1 : 0.0));
+    }
+    const AuditReport report = audit(spec, samples, 0);
+    EXPECT_EQ(report.gradients_wrong > 0, spoiled < parameters) << spoiled;
+  }
 }
 
 TEST(Audit, NeverAuditsAMethodByItself) {

@@ -189,6 +189,36 @@ TEST(Boundaries, OfAPlaneAreCurvesThatLeadFromEdgeToEdgeOfTheGridOrMeetOthers) {
   EXPECT_LT(unused, static_cast<std::ptrdiff_t>(found.cliffs.size() / 20));
 }
 
+TEST(Boundaries, OfAnAxisInAnyOrderAreThoseOfItsNeighbours) {
+  // A coarse plane with several cliffs on an edge; its columns once rising, and once with the last two
+  // swapped.
+  Axis rising = spaced("mass_ratio", 0.5, 20.0, 3), swapped = rising;
+  std::swap(swapped.values[1], swapped.values[2]);
+  const Axis rows = spaced("slope", 0.05, 0.85, 12);
+  const auto lengths_of = [&](const Axis& columns) {
+    const Boundaries found = find_boundaries(over({rows, columns}));
+    std::vector<double> lengths;
+    for (const CliffCurve& curve : found.curves) {
+      double length = 0.0;
+      for (std::size_t i = 0; i + 1 < curve.cliffs.size(); ++i) {
+        const auto a = place_of(found, found.cliffs[curve.cliffs[i]]),
+                   b = place_of(found, found.cliffs[curve.cliffs[i + 1]]);
+        length += std::hypot(a[0] - b[0], (a[1] - b[1]) / 20.0);
+      }
+      lengths.push_back(length);
+    }
+    std::ranges::sort(lengths);
+    return lengths;
+  };
+  // Seen from its other end, a plane has the same curves.
+  Axis reversed = swapped;
+  std::ranges::reverse(reversed.values);
+  const auto there = lengths_of(swapped), back = lengths_of(reversed);
+  ASSERT_EQ(there.size(), back.size());
+  ASSERT_GE(there.size(), 3u);
+  for (std::size_t i = 0; i < there.size(); ++i) EXPECT_NEAR(there[i], back[i], 1e-9);
+}
+
 TEST(Boundaries, DoNotDependOnThreads) {
   const Spec spec = over({spaced("slope", 0.05, 0.85, 31), spaced("mass_ratio", 0.5, 8.0, 33)});
   const Boundaries one = find_boundaries(spec, {.threads = 1}), three = find_boundaries(spec, {.threads = 3});

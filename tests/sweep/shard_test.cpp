@@ -10,6 +10,8 @@
 #include <set>
 
 #include "leapmap/errors.hpp"
+#include "leapmap/sweep.hpp"
+#include "map/shard_name.hpp"
 #include "model/model.hpp"
 #include "sweep/designs.hpp"
 
@@ -134,6 +136,8 @@ TEST(Shards, AreNamedAndRead) {
   EXPECT_EQ(text_of(shard), "3/16");
   for (const char* wrong : {"", "3", "/", "0/2", "3/2", "1/", "/2", "1/2/3", "1.5/2", " 1/2", "1/99999999"})
     EXPECT_THROW(parse_shard(wrong), InputError) << wrong;
+  for (const Shard wrong : {Shard{0, 8}, Shard{9, 8}, Shard{1, 0}, Shard{1, most_shards + 1}})
+    EXPECT_THROW(sweep({}, "m.h5", {.shard = wrong}), InputError) << text_of(wrong);
   for (const std::string map : {"a.h5", "a.b.h5", "a", "a.1-of-2.h5"}) {
     const std::optional<Shard> named = shard_by_name(shard_path(map, shard));
     ASSERT_TRUE(named) << map;

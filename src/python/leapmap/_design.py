@@ -79,7 +79,6 @@ class DesignProblem:
         self.objectives = self._core.objectives()
         self.fixed = self._core.fixed()
 
-
     def __getstate__(self):  # pygmo copies problems, and sends them to other processes
         return self._asked
 

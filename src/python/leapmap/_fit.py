@@ -49,6 +49,14 @@ class Fit:
     residuals: np.ndarray
 
 
+def _event(name, value):
+    try:
+        number, error = value
+        return float(number), float(error)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {value!r} is no event; allowed: (value, standard error), or a film with 't'") from None
+
+
 def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, threads=0, **overrides):
     """The release, friction and torque that explain a measured motion, by least squares. As `leapmap fit`.
 
@@ -61,15 +69,19 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
         {field: (value, standard error)} of events. phi: 0 where the mass touches the plane; x along the plane, downhill, y away from
         it; P is the mass, O the hoop's centre.
     spec: a TOML file's path or a dictionary: the hoop, and free parameters {"from", "to"}. Without one release_angle, release_spin
-        and mu_static are free; with any only those.
+        and mu_static are free, as far as they are not given; with any only those.
     model: "sticking", "coulomb" or both. error: of a film's numbers; default: told by the residuals.
     seed: of the coarse map. threads: 0 for all cores. overrides: keys of the spec.
 
     Returns a list of Fit, the model that the data prefer first. Raises ValueError, naming line, number and what is allowed."""
     models = ["sticking", "coulomb"] if model == "both" else [model]
-    if isinstance(data, Mapping):
-        events = {key: (float(value[0]), float(value[1])) for key, value in data.items() if np.ndim(value) == 1 and len(value) == 2 and "t" not in data}
-        data = events or {key: np.asarray(value, float) for key, value in data.items()}
+    if isinstance(data, Mapping) and "t" in data:
+        data = {key: np.asarray(value, float) for key, value in data.items()}
+    elif isinstance(data, Mapping):
+        for name, given in (("error", error is not None), ("allow_gaps", allow_gaps)):
+            if given:
+                raise ValueError(f"{name}: has no use with events, each of which has an error of its own; allowed: with a film")
+        data = {key: _event(key, value) for key, value in data.items()}
     else:
         data = os.fspath(data)
     text, origin, changes = _question(spec, None, (), (), None, overrides)

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One design as it is made, many times over."""
-import os
-from collections.abc import Mapping
 from typing import NamedTuple
 
 from leapmap import _core
+from leapmap._design import _question
 from leapmap._results import Outcomes
-from leapmap._sweep import _keyed, _toml
 
 
 class Estimate(NamedTuple):
@@ -40,10 +38,7 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
     made: {parameter: array}, outcomes: Outcomes, of the hoops made.
 
     Raises ValueError, naming the key, its value and what is allowed. Ctrl-C ends it."""
-    text, origin = (os.fspath(spec), None) if spec is not None and not isinstance(spec, Mapping) else (_toml(spec or {}), "<dict>")
-    changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
-    for section, keys in (("scatter", scatter), ("goal", goal)):
-        changes += [f"{section}.{key}={_keyed(key, value)}" for key, value in (keys or {}).items()]
+    text, origin, changes = _question(spec, goal, (), (), scatter, overrides)
     told = _core.scatter(text, origin, changes, int(threads))
     outcomes = Outcomes(told.pop("outcomes"), {"friction": "any"})
     return _estimates(told) | {"outcomes": outcomes}

@@ -10,13 +10,16 @@ from leapmap import _core
 from leapmap._results import Motion, Outcomes
 
 
-def solve(*, friction="sticking", fields=None, method="auto", tolerance=1e-10, max_steps=1_000_000, threads=0, **parameters):
+def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None, method="auto", tolerance=1e-10, max_steps=1_000_000, threads=0,
+          **parameters):
     """Solves designs: when and how high does each of them jump?
 
     Every parameter of a design is a number, an angle like "30 deg", or an array; arrays broadcast as numpy's do. Those of the
     scene are one number for the call. What is not given is the paper's hoop.
     {parameters}
     friction: "sticking", the contact never slips, or "coulomb".
+    jumps: goes on after a landing until that many jumps, 1 to 250; their fields are jump_height_2, jump_time_2 and so on.
+    settle: jumps before the gait that the hoop settles on is looked at, of up to most_period jumps; 0: none is looked for.
     fields: names of those wanted; what only others need is not computed. Default: all.
     method: "auto", "exact", or a stepper like "gsl-rk8pd"; tolerance: relative error of times, a stepper's per step.
     max_steps: of a stepper; a design that needs more has status failed. threads: 0 for all cores; one in a
@@ -26,6 +29,7 @@ def solve(*, friction="sticking", fields=None, method="auto", tolerance=1e-10, m
     {fields}
 
     Raises ValueError, naming the parameter, its value and what is allowed. Ctrl-C ends it."""
+    parameters |= {name: value for name, value, usual in (("jumps", jumps, 1), ("settle", settle, 0), ("most_period", most_period, 16)) if value != usual}
     columns = _core.solve(parameters, friction, _names(fields), method, tolerance, _whole("max_steps", max_steps, 1),
                           _whole("threads", threads, 0, 4096))
     given = {name: np.array(value) if isinstance(value, np.ndarray) else value for name, value in parameters.items()}
