@@ -2,6 +2,8 @@
 """leapmap design and leapmap fit, as they are typed."""
 import csv
 import json
+import os
+import shlex
 import signal
 import subprocess
 import time
@@ -36,6 +38,22 @@ def test_the_answer_reaches_its_goals_by_its_own_hop_command(tmp_path):
         assert hop["jump_height"] >= 0.9, "never a hair short"
         assert hop["design"]["mass_ratio"] == design["parameters"]["mass_ratio"] == design["objectives"]["mass_ratio"]
     assert any("jump_height at least 0.9" in bind for bind in told["designs"][0]["binds"])
+
+
+def test_the_command_told_asks_for_later_jumps_and_gaits_too(tmp_path):
+    more = BOX + "[scene]\njumps = 3\n[gait]\nsettle = 60\nmost_period = 4\n"
+    told = json.loads(asked(tmp_path, more, "--json").stdout)
+    words = told["designs"][0]["hop"].split()
+    hop = json.loads(subprocess.run([PROGRAM, *words[1:], "--json"], capture_output=True, text=True, check=True).stdout)
+    assert "jump_height_3" in hop and "gait_period" in hop
+
+
+def test_a_command_with_quotes_is_json_too():
+    told = json.loads(leapmap("design", os.path.join(TOP, "sweeps", "questions", "surest.toml"), "--json", *FEWER).stdout)
+    words = shlex.split(told["designs"][0]["hop"])
+    assert "--scatter" in words
+    done = subprocess.run([PROGRAM, *words[1:], "--json"], capture_output=True, text=True)
+    assert done.returncode == 0 and json.loads(done.stdout)["scatter"]["yield"], done.stderr
 
 
 def test_people_are_told_what_binds_how_far_the_cliff_is_and_what_to_type(tmp_path):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ctrl-C keeps what is done, says so, and leaves no map that is not whole."""
+import shlex
 import signal
 import subprocess
 import time
@@ -38,6 +39,22 @@ def test_a_signal_keeps_finished_tiles_readable_in_the_part(number, status, tmp_
         assert np.isnan(part["jump_height"][()][~computed]).all()
     again = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5"], capture_output=True, text=True)
     assert again.returncode == 2 and "map.h5.part" in again.stderr, "what was kept is not overwritten unasked"
+
+
+def test_an_interrupted_shard_says_how_to_go_on_with_it(tmp_path):
+    spec = LONG.replace("audit = 0", "audit = 0\n[output]\nfile = '%s'" % (tmp_path / "map.h5"))
+    (tmp_path / "spec.toml").write_text(spec)
+    process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "--shard", "1/2"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(3.0)
+    process.send_signal(signal.SIGINT)
+    err = process.communicate(timeout=120)[1]
+    assert process.returncode == 130 and "map.1-of-2.h5.part" in err
+    words = shlex.split(err[err.index("leapmap sweep"):])
+    again = subprocess.Popen([PROGRAM, *words[1:]], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(2.0)
+    again.send_signal(signal.SIGINT)
+    out, err = again.communicate(timeout=120)
+    assert again.returncode == 130 and "designs were there already" in out, err
 
 
 def test_a_signal_during_the_audit_is_an_interruption_too(tmp_path):

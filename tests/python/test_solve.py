@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """leapmap.solve and leapmap.trace against tables made by other programs, and what they refuse."""
+import ast
 import copy
 import csv
 import inspect
@@ -221,7 +222,12 @@ def test_help_and_stubs_know_every_parameter_and_field():
     for row in [*_core.parameters(), *_core.fields()]:
         name = row["name"]
         assert re.search(rf"^ *{name}( \[.*\])?: ", leapmap.solve.__doc__, re.M) and re.search(rf"\b{name}: ", text), name
-    assert "slope" in inspect.signature(leapmap.solve).parameters
+    assert {"slope", "jumps", "settle", "most_period"} <= set(inspect.signature(leapmap.solve).parameters)
+    defined = {node.name for node in ast.parse(text).body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    assert set(leapmap.__all__) <= defined
+    for of in (leapmap.design, leapmap.fit, leapmap.scatter):
+        stubbed = next(node for node in ast.parse(text).body if getattr(node, "name", "") == of.__name__).args
+        assert [a.arg for a in stubbed.args + stubbed.kwonlyargs + [stubbed.kwarg]] == list(inspect.signature(of).parameters)
 
 
 def test_gradient_agrees_with_the_45_digit_table():
