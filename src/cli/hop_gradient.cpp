@@ -39,8 +39,7 @@ Table table_of(const Spec& original) {
   Table table;
   for (const std::size_t by : wanted.by)
     for (const Option* parameter : design_parameters(spec))
-      if (std::get<ParameterSlot>(parameter->slot).member == differentiable[by])
-        table.parameters.push_back(parameter);
+      if (member_of(*parameter) == differentiable[by]) table.parameters.push_back(parameter);
   for (std::size_t i = 0; i < wanted.of.size(); ++i) {
     if (std::isnan(wanted.of[i].of(outcome))) continue;
     Row row{find_field(spec.output.gradients[i]), {}};

@@ -158,7 +158,7 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
 
 /// How much of a stopped sweep's map is there, and how to go on.
 void print_incomplete(const MapReader& map, const std::string& part) {
-  const std::size_t designs = Tiling(map.shape()).designs(), done = designs_in(map.status_counts());
+  const std::size_t designs = designs_of(map.shape()), done = designs_in(map.status_counts());
   const std::string name = part.ends_with(".part") ? part.substr(0, part.size() - 5) : part;
   say("INCOMPLETE: {} of {} designs, {:.3g} %; the others are holes; go on by: leapmap sweep SPEC.toml -o {} "
       "--resume\n",
@@ -166,73 +166,69 @@ void print_incomplete(const MapReader& map, const std::string& part) {
       shell_quoted(name));
 }
 
-int run(const InfoArguments& arguments) {
-  std::error_code ignored;
-  if (const std::string part = part_of(arguments.path);
-      !std::filesystem::exists(arguments.path, ignored) && std::filesystem::exists(part, ignored))
-    throw IoError(
-        fmt::format("{}: is not there yet, only {}: ask for that, or end it by leapmap sweep --resume",
-                    arguments.path, part));
-  const MapReader map(arguments.path, arguments.locking);
-  if (arguments.only_spec) {
-    write_out(readable_text(parse_map_spec(map.attribute("spec"), arguments.path)));
-    return 0;
+/// The map's own words on how it was made.
+struct Told {
+  const MapReader& map;
+
+  bool has(const char* name) const { return hdf5::has_attribute(map.file(), name); }
+  std::string operator()(const char* name) const { return printable(map.attribute(name)); }
+  std::string operator()(const char* name, fmt::format_string<double> form) const {
+    return has(name) ? fmt::format(form, hdf5::read_number(map.file(), name)) : "?";
   }
-  if (arguments.failed) return list_failed(map, arguments);
-  if (!arguments.at.empty()) {
-    print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at);
-    return 0;
-  }
-  const auto told = [&](const std::string& name) { return printable(map.attribute(name)); };
-  const auto short_form = [&](const std::string& name, const char* form) {
-    return hdf5::has_attribute(map.file(), name)
-               ? fmt::format(fmt::runtime(fmt::format("{{:{}}}", form)), hdf5::read_number(map.file(), name))
-               : "?";
-  };
-  std::size_t designs = 1;
+};
+
+void print_origin(const MapReader& map, const std::string& path) {
+  const Told told{map};
   say("{}\n", told("title"));
   const std::string shards = map.attribute(shards_attribute);
   say("made {} on {} by leapmap {} (git {}), {} threads{}, {} s{}\n", told("date"), told("host"),
       told("program_version"), told("git_revision"), told("threads"), shards.empty() ? "" : " at most",
-      short_form("wall_time", ".3g"),
+      told("wall_time", "{:.3g}"),
       shards.empty() ? ""
                      : fmt::format(" in all, in {} shards{}", printable(shards),
                                    map.shards().empty() ? "" : ", which hold its values and lie beside it"));
-  if (!map.is_whole()) print_incomplete(map, arguments.path);
+  if (!map.is_whole()) print_incomplete(map, path);
   say("method {}, tolerance {}\n", told("method"), told("tolerance"));
+}
+
+/// What others who solved some of its designs again came to.
+void print_audit(const MapReader& map) {
+  const Told told{map};
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
     say("audit{}: {} designs again by {}: height within {} diameters, time within {} relative, motion within "
         "{}, {} flags differ, {} errors beyond the tolerance, {} designs nobody can decide\n",
-        hdf5::has_attribute(map.file(), "retry_designs") ? " (before failed designs were retried)" : "",
-        audited, told("audit_method"), short_form("audit_max_abs_height_error", ".1e"),
-        short_form("audit_max_rel_time_error", ".1e"), short_form("audit_max_rel_motion_error", ".1e"),
+        told.has("retry_designs") ? " (before failed designs were retried)" : "", audited,
+        told("audit_method"), told("audit_max_abs_height_error", "{:.1e}"),
+        told("audit_max_rel_time_error", "{:.1e}"), told("audit_max_rel_motion_error", "{:.1e}"),
         told("audit_flag_mismatches"), told("audit_beyond_tolerance"), told("audit_undecided"));
-  if (hdf5::has_attribute(map.file(), "audit_referee_designs"))
+  if (told.has("audit_referee_designs"))
     say("referee: {} of them from the paper's (7) to (9): {} wrong, largest error {}, {} it cannot decide\n",
-        told("audit_referee_designs"), told("audit_overruled"), short_form("audit_referee_max_error", ".1e"),
+        told("audit_referee_designs"), told("audit_overruled"), told("audit_referee_max_error", "{:.1e}"),
         told("audit_referee_undecided"));
   if (const std::string compared = map.attribute("audit_gradient_designs");
       !compared.empty() && compared != "0")
     say("gradient: of {} designs by differences in long double: {} wrong, largest error {}, {} it cannot "
         "decide\n",
-        compared, told("audit_gradients_wrong"), short_form("audit_gradient_max_error", ".1e"),
+        compared, told("audit_gradients_wrong"), told("audit_gradient_max_error", "{:.1e}"),
         told("audit_gradient_undecided"));
   if (const std::string compared = map.attribute("audit_jumps_compared");
       !compared.empty() &&
       (compared != "0" || told("audit_jumps_beyond") != "0" || told("audit_sequences_wrong") != "0"))
     say("later jumps: {} again, {} beyond what is known of them; {} designs wrong, largest error {}\n",
         compared, told("audit_jumps_beyond"), told("audit_sequences_wrong"),
-        short_form("audit_jump_max_error", ".1e"));
+        told("audit_jump_max_error", "{:.1e}"));
   if (const std::string gaits = map.attribute("audit_gaits"); !gaits.empty() && gaits != "0")
     say("gaits: {} by integration: {} wrong, largest error {}, of a multiplier {}, {} it cannot decide\n",
-        gaits, told("audit_gaits_wrong"), short_form("audit_gait_max_error", ".1e"),
-        short_form("audit_multiplier_max_error", ".1e"), told("audit_gaits_undecided"));
-  if (hdf5::has_attribute(map.file(), "retry_designs"))
+        gaits, told("audit_gaits_wrong"), told("audit_gait_max_error", "{:.1e}"),
+        told("audit_multiplier_max_error", "{:.1e}"), told("audit_gaits_undecided"));
+  if (told.has("retry_designs"))
     say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),
         told("retry_tolerance"));
+}
+
+void print_dimensions(const MapReader& map) {
   say("\ndimensions\n");
   for (const auto& dimension : map.dimensions()) {
-    designs *= dimension.size;
     if (dimension.values.empty()) {
       say("  {:<16} {:>7} in a list\n", dimension.name, dimension.size);
       continue;
@@ -241,6 +237,10 @@ int run(const InfoArguments& arguments) {
     say("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", printable(dimension.name), dimension.size, least,
         most, dimension.unit == "1" ? "" : printable(dimension.unit));
   }
+}
+
+void print_fields(const MapReader& map) {
+  const std::size_t designs = designs_of(map.shape());
   say("\nfields, {} designs\n", designs);
   if (!map.has("status") && hdf5::has_attribute(map.file(), "status_counts")) {
     say("status, not stored but counted\n");
@@ -266,6 +266,29 @@ int run(const InfoArguments& arguments) {
       if (summary.missing > 0) say("  none  in {} designs\n", summary.missing);
     }
   }
+}
+
+int run(const InfoArguments& arguments) {
+  std::error_code ignored;
+  if (const std::string part = part_of(arguments.path);
+      !std::filesystem::exists(arguments.path, ignored) && std::filesystem::exists(part, ignored))
+    throw IoError(
+        fmt::format("{}: is not there yet, only {}: ask for that, or end it by leapmap sweep --resume",
+                    arguments.path, part));
+  const MapReader map(arguments.path, arguments.locking);
+  if (arguments.only_spec) {
+    write_out(readable_text(parse_map_spec(map.attribute("spec"), arguments.path)));
+    return 0;
+  }
+  if (arguments.failed) return list_failed(map, arguments);
+  if (!arguments.at.empty()) {
+    print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at);
+    return 0;
+  }
+  print_origin(map, arguments.path);
+  print_audit(map);
+  print_dimensions(map);
+  print_fields(map);
   return 0;
 }
 

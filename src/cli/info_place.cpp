@@ -39,7 +39,7 @@ Design design_at(const Spec& spec, const std::string& at) {
     given.push_back(name);
     const Option& option = *find_option("", name);
     try {
-      design.*std::get<ParameterSlot>(option.slot).member = parse_number(option, part.substr(equals + 1));
+      design.*member_of(option) = parse_number(option, part.substr(equals + 1));
     } catch (const InputError& error) {
       throw InputError(fmt::format("--at {}: {}: {}", at, name, error.what()));
     }
@@ -74,7 +74,7 @@ void print_made(const Spec& spec, const Design& design) {
 /// The jump's height on this side of a cliff and beyond it: not every cliff costs any.
 std::string heights_beside(const Spec& spec, const Design& design, const NearCliff& cliff, std::size_t axis) {
   constexpr double beside = 1e-9;
-  const auto member = std::get<ParameterSlot>(find_option("", spec.axes[axis].key)->slot).member;
+  const auto member = member_of(spec.axes[axis].key);
   const double way = cliff.at[axis] < design.*member ? -1.0 : 1.0,
                step = way * beside * std::max(1.0, std::abs(cliff.at[axis]));
   std::array<Design, 2> designs{design, design};

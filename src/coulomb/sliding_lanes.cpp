@@ -99,9 +99,7 @@ void SlidingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& m
   const S friction = direction > 0 ? mu_kinetic : -mu_kinetic;
   slides_[place] = {runway,           mu_kinetic, least_pivot(hoop, friction), direction, false, false,
                     PhaseEnd::failed, 0};
-  hoops_.template store<S>({hoop.sin_slope, hoop.cos_slope, hoop.rho, hoop.clearance, hoop.Ic, hoop.J_min,
-                            hoop.drive, hoop.thrust},
-                           &place, 1);
+  hoops_.template store<S>(numbers_of(hoop), &place, 1);
   states_.template store<S>(
       {at.time, at.travel, at.angle, at.spin, at.slip,
        free_normal_force(hoop, trig(at.angle), S(at.spin * at.spin)), friction, S(longest_angle)},
@@ -123,12 +121,10 @@ ContactState<ScalarOf<T>> SlidingLanes<T>::state_of(std::uint32_t place) const {
 /// The rest of a slide by itself.
 template <class T>
 void SlidingLanes<T>::alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended) {
-  const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, drive, thrust] =
-      hoops_.template load<S>(&place);
   const Slide& slide = slides_[place];
   ContactState<S> at = state_of(place);
-  const PhaseEnd end = leg_.run({sin_slope, cos_slope, rho, clearance, Ic, J_min, drive, thrust},
-                                slide.mu_kinetic, at, slide.runway, slide.direction);
+  const PhaseEnd end =
+      leg_.run(hoop_of(hoops_.template load<S>(&place)), slide.mu_kinetic, at, slide.runway, slide.direction);
   ended.push_back({place, end, at});
 }
 
@@ -187,140 +183,185 @@ auto SlidingLanes<T>::rest(const typename Panels::Stretch& stretch, const Panel&
 }
 
 template <class T>
-void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
-  using std::abs, std::sqrt;
-  if (waiting_.empty()) return;
+auto SlidingLanes<T>::take() -> InLanes {
   const std::size_t count = std::min(width, waiting_.size()), first = waiting_.size() - count;
-  std::array<std::uint32_t, width> index;
-  LaneArray<T> runways, directions, pivots, given_lanes, ending_lanes;
-  for (std::size_t i = 0; i < width; ++i) {
-    index[i] = waiting_[first + (i < count ? i : 0)];
-    const Slide& slide = slides_[index[i]];
-    runways[i] = slide.runway, directions[i] = S(slide.direction), pivots[i] = slide.least_pivot;
-    given_lanes[i] = S(slide.is_given), ending_lanes[i] = S(slide.ends);
-  }
+  InLanes slides;
+  slides.count = count;
+  for (std::size_t i = 0; i < width; ++i) slides.index[i] = waiting_[first + (i < count ? i : 0)];
   waiting_.resize(first);
+  const auto of_slide = [&](auto Slide::*member) {
+    return gathered<T>([&](std::size_t i) { return slides_[slides.index[i]].*member; });
+  };
+  const std::uint32_t* index = slides.index.data();
+  const auto [time, travel, angle, spin, slip, force, friction, longest] = states_.template load<T>(index);
+  slides.slide = {hoop_of(hoops_.template load<T>(index)), friction, {}, {}, force};
+  slides.from = {time, travel, angle, spin, slip};
+  slides.longest = longest;
+  slides.runway = of_slide(&Slide::runway), slides.direction = of_slide(&Slide::direction);
+  slides.least_pivot = of_slide(&Slide::least_pivot);
+  slides.is_given = of_slide(&Slide::is_given) > T(S(0)), slides.is_last = of_slide(&Slide::ends) > T(S(0));
+  const auto [shift, begin, span, curve] = stretches_.template load<T>(index);
+  slides.given = {shift, begin, span, curve};
+  return slides;
+}
+
+template <class T>
+auto SlidingLanes<T>::look_ahead(const InLanes& slides) const -> Ahead {
+  using std::sqrt;
   const T zero(S(0)), one(S(1));
-  const MaskOf<T> is_given = Lanes<T>::load(given_lanes.data()) > zero,
-                  is_last = Lanes<T>::load(ending_lanes.data()) > zero;
+  const typename Panels::Slide& slide = slides.slide;
+  const ContactState<T>& from = slides.from;
+  const Trig<T> phi = trig(from.angle);
+  const SlidingMotion<T> start = sliding_motion(slide.hoop, phi, T(from.spin * from.spin), slide.friction,
+                                                slide.coefficients(slide.hoop, phi, zero), slide.free_force);
+  const MaskOf<T> at_rest = from.spin == zero;
+  const T way = select((from.spin < zero) | (at_rest & (start.angular < zero)), -one, one);
+  Ahead ahead;
+  ahead.turns = !(at_rest & (start.angular == zero));
+  ahead.rise = way * start.angular;
+  auto usual = Panels::stretch_of(from.spin, ahead.rise, slides.longest);
+  ahead.shift = usual.shift;
 
-  const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, drive, thrust] =
-      hoops_.template load<T>(index.data());
-  const auto [time, travel, angle, spin, slip, force, friction, longest] =
-      states_.template load<T>(index.data());
   const auto [zero_0, zero_1, zero_2, zero_3, height_0, height_1, height_2, height_3] =
-      zeros_.template load<T>(index.data());
-  const auto [shift, begin, span, curve] = stretches_.template load<T>(index.data());
-  const typename Panels::Slide slide{
-      {sin_slope, cos_slope, rho, clearance, Ic, J_min, drive, thrust}, friction, {}, {}, force};
-  const ContactState<T> from{time, travel, angle, spin, slip};
-
-  // By angle while the hoop turns.
-  const Trig<T> phi = trig(angle);
-  const SlidingMotion<T> start = sliding_motion(slide.hoop, phi, T(spin * spin), friction,
-                                                slide.coefficients(slide.hoop, phi, zero), force);
-  const MaskOf<T> at_rest = spin == zero, turns = !(at_rest & (start.angular == zero));
-  const T way = select((spin < zero) | (at_rest & (start.angular < zero)), -one, one);
-  const T rise = way * start.angular;
-  auto usual = Panels::stretch_of(spin, rise, longest);
+      zeros_.template load<T>(slides.index.data());
   T length = resolved_length(
-      PivotZeros<T>{{zero_0, zero_1, zero_2, zero_3}, {height_0, height_1, height_2, height_3}}, angle, way,
-      usual.shift, clear_of_zeros_, longest);
-  length = larger(length, smaller(longest, T(S(shortest_by_zeros))));
-  const T steepest = Lanes<T>::load(pivots.data());
-  if (any(steepest > zero)) {
-    const T clear = T(S(0.98)) * way_to_edge(slide.hoop, friction, phi, way, steepest, length);
-    length = select(steepest > zero, smaller(larger(clear, T(S(shortest_steep))), length), length);
+      PivotZeros<T>{{zero_0, zero_1, zero_2, zero_3}, {height_0, height_1, height_2, height_3}}, from.angle,
+      way, usual.shift, clear_of_zeros_, slides.longest);
+  length = larger(length, smaller(slides.longest, T(S(shortest_by_zeros))));
+  const MaskOf<T> has_edge = slides.least_pivot > zero;
+  if (any(has_edge)) {
+    const T clear =
+        T(S(0.98)) * way_to_edge(slide.hoop, slide.friction, phi, way, slides.least_pivot, length);
+    length = select(has_edge, smaller(larger(clear, T(S(shortest_steep))), length), length);
   }
+  ahead.length = length;
   usual.span = sqrt(length - usual.shift) - usual.begin;
-  const typename Panels::Stretch stretch{select(is_given, shift, usual.shift),
-                                         select(is_given, begin, usual.begin),
-                                         select(is_given, span, usual.span), select(is_given, curve, one)};
-  panels_.solve_by_angle(slide, from, stretch, panel_);
+  const auto given_or = [&](T Panels::Stretch::*member) {
+    return select(slides.is_given, slides.given.*member, usual.*member);
+  };
+  ahead.stretch = {given_or(&Panels::Stretch::shift), given_or(&Panels::Stretch::begin),
+                   given_or(&Panels::Stretch::span), given_or(&Panels::Stretch::curve)};
+  return ahead;
+}
 
-  const MaskOf<T> is_steep = !(panel_.least_pivot > Lanes<T>::load(pivots.data()));
+template <class T>
+auto SlidingLanes<T>::look_at_panel(const InLanes& slides, const Ahead& ahead) const -> Seen {
+  const T one(S(1));
+  Seen seen;
+  seen.is_steep = !(panel_.least_pivot > slides.least_pivot);
   const MaskOf<T> finite = panel_.excess < T(std::numeric_limits<S>::infinity());
-  const MaskOf<T> solved = turns & !is_steep & finite & (is_last | (panel_.excess <= one));
-  const MaskOf<T> looks = solved & !is_last;
-  const Events events =
-      first_events(panel_, Lanes<T>::load(runways.data()), Lanes<T>::load(directions.data()), looks);
-  const MaskOf<T> comes = looks & events.plain & (events.place <= one);
-  const MaskOf<T> too_long =
-      comes & (panel_.end.time - time > T(S(longest_time))) & (events.place < T(S(least_place)));
-  const MaskOf<T> goes_on = looks & events.plain & !comes;
-  typename Panels::Inside inside{from, MaskOf<T>(false)};
-  if (any(comes)) inside = panels_.state_at(slide, from, stretch, panel_, smaller(events.place, one));
-  const MaskOf<T> sharp = comes & inside.is_sharp;
+  seen.solved = ahead.turns & !seen.is_steep & finite & (slides.is_last | (panel_.excess <= one));
+  seen.done = seen.solved & slides.is_last;
 
-  // Where the spin vanishes the next panel ends there, unless the hoop has hardly set out: then halfway.
-  MaskOf<T> stops = turns & !is_steep & !is_given & panel_.spin_vanishes & !at_rest;
-  const MaskOf<T> unresolved = stops & !(panel_.spin_excess <= one);
-  stops = stops & !unresolved;
-  Rest there{stops, zero};
-  if (any(stops)) there = rest(stretch, panel_, stops);
-  stops = there.is_known;
-  const MaskOf<T> halfway = stops & (rise > zero) & (T(S(-2)) * usual.shift < there.length);
-  const auto to_rest = Panels::stretch_to_rest(there.length);
+  const MaskOf<T> looks = seen.solved & !slides.is_last;
+  seen.events = first_events(panel_, slides.runway, slides.direction, looks);
+  const MaskOf<T> comes = looks & seen.events.plain & (seen.events.place <= one);
+  seen.goes_on = looks & seen.events.plain & !comes;
+  seen.inside = {slides.from, MaskOf<T>(false)};
+  if (any(comes))
+    seen.inside =
+        panels_.state_at(slides.slide, slides.from, ahead.stretch, panel_, smaller(seen.events.place, one));
+  // Of a panel that lasts so long the event's place has few digits.
+  const MaskOf<T> lasts =
+      (panel_.end.time - slides.from.time > T(S(longest_time))) & (seen.events.place < T(S(least_place)));
+  seen.ends_inside = comes & seen.inside.is_sharp & !lasts;
+  seen.ends_again = comes & !seen.inside.is_sharp & !lasts;
 
+  const MaskOf<T> vanishes =
+      ahead.turns & !seen.is_steep & !slides.is_given & panel_.spin_vanishes & !(slides.from.spin == T(S(0)));
+  seen.unresolved = vanishes & !(panel_.spin_excess <= one);
+  seen.rest = {vanishes & !seen.unresolved, T(S(0))};
+  if (any(seen.rest.is_known)) seen.rest = rest(ahead.stretch, panel_, seen.rest.is_known);
+  seen.hardly_set_out =
+      seen.rest.is_known & (ahead.rise > T(S(0))) & (T(S(-2)) * ahead.shift < seen.rest.length);
+  return seen;
+}
+
+template <class T>
+auto SlidingLanes<T>::next_length(const InLanes& slides, const Ahead& ahead, const Seen& seen) const -> Next {
+  using std::abs;
+  const T one(S(1)), half(S(0.5));
   const auto shrunk_by = [&](const T& excess) {
     return select(excess < T(std::numeric_limits<S>::infinity()), change(excess, Panels::nodes, S(0.85)),
-                  T(S(0.5)));
+                  half);
   };
-  const T least = select(
-      is_steep, T(S(shortest_steep)),
-      select(panel_.spin_vanishes, T(S(shortest_vanishing)), T(S(shortest_angle)) * (one + T(abs(angle)))));
-  const MaskOf<T> shrinks = turns & !is_given & !solved & !stops & (length > least);
+  const T shortest_plain = T(S(shortest_angle)) * (one + T(abs(slides.from.angle))),
+          least = select(seen.is_steep, T(S(shortest_steep)),
+                         select(panel_.spin_vanishes, T(S(shortest_vanishing)), shortest_plain));
+  const T shrunk = ahead.length * select(seen.unresolved, shrunk_by(panel_.spin_excess),
+                                         select(seen.is_steep, half, shrunk_by(panel_.excess)));
+  const T grown = smaller(larger(slides.longest, ahead.length * change(panel_.excess, Panels::nodes, S(2))),
+                          T(S(longest_angle)));
+  const MaskOf<T> failed = ahead.turns & !seen.solved & !seen.rest.is_known;
+  const MaskOf<T> shrinks = failed & !slides.is_given & (ahead.length > least);
   // A panel to where the spin vanishes that its nodes do not resolve: half of the way first.
+  const T to_end = ahead.stretch.length();
   const MaskOf<T> falls_back =
-      turns & is_given & !is_last & !is_steep & !solved & (stretch.length() > T(S(shortest_vanishing)));
-  const T shrunk = length * select(unresolved, shrunk_by(panel_.spin_excess),
-                                   select(is_steep, T(S(0.5)), shrunk_by(panel_.excess)));
-  const T grown =
-      smaller(larger(longest, length * change(panel_.excess, Panels::nodes, S(2))), T(S(longest_angle)));
-  const MaskOf<T> halves = halfway | falls_back;
-  const T half = T(S(0.5)) * select(halfway, there.length, stretch.length());
-  const T next_length =
-      select(goes_on & !is_given, grown, select(halves, half, select(shrinks, shrunk, longest)));
-  const auto next = [&](const T& then, const T& now) { return select(goes_on, then, now); };
-  states_.template store<T>(
-      {next(panel_.end.time, time), next(panel_.end.travel, travel), next(panel_.end.angle, angle),
-       next(panel_.end.spin, spin), next(panel_.end.slip, slip), next(panel_.free_force.end.value, force),
-       friction, next_length},
-      index.data(), count);
-  // Where an event comes without digits, the same panel once more, ending there.
-  stretches_.template store<T>(
-      {select(comes, stretch.shift, to_rest.shift), select(comes, stretch.begin, to_rest.begin),
-       select(comes, stretch.span * events.place, to_rest.span), select(comes, stretch.curve, to_rest.curve)},
-      index.data(), count);
+      failed & slides.is_given & !slides.is_last & !seen.is_steep & (to_end > T(S(shortest_vanishing)));
+  const T halved = half * select(seen.hardly_set_out, seen.rest.length, to_end);
+  const MaskOf<T> halves = seen.hardly_set_out | falls_back;
+  return {shrinks | halves, select(seen.goes_on & !slides.is_given, grown,
+                                   select(halves, halved, select(shrinks, shrunk, slides.longest)))};
+}
 
-  const unsigned done = Lanes<T>::bits(solved & is_last), ends = Lanes<T>::bits(comes),
-                 ends_inside = Lanes<T>::bits(sharp), ends_at_rest = Lanes<T>::bits(stops & !halfway),
-                 on = Lanes<T>::bits(goes_on | shrinks | halves), lasts = Lanes<T>::bits(too_long);
+template <class T>
+void SlidingLanes<T>::put(const InLanes& slides, const Ahead& ahead, const Seen& seen, const T& length) {
+  const auto next = [&](const T& then, const T& now) { return select(seen.goes_on, then, now); };
+  const ContactState<T>&from = slides.from, &end = panel_.end;
+  states_.template store<T>(
+      {next(end.time, from.time), next(end.travel, from.travel), next(end.angle, from.angle),
+       next(end.spin, from.spin), next(end.slip, from.slip),
+       next(panel_.free_force.end.value, slides.slide.free_force), slides.slide.friction, length},
+      slides.index.data(), slides.count);
+  // Where an event comes without digits, the same panel once more, ending there.
+  const auto& [shift, begin, span, curve] = ahead.stretch;
+  const auto to_rest = Panels::stretch_to_rest(seen.rest.length);
+  const auto given = [&](const T& again, const T& rests) { return select(seen.ends_again, again, rests); };
+  stretches_.template store<T>({given(shift, to_rest.shift), given(begin, to_rest.begin),
+                                given(span * seen.events.place, to_rest.span), given(curve, to_rest.curve)},
+                               slides.index.data(), slides.count);
+}
+
+template <class T>
+void SlidingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
+  if (waiting_.empty()) return;
+  const InLanes slides = take();
+  const Ahead ahead = look_ahead(slides);
+  panels_.solve_by_angle(slides.slide, slides.from, ahead.stretch, panel_);
+  const Seen seen = look_at_panel(slides, ahead);
+  const Next next = next_length(slides, ahead, seen);
+  put(slides, ahead, seen, next.length);
+
+  // A lane is in one of these at most; what is in none goes on by itself.
+  const unsigned done = Lanes<T>::bits(seen.done), ends_inside = Lanes<T>::bits(seen.ends_inside),
+                 ends_again = Lanes<T>::bits(seen.ends_again),
+                 rests = Lanes<T>::bits(seen.rest.is_known & !seen.hardly_set_out),
+                 on = Lanes<T>::bits(seen.goes_on | next.is_shorter);
   const auto lanes_of_state = [](const ContactState<T>& at) {
     return std::array{lanes_of(at.time), lanes_of(at.travel), lanes_of(at.angle), lanes_of(at.spin),
                       lanes_of(at.slip)};
   };
-  const auto insides = lanes_of_state(inside.state), last = lanes_of_state(panel_.end);
+  const auto insides = lanes_of_state(seen.inside.state), last = lanes_of_state(panel_.end);
   const auto end_as = [&](std::size_t i, const std::array<LaneArray<T>, 5>& lanes, PhaseEnd end) {
     ContactState<S> at{lanes[0][i], lanes[1][i], lanes[2][i], lanes[3][i], lanes[4][i]};
     if (end == PhaseEnd::slip_ends) at.slip = S(0);
-    ended.push_back({index[i], end, at});
+    ended.push_back({slides.index[i], end, at});
   };
-  for (std::size_t i = 0; i < count; ++i) {
-    Slide& now = slides_[index[i]];
+  for (std::size_t i = 0; i < slides.count; ++i) {
+    Slide& now = slides_[slides.index[i]];
     const unsigned bit = 1u << i;
-    if (++now.panels > most_panels || lasts & bit) {
-      alone(index[i], ended);
+    if (++now.panels > most_panels) {
+      alone(slides.index[i], ended);
     } else if (ends_inside & bit) {
-      end_as(i, insides, events.end[i]);
+      end_as(i, insides, seen.events.end[i]);
     } else if (done & bit) {
       end_as(i, last, now.end);
-    } else if ((ends | ends_at_rest | on) & bit) {
-      now.is_given = (ends | ends_at_rest) & bit, now.ends = ends & bit;
-      now.end = events.end[i];
-      waiting_.push_back(index[i]);
+    } else if ((ends_again | rests | on) & bit) {
+      now.is_given = (ends_again | rests) & bit, now.ends = ends_again & bit;
+      now.end = seen.events.end[i];
+      waiting_.push_back(slides.index[i]);
     } else {
-      alone(index[i], ended);
+      alone(slides.index[i], ended);
     }
   }
 }

@@ -47,6 +47,25 @@ class SlidingLanes {
     PhaseEnd end;
     int panels;
   };
+  /// Some slides at the start of a panel. Lanes to spare repeat the first.
+  struct InLanes {
+    std::size_t count;
+    std::array<std::uint32_t, width> index;
+    typename Panels::Slide slide;
+    ContactState<T> from;
+    T longest, runway, direction, least_pivot;
+    MaskOf<T> is_given, is_last;  ///< as of Slide: is_given, ends
+    typename Panels::Stretch given;
+  };
+  InLanes take();
+  /// The panels that they take, by angle while the hoop turns.
+  struct Ahead {
+    MaskOf<T> turns;
+    T rise;           ///< of w^2 / 2, an angle
+    T shift, length;  ///< where the stretch is not given
+    typename Panels::Stretch stretch;
+  };
+  Ahead look_ahead(const InLanes& slides) const;
   /// The first event of each panel.
   struct Events {
     T place;  ///< in (0, 1]; 2: none
@@ -60,6 +79,29 @@ class SlidingLanes {
     T length;
   };
   Rest rest(const typename Panels::Stretch& stretch, const Panel& panel, const MaskOf<T>& asked) const;
+  /// What comes of the panels that were solved.
+  struct Seen {
+    MaskOf<T> is_steep;     ///< too near Painleve's edge
+    MaskOf<T> solved;       ///< to the tolerance, or as well as can be where it is the last
+    MaskOf<T> done;         ///< the slide has ended at the panel's end
+    MaskOf<T> goes_on;      ///< beyond its end
+    MaskOf<T> ends_inside;  ///< by the first of `events`, at `inside`
+    MaskOf<T> ends_again;   ///< by that, where the panel is to be solved to once more
+    MaskOf<T> unresolved;   ///< w^2, where it vanishes
+    Events events;
+    typename Panels::Inside inside;
+    Rest rest;                 ///< where the spin vanishes: the next panel is to end there
+    MaskOf<T> hardly_set_out;  ///< but for those: halfway
+  };
+  Seen look_at_panel(const InLanes& slides, const Ahead& ahead) const;
+  /// How long the next panel may be, and whether it has to be shorter than the one that was tried.
+  struct Next {
+    MaskOf<T> is_shorter;
+    T length;
+  };
+  Next next_length(const InLanes& slides, const Ahead& ahead, const Seen& seen) const;
+  /// Stores where the slides are now, and the stretches that are given.
+  void put(const InLanes& slides, const Ahead& ahead, const Seen& seen, const T& length);
   S least_pivot(const Hoop<S>& hoop, const S& friction) const;
   ContactState<S> state_of(std::uint32_t place) const;
   void alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended);

@@ -23,7 +23,7 @@ namespace {
 constexpr double usual_error = 1e-3;
 
 FreeParameter free_parameter(std::string_view name, double low, double high) {
-  return {std::string(name), std::get<ParameterSlot>(find_option("", name)->slot).member, {low, high}};
+  return {std::string(name), member_of(name), {low, high}};
 }
 
 /// Angles of a film, going on over turns.

@@ -106,9 +106,8 @@ std::vector<FreeParameter> free_parameters(const Spec& spec) {
              "{ from, to }, between which it is free, or a number");
     if (!(low < high))
       refuse(spec, fmt::format("design.{} is nothing but {}", axis.key, low), "two bounds, or a number");
-    free.push_back({axis.key,
-                    std::get<ParameterSlot>(find_option("design", axis.key)->slot).member,
-                    {low, high, axis.free ? axis.log : spacing && spacing->log}});
+    free.push_back(
+        {axis.key, member_of(axis.key), {low, high, axis.free ? axis.log : spacing && spacing->log}});
   }
   return free;
 }

@@ -185,7 +185,7 @@ StatusCounts MapReader::status_counts() const {
   StatusCounts counts{};
   const std::vector<std::int64_t> read = hdf5::read_integers(file_, "status_counts");
   std::copy_n(read.begin(), std::min(read.size(), counts.size()), counts.begin());
-  const auto designs = static_cast<std::int64_t>(Tiling(shape()).designs());
+  const auto designs = static_cast<std::int64_t>(designs_of(shape()));
   std::int64_t left = designs;
   for (const std::int64_t count : counts) {
     if (count < 0 || count > left) throw BrokenFile(path_ + ": is damaged: its status_counts make no sense");

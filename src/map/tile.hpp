@@ -50,6 +50,9 @@ class Tiling {
   bool is_part_ = false;
 };
 
+/// How many designs a shape holds.
+std::size_t designs_of(const std::vector<std::size_t>& shape);
+
 /// The position of design `index` of a block (in C order) along each of its dimensions.
 void unravel(std::size_t index, const std::vector<std::size_t>& extent, std::vector<std::size_t>& position);
 /// That along one of them.

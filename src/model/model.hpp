@@ -55,6 +55,10 @@ std::span<const Model> models();
 const Model& model_of(Friction friction);
 inline const Model& model_of(const Scene& scene) { return model_of(scene.friction); }
 
+/// More steps than any integration needs that gets anywhere: a long run takes a million; a slide near
+/// Painleve's edge would take any number.
+inline long most_steps(const Scene& scene) { return model_of(scene).slips ? 100'000 : 1'000'000; }
+
 /// Whether a model has what only some have: a parameter or a field whose row names that model. Unset: all.
 inline bool has(Friction model, std::optional<Friction> only_of) { return !only_of || *only_of == model; }
 

@@ -3,6 +3,9 @@
 /// times in sqrt(R/g). Radius and gravity only rescale an answer, so they appear in no equation of motion.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "leapmap/design.hpp"
 #include "numerics/lanes.hpp"
 
@@ -20,6 +23,24 @@ struct Hoop {
   T drive;      ///< tau, the motor's torque while the hoop touches the plane
   T thrust;     ///< sin theta + tau, with which slope and motor drive the hoop downhill
 };
+
+/// A hoop's groups as so many numbers, in their order, and back: for what treats them all alike.
+template <class T>
+std::array<T, 8> numbers_of(const Hoop<T>& h) {
+  return {h.sin_slope, h.cos_slope, h.rho, h.clearance, h.Ic, h.J_min, h.drive, h.thrust};
+}
+template <class T>
+Hoop<T> hoop_of(const std::array<T, 8>& n) {
+  return {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]};
+}
+/// f of each of them.
+template <class T, class S, class F>
+Hoop<T> mapped(const Hoop<S>& hoop, const F& f) {
+  const std::array<S, 8> from = numbers_of(hoop);
+  std::array<T, 8> to;
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] = f(from[k]);
+  return hoop_of(to);
+}
 
 /// Derives the groups from slope, mass_ratio, offset_ratio, inertia_factor and drive_torque, with alpha =
 /// beta / (1 + beta) and J0 = kappa / (1 + beta) + alpha lambda^2. Clearance, Ic and J_min are written as
@@ -60,8 +81,7 @@ Hoop<T> derive_gathered(const F& design_of) {
 /// The same hoop in every lane.
 template <class T>
 Hoop<T> widened(const Hoop<ScalarOf<T>>& hoop) {
-  return {T(hoop.sin_slope), T(hoop.cos_slope), T(hoop.rho),   T(hoop.clearance),
-          T(hoop.Ic),        T(hoop.J_min),     T(hoop.drive), T(hoop.thrust)};
+  return mapped<T>(hoop, [](const ScalarOf<T>& number) { return T(number); });
 }
 
 /// theta [rad].

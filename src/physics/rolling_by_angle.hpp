@@ -77,23 +77,20 @@ Roll<T> widened(const Roll<ScalarOf<T>>& roll) {
 template <class T, class F>
 Roll<T> gathered_roll(const F& roll_of) {
   using S = ScalarOf<T>;
-  const auto of_roll = [&](S Roll<S>::*member) {
-    return gathered<T>([&](std::size_t i) { return roll_of(i).*member; });
+  const auto lanes = [&](const auto& number_of) {
+    return gathered<T>([&](std::size_t i) { return number_of(roll_of(i)); });
   };
-  const auto of_hoop = [&](S Hoop<S>::*member) {
-    return gathered<T>([&](std::size_t i) { return roll_of(i).hoop.*member; });
-  };
-  const auto of_trig = [&](S Trig<S>::*member) {
-    return gathered<T>([&](std::size_t i) { return roll_of(i).release_trig.*member; });
-  };
-  return {.hoop = {of_hoop(&Hoop<S>::sin_slope), of_hoop(&Hoop<S>::cos_slope), of_hoop(&Hoop<S>::rho),
-                   of_hoop(&Hoop<S>::clearance), of_hoop(&Hoop<S>::Ic), of_hoop(&Hoop<S>::J_min),
-                   of_hoop(&Hoop<S>::drive), of_hoop(&Hoop<S>::thrust)},
-          .release = of_roll(&Roll<S>::release),
-          .release_trig = {of_trig(&Trig<S>::sin), of_trig(&Trig<S>::cos), of_trig(&Trig<S>::versine)},
-          .released = of_roll(&Roll<S>::released),
-          .level = of_roll(&Roll<S>::level),
-          .push = of_roll(&Roll<S>::push)};
+  std::array<T, 8> hoop;
+  for (std::size_t k = 0; k < hoop.size(); ++k)
+    hoop[k] = lanes([&](const Roll<S>& roll) { return numbers_of(roll.hoop)[k]; });
+  return {.hoop = hoop_of(hoop),
+          .release = lanes([](const Roll<S>& roll) { return roll.release; }),
+          .release_trig = {lanes([](const Roll<S>& roll) { return roll.release_trig.sin; }),
+                           lanes([](const Roll<S>& roll) { return roll.release_trig.cos; }),
+                           lanes([](const Roll<S>& roll) { return roll.release_trig.versine; })},
+          .released = lanes([](const Roll<S>& roll) { return roll.released; }),
+          .level = lanes([](const Roll<S>& roll) { return roll.level; }),
+          .push = lanes([](const Roll<S>& roll) { return roll.push; })};
 }
 
 /// E at an angle, accurate to a few roundings of its largest term.

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "numerics/rows.hpp"
@@ -72,10 +73,10 @@ struct Block {
   /// The lanes of U, T or WideOf<T>, here and below.
   template <class U>
   void store(const Roll<U>& roll, const Quiet<U>& quiet, const std::uint32_t* index, std::size_t count) {
-    const Hoop<U>& h = roll.hoop;
     const Trig<U>& phi = roll.release_trig;
-    paths_.template store<U>(
-        {h.sin_slope, h.cos_slope, h.rho, h.clearance, h.Ic, h.J_min, roll.level, h.thrust}, index, count);
+    std::array<U, 8> path = numbers_of(roll.hoop);
+    path[drive] = roll.level;
+    paths_.template store<U>(path, index, count);
     releases_.template store<U>({roll.release, phi.sin, phi.cos, phi.versine, roll.released, roll.push,
                                  quiet.vis_viva, quiet.distance},
                                 index, count);
@@ -84,11 +85,9 @@ struct Block {
   /// Hoop and level only, which all that depends on the angle alone is made of. U may also be S: one design.
   template <class U>
   Roll<U> load_path(const std::uint32_t* index) const {
-    const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, level, thrust] =
-        paths_.template load<U>(index);
     Roll<U> roll;
-    roll.hoop = {sin_slope, cos_slope, rho, clearance, Ic, J_min, thrust - sin_slope, thrust};
-    roll.level = level;
+    roll.hoop = hoop_of(paths_.template load<U>(index));
+    roll.level = std::exchange(roll.hoop.drive, roll.hoop.thrust - roll.hoop.sin_slope);
     return roll;
   }
   template <class U>
@@ -117,6 +116,9 @@ struct Block {
   }
 
  private:
+  static constexpr std::size_t drive =
+      6;  // of a hoop's numbers; it follows from others, and makes way for the level
+
   PackedRows<S, 8> paths_{most_designs}, releases_{most_designs};
   PackedRows<S, 6> lift_offs_{most_designs};
 };

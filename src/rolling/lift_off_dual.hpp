@@ -18,10 +18,8 @@ struct LiftOffDual {
 
 template <class T, std::size_t N>
 Roll<T> plain(const Roll<Dual<T, N>>& roll) {
-  const Hoop<Dual<T, N>>& h = roll.hoop;
   const Trig<Dual<T, N>>& phi = roll.release_trig;
-  return {.hoop = {h.sin_slope.value, h.cos_slope.value, h.rho.value, h.clearance.value, h.Ic.value,
-                   h.J_min.value, h.drive.value, h.thrust.value},
+  return {.hoop = mapped<T>(roll.hoop, [](const Dual<T, N>& number) { return number.value; }),
           .release = roll.release.value,
           .release_trig = {phi.sin.value, phi.cos.value, phi.versine.value},
           .released = roll.released.value,

@@ -38,8 +38,6 @@ class Integrations {
   }
 
  private:
-  /// A long run takes a million; a slide near Painleve's edge would take any number.
-  static long most_steps(const Scene& scene) { return model_of(scene).slips ? 100'000 : 1'000'000; }
   static Outcome solved(const Solving& solving, const Design& design) {
     Outcome outcome;
     solving.solve({&design, 1}, {&outcome, 1});

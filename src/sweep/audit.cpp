@@ -109,11 +109,14 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
   const std::vector<std::size_t> drawn = audit_draw(share, tiling, tile);
   std::vector<AuditSample> samples;
   const DesignSpace space(spec);
+  std::vector<Design> designs;
   for (const std::size_t index : drawn) {
     samples.push_back({tiling.number(tile, index), {}});
-    const Design design = space.at(samples.back().number);
-    solve({&design, 1}, {&samples.back().outcome, 1});
+    designs.push_back(space.at(samples.back().number));
   }
+  std::vector<Outcome> outcomes(designs.size());
+  solve(designs, outcomes);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].outcome = std::move(outcomes[i]);
   const GradientWanted derivatives = gradients_of(spec);
   for (const auto of : derivatives.of)
     for (const std::size_t by : derivatives.by) {
@@ -196,7 +199,7 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
       referee_every_(referee_every),
       allowed_(begin_audit(spec).allowed_error) {
   if (referee_every == 0) {
-    const double audited = spec.numerics.audit * static_cast<double>(Tiling(shape_of(spec)).designs());
+    const double audited = spec.numerics.audit * static_cast<double>(designs_of(shape_of(spec)));
     const auto large = static_cast<std::size_t>(audited / most_refereed);
     referee_every_ = audited <= 3.0 * usual_referee_every ? 1 : std::max(usual_referee_every, large);
   }

@@ -115,7 +115,7 @@ AuditReport read_audit(const MapReader& map) {
   report.method = map.attribute("audit_method");
   const std::vector<std::int64_t> version = hdf5::read_integers(map.file(), "version");
   const auto has = [&](const auto& row) { return version[1] >= row.since; };
-  const auto designs = static_cast<std::int64_t>(Tiling(map.shape()).designs());
+  const auto designs = static_cast<std::int64_t>(designs_of(map.shape()));
   const auto count = [&](const char* name, std::int64_t least, std::int64_t most) {
     const std::int64_t value = hdf5::read_integers(map.file(), name)[0];
     if (value < least || value > most)

@@ -14,9 +14,6 @@
 namespace leapmap {
 namespace {
 
-/// An integration near Painleve's edge would take any number of steps; a long run takes a million.
-long most_steps(const Scene& scene) { return model_of(scene).slips ? 100'000 : 1'000'000; }
-
 Solver solver_of(const Scene& scene, const std::string& method, double tolerance) {
   if (method == "exact") return model_of(scene).exact(scene, tolerance, {});
   IntegrationOptions options = adaptive(method, tolerance);

@@ -18,7 +18,7 @@ constexpr double audit_reach =
 std::vector<Design> beside(const Design& design, const Spec& spec, double distance) {
   std::vector<Design> designs;
   for (const Option* parameter : design_parameters(spec)) {
-    const auto member = std::get<ParameterSlot>(parameter->slot).member;
+    const auto member = member_of(*parameter);
     const double value = design.*member;
     if (value == 0.0) continue;  // as written, and the number beside it is no rounding of it
     for (const double way : {-1.0, 1.0}) {

@@ -43,7 +43,7 @@ void check_grid(const Spec& spec) {
   check_spec(spec);
   if (spec.axes.empty())
     throw InputError(origin_of(spec) + ": is of no grid; allowed: one axis or more, along which to look");
-  const std::size_t designs = Tiling(shape_of(spec)).designs();
+  const std::size_t designs = designs_of(shape_of(spec));
   if (designs > most_bounded_designs)
     throw InputError(fmt::format("{}: {} designs; allowed: at most {} for cliffs", origin_of(spec), designs,
                                  most_bounded_designs));
@@ -99,8 +99,7 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
   const DesignSpace space(spec);
   const std::vector<std::size_t> shape = shape_of(spec);
   std::vector<double Design::*> members;
-  for (const Axis& axis : spec.axes)
-    members.push_back(std::get<ParameterSlot>(find_option("", axis.key)->slot).member);
+  for (const Axis& axis : spec.axes) members.push_back(member_of(axis.key));
   std::vector<std::vector<Cliff>> found((edges.size() + at_once - 1) / at_once);
   std::mutex telling;
   std::size_t done = 0;
@@ -178,7 +177,7 @@ Boundaries find_boundaries(const Spec& original, const BoundaryOptions& asked) {
   check_grid(spec);
   BoundaryOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
-  const std::size_t designs = Tiling(shape_of(spec)).designs();
+  const std::size_t designs = designs_of(shape_of(spec));
   const std::vector<std::uint64_t> words = solve_grid(spec, options, designs);
   const std::vector<Edge> edges = edges_of(shape_of(spec), words);
   Boundaries boundaries{spec.axes, {}, polish(spec, edges, options, designs), {}};

@@ -25,7 +25,7 @@ Tiling tiling_of(const Spec& spec) {
   if (spec.scatter.spreads.empty() && !model_of(spec.scene).slips) return Tiling(shape);
   if (spec.scatter.spreads.empty()) {
     // Some hoops take a hundred times as long as others: small enough that shards come out even.
-    const std::size_t designs = Tiling(shape).designs();
+    const std::size_t designs = designs_of(shape);
     return Tiling(shape, std::clamp<std::size_t>(designs / 512, 128, 2048));
   }
   constexpr std::size_t most_hoops = 1 << 20;  // of a tile: some tenths of a second, with friction seconds
@@ -34,7 +34,7 @@ Tiling tiling_of(const Spec& spec) {
 
 DesignSpace::DesignSpace(const Spec& spec) : spec_(spec) {
   for (const Axis& axis : spec.axes.empty() ? spec.list.columns : spec.axes)
-    members_.push_back(std::get<ParameterSlot>(find_option("", axis.key)->slot).member);
+    members_.push_back(member_of(axis.key));
 }
 
 Design DesignSpace::at_position(const std::vector<std::size_t>& position) const {

@@ -122,7 +122,7 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
 double seconds_per_design(const Spec& spec, double seconds) {
   using Clock = std::chrono::steady_clock;
   const DesignSpace space(spec);
-  const std::size_t count = Tiling(shape_of(spec)).designs();
+  const std::size_t count = designs_of(shape_of(spec));
   constexpr std::size_t most = 8192;
   BlockSolver solver(spec, most, points_of(spec.scatter));
   std::mt19937_64 random(1);

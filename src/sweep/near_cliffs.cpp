@@ -34,7 +34,7 @@ class Box {
       const auto [low, high] = std::ranges::minmax(axis.values);
       const auto spacing = spacing_of(axis.values);
       const bool log = spacing && spacing->log && low > 0.0;
-      members_.push_back(std::get<ParameterSlot>(find_option("", axis.key)->slot).member);
+      members_.push_back(member_of(axis.key));
       sides_.push_back({low, high, log});
       const double value = design.*members_.back();
       if (!(value >= low && value <= high))

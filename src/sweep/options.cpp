@@ -375,4 +375,6 @@ double parse_number(const Option& option, std::string_view text) {
   return value;
 }
 
+double Design::*member_of(std::string_view parameter) { return member_of(*find_option("", parameter)); }
+
 }  // namespace leapmap

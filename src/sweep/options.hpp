@@ -61,10 +61,15 @@ std::vector<const Option*> hop_options();
 /// Those parameters that matter to a spec, or that its list names.
 std::vector<const Option*> design_parameters(const Spec& spec);
 
-/// A design's value of one of these parameters.
-inline double value_of(const Option& parameter, const Design& design) {
-  return design.*std::get<ParameterSlot>(parameter.slot).member;
+/// Where a design keeps what an option sets, which is a parameter of it.
+inline double Design::*member_of(const Option& parameter) {
+  return std::get<ParameterSlot>(parameter.slot).member;
 }
+/// The same of the parameter of that name.
+double Design::*member_of(std::string_view parameter);
+
+/// A design's value of one of these parameters.
+inline double value_of(const Option& parameter, const Design& design) { return design.*member_of(parameter); }
 
 /// The values of a parameter along a spec's list of designs.
 std::vector<double> list_values(const Spec& spec, const Option& parameter);

@@ -51,7 +51,7 @@ void check_spread(const Spec& spec, const Spread& spread) {
            "a width in the parameter's unit");
   for (const double value : values) {
     Design drawn = spec.design;
-    drawn.*std::get<ParameterSlot>(parameter.slot).member = value;
+    drawn.*member_of(parameter) = value;
     if (!hoops.can_make(drawn))
       refuse(spec, "scatter", spread.parameter,
              fmt::format("leaves the domain around {}{}: {:.3g} % of it lies where no hoop can be", value,

@@ -89,7 +89,7 @@ void check_common(const Spec& spec) {
   Design common = spec.design;
   for (const auto* varying : {&spec.axes, &spec.list.columns})
     for (const Axis& axis : *varying) {
-      const auto member = std::get<ParameterSlot>(find_option("design", axis.key)->slot).member;
+      const auto member = member_of(axis.key);
       common.*member = Design{}.*member;
     }
   check_design(common, spec.scene, origin_of(spec));
