@@ -213,7 +213,6 @@ void add_sweep(CLI::App& app, int& status) {
       ->add_option("--commit-interval", arguments->commit_interval,
                    "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
                    "hand; default: 1")
-      ->excludes(command->get_option("--retry-failed"))
       ->check(CLI::Range(0.0, 86400.0));
   command
       ->add_option_function<std::string>(

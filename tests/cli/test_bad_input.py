@@ -49,7 +49,7 @@ def test_a_bad_spec_ends_with_status_2_one_line_and_no_file(kind, tmp_path):
     ["hop", "--set", "design.slope={values=[0.1,0.2]}"], ["hop", "--set", "tolerance=1e-3\nslope=9"],
     ["hop", "--set", 'method="a\\nb"'], ["hop", "--slope", "0.4raddeg"], ["hop", "--trace-interval", "nan", "--trace", "/tmp/x.h5"],
     ["hop", "--trace-interval", "0.01"], ["info", "m.h5", "--limit", "3"], ["info", "m.h5", "--spec", "--failed"],
-    ["sweep", "x.toml", "--retry-failed", "--overwrite"], ["sweep", "x.toml", "--retry-failed", "--commit-interval", "2"],
+    ["sweep", "x.toml", "--retry-failed", "--overwrite"],
     ["gait", "--set", "scene.jumps=5"], ["gait", "--set", "jumps=5"],
 ])
 def test_bad_usage_ends_with_status_2_and_one_line(arguments):
