@@ -155,7 +155,7 @@ void print_miss(const Spec& spec, const Question& question, const FoundDesigns& 
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
     say("     {} {}: {}\n", spec.goals[k].field, text_of(spec.goals[k]),
         std::isnan(found.missed[k]) ? "it has none" : fmt::format("{:.10g}", found.missed[k]));
-  say("     {}\n", hop_command(question.one, nearest.design));
+  say("     {}\n", command_of(question, nearest.design));
 }
 
 std::string json_of(const Question& question, const FoundDesign& found) {

@@ -18,6 +18,7 @@
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "sweep/designs.hpp"
+#include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
@@ -190,12 +191,23 @@ std::string csv_of(const Measurements& measured, const FitReport& report) {
   return text;
 }
 
+/// Says which of the spec's own values are fitted anew, as it has no free parameters of its own.
+void tell_fitted_anew(const Spec& spec) {
+  if (!spec.axes.empty()) return;
+  for (const char* name : {"release_angle", "release_spin", "mu_static"})
+    if (const double given = spec.design.*member_of(name); given != Design{}.*member_of(name))
+      tell(fmt::format(
+          "{} = {} is not used but fitted; allowed, to hold it: any free parameter, {{ from, to }}", name,
+          given));
+}
+
 int run(const FitArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   const auto only = std::ranges::find(models(), arguments.model, &Model::name);
   if (only != models().end() && only->slips)
     overrides.insert(overrides.begin(), "scene.friction=" + arguments.model);
   const Spec spec = read_spec(arguments.spec, overrides);
+  tell_fitted_anew(spec);
   refuse_text_over("--csv", arguments.csv, {arguments.data, arguments.spec}, arguments.locking);
   const Measurements measured = read_measurements(arguments.data, arguments.reading);
   FitOptions options = arguments.options;

@@ -79,22 +79,24 @@ class SlidingLanes {
     T length;
   };
   Rest rest(const typename Panels::Stretch& stretch, const Panel& panel, const MaskOf<T>& asked) const;
-  /// What comes of the panels that were solved.
+  /// What the panels say, once they are solved.
   struct Seen {
-    MaskOf<T> is_steep;     ///< too near Painleve's edge
-    MaskOf<T> solved;       ///< to the tolerance, or as well as can be where it is the last
-    MaskOf<T> done;         ///< the slide has ended at the panel's end
-    MaskOf<T> goes_on;      ///< beyond its end
-    MaskOf<T> ends_inside;  ///< by the first of `events`, at `inside`
-    MaskOf<T> ends_again;   ///< by that, where the panel is to be solved to once more
-    MaskOf<T> unresolved;   ///< w^2, where it vanishes
+    MaskOf<T> is_steep;     ///< it comes too near to Painleve's edge
+    MaskOf<T> solved;       ///< to the tolerance; where it is the last one, as well as it goes
+    MaskOf<T> done;         ///< the slide has ended, at the panel's end
+    MaskOf<T> goes_on;      ///< nothing ends the slide on this panel
+    MaskOf<T> ends_inside;  ///< the first of `events` ends it, at `inside`
+    MaskOf<T> ends_again;   ///< that ends it, but `inside` has lost digits: the panel is solved once more, up
+                            ///< to there
     Events events;
     typename Panels::Inside inside;
-    Rest rest;                 ///< where the spin vanishes: the next panel is to end there
-    MaskOf<T> hardly_set_out;  ///< but for those: halfway
+    Rest rest;  ///< where the spin vanishes; the next panel leads there
+    MaskOf<T>
+        hardly_set_out;  ///< the spin vanishes soon after a start near rest; the next panel goes half the way
+    MaskOf<T> unresolved;  ///< the spin vanishes, but the nodes do not resolve w^2
   };
   Seen look_at_panel(const InLanes& slides, const Ahead& ahead) const;
-  /// How long the next panel may be, and whether it has to be shorter than the one that was tried.
+  /// How long the next panel may be; is_shorter: no event and no end, but the slide goes on by a shorter one.
   struct Next {
     MaskOf<T> is_shorter;
     T length;

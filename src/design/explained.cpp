@@ -135,11 +135,6 @@ void Explained::free_by_default() {
              free_parameter("release_spin", spin * second - 0.5, spin * second + 0.5)};
   }
   if (model_of(spec_.scene).slips) free_.push_back(free_parameter("mu_static", 0.05, 1.5));
-  // What was given stays as it is.
-  std::erase_if(free_, [&](const FreeParameter& one) {
-    constexpr Design usual;
-    return spec_.design.*one.member != usual.*one.member;
-  });
 }
 
 Design Explained::design_at(std::span<const double> at) const {

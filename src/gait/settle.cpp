@@ -38,36 +38,32 @@ void GaitSolver::settle(std::span<const Design> designs) {
   some_.assign(designs.begin(), designs.end());
   for (std::size_t i = 0; i < designs.size(); ++i)
     going_.push_back(i), states_.push_back(released<double>(designs[i]));
-  for (long jump = 0; jump < scene_.settle && !going_.empty(); ++jump) {
-    map_.next(jump == 0 ? Start::release : Start::landing, some_, states_, found_);
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < going_.size(); ++k) {
-      ends_[going_[k]] = found_[k].status;
-      if (found_[k].status != Status::jumped) continue;
-      going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
-      ++kept;
-    }
-    going_.resize(kept), some_.resize(kept), states_.resize(kept);
-  }
+  seen_.assign(designs.size(), {});
+  for (long jump = 0; jump < scene_.settle && !going_.empty(); ++jump)
+    jump_on(jump == 0 ? Start::release : Start::landing);
 }
 
 /// As many jumps more as the longest period has.
 void GaitSolver::look_on() {
-  seen_.assign(going_.size(), {});
-  for (std::size_t k = 0; k < going_.size(); ++k) seen_[k].push_back(states_[k]);
-  for (long jump = 0; jump < scene_.most_period && !going_.empty(); ++jump) {
-    map_.next(Start::landing, some_, states_, found_);
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < going_.size(); ++k) {
-      ends_[going_[k]] = found_[k].status;
-      if (found_[k].status != Status::jumped) continue;
-      seen_[k].push_back(states_[k]);
-      going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
-      if (kept != k) seen_[kept] = std::move(seen_[k]);
-      ++kept;
-    }
-    going_.resize(kept), some_.resize(kept), states_.resize(kept), seen_.resize(kept);
+  const auto note = [&] {
+    for (std::size_t k = 0; k < going_.size(); ++k) seen_[k].push_back(states_[k]);
+  };
+  note();
+  for (long jump = 0; jump < scene_.most_period && !going_.empty(); ++jump) jump_on(Start::landing), note();
+}
+
+/// One jump of those that go on; those that make it are left.
+void GaitSolver::jump_on(Start start) {
+  map_.next(start, some_, states_, found_);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < going_.size(); ++k) {
+    ends_[going_[k]] = found_[k].status;
+    if (found_[k].status != Status::jumped) continue;
+    going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
+    if (kept != k) seen_[kept] = std::move(seen_[k]);
+    ++kept;
   }
+  going_.resize(kept), some_.resize(kept), states_.resize(kept), seen_.resize(kept);
 }
 
 namespace {

@@ -26,6 +26,7 @@ class GaitSolver {
  private:
   void settle(std::span<const Design> designs);
   void look_on();
+  void jump_on(Start start);
   bool find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit);
 
   Scene scene_;

@@ -18,9 +18,9 @@ struct Scene {
   // Of gaits, which jump after jump repeat themselves; the runway then counts from each landing.
   long settle = 0;        ///< jumps before a gait is looked at, in [0, 10^6]; 0: none is looked for
   long most_period = 16;  ///< of a gait [jumps], in [1, 64]
-  double gait_tolerance =
-      1e-3;                  ///< how nearly a landing comes again that is closed to an orbit [rad, sqrt(g/R)]
-  double rest_speed = 1e-3;  ///< coulomb: a rebound slower than this counts as none [sqrt(g R)]
+  /// How nearly a landing comes again that is closed to an orbit [rad, sqrt(g/R)], in (0, 1].
+  double gait_tolerance = 1e-3;
+  double rest_speed = 1e-3;  ///< coulomb: a rebound slower than this counts as none [sqrt(g R)], >= 0
   double radius = 0.041;     ///< R [m], > 0; scales lengths and times, nothing else
   double gravity = 9.81;     ///< g [m/s^2], > 0; scales times, nothing else
 };

@@ -10,19 +10,19 @@
 
 namespace leapmap {
 
-std::size_t designs_of(const std::vector<std::size_t>& shape) {
-  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
-}
-
 namespace {
+
+std::size_t product(const std::vector<std::size_t>& extents) {
+  return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
+}
 
 /// Doubles the shortest side that can still grow until the tile is as large as it should be.
 std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, std::size_t most) {
   constexpr std::size_t smallest = 64, wanted_tiles = 64;
   const std::size_t target =
-      std::bit_floor(std::min(most, std::max(designs_of(shape) / wanted_tiles, smallest)));
+      std::bit_floor(std::min(most, std::max(product(shape) / wanted_tiles, smallest)));
   std::vector<std::size_t> tile(shape.size(), 1);
-  while (designs_of(tile) < target) {
+  while (product(tile) < target) {
     std::size_t shortest = shape.size();
     for (std::size_t i = shape.size(); i-- > 0;)
       if (tile[i] < shape[i] && (shortest == shape.size() || tile[i] < tile[shortest])) shortest = i;
@@ -34,17 +34,19 @@ std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, st
 
 }  // namespace
 
+std::size_t designs_of(const std::vector<std::size_t>& shape) { return product(shape); }
+
 Tiling::Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_shape)
     : shape_(std::move(shape)),
       tile_shape_(std::move(tile_shape)),
-      designs_(designs_of(shape_)),
+      designs_(product(shape_)),
       whole_designs_(designs_) {
   assert(shape_.size() == tile_shape_.size());
   for (std::size_t i = 0; i < shape_.size(); ++i) {
     assert(tile_shape_[i] > 0 && tile_shape_[i] <= shape_[i]);
     tiles_along_.push_back((shape_[i] + tile_shape_[i] - 1) / tile_shape_[i]);
   }
-  tiles_ = designs_of(tiles_along_);
+  tiles_ = product(tiles_along_);
 }
 
 Tiling::Tiling(std::vector<std::size_t> shape, std::size_t most)
@@ -60,7 +62,7 @@ Tiling Tiling::part(std::vector<std::size_t> numbers) const {
   return some;
 }
 
-std::size_t Tiling::largest_tile() const { return designs_of(tile_shape_); }
+std::size_t Tiling::largest_tile() const { return product(tile_shape_); }
 
 Tile Tiling::tile(std::size_t number) const {
   Tile tile;
@@ -70,7 +72,7 @@ Tile Tiling::tile(std::size_t number) const {
     tile.start[i] *= tile_shape_[i];
     tile.extent[i] = std::min(tile_shape_[i], shape_[i] - tile.start[i]);
   }
-  tile.count = designs_of(tile.extent);
+  tile.count = product(tile.extent);
   return tile;
 }
 

@@ -111,7 +111,7 @@ class Problem {
     return names;
   }
   std::size_t evaluations() const { return judge_.evaluations(); }
-  /// What is not free, as leapmap.solve takes it.
+  /// What is not free, as leapmap.solve takes it: all but gait.tolerance.
   py::dict fixed() const {
     py::dict numbers;
     const Scene& scene = question_.one.scene;

@@ -39,6 +39,7 @@ class Referee {
               const std::function<bool(std::size_t)>& happens);
   Outcome solve_sticking();
   Outcome solve_coulomb(const Design& design);
+  class Slipping;
   /// Counts a lift-off; true if it is the jump.
   bool count_lift_off(const Flown& flown);
 

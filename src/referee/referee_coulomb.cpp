@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "referee/referee.hpp"
 
@@ -43,109 +44,136 @@ Next next_of(const Body& body, const Motion& at, double mu_static, Leaving leavi
 
 }  // namespace
 
-Outcome Referee::solve_coulomb(const Design& design) {
-  const Body& body = system_.body;
-  const double R = scene_.radius;
-  const double mu_kinetic = std::isnan(design.mu_kinetic) ? design.mu_static : design.mu_kinetic;
-  const double mu_static = std::max(design.mu_static, mu_kinetic);
-  const double runway = 2.0 * std::numbers::pi * scene_.runway * R;
-  const double rest_speed = scene_.rest_speed * std::sqrt(scene_.gravity * R);
-  const double released = energy(body, at_);
-  double slipped = 0.0, driven = 0.0;
-  int phases = 0;
-  const auto begin = [&](Phase phase) {
-    if (phases < 32) outcome_.phase_sequence |= static_cast<std::uint64_t>(phase) << (2 * phases);
-    ++phases;
-  };
-  const auto ended = [&](Status status) {
-    if (status == Status::failed || status == Status::indeterminate) {
+/// One design on its way from phase to phase. Each phase moves the hoop to its end, and returns what comes
+/// next; nothing: the design has ended, as `end` says.
+class Referee::Slipping {
+ public:
+  Slipping(Referee& referee, const Design& design)
+      : referee_(referee),
+        body_(referee.system_.body),
+        at_(referee.at_),
+        outcome_(referee.outcome_),
+        mu_kinetic_(std::isnan(design.mu_kinetic) ? design.mu_static : design.mu_kinetic),
+        mu_static_(std::max(design.mu_static, mu_kinetic_)),
+        restitution_(design.restitution),
+        runway_(2.0 * std::numbers::pi * referee.scene_.runway * referee.scene_.radius),
+        released_(energy(body_, at_)) {}
+
+  Outcome solve() {
+    std::optional<Next> next = next_of(body_, at_, mu_static_, Leaving::unless_it_sticks);
+    if (next == Next::flies) next = ended(Status::airborne_at_release);
+    for (; next && phases_ < most_phases;)
+      next = next == Next::rolls ? roll() : next == Next::flies ? fly_and_land() : slide(*next);
+    if (next) ended(Status::failed);
+    if (end_ == Status::failed || end_ == Status::indeterminate) {
       const std::uint64_t sequence = outcome_.phase_sequence;
       outcome_ = failed_outcome("the referee gave up");
-      outcome_.status = status;
       outcome_.phase_sequence = sequence;
-      return outcome_;
+    } else {
+      outcome_.slip_distance = slipped_ / referee_.scene_.radius;
     }
-    outcome_.status = status;
-    outcome_.slip_distance = slipped / R;
+    outcome_.status = end_;
     return outcome_;
-  };
-  const Guard runway_left = [&](const Motion& at) { return runway - std::abs(at.x); };
-  std::size_t happened = 0;
-  const auto first_event = [&](std::size_t guard) {
-    happened = guard;
-    return true;
-  };
+  }
 
-  Next next = next_of(body, at_, mu_static, Leaving::unless_it_sticks);
-  if (next == Next::flies) return ended(Status::airborne_at_release);
-  while (phases < most_phases) {
-    if (next == Next::rolls) {
-      begin(Phase::rolling);
-      const Motion from = at_;
-      for (int turns = 0; turns < 2; ++turns) {  // who has turned twice has seen every angle there is
-        const double sets_out = at_.spin != 0.0 ? at_.spin : forces_of(body, {Mode::rolls}, at_).phi;
-        if (sets_out == 0.0) return ended(Status::stalled);
-        const double way = std::copysign(1.0, sets_out);
-        const std::vector<Guard> guards{[&](const Motion& at) { return hold(body, at, mu_static, 1.0); },
-                                        [&](const Motion& at) { return hold(body, at, mu_static, -1.0); },
-                                        [&](const Motion& at) { return way * at.spin; }, runway_left};
-        if (!follow({Mode::rolls}, guards, first_event)) return ended(Status::failed);
-        if (happened != 2) break;
-        at_.spin = at_.x_rate = 0.0;
-      }
-      driven += body.motor * (at_.phi - from.phi);
-      if (happened == 2) return ended(Status::stalled);
-      if (happened == 3) return ended(Status::no_jump);
-      next = free_rise(body, at_) >= 0.0 ? Next::flies
-             : happened == 0             ? Next::slides_backwards
-                                         : Next::slides_forwards;
-      continue;
+ private:
+  std::nullopt_t ended(Status status) {
+    end_ = status;
+    return std::nullopt;
+  }
+  void begin(Phase phase) {
+    if (phases_ < 32) outcome_.phase_sequence |= static_cast<std::uint64_t>(phase) << (2 * phases_);
+    ++phases_;
+  }
+  /// On in a mode to the first event, whose guard happened_ is then. False: it could not be followed.
+  bool follow(const Mode& mode, const std::vector<Guard>& guards) {
+    const Motion from = at_;
+    const bool followed = referee_.follow(mode, guards, [&](std::size_t guard) {
+      happened_ = guard;
+      return true;
+    });
+    driven_ += body_.motor * (at_.phi - from.phi);
+    return followed;
+  }
+  double runway_left(const Motion& at) const { return runway_ - std::abs(at.x); }
+
+  std::optional<Next> roll() {
+    begin(Phase::rolling);
+    for (int turns = 0; turns < 2; ++turns) {  // who has turned twice has seen every angle there is
+      const double sets_out = at_.spin != 0.0 ? at_.spin : forces_of(body_, {Mode::rolls}, at_).phi;
+      if (sets_out == 0.0) return ended(Status::stalled);
+      const double way = std::copysign(1.0, sets_out);
+      const std::vector<Guard> guards{[&](const Motion& at) { return hold(body_, at, mu_static_, 1.0); },
+                                      [&](const Motion& at) { return hold(body_, at, mu_static_, -1.0); },
+                                      [&](const Motion& at) { return way * at.spin; },
+                                      [&](const Motion& at) { return runway_left(at); }};
+      if (!follow({Mode::rolls}, guards)) return ended(Status::failed);
+      if (happened_ != 2) break;
+      at_.spin = at_.x_rate = 0.0;
     }
-    if (next != Next::flies) {
-      begin(Phase::sliding);
-      const double sign = next == Next::slides_forwards ? 1.0 : -1.0;
-      const Mode slides{Mode::slides, -sign * mu_kinetic};
-      if (sliding_determinant(body, slides, at_) <= 0.0) return ended(Status::indeterminate);
-      const std::vector<Guard> guards{
-          [&](const Motion& at) { return -free_rise(body, at); },
-          [&](const Motion& at) { return sign * slip_of(body, at); }, runway_left,
-          [&](const Motion& at) { return sliding_determinant(body, slides, at); }};
-      const Motion from = at_;
-      const bool followed = follow(slides, guards, first_event);
-      driven += body.motor * (at_.phi - from.phi);
-      slipped += std::abs((at_.x - from.x) - R * (at_.phi - from.phi));
-      if (!followed) return ended(Status::failed);
-      if (happened == 3) return ended(Status::indeterminate);
-      if (happened == 2) return ended(Status::no_jump);
-      if (happened == 1) {
-        at_.x_rate = R * at_.spin;
-        next = next_of(body, at_, mu_static, Leaving::unless_it_sticks);
-        continue;
-      }
-    }
-    const Flown flown = fly(body, at_);
+    if (happened_ == 2) return ended(Status::stalled);
+    if (happened_ == 3) return ended(Status::no_jump);
+    if (free_rise(body_, at_) >= 0.0) return Next::flies;
+    return happened_ == 0 ? Next::slides_backwards : Next::slides_forwards;
+  }
+
+  std::optional<Next> slide(Next direction) {
+    begin(Phase::sliding);
+    const double sign = direction == Next::slides_forwards ? 1.0 : -1.0;
+    const Mode slides{Mode::slides, -sign * mu_kinetic_};
+    if (sliding_determinant(body_, slides, at_) <= 0.0) return ended(Status::indeterminate);
+    const std::vector<Guard> guards{[&](const Motion& at) { return -free_rise(body_, at); },
+                                    [&](const Motion& at) { return sign * slip_of(body_, at); },
+                                    [&](const Motion& at) { return runway_left(at); },
+                                    [&](const Motion& at) { return sliding_determinant(body_, slides, at); }};
+    const Motion from = at_;
+    const bool followed = follow(slides, guards);
+    const double R = referee_.scene_.radius;
+    slipped_ += std::abs((at_.x - from.x) - R * (at_.phi - from.phi));
+    if (!followed) return ended(Status::failed);
+    if (happened_ == 3) return ended(Status::indeterminate);
+    if (happened_ == 2) return ended(Status::no_jump);
+    if (happened_ == 0) return Next::flies;
+    at_.x_rate = R * at_.spin;
+    return next_of(body_, at_, mu_static_, Leaving::unless_it_sticks);
+  }
+
+  std::optional<Next> fly_and_land() {
+    const double R = referee_.scene_.radius, weight = body_.mass() * body_.g;
+    const Flown flown = fly(body_, at_);
     if (flown.failed) return ended(Status::failed);
-    const double held_down = body.mass() * body.g * std::cos(body.slope) +
-                             body.m_p * body.L * std::cos(at_.phi) * at_.spin * at_.spin;
-    if (body.motor != 0.0 && !(flown.landing_time > 0.0) && held_down > 1e-9 * body.mass() * body.g)
+    const double held_down =
+        weight * std::cos(body_.slope) + body_.m_p * body_.L * std::cos(at_.phi) * at_.spin * at_.spin;
+    if (body_.motor != 0.0 && !(flown.landing_time > 0.0) && held_down > 1e-9 * weight)
       return ended(Status::indeterminate);  // the motor alone lifted it off, and idles in flight
     begin(Phase::flight);
-    const bool jumps = count_lift_off(flown);
-    if (jumps) outcome_.energy_lost = (released + driven - energy(body, at_)) / (body.mass() * body.g * R);
-    Motion landed = flying(body, at_, flown.landing_time);
+    const bool jumps = referee_.count_lift_off(flown);
+    if (jumps) outcome_.energy_lost = (released_ + driven_ - energy(body_, at_)) / (weight * R);
+    Motion landed = flying(body_, at_, flown.landing_time);
     landed.y = R;
-    time_ += flown.landing_time;
-    at_ = after_landing(body, landed, mu_kinetic, design.restitution, rest_speed);
+    referee_.time_ += flown.landing_time;
+    const double rest_speed = referee_.scene_.rest_speed * std::sqrt(referee_.scene_.gravity * R);
+    at_ = after_landing(body_, landed, mu_kinetic_, restitution_, rest_speed);
     if (jumps) {
-      outcome_.landing_spin = at_.spin * second_;
+      outcome_.landing_spin = at_.spin * referee_.second_;
       return ended(Status::jumped);
     }
-    if (!(std::abs(at_.x) < runway)) return ended(Status::no_jump);
-    next = at_.y_rate > 0.0
-               ? Next::flies
-               : next_of(body, at_, mu_static, flown.landing_time > 0.0 ? Leaving::always : Leaving::never);
+    if (!(std::abs(at_.x) < runway_)) return ended(Status::no_jump);
+    if (at_.y_rate > 0.0) return Next::flies;
+    return next_of(body_, at_, mu_static_, flown.landing_time > 0.0 ? Leaving::always : Leaving::never);
   }
-  return ended(Status::failed);
-}
+
+  Referee& referee_;
+  const Body& body_;
+  Motion& at_;
+  Outcome& outcome_;
+  double mu_kinetic_, mu_static_, restitution_, runway_, released_;
+  double slipped_ = 0.0, driven_ = 0.0;
+  int phases_ = 0;
+  std::size_t happened_ = 0;
+  Status end_ = Status::failed;
+};
+
+Outcome Referee::solve_coulomb(const Design& design) { return Slipping(*this, design).solve(); }
 
 }  // namespace leapmap::referee

@@ -116,6 +116,8 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
   }
   std::vector<Outcome> outcomes(designs.size());
   solve(designs, outcomes);
+  std::vector<bool> gave_up;  // the map's method on them: settled since, if they are, without derivatives
+  for (const Outcome& outcome : outcomes) gave_up.push_back(outcome.status == Status::failed);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].outcome = std::move(outcomes[i]);
   const GradientWanted derivatives = gradients_of(spec);
   for (const auto of : derivatives.of)
@@ -125,11 +127,9 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
           map.read(std::string(find_gradient(of, differentiable[by])->name), tile);
       for (std::size_t i = 0; i < samples.size(); ++i) samples[i].gradient.push_back(values[drawn[i]]);
     }
-  // A design that was settled later has none.
   if (hdf5::has_attribute(map.file(), "retry_designs"))
-    for (AuditSample& sample : samples)
-      if (std::ranges::all_of(sample.gradient, [](double value) { return std::isnan(value); }))
-        sample.gradient.clear();
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (gave_up[i]) samples[i].gradient.clear();
   for (const Field* each : fields_of(spec.scene)) {
     const Field& field = *each;
     if (samples.empty() || !map.has(std::string(field.name))) continue;

@@ -17,7 +17,7 @@ struct ContactState {
   S angle = S(0), spin = S(0);
   S slip = S(0);              ///< v = x' - w
   S normal = S(0);            ///< v_n with which a flight begins: of a rebound above zero
-  S turned_in_flight = S(0);  ///< since release [rad]: a motor idles there
+  S turned_in_flight = S(0);  ///< since release, or since it was reduced [rad]: a motor idles there
 };
 
 /// A state without whole turns, time and travel, on which nothing depends that comes after it.

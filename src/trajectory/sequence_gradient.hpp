@@ -26,12 +26,14 @@ using DualJumpSolver =
     std::function<Outcome(Start, const Design&, Along, ContactState<DesignDual>& at, const PutDual& put)>;
 
 inline ContactState<double> plain(const ContactState<DesignDual>& at) {
-  return {at.time.value, at.travel.value, at.angle.value, at.spin.value, at.slip.value, at.normal.value};
+  return {at.time.value, at.travel.value, at.angle.value,           at.spin.value,
+          at.slip.value, at.normal.value, at.turned_in_flight.value};
 }
 /// Takes over values that somebody knows better.
 inline void set_values(ContactState<DesignDual>& at, const ContactState<double>& known) {
   at.time.value = known.time, at.travel.value = known.travel, at.angle.value = known.angle;
   at.spin.value = known.spin, at.slip.value = known.slip, at.normal.value = known.normal;
+  at.turned_in_flight.value = known.turned_in_flight;
 }
 
 /// The first parameters of a design as constants, or as duals of themselves.

@@ -48,15 +48,22 @@ def test_a_bad_spec_ends_with_status_2_one_line_and_no_file(kind, tmp_path):
     ["hop", "--slope", "steep"], ["hop", "--trace", ""], ["sweep", "x.toml", "-o", ""], ["stability", "-o", ""], ["hop", "--trace-interval", "-1"], ["sweep", "x.toml", "--threads", "0"], ["info"],
     ["hop", "--set", "design.slope={values=[0.1,0.2]}"], ["hop", "--set", "tolerance=1e-3\nslope=9"],
     ["hop", "--set", 'method="a\\nb"'], ["hop", "--slope", "0.4raddeg"], ["hop", "--trace-interval", "nan", "--trace", "/tmp/x.h5"],
-    ["hop", "--trace-interval", "0.01"], ["info", "m.h5", "--limit", "3"], ["info", "m.h5", "--spec", "--failed"],
-    ["sweep", "x.toml", "--retry-failed", "--overwrite"],
-    ["gait", "--set", "scene.jumps=5"], ["gait", "--set", "jumps=5"],
 ])
 def test_bad_usage_ends_with_status_2_and_one_line(arguments):
     done = leapmap(*arguments)
     assert done.returncode == 2, done.stderr
     assert done.stdout == ""
     assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("arguments", [
+    ["hop", "--trace-interval", "0.01"], ["info", "m.h5", "--limit", "3"], ["info", "m.h5", "--spec", "--failed"],
+    ["sweep", "x.toml", "--retry-failed", "--overwrite"], ["gait", "--set", "scene.jumps=5"], ["gait", "--set", "jumps=5"],
+])
+def test_an_option_without_use_is_refused_by_its_name(arguments):
+    done = leapmap(*arguments)
+    assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
+    assert next(word for word in ("jumps", "trace-interval", "limit", "failed", "overwrite") if any(word in a for a in arguments)) in done.stderr
 
 
 def test_a_sweep_without_a_file_to_write_is_refused(tmp_path):

@@ -56,6 +56,13 @@ def test_a_command_with_quotes_is_json_too():
     assert done.returncode == 0 and json.loads(done.stdout)["scatter"]["yield"], done.stderr
 
 
+def test_a_fit_says_which_given_values_it_fits_anew():
+    events = os.path.join(TOP, "sweeps", "paper_events.csv")
+    told = leapmap("fit", events, "--model", "sticking", "--set", "release_spin=0.5")
+    assert told.returncode == 0 and "release_spin = 0.5 is not used but fitted" in told.stderr and told.stderr.count("\n") == 1
+    assert leapmap("fit", events, "--model", "sticking").stderr == ""
+
+
 def test_people_are_told_what_binds_how_far_the_cliff_is_and_what_to_type(tmp_path):
     done = asked(tmp_path, BOX)
     assert done.returncode == 0

@@ -213,6 +213,13 @@ def test_ctrl_c_ends_it_with_keyboard_interrupt():
     assert done.stdout == "interrupted\n", done.stderr
 
 
+@pytest.mark.parametrize("name", ["jumps", "settle", "most_period"])
+def test_whole_numbers_are_refused_by_name_where_they_are_none(name):
+    for wrong in (1.0, "1", np.array([3, 3]), None):
+        with pytest.raises(ValueError, match=rf"{name} = .* is no whole number"):
+            leapmap.solve(**{name: wrong})
+
+
 def test_help_and_stubs_know_every_parameter_and_field():
     from leapmap import _core
 

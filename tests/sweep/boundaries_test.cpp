@@ -189,33 +189,32 @@ TEST(Boundaries, OfAPlaneAreCurvesThatLeadFromEdgeToEdgeOfTheGridOrMeetOthers) {
   EXPECT_LT(unused, static_cast<std::ptrdiff_t>(found.cliffs.size() / 20));
 }
 
-TEST(Boundaries, OfAnAxisInAnyOrderAreThoseOfItsNeighbours) {
-  // A coarse plane with several cliffs on an edge; its columns once rising, and once with the last two
-  // swapped.
-  Axis rising = spaced("mass_ratio", 0.5, 20.0, 3), swapped = rising;
-  std::swap(swapped.values[1], swapped.values[2]);
+TEST(Boundaries, AreTheSameCurvesFromEitherEndOfAnAxisThatRisesAndFalls) {
+  // So coarse a plane has several cliffs on an edge; the last two of its columns are swapped.
+  Axis columns = spaced("mass_ratio", 0.5, 20.0, 3);
+  std::swap(columns.values[1], columns.values[2]);
   const Axis rows = spaced("slope", 0.05, 0.85, 12);
-  const auto lengths_of = [&](const Axis& columns) {
-    const Boundaries found = find_boundaries(over({rows, columns}));
+  const auto lengths_of = [&](const Axis& axis) {
+    const Boundaries found = find_boundaries(over({rows, axis}));
     std::vector<double> lengths;
     for (const CliffCurve& curve : found.curves) {
       double length = 0.0;
       for (std::size_t i = 0; i + 1 < curve.cliffs.size(); ++i) {
         const auto a = place_of(found, found.cliffs[curve.cliffs[i]]),
                    b = place_of(found, found.cliffs[curve.cliffs[i + 1]]);
-        length += std::hypot(a[0] - b[0], (a[1] - b[1]) / 20.0);
+        length += std::hypot(a[0] - b[0], a[1] - b[1]);
       }
       lengths.push_back(length);
     }
     std::ranges::sort(lengths);
     return lengths;
   };
-  // Seen from its other end, a plane has the same curves.
-  Axis reversed = swapped;
-  std::ranges::reverse(reversed.values);
-  const auto there = lengths_of(swapped), back = lengths_of(reversed);
+  Axis backwards = columns;
+  std::ranges::reverse(backwards.values);
+  const auto there = lengths_of(columns), back = lengths_of(backwards);
   ASSERT_EQ(there.size(), back.size());
   ASSERT_GE(there.size(), 3u);
+  // Cliffs are bisected to rounding, and a curve has some tens of them.
   for (std::size_t i = 0; i < there.size(); ++i) EXPECT_NEAR(there[i], back[i], 1e-9);
 }
 

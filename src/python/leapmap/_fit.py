@@ -51,6 +51,8 @@ class Fit:
 
 def _event(name, value):
     try:
+        if np.ndim(value) != 1:
+            raise TypeError
         number, error = value
         return float(number), float(error)
     except (TypeError, ValueError):
@@ -69,7 +71,7 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
         {field: (value, standard error)} of events. phi: 0 where the mass touches the plane; x along the plane, downhill, y away from
         it; P is the mass, O the hoop's centre.
     spec: a TOML file's path or a dictionary: the hoop, and free parameters {"from", "to"}. Without one release_angle, release_spin
-        and mu_static are free, as far as they are not given; with any only those.
+        and mu_static are free, whatever is given for them; with any only those.
     model: "sticking", "coulomb" or both. error: of a film's numbers; default: told by the residuals.
     seed: of the coarse map. threads: 0 for all cores. overrides: keys of the spec.
 

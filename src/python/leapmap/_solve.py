@@ -29,7 +29,8 @@ def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None
     {fields}
 
     Raises ValueError, naming the parameter, its value and what is allowed. Ctrl-C ends it."""
-    parameters |= {name: value for name, value, usual in (("jumps", jumps, 1), ("settle", settle, 0), ("most_period", most_period, 16)) if value != usual}
+    parameters |= {name: value for name, value, usual in (("jumps", jumps, 1), ("settle", settle, 0), ("most_period", most_period, 16))
+                   if type(value) is not int or value != usual}
     columns = _core.solve(parameters, friction, _names(fields), method, tolerance, _whole("max_steps", max_steps, 1),
                           _whole("threads", threads, 0, 4096))
     given = {name: np.array(value) if isinstance(value, np.ndarray) else value for name, value in parameters.items()}
