@@ -36,7 +36,7 @@ ValueOf<S> least_node(const T& values) {
 
 /// The same hoop for the nodes, one or many at once.
 template <class T, class S>
-Hoop<T> at_nodes(const Hoop<S>& hoop) {
+Hoop<T> hoop_at_nodes(const Hoop<S>& hoop) {
   if constexpr (std::is_same_v<T, S>) {
     return hoop;
   } else {
@@ -62,21 +62,50 @@ auto SlidingPanels<S>::stretch_of(const S& spin, const S& rise, const S& length)
 }
 
 template <class S>
+auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                                const S& way, bool by_force) const -> AtNodes {
+  constexpr std::size_t width = Grid::width;
+  const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
+  const Hoop<T> hoop = hoop_at_nodes<T>(slide.hoop);
+  AtNodes nodes_at;
+  T least(std::numeric_limits<Number>::max());
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
+    const T w = q * T(S(2) * stretch.curve * stretch.span), x = T(stretch.shift) + T(stretch.curve) * q * q;
+    const Trig<T> phi = nodes_at.phi[i / width] = trig(T(from.angle) + T(way) * x);
+    const SlidingCoefficients<T> at = nodes_at.sliding[i / width] = slide.coefficients(hoop, phi, T(way) * x);
+    least = smaller(least, at.pivot);
+    const T idle = free_normal_force(hoop, phi, T(S(0))), torque = hoop.drive / hoop.Ic;
+    const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoop.rho * phi.cos;
+    if (by_force) {
+      const T tangent = phi.sin / phi.cos;
+      put(turned * (grows - tangent), nodes_at.grows, i);
+      put(turned * (tangent * idle + T(S(3)) * hoop.rho * phi.cos * torque), nodes_at.drives, i);
+    } else {
+      put(turned * grows, nodes_at.grows, i);
+      put(turned * T(S(2)) * (at.turn * idle + torque), nodes_at.drives, i);
+    }
+    put(w, nodes_at.weight, i);
+    put(x, nodes_at.angle, i);
+  }
+  nodes_at.least_pivot = least;
+  return nodes_at;
+}
+
+template <class S>
 void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                                       Panel& panel) const {
-  // The nodes in lanes, or each lane a panel.
-  using T = typename Grid::T;
-  using std::abs, std::exp, std::sqrt;
+  using std::exp, std::sqrt;
   constexpr std::size_t width = Grid::width;
   const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
   const Hoop<S>& hoop = slide.hoop;
-  const S& friction = slide.friction;
-  const Hoop<T> hoops = at_nodes<T>(hoop);
-  const T m(friction);
-  const Trig<S> start_phi = trig(from.angle);
-  const SlidingCoefficients<S> start = slide.coefficients(hoop, start_phi, S(0));
-  const S start_angular = start.turn * slide.free_force + hoop.drive / hoop.Ic;
+  const Hoop<T> hoops = hoop_at_nodes<T>(hoop);
+  const T m(slide.friction);
+  AtEnd start, end;
+  start.phi = trig(from.angle);
+  start.sliding = slide.coefficients(hoop, start.phi, S(0));
+  const S start_angular = start.sliding.turn * slide.free_force + hoop.drive / hoop.Ic;
   const S way = select((from.spin < S(0)) | ((from.spin == S(0)) & (start_angular < S(0))), S(-1), S(1));
   const S length = stretch.length();
   const Mask rests = stretch.begin + stretch.span == S(0);  // at its end
@@ -84,137 +113,121 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.excess = Value(std::numeric_limits<Number>::infinity());
   panel.turned = way * length;
   panel.end.angle = from.angle + panel.turned;
-  const Trig<S> end_phi = trig(panel.end.angle);
-
-  const SlidingCoefficients<S> end = slide.coefficients(hoop, end_phi, S(way * length));
-  T least_pivot(smaller(start.pivot, end.pivot));
+  end.phi = trig(panel.end.angle);
+  end.sliding = slide.coefficients(hoop, end.phi, S(way * length));
   // With n0 in place of u, where it is the one that vanishes, and the cosine stays away from zero.
   const S farthest = S(-0.2);
   const bool by_force = panel.by_force =
-      slide.edge && all((slide.free_force < S(0.5) * hoop.cos_slope) & (start_phi.cos < farthest) &
-                        (end_phi.cos < farthest));
-
-  Values a, b, weight, angle;
-  std::array<Trig<T>, nodes / width> phi;
-  std::array<SlidingCoefficients<T>, nodes / width> coefficients;
-  for (std::size_t i = 0; i < nodes; i += width) {
-    const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
-    const T w = q * T(S(2) * stretch.curve * stretch.span), x = T(stretch.shift) + T(stretch.curve) * q * q;
-    const Trig<T> at_node = phi[i / width] = trig(T(from.angle) + T(way) * x);
-    const SlidingCoefficients<T> at = coefficients[i / width] =
-        slide.coefficients(hoops, at_node, T(way) * x);
-    least_pivot = smaller(least_pivot, at.pivot);
-    const T idle = free_normal_force(hoops, at_node, T(S(0))), torque = hoops.drive / hoops.Ic;
-    const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoops.rho * at_node.cos;
-    if (by_force) {
-      const T tangent = at_node.sin / at_node.cos;
-      put(turned * (grows - tangent), a, i);
-      put(turned * (tangent * idle + T(S(3)) * hoops.rho * at_node.cos * torque), b, i);
-    } else {
-      put(turned * grows, a, i);
-      put(turned * T(S(2)) * (at.turn * idle + torque), b, i);
-    }
-    put(w, weight, i);
-    put(x, angle, i);
-  }
-  panel.least_pivot = least_node<S, T>(least_pivot);
+      slide.edge && all((slide.free_force < S(0.5) * hoop.cos_slope) & (start.phi.cos < farthest) &
+                        (end.phi.cos < farthest));
+  const AtNodes at = at_nodes(slide, from, stretch, way, by_force);
+  panel.least_pivot =
+      smaller(least_node<S, T>(at.least_pivot), value_of(S(smaller(start.sliding.pivot, end.sliding.pivot))));
   panel.indeterminate = !(panel.least_pivot > Value(Number(0)));
   if (all(panel.indeterminate)) return;
 
-  const typename Grid::Integrated growth = grid_.integrated(a);
+  const typename Grid::Integrated growth = grid_.integrated(at.grows);
   panel.growth = growth.running;
   Values grown_by;
   Values& driven = panel.driven_rate;
   for (std::size_t i = 0; i < nodes; i += width) {
     const T grown = exp(get(panel.growth, i));
     put(grown, grown_by, i);
-    put(get(b, i) * reciprocal(grown), driven, i);
+    put(get(at.drives, i) * reciprocal(grown), driven, i);
   }
   const typename Grid::Integrated drives = grid_.integrated(driven);
   panel.driven = drives.running;
-  const S start_u = from.spin * from.spin, start_force = slide.free_force;
-  const S start_y = panel.start_y = by_force ? start_force : start_u;
+  start.u = from.spin * from.spin, start.force = slide.free_force;
+  const S start_y = panel.start_y = by_force ? start.force : start.u;
   const S end_growth = exp(growth.whole), end_driven = drives.whole;
   const S end_y = end_growth * (start_y + end_driven);
-  const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& y) {
-    return by_force ? y : free_normal_force(hoop_at, at, y);
+  const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& phi, const R& y) {
+    return by_force ? y : free_normal_force(hoop_at, phi, y);
   };
-  const auto force_rate = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& at, const R& u, const R& n0,
-                                       const R& turn) {
-    return free_normal_force_rate(hoop_at, at, u, R(turn * n0 + hoop_at.drive / hoop_at.Ic));
-  };
-  const S end_u = select(rests, S(0), spin_squared(hoop, end_phi, end_y, by_force));
+  end.u = select(rests, S(0), spin_squared(hoop, end.phi, end_y, by_force));
+  end.force = force(hoop, end.phi, end_y);
   // Where it is at rest at an end, the nodes tell.
   const S fast(std::numeric_limits<Number>::max());
-  T least_u(smaller(select(start_u > S(0), start_u, fast), select(rests, fast, end_u)));
+  T least_u(smaller(select(start.u > S(0), start.u, fast), select(rests, fast, end.u)));
   Values& time_rate = panel.time_rate;
   for (std::size_t i = 0; i < nodes; i += width) {
-    const Trig<T>& at = phi[i / width];
-    const SlidingCoefficients<T>& there = coefficients[i / width];
+    const Trig<T>& phi = at.phi[i / width];
+    const SlidingCoefficients<T>& there = at.sliding[i / width];
     const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
-    const T u = spin_squared(hoops, at, y, by_force), n0 = force(hoops, at, y);
+    const T u = spin_squared(hoops, phi, y, by_force), n0 = force(hoops, phi, y);
     least_u = smaller(least_u, u);
-    const T w = get(weight, i), rate = w * reciprocal_sqrt(u);
+    const T w = get(at.weight, i), rate = w * reciprocal_sqrt(u);
     put(rate, time_rate, i);
-    put(sliding_motion(hoops, at, u, m, there, n0).slip * rate, panel.slip.rate, i);
+    put(sliding_motion(hoops, phi, u, m, there, n0).slip * rate, panel.slip.rate, i);
     put(n0, panel.free_force.value, i);
-    put(T(way) * w * force_rate(hoops, at, u, n0, there.turn), panel.free_force.rate, i);
+    const T angular = there.turn * n0 + hoops.drive / hoops.Ic;
+    put(T(way) * w * free_normal_force_rate(hoops, phi, u, angular), panel.free_force.rate, i);
   }
   const Value slowest = least_node<S, T>(least_u);
   panel.spin_vanishes = !(slowest > Value(Number(0)));
-  const S end_weight = S(2) * stretch.curve * stretch.span * (stretch.begin + stretch.span);
-  const S start_weight = S(2) * stretch.curve * stretch.span * stretch.begin;
-  const Value of_one = by_force ? Value(Number(1)) : largest_part(S(S(1) + start_u));
+  end.weight = S(2) * stretch.curve * stretch.span * (stretch.begin + stretch.span);
+  start.weight = S(2) * stretch.curve * stretch.span * stretch.begin;
+  const Value of_one = by_force ? Value(Number(1)) : largest_part(S(S(1) + start.u));
   const Value spin_tail = largest<Value>({growth.tail, drives.tail / of_one});
-  const Value roundings = slide.rounding_at_end(end.pivot);
+  const Value roundings = slide.rounding_at_end(end.sliding.pivot);
   panel.spin_excess =
       select(panel.indeterminate, panel.excess, Value(spin_tail / (Value(tolerance_) + roundings)));
-  const auto driven_by = [&](const Trig<S>& at, const SlidingCoefficients<S>& there, const S& w) {
-    return way * w * S(2) * (there.turn * free_normal_force(hoop, at, S(0)) + hoop.drive / hoop.Ic);
+  const auto driven_by = [&](const AtEnd& edge) {
+    return way * edge.weight * S(2) *
+           (edge.sliding.turn * free_normal_force(hoop, edge.phi, S(0)) + hoop.drive / hoop.Ic);
   };
-  panel.driven_start = {S(0), driven_by(start_phi, start, start_weight)};
-  panel.driven_end = {end_driven, driven_by(end_phi, end, end_weight) / end_growth};
+  panel.driven_start = {S(0), driven_by(start)};
+  panel.driven_end = {end_driven, driven_by(end) / end_growth};
   if (all(panel.spin_vanishes)) return;
 
-  const S end_force = force(hoop, end_phi, end_y);
   // At rest weight over spin has a limit.
-  const S end_rate = select(rests, time_rate[nodes - 1], S(end_weight / sqrt(end_u)));
-  panel.end.spin = way * sqrt(end_u);
-  panel.free_force.end = {end_force,
-                          way * end_weight * force_rate(hoop, end_phi, end_u, end_force, end.turn)};
-  panel.free_force.start = {
-      start_force, way * start_weight * force_rate(hoop, start_phi, start_u, start_force, start.turn)};
-  const S start_rate = select(start_u > S(0), S(start_weight / sqrt(start_u)), time_rate[0]);
-  panel.slip.start = {
-      from.slip, start_rate * sliding_motion(hoop, start_phi, start_u, friction, start, start_force).slip};
+  end.time_rate = select(rests, time_rate[nodes - 1], S(end.weight / sqrt(end.u)));
+  start.time_rate = select(start.u > S(0), S(start.weight / sqrt(start.u)), time_rate[0]);
+  const S duration = grid_.integral(time_rate);
+  panel.end.time = from.time + duration;
+  panel.end.spin = way * sqrt(end.u);
+  const Value slip_tail = integrate_slip(slide, from, at, start, end, panel);
+  // Beside the end at rest w^2 has few digits, and little weight.
+  const Value lost =
+      select(rests, Value(Number(1)), smaller(Value(value_of(start.u) / slowest), Value(Number(1e6))));
+  const Value noise = roundings + Value(Number(16) * std::numeric_limits<Number>::epsilon()) * lost;
+  const Value time_tail = Value(Number(0.1)) * grid_.tail(time_rate) / largest_part(duration);
+  const Value excess = largest<Value>({spin_tail, time_tail, slip_tail}) / (Value(tolerance_) + noise);
+  panel.excess = select(panel.indeterminate | panel.spin_vanishes, panel.excess, excess);
+}
 
+template <class S>
+auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
+                                      const AtEnd& start, const AtEnd& end, Panel& panel) const -> Value {
+  using std::abs;
+  const Hoop<S>& hoop = slide.hoop;
+  const S way = select(panel.turned < S(0), S(-1), S(1));
+  const auto force_at = [&](const AtEnd& edge) {
+    const S angular = edge.sliding.turn * edge.force + hoop.drive / hoop.Ic;
+    return Sample<S>{edge.force, way * edge.weight * free_normal_force_rate(hoop, edge.phi, edge.u, angular)};
+  };
+  const auto slip_rate_at = [&](const AtEnd& edge) {
+    return edge.time_rate *
+           sliding_motion(hoop, edge.phi, edge.u, slide.friction, edge.sliding, edge.force).slip;
+  };
+  panel.free_force.start = force_at(start), panel.free_force.end = force_at(end);
   const typename Grid::Integrated slips = grid_.integrated(panel.slip.rate);
   Values slip_time;
   for (std::size_t i = 0; i < nodes; ++i) {
     panel.slip.value[i] = from.slip + slips.running[i];
-    slip_time[i] = panel.slip.value[i] * time_rate[i];
-    panel.travel.rate[i] = way * weight[i] + slip_time[i];
+    slip_time[i] = panel.slip.value[i] * panel.time_rate[i];
+    panel.travel.rate[i] = way * at.weight[i] + slip_time[i];
   }
-  panel.travel.start = {from.travel, way * start_weight + from.slip * start_rate};
   const typename Grid::Integrated carries = grid_.integrated(slip_time);
   for (std::size_t i = 0; i < nodes; ++i)
-    panel.travel.value[i] = from.travel + way * angle[i] + carries.running[i];
-  const S duration = grid_.integral(time_rate);
-  panel.end.time = from.time + duration;
+    panel.travel.value[i] = from.travel + way * at.angle[i] + carries.running[i];
   panel.end.slip = from.slip + slips.whole;
-  panel.end.travel = from.travel + way * length + carries.whole;
-  panel.slip.end = {panel.end.slip,
-                    end_rate * sliding_motion(hoop, end_phi, end_u, friction, end, end_force).slip};
-  panel.travel.end = {panel.end.travel, way * end_weight + panel.end.slip * end_rate};
-  // Beside the end at rest w^2 has few digits, and little weight.
-  const Value lost =
-      select(rests, Value(Number(1)), smaller(Value(value_of(start_u) / slowest), Value(Number(1e6))));
-  const Value noise = roundings + Value(Number(16) * std::numeric_limits<Number>::epsilon()) * lost;
-  const Value excess =
-      largest<Value>({spin_tail, Value(Number(0.1)) * grid_.tail(time_rate) / largest_part(duration),
-                      slips.tail / largest_part(S(S(1) + abs(from.slip)))}) /
-      (Value(tolerance_) + noise);
-  panel.excess = select(panel.indeterminate | panel.spin_vanishes, panel.excess, excess);
+  panel.end.travel = from.travel + panel.turned + carries.whole;
+  panel.slip.start = {from.slip, slip_rate_at(start)};
+  panel.slip.end = {panel.end.slip, slip_rate_at(end)};
+  panel.travel.start = {from.travel, way * start.weight + from.slip * start.time_rate};
+  panel.travel.end = {panel.end.travel, way * end.weight + panel.end.slip * end.time_rate};
+  return slips.tail / largest_part(S(S(1) + abs(from.slip)));
 }
 
 template <class S>
@@ -244,7 +257,6 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
 template <class S>
 void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration,
                                      Panel& panel) const {
-  using T = typename Grid::T;
   constexpr std::size_t width = Grid::width;
   using std::abs;
   const Hoop<S>& hoop = slide.hoop;
@@ -256,7 +268,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
     spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
   bool settled = false;
   int left = has_derivatives<S> ? 6 : 0;  // iterations once the values are settled: derivatives come after
-  const Hoop<T> hoops = at_nodes<T>(hoop);
+  const Hoop<T> hoops = hoop_at_nodes<T>(hoop);
   const T m(friction), length(duration);
   for (int iteration = 0; iteration < most_iterations && !(settled && left-- <= 0); ++iteration) {
     Number least_pivot = value_of(hoop.Ic) + Number(2);

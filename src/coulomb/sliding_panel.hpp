@@ -125,6 +125,29 @@ class SlidingPanels {
   Number tolerance() const { return tolerance_; }
 
  private:
+  using T = typename Grid::T;  ///< the nodes in lanes, or each lane a panel
+
+  /// What a panel by angle meets at its nodes.
+  struct AtNodes {
+    std::array<Trig<T>, nodes / Grid::width> phi;
+    std::array<SlidingCoefficients<T>, nodes / Grid::width> sliding;
+    Values angle, weight;  ///< past its start, and its derivative by the panel's coordinate
+    Values grows, drives;  ///< a and b of y' = a y + b, by that coordinate
+    T least_pivot;         ///< of those in each lane
+  };
+  AtNodes at_nodes(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const S& way,
+                   bool by_force) const;
+  /// And at one of its ends: w^2, n0, weight, and how fast time goes by the panel's coordinate.
+  struct AtEnd {
+    Trig<S> phi;
+    SlidingCoefficients<S> sliding;
+    S u, force, weight, time_rate;
+  };
+  /// Slip and travel of a panel whose spin and n0 are known, and n0 at its ends. Returns the slip's tail, of
+  /// one more than its size.
+  Value integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at, const AtEnd& start,
+                       const AtEnd& end, Panel& panel) const;
+
   Number tolerance_;
   Grid grid_;
 };
