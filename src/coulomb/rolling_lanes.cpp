@@ -54,8 +54,8 @@ bool RollingLanes<T>::bracket(const Phase& phase, Bracketed& found) const {
   if (sets_out == S(0)) return false;
   found.phase = phase;
   found.way = sets_out < S(0) ? S(-1) : S(1);
-  found.roll = begin_roll(seen(phase.hoop, found.way), S(found.way * phase.at.angle),
-                          Trig<S>{found.way * phi.sin, phi.cos, phi.versine}, std::abs(phase.at.spin));
+  found.roll = begin_roll(seen(phase.hoop, found.way), S(found.way * phase.at.angle), seen(phi, found.way),
+                          std::abs(phase.at.spin));
   const S last = found.roll.release + (phase.runway - found.way * phase.at.travel);
   found.end = PhaseEnd::runway_ends;
   found.from = found.to = last, found.from_value = S(1), found.to_value = S(-1);

@@ -15,7 +15,6 @@ using namespace panel_lengths;
 namespace {
 
 constexpr int most_panels = 1'000;           // of a slide in lanes: beyond, it goes on by itself
-constexpr double near_edge = 0.05;           // nearer to Painleve's edge n0 needs care [rad]
 constexpr double shortest_steep = 0.05;      // a panel that comes nearer is shortened down to this [rad]
 constexpr double shortest_by_zeros = 0.01;   // of a panel for the pivot's zeros, as some are rough [rad]
 constexpr double shortest_vanishing = 0.01;  // and one on which the spin vanishes, nobody knows where
@@ -26,30 +25,6 @@ constexpr double shortest_vanishing = 0.01;  // and one on which the spin vanish
 double stretch_for(double tolerance, std::size_t nodes) {
   constexpr double grown = 1500.0;  // with less more panels are refused than longer ones save
   return std::cosh(std::log(grown / tolerance) / static_cast<double>(nodes));
-}
-
-/// How much of the way to an angle `length` on a slide's pivot stays above `least`, as some looks tell.
-template <class T>
-T way_to_edge(const Hoop<T>& hoop, const T& friction, const Trig<T>& phi, const T& way, const T& least,
-              const T& length) {
-  using S = ScalarOf<T>;
-  constexpr int looks = 8;
-  const T step = length * T(S(1) / S(looks));
-  const SinCos<T> turned = sincos_of(way * step);
-  const auto spare_at = [&](const T& s, const T& c) {
-    return sliding_coefficients(hoop, Trig<T>{s, c, T(S(1)) - c}, friction).pivot - least;
-  };
-  T sine = phi.sin, cosine = phi.cos, clear = length, before = spare_at(sine, cosine);
-  const MaskOf<T> is_there = before <= T(S(0));
-  for (int k = 1; k <= looks; ++k) {
-    const T last = sine;
-    sine = sine * turned.cos + cosine * turned.sin, cosine = cosine * turned.cos - last * turned.sin;
-    const T spare = spare_at(sine, cosine);
-    const MaskOf<T> first = (spare <= T(S(0))) & (clear == length);
-    clear = select(first, step * (T(S(k)) - spare / (spare - before)), clear);
-    before = spare;
-  }
-  return select(is_there, T(S(0)), clear);
 }
 
 /// In the order in which SlidingLeg looks at them, as of two at the same place the first counts.
@@ -68,28 +43,6 @@ SlidingLanes<T>::SlidingLanes(double tolerance, std::size_t most)
       zeros_(most),
       stretches_(most) {
   clear_of_zeros_ = stretch_for(panels_.tolerance(), Panels::nodes);
-  for (std::size_t k = 0; k < looks_a_turn; ++k) {
-    const Trig<S> phi = trig(S(2) * pi_of<S> * S(k) / S(looks_a_turn));
-    sin_[k] = phi.sin, cos_[k] = phi.cos;
-  }
-}
-
-/// Zero if the pivot is above zero all round; else what it is at least, so near to an edge. It is
-/// Ic + (rho s)^2 - m rho s (1 - rho c), and between two looks, h apart, it comes down by at most h^2 / 8
-/// times |pivot''| <= 2 rho^2 + |m| rho (1 + 2 rho).
-template <class T>
-ScalarOf<T> SlidingLanes<T>::least_pivot(const Hoop<S>& hoop, const S& friction) const {
-  const T rho(hoop.rho), m(friction), one(S(1));
-  T least(std::numeric_limits<S>::max());
-  for (std::size_t k = 0; k < looks_a_turn; k += width) {
-    const T s = rho * Lanes<T>::load(sin_.data() + k), c = Lanes<T>::load(cos_.data() + k);
-    least = smaller(least, s * (s - m * (one - rho * c)));
-  }
-  const auto lanes = lanes_of(least);
-  const S step = S(2) * pi_of<S> / S(looks_a_turn), size = std::abs(friction) * hoop.rho;
-  const S off = step * step / S(8) * (S(2) * hoop.rho * hoop.rho + size * (S(1) + S(2) * hoop.rho));
-  if (hoop.Ic + *std::min_element(lanes.begin(), lanes.end()) > off) return S(0);
-  return S(near_edge) * (hoop.rho * hoop.rho + size * (S(1) + hoop.rho));
 }
 
 template <class T>
@@ -97,7 +50,8 @@ void SlidingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& m
                             const PivotZeros<S>& zeros, const ContactState<S>& at, const S& runway,
                             int direction) {
   const S friction = direction > 0 ? mu_kinetic : -mu_kinetic;
-  slides_[place] = {runway,           mu_kinetic, least_pivot(hoop, friction), direction, false, false,
+  slides_[place] = {runway,           mu_kinetic, edge_looks_.least_pivot(hoop, friction),
+                    direction,        false,      false,
                     PhaseEnd::failed, 0};
   hoops_.template store<S>(numbers_of(hoop), &place, 1);
   states_.template store<S>(

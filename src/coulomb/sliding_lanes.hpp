@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "coulomb/edge_looks.hpp"
 #include "coulomb/ended_phase.hpp"
 #include "coulomb/pivot_zeros.hpp"
 #include "coulomb/sliding_leg.hpp"
@@ -104,16 +105,13 @@ class SlidingLanes {
   Next next_length(const InLanes& slides, const Ahead& ahead, const Seen& seen) const;
   /// Stores where the slides are now, and the stretches that are given.
   void put(const InLanes& slides, const Ahead& ahead, const Seen& seen, const T& length);
-  S least_pivot(const Hoop<S>& hoop, const S& friction) const;
   ContactState<S> state_of(std::uint32_t place) const;
   void alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended);
-
-  static constexpr std::size_t looks_a_turn = 48;
 
   Panels panels_;
   S clear_of_zeros_;  ///< how far panels keep from the pivot's zeros (resolved_length's stretch)
   SlidingLeg<S> leg_;
-  std::array<S, looks_a_turn> sin_, cos_;  // of one turn
+  EdgeLooks<T> edge_looks_;
   std::vector<Slide> slides_;
   PackedRows<S, 8> hoops_, states_;  // states: time, travel, angle, spin, slip; n0, friction, longest panel
   PackedRows<S, 8> zeros_;

@@ -159,7 +159,7 @@ void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling,
   write_nexus(file, layout);
 }
 
-void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling) {
+void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling, const std::string& path) {
   const auto check_one = [&](const std::string& name, const std::string& unit, const std::string& long_name,
                              const std::vector<double>& values) {
     const Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "opening " + name);
@@ -169,7 +169,7 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling) {
       same = same && hdf5::shape_of(dataset) == std::vector<hsize_t>{values.size()} &&
              hdf5::read_block(dataset, {0}, {values.size()}, "reading " + name) == values;
     }
-    if (!same) throw BrokenFile(name + " is not what was written");
+    if (!same) throw BrokenFile(fmt::format("{}: {} is not what was written", path, name));
   };
   for (const auto* axes : {&layout.axes, &layout.columns})
     for (const MapAxis& axis : *axes) check_one(axis.name, axis.unit, axis.long_name, axis.values);
@@ -178,14 +178,14 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling) {
     std::iota(numbers.begin(), numbers.end(), 0.0);
     check_one("design", "1", design_long_name, numbers);
     if (!layout.labels.empty() && !hdf5::holds(file, label_name, layout.labels))
-      throw BrokenFile("label is not what was written");
+      throw BrokenFile(path + ": label is not what was written");
   }
   for (const Field* field : layout.fields) {
     check_one(std::string(field->name), std::string(field->unit), std::string(field->long_name), {});
     const Handle dataset(H5Dopen2(file, std::string(field->name).c_str(), H5P_DEFAULT), H5Dclose,
                          fmt::format("opening {}", field->name));
     if (hdf5::sources_of(dataset).empty() && hdf5::chunk_of(dataset) != to_hsize(tiling.tile_shape()))
-      throw BrokenFile(fmt::format("{} is stored in other tiles", field->name));
+      throw BrokenFile(fmt::format("{}: {} is stored in other tiles", path, field->name));
   }
 }
 

@@ -48,9 +48,9 @@ std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling);
 void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling,
              std::span<const hdf5::Source> sources = {});
 
-/// Throws BrokenFile, saying what, unless axes, columns and descriptions in a file are those that lay_out
-/// writes.
-void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling);
+/// Throws BrokenFile, naming path and what, unless axes, columns and descriptions in a file are those that
+/// lay_out writes.
+void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling, const std::string& path);
 
 /// The datasets of the layout's fields, in its order. Throws IoError.
 std::vector<hdf5::Handle> open_fields(hid_t file, const MapLayout& layout);

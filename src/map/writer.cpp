@@ -127,7 +127,7 @@ void MapWriter::verify() {
     if (values.size() != 1) throw BrokenFile(fmt::format("{}: {} is not one number", part_, name));
     return values[0];
   };
-  check_layout(file_, *layout_, *tiling_);
+  check_layout(file_, *layout_, *tiling_, part_);
   const std::int64_t tiles = hdf5::has_attribute(file_, tiles_attribute)
                                  ? one(tiles_attribute)
                                  : static_cast<std::int64_t>(tiling_->size());
@@ -198,7 +198,7 @@ bool MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
   hdf5::remove_attribute(file_, tiles_attribute);
   close_datasets();
   return file_.finish(path_, replace_, [&](hid_t written) {
-    check_layout(written, *layout_, *tiling_);
+    check_layout(written, *layout_, *tiling_, part_);
     if (!virtual_ && !tiles_are_as_written(written, *layout_, *tiling_, tiling_->size(), part_))
       throw BrokenFile(part_ + ": its tiles are not what was written");
   });

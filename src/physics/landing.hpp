@@ -15,7 +15,7 @@ template <class T>
 T spin_after_holding(const Hoop<T>& hoop, const Trig<T>& phi, const T& travel, const T& climb,
                      const T& spin) {
   const T along = travel - hoop.rho * phi.cos * spin, across = climb + hoop.rho * phi.sin * spin;
-  return (hoop.Ic * spin + (hoop.clearance + hoop.rho * phi.versine) * along + hoop.rho * phi.sin * across) /
+  return (hoop.Ic * spin + height_of_mass(hoop, phi) * along + hoop.rho * phi.sin * across) /
          contact_inertia(hoop, phi);
 }
 
@@ -51,7 +51,7 @@ template <class S>
 Landing<S> land(const Hoop<S>& hoop, const Trig<S>& phi, const ContactVelocity<S>& before, const S& mu,
                 const S& restitution, const S& rest_speed) {
   using std::abs;
-  const S arm = hoop.clearance + hoop.rho * phi.versine, lever = hoop.rho * phi.sin;
+  const S arm = height_of_mass(hoop, phi), lever = hoop.rho * phi.sin;
   const S Wtt = S(1) + arm * arm / hoop.Ic, Wtn = arm * lever / hoop.Ic, Wnn = S(1) + lever * lever / hoop.Ic;
   const auto sign = [](const S& x) { return x > S(0) ? S(1) : S(-1); };
 

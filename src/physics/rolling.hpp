@@ -31,6 +31,12 @@ Trig<T> trig(const T& angle) {
   }
 }
 
+/// Of an angle as it is seen on a leg, way times it (parameters.hpp). phi: of the angle itself.
+template <class T>
+Trig<T> seen(const Trig<T>& phi, const T& way) {
+  return {way * phi.sin, phi.cos, phi.versine};
+}
+
 /// x - sin x without cancellation, turned: trig(x). Its series is used below 0.7, to 4e-22 of the sum.
 template <class T>
 T x_minus_sin(const T& x, const Trig<T>& turned) {
@@ -53,6 +59,12 @@ T x_minus_sin(const T& x, const Trig<T>& turned) {
 template <class T>
 T contact_inertia(const Hoop<T>& hoop, const Trig<T>& phi) {
   return hoop.J_min + T(2) * hoop.rho * phi.versine;
+}
+
+/// How far the centre of mass is from the plane, 1 - rho cos phi.
+template <class T>
+T height_of_mass(const Hoop<T>& hoop, const Trig<T>& phi) {
+  return hoop.clearance + hoop.rho * phi.versine;
 }
 
 /// sin(theta + phi) and cos(theta + phi), the direction of gravity seen from the mass.
@@ -81,8 +93,7 @@ T normal_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& 
 /// (12) lambda_f, the friction force over the weight, positive downhill.
 template <class T>
 T friction_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
-  const T arm = hoop.clearance + hoop.rho * phi.versine;  // 1 - rho cos phi
-  return arm * acceleration + hoop.rho * phi.sin * spin * spin - hoop.sin_slope;
+  return height_of_mass(hoop, phi) * acceleration + hoop.rho * phi.sin * spin * spin - hoop.sin_slope;
 }
 
 /// Partial derivatives of angular_acceleration by angle and by spin.
@@ -117,8 +128,7 @@ T normal_force_rate(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, cons
 /// The same of friction_force.
 template <class T>
 T friction_force_rate(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& acceleration) {
-  const T arm = hoop.clearance + hoop.rho * phi.versine;
-  return arm * angular_jerk(hoop, phi, spin, acceleration) +
+  return height_of_mass(hoop, phi) * angular_jerk(hoop, phi, spin, acceleration) +
          hoop.rho * spin * (T(3) * phi.sin * acceleration + phi.cos * spin * spin);
 }
 

@@ -236,7 +236,7 @@ struct LiftTerms {
 template <class T>
 LiftTerms<T> lift_terms(const Hoop<T>& h, const Trig<T>& phi) {
   const T s = phi.sin, c = phi.cos;
-  const T J = contact_inertia(h, phi), q = h.clearance + h.rho * phi.versine;
+  const T J = contact_inertia(h, phi), q = height_of_mass(h, phi);
   const T bend = h.rho * s * s + c * q;
   return {.q = q,
           .J = J,

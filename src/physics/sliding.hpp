@@ -25,7 +25,7 @@ struct SlidingCoefficients {
 /// q; friction: m = mu_kinetic sign(v).
 template <class T>
 T sliding_lever(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction) {
-  return hoop.rho * phi.sin - friction * (hoop.clearance + hoop.rho * phi.versine);
+  return hoop.rho * phi.sin - friction * height_of_mass(hoop, phi);
 }
 
 /// pivot: Ic + rho s q, where somebody knows it better.
@@ -67,7 +67,7 @@ template <class T>
 SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared,
                                 const T& friction, const SlidingCoefficients<T>& at, const T& n0) {
   const T N = at.push * n0, F = -friction * N, angular = at.turn * n0 + hoop.drive / hoop.Ic;
-  const T arm = hoop.clearance + hoop.rho * phi.versine;
+  const T arm = height_of_mass(hoop, phi);
   return {N, F, angular, F + hoop.sin_slope - arm * angular - hoop.rho * phi.sin * spin_squared};
 }
 template <class T>

@@ -29,10 +29,8 @@ struct Classify {
 /// A number of each item in the lanes, number_of(item); lanes to spare repeat the first.
 template <class T, class Item, class F>
 T lanes_from(const std::vector<Item>& items, std::size_t first, const F& number_of) {
-  LaneArray<T> lanes;
-  for (std::size_t i = 0; i < lanes.size(); ++i)
-    lanes[i] = number_of(items[first + i < items.size() ? first + i : first]);
-  return Lanes<T>::load(lanes.data());
+  return gathered<T>(
+      [&](std::size_t i) { return number_of(items[first + i < items.size() ? first + i : first]); });
 }
 
 /// The designs, and ends, of the intervals in the lanes.

@@ -46,8 +46,7 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
     const T force = normal_force(hoop, phi, spin, angular_acceleration(hoop, phi, spin)),
             sets_out = setting_out(hoop, phi, spin);
     const T way = select(sets_out < T(0), T(-1), T(1));
-    const Roll<T> roll =
-        begin_roll(seen(hoop, way), way * nearest, Trig<T>{way * phi.sin, phi.cos, phi.versine}, way * spin);
+    const Roll<T> roll = begin_roll(seen(hoop, way), way * nearest, seen(phi, way), way * spin);
 
     const unsigned in_the_air = Lanes<T>::bits(!(force > T(0))), at_rest = Lanes<T>::bits(sets_out == T(0));
     const auto releases = lanes_of(roll.release), released = lanes_of(roll.released), ways = lanes_of(way),

@@ -161,7 +161,7 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   report.tiles = tiles_of(map, tiling);
   report.designs = designs_in(map.status_counts());
   Check check{bytes, map, spec, tiling, options, report};
-  check_layout(map.file(), layout, tiling);
+  check_layout(map.file(), layout, tiling, path);
   map.shards().empty() ? check_tiles(check, layout) : check_shards(check, path);
   if (report.findings.empty() && !check.stopped()) check_sample(check);
   constexpr std::array first_sealed{std::int64_t{1}, std::int64_t{4}};

@@ -239,11 +239,7 @@ class Joining {
     const std::string path = path_of(number);
     const MapReader shard(path, locking_, Accept::shards_too);
     const std::vector<std::size_t> tiles = tiles_held(shard.file(), tiling_->size());
-    try {
-      check_layout(shard.file(), layout_, *tiling_);
-    } catch (const BrokenFile& error) {
-      throw BrokenFile(fmt::format("{}: is damaged: {}", path, error.what()));
-    }
+    check_layout(shard.file(), layout_, *tiling_, path);
     const std::vector<hdf5::Handle> fields = open_fields(shard.file(), layout_);
     EncodedChunk chunk;
     std::uint32_t checksum = 0;

@@ -91,7 +91,7 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
   const MapLayout layout = layout_of(spec);
   const Tiling tiling =
       map.blocks(std::string(layout.fields.front()->name));  // as whoever wrote it has cut it
-  check_layout(file, layout, tiling);
+  check_layout(file, layout, tiling, path);
   if (!tiles_are_as_written(file, layout, tiling, tiling.size(), path))
     throw BrokenFile(path + ": is damaged: its tiles are not what was written; leapmap check tells where");
   RetryReport report;
@@ -163,7 +163,7 @@ std::optional<RetryReport> retry_with(const std::string& path, const Spec& spec,
     report->durable = file->finish(path, true, [&](hid_t written) {
       const MapLayout layout = layout_of(spec);
       const Tiling tiling = MapReader(path, written).blocks(std::string(layout.fields.front()->name));
-      check_layout(written, layout, tiling);
+      check_layout(written, layout, tiling, path + ".retry");
       if (!tiles_are_as_written(written, layout, tiling, tiling.size(), path))
         throw BrokenFile(path + ".retry: its tiles are not what was written");
     });

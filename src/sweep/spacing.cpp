@@ -45,4 +45,10 @@ std::optional<Spacing> spacing_of(std::span<const double> values) {
   return {};
 }
 
+std::optional<double> repeated(std::vector<double> values) {
+  std::ranges::sort(values);
+  const auto twice = std::ranges::adjacent_find(values);
+  return twice == values.end() ? std::nullopt : std::optional(*twice);
+}
+
 }  // namespace leapmap

@@ -19,6 +19,9 @@ struct Spacing {
 /// log.
 std::vector<double> values_of(const Spacing& spacing);
 
+/// A value that is there twice; nothing: each is there once.
+std::optional<double> repeated(std::vector<double> values);
+
 /// A side of a box of designs, in coordinates from 0 to 1 along it.
 struct Side {
   double low, high;

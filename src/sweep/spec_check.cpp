@@ -11,6 +11,7 @@
 #include "support/printable.hpp"
 #include "sweep/options.hpp"
 #include "sweep/scatter.hpp"
+#include "sweep/spacing.hpp"
 
 namespace leapmap {
 namespace {
@@ -111,9 +112,7 @@ void check_axes(const Spec& spec) {
     if (axis.values.size() > static_cast<std::size_t>(most_axis_values))
       refuse(spec, axis.key, fmt::format("has {} values", axis.values.size()),
              fmt::format("up to {}", most_axis_values));
-    std::vector<double> sorted = axis.values;
-    std::ranges::sort(sorted);
-    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+    if (const auto twice = repeated(axis.values))
       refuse(spec, axis.key, fmt::format("has the value {} twice", *twice), "each once");
   }
 }

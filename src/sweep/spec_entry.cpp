@@ -71,10 +71,7 @@ std::vector<double> to_list(const Entry& entry, const toml::table& table) {
            fmt::format("up to {}", most_axis_values));
   std::vector<double> values;
   for (const toml::node& node : *array) values.push_back(to_number(entry, node, "values"));
-  std::vector<double> sorted = values;
-  std::ranges::sort(sorted);
-  if (std::ranges::adjacent_find(sorted) != sorted.end())
-    refuse(entry, "a value is there twice", "each once");
+  if (repeated(values)) refuse(entry, "a value is there twice", "each once");
   return values;
 }
 

@@ -46,7 +46,7 @@ ContactState<double> in_double(const ContactState<S>& at) {
 template <class S>
 S contact_energy(const Hoop<S>& hoop, const ContactState<S>& at) {
   const Trig<S> phi = trig(at.angle);
-  const S along = at.slip + (hoop.clearance + hoop.rho * phi.versine) * at.spin;
+  const S along = at.slip + height_of_mass(hoop, phi) * at.spin;
   const S across = at.normal + hoop.rho * phi.sin * at.spin;
   return S(0.5) * (along * along + across * across + hoop.Ic * at.spin * at.spin) -
          at.travel * hoop.sin_slope - hoop.rho * cos_from_vertical(hoop, phi);

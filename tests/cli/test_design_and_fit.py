@@ -48,8 +48,9 @@ def test_the_command_told_asks_for_later_jumps_and_gaits_too(tmp_path):
     assert "jump_height_3" in hop and "gait_period" in hop
 
 
-def test_a_command_with_quotes_is_json_too():
-    told = json.loads(leapmap("design", os.path.join(TOP, "sweeps", "questions", "surest.toml"), "--json", *FEWER).stdout)
+def test_a_command_with_quotes_is_json_too(tmp_path):
+    question = os.path.join(TOP, "sweeps", "questions", "surest.toml")
+    told = json.loads(leapmap("design", question, "-o", tmp_path / "surest.h5", "--json", *FEWER).stdout)
     words = shlex.split(told["designs"][0]["hop"])
     assert "--scatter" in words
     done = subprocess.run([PROGRAM, *words[1:], "--json"], capture_output=True, text=True)
