@@ -37,6 +37,46 @@ def _bytes_at(file, begin, count):
     return content
 
 
+class Watched(io.RawIOBase):
+    """A file for HDF5, which must not be thrown at: where the system fails to read, zeros stand, and the reason is kept."""
+
+    def __init__(self, file):
+        super().__init__()
+        self.file, self.failure = file, 0
+
+    def readable(self):
+        return True
+
+    def seekable(self):
+        return True
+
+    def seek(self, offset, whence=io.SEEK_SET):
+        try:
+            return self.file.seek(offset, whence)
+        except OSError as error:
+            self.failure = self.failure or error.errno or 5
+            return offset
+
+    def tell(self):
+        return self.file.tell()
+
+    def readinto(self, buffer):
+        view = memoryview(buffer).cast("B")
+        try:
+            count = self.file.readinto(view)
+            if count or not len(view):
+                return count
+            return 0
+        except OSError as error:
+            self.failure = self.failure or error.errno or 5
+        view[:] = bytes(len(view))
+        return len(view)
+
+    def rethrow(self):
+        if self.failure:
+            raise OSError(self.failure, os.strerror(self.failure))
+
+
 class WithJournal(io.RawIOBase):
     """A file as it will be once its journal is made: HDF5 reads it through this."""
 
@@ -194,10 +234,13 @@ def opened(path, filetype, texts=()):
             raise Refused("a sweep is writing it; wait until that has ended") from None
         except OSError:
             pass  # a file system without locks: nothing is written here, and HDF5 itself refuses what it cannot lock
-        content = _with_journal(raw)
-        h5 = stack.enter_context(h5py.File(path if content is raw else content, "r"))
-        told = h5.attrs.get("filetype")
-        if not isinstance(told, str) or told != filetype:
-            raise Refused(f"is not a {filetype} (its attribute filetype is {' '.join(repr(told).split())[:80]})")
-        _refuse_foreign_parts(h5, os.fstat(descriptor).st_size, texts)
-        yield h5
+        content = Watched(_with_journal(raw))
+        try:
+            h5 = stack.enter_context(h5py.File(content, "r"))
+            told = h5.attrs.get("filetype")
+            if not isinstance(told, str) or told != filetype:
+                raise Refused(f"is not a {filetype} (its attribute filetype is {' '.join(repr(told).split())[:80]})")
+            _refuse_foreign_parts(h5, os.fstat(descriptor).st_size, texts)
+            yield h5
+        finally:
+            content.rethrow()  # the system failed, whatever that was taken for

@@ -10,6 +10,7 @@
 import math
 import re
 import tomllib
+import zlib
 from dataclasses import dataclass, field
 
 import h5py
@@ -22,6 +23,14 @@ FORMAT_MAJOR = 1  # the newest format this reader knows
 
 class NotAMap(Exception):
     """The file is of another type, of a newer format, damaged, or lacks what was asked of it."""
+
+
+class Unreadable(NotAMap, OSError):
+    """The system failed to read it; errno says why."""
+
+    def __init__(self, errno, text):
+        super().__init__(text)
+        self.errno = errno
 
 
 class Fields(dict):
@@ -146,14 +155,19 @@ def _read(path, filetype, most_designs=math.inf, texts=()):
     except MemoryError:
         raise NotAMap(f"{path}: holds more than this machine has memory for") from None
     except OSError as error:
+        if error.errno:
+            raise Unreadable(error.errno, f"{path}: cannot be read ({error.strerror})") from None
         raise NotAMap(f"{path}: cannot be read as HDF5 ({error})") from None
     except (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError) as error:
         raise NotAMap(f"{path}: is damaged, or not written by leapmap ({' '.join(str(error).split())})") from None
 
 
 def _read_open(path, file, most_designs):
-    attributes = dict(file.attrs)
-    if attributes["version"][0] > FORMAT_MAJOR:
+    attributes = _attributes_of(file)
+    version = np.asarray(attributes["version"])
+    if version.shape != (2,) or version.dtype.kind not in "iu" or version[0] < 1 or version[1] < 0:
+        raise ValueError("its version is no pair of whole numbers")
+    if version[0] > FORMAT_MAJOR:
         raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
                       "use a newer leapmap")
     result = Map(str(path), attributes, fields=Fields(str(path)))
@@ -164,14 +178,44 @@ def _read_open(path, file, most_designs):
         if dataset.size > most_designs:
             raise NotAMap(f"{path}: holds {dataset.size} designs, too many for this (at most {most_designs}); sweep fewer")
     for name, dataset in datasets.items():
-        result.about[name] = dict(dataset.attrs)
+        result.about[name] = _attributes_of(dataset)
         if h5py.h5ds.is_scale(dataset.id):
             continue
-        result.fields[name] = _texts_of(dataset) if h5py.check_string_dtype(dataset.dtype) else dataset[()]
+        result.fields[name] = _texts_of(dataset) if h5py.check_string_dtype(dataset.dtype) else _values_of(dataset)
         result.tile = dataset.chunks or result.tile
         for axis in _axes_of(file, dataset):  # the order of dimensions is the fields' own
-            result.dims.setdefault(axis, datasets[axis][()])
+            result.dims.setdefault(axis, _values_of(datasets[axis]))
     return result
+
+
+MOST_ATTRIBUTE = 2**24  # bytes of an attribute's numbers; texts have one each
+
+
+def _attributes_of(thing):
+    """All of them, but for those that no file of ours has: thousands of texts may all be the same long one in the file."""
+    found = {}
+    for name in thing.attrs:
+        space = h5py.h5a.open(thing.id, name.encode()).get_space()
+        kind = thing.attrs.get_id(name)
+        if h5py.check_string_dtype(kind.dtype) and space.get_simple_extent_npoints() > 1 or kind.get_storage_size() > MOST_ATTRIBUTE:
+            raise ValueError(f"its attribute {name!r} is larger than any of leapmap's")
+        found[name] = thing.attrs[name]
+    return found
+
+
+def _values_of(dataset):
+    """A dataset's values. A chunk that inflates to more than its values would take any memory: HDF5's filter does as it is told."""
+    if dataset.chunks and dataset.compression == "gzip":
+        size = math.prod(dataset.chunks) * dataset.dtype.itemsize
+        for i in range(dataset.id.get_num_chunks()):
+            chunk = dataset.id.get_chunk_info(i)
+            if chunk.size > size + size // 1000 + 64:
+                raise ValueError(f"a chunk of {dataset.name} inflates to more than its values")
+            if chunk.size * 1032 > 2**27:  # zlib packs no more into a byte; what cannot be large is left to HDF5
+                raw = dataset.id.read_direct_chunk(chunk.chunk_offset)[1]
+                if chunk.filter_mask == 0 and len(zlib.decompressobj().decompress(raw, size + 1)) > size:
+                    raise ValueError(f"a chunk of {dataset.name} inflates to more than its values")
+    return dataset[()]
 
 
 def _texts_of(dataset, most=2**26):

@@ -46,19 +46,21 @@ function paintAxes(context, frame, sx, sy, nameX, nameY) {
   context.textBaseline = "top";
   context.beginPath();
   let last = -Infinity;
-  for (const tick of sx.ticks()) {
-    const p = sx.pixel(tick), text = short(tick, 12), width = context.measureText(text).width;
+  const along = sx.ticks(), textsAlong = tickTexts(along);
+  for (const [i, tick] of along.entries()) {
+    const p = sx.pixel(tick), text = textsAlong[i], width = context.measureText(text).width;
     context.moveTo(p, bottom);
     context.lineTo(p, bottom + 0.35 * font);
     if (p - width / 2 > last) { context.fillText(text, p, bottom + 0.5 * font); last = p + width / 2 + 0.4 * font; }
   }
   context.textAlign = "right";
   context.textBaseline = "middle";
-  for (const tick of sy.ticks()) {
+  const up = sy.ticks(), textsUp = tickTexts(up);
+  for (const [i, tick] of up.entries()) {
     const p = sy.pixel(tick);
     context.moveTo(left, p);
     context.lineTo(left - 0.35 * font, p);
-    context.fillText(short(tick, 12), left - 0.5 * font, p);
+    context.fillText(textsUp[i], left - 0.5 * font, p);
   }
   context.stroke();
   context.textAlign = "center";

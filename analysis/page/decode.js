@@ -32,4 +32,4 @@ async function codes(code, shape) {
 }
 
 /** As many decimals as the steps of a field have. */
-function decimalsOf(step) { return Math.max(0, Math.round(-Math.log10(step))); }
+function decimalsOf(step) { return Math.min(100, Math.max(0, Math.round(-Math.log10(step)))); }

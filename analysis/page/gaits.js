@@ -78,11 +78,13 @@ function gaitsPart(map, solver, choose) {
     context.textAlign = "right";
     context.textBaseline = "middle";
     const [height, heightUnit] = now.design ? shownIn("diameters", now.design) : [1, "diameters"];
-    for (const tick of linearTicks(0, most * height, 5)) context.fillText(short(tick), left - 0.4 * font, bottom - (bottom - top) * tick / height / most);
+    const heights = linearTicks(0, most * height, 5), texts = tickTexts(heights);
+    for (const [i, tick] of heights.entries()) context.fillText(texts[i], left - 0.4 * font, bottom - (bottom - top) * tick / height / most);
     context.textAlign = "center";
     context.textBaseline = "top";
-    for (const tick of linearTicks(from * factor(), to * factor(), 8))
-      context.fillText(short(tick), left + (right - left) * (tick / factor() - from) / (to - from), bottom + 0.3 * font);
+    const along = linearTicks(from * factor(), to * factor(), 8), textsAlong = tickTexts(along);
+    for (const [i, tick] of along.entries())
+      context.fillText(textsAlong[i], left + (right - left) * (tick / factor() - from) / (to - from), bottom + 0.3 * font);
     context.fillText(withUnit(unit().label, unit().unit ? `[${unit().unit}]` : ""), (left + right) / 2, bottom + 1.6 * font);
     context.save();
     context.translate(font, (top + bottom) / 2);

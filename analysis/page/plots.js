@@ -55,10 +55,11 @@ function drawPlots(canvas, { motion, liftOffs }, pinned, time, end, shown, radiu
     context.textAlign = "right";
     context.textBaseline = "middle";
     context.beginPath();
-    for (const tick of linearTicks(low, high, 4)) {
+    const ticks = linearTicks(low, high, 4), texts = tickTexts(ticks);
+    for (const [i, tick] of ticks.entries()) {
       context.moveTo(left, sy(tick));
       context.lineTo(right, sy(tick));
-      context.fillText(short(tick, 12), left - 0.4 * font, sy(tick));
+      context.fillText(texts[i], left - 0.4 * font, sy(tick));
     }
     context.save();
     context.globalAlpha = 0.35;
@@ -109,7 +110,8 @@ function drawPlots(canvas, { motion, liftOffs }, pinned, time, end, shown, radiu
   context.textAlign = "center";
   context.textBaseline = "top";
   context.fillStyle = tones.ink;
-  for (const tick of linearTicks(0, end * shown.t[0], 8)) context.fillText(short(tick, 12), sx(tick / shown.t[0]), PLOTS.length * height - 0.4 * font);
+  const times = linearTicks(0, end * shown.t[0], 8), texts = tickTexts(times);
+  for (const [i, tick] of times.entries()) context.fillText(texts[i], sx(tick / shown.t[0]), PLOTS.length * height - 0.4 * font);
   context.textBaseline = "alphabetic";
   context.fillText(`time since release [${shown.t[1]}]`, (left + right) / 2, canvas.height - 0.3 * font);
   return (clientX) => Math.min(end, Math.max(0, ((clientX - box.left) * canvas.width / box.width - left) / (right - left) * end));

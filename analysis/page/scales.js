@@ -5,21 +5,36 @@ function axisScale(axis, from, to) {
   const degrees = axis.unit === "°" ? 180 / Math.PI : 1;
   const shown = axis.values.map((v) => v * degrees);
   const at = axis.log ? Math.log : (v) => v;
-  const places = shown.map(at), n = places.length;
-  const edges = new Array(n + 1);
-  for (let i = 1; i < n; ++i) edges[i] = (places[i - 1] + places[i]) / 2;
-  edges[0] = n > 1 ? places[0] - (edges[1] - places[0]) : places[0] - 0.5;
-  edges[n] = n > 1 ? places[n - 1] + (places[n - 1] - edges[n - 1]) : places[0] + 0.5;
+  let places = shown.map(at);
+  const n = places.length;
+  const edgesOf = (centres) => {
+    const edges = new Array(n + 1);
+    for (let i = 1; i < n; ++i) edges[i] = (centres[i - 1] + centres[i]) / 2;
+    edges[0] = n > 1 ? centres[0] - (edges[1] - centres[0]) : centres[0] - 0.5;
+    edges[n] = n > 1 ? centres[n - 1] + (centres[n - 1] - edges[n - 1]) : centres[0] + 0.5;
+    return edges;
+  };
+  let edges = edgesOf(places);
+  // Values so near each other, or so large, that no double lies between them or beside them: cells of one width.
+  if (!edges.every((edge, i) => Number.isFinite(edge) && (i === 0 || edge > edges[i - 1]))) {
+    places = shown.map((_, i) => i);
+    edges = edgesOf(places);
+    const at = (value) => Math.max(0, shown.findLastIndex((v) => v <= value));
+    return axisOfPlaces(axis, shown, places, edges, at, (place) => shown[Math.min(n - 1, Math.max(0, Math.round(place)))], from, to);
+  }
+  return axisOfPlaces(axis, shown, places, edges, at, axis.log ? Math.exp : (place) => place, from, to);
+}
+
+/** at: a value's place; back: the value at a place. */
+function axisOfPlaces(axis, shown, places, edges, at, back, from, to) {
+  const n = places.length;
   const factor = (to - from) / (edges[n] - edges[0]);
   const pixel = (value) => from + (at(value) - edges[0]) * factor;
   return {
     shown, n,
     pixel,
     /** What is drawn at a pixel. */
-    value(p) {
-      const place = edges[0] + (p - from) / factor;
-      return axis.log ? Math.exp(place) : place;
-    },
+    value: (p) => back(edges[0] + (p - from) / factor),
     centre: (i) => from + (places[i] - edges[0]) * factor,
     edge: (i) => from + (edges[i] - edges[0]) * factor,
     /** The cell at a pixel, -1 outside. */
@@ -37,23 +52,50 @@ function axisScale(axis, from, to) {
   };
 }
 
+/**
+ * Round numbers from low to high, about `most` of them, each once. Where the two are so near each other, or so far apart, that
+ * no double is the round number, the two themselves.
+ */
 function linearTicks(low, high, most = 7) {
   if (!(high > low)) return [low];
-  let step = 10 ** Math.floor(Math.log10((high - low) / most));
-  for (const factor of [1, 2, 5, 10]) if ((high - low) / (step * factor) <= most) { step *= factor; break; }
-  const ticks = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push(Number((k * step).toPrecision(12)));
-  return ticks;
+  const wanted = high / most - low / most;  // so that nothing overflows
+  if (!(wanted > 0 && wanted < Infinity)) return [low, high];
+  const exponent = Math.floor(Math.log10(wanted));
+  const factor = [1, 2, 5, 10, 20].find((f) => Number(`${f}e${exponent}`) >= wanted * (1 - 1e-12));
+  const step = Number(`${factor}e${exponent}`), first = Math.ceil(low / step - 1e-9), ticks = [];
+  if (!(Math.max(Math.abs(low), Math.abs(high)) / step * factor < 2 ** 53)) return [low, high];
+  for (let k = first; k <= first + most + 2; ++k) {
+    const tick = Number(`${k * factor}e${exponent}`);  // the double next to the decimal number
+    if (tick > high + 1e-9 * step) break;
+    if (tick >= low - 1e-9 * step && !(tick <= ticks.at(-1))) ticks.push(tick);
+  }
+  return ticks.length > 0 ? ticks : [low, high];
 }
 
-function logTicks(low, high) {
-  const ticks = [], dense = Math.log10(high / low) < 4;
-  for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e)
-    for (const m of dense ? [1, 2, 5] : [1]) {
-      const tick = Number((m * 10 ** e).toPrecision(12));
-      if (tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)) ticks.push(tick);
+/** Powers of ten from low to high; where there are few, twice and five times those as well; where there are none, round numbers. */
+function logTicks(low, high, most = 12) {
+  const from = Math.floor(Math.log10(low)), to = Math.ceil(Math.log10(high)), every = Math.ceil((to - from) / most), ticks = [];
+  for (let e = Math.ceil(from / every) * every; e <= to; e += every)
+    for (const m of to - from <= 5 ? [1, 2, 5] : [1]) {
+      const tick = Number(`${m}e${e}`);
+      if (tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9) && tick > 0 && tick < Infinity) ticks.push(tick);
     }
-  return ticks;
+  return ticks.length > 1 ? ticks : linearTicks(low, high);
+}
+
+/** Texts of ticks: as few digits as keep them apart, powers of ten where plain numbers would be long. */
+function tickTexts(ticks) {
+  const raised = (text) => [...text].map((c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("");
+  const text = (v, digits) => {
+    if (v === 0 || (Math.abs(v) >= 1e-4 && Math.abs(v) < 1e5)) return String(Number(v.toPrecision(digits)));
+    const [mantissa, exponent] = v.toExponential(digits - 1).split("e"), least = mantissa.replace(/\.?0+$/, "");
+    return `${least === "1" ? "" : least === "-1" ? "-" : `${least}·`}10${raised(exponent.replace("+", ""))}`;
+  };
+  for (let digits = 4; digits < 17; ++digits) {
+    const texts = ticks.map((v) => text(v, digits));
+    if (new Set(texts).size === ticks.length) return texts;
+  }
+  return ticks.map((v) => text(v, 17));
 }
 
 /** Where a value lies on a field's colour scale, from 0 to 1. */

@@ -13,13 +13,12 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
-#include "cli/text_file.hpp"
 #include "leapmap/boundaries.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/schema.hpp"
 #include "map/table_file.hpp"
 #include "model/model.hpp"
-#include "sweep/begin_map.hpp"
+#include "support/output_file.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
@@ -32,7 +31,7 @@ struct BoundariesArguments {
   std::string input, output, csv;
   std::vector<std::string> overrides;
   BoundaryOptions options;
-  bool quiet = false;
+  bool quiet = false, overwrite = false;
   Locking locking = Locking::required;
 };
 
@@ -126,9 +125,11 @@ std::vector<Table> tables_of(const Boundaries& found) {
   return {cliffs, curves};
 }
 
+constexpr std::string_view csv_head = "curve,kind,along";
+
 /// Curve after curve, place after place, and then the cliffs that are on none.
-void write_csv(const std::string& path, const Boundaries& found) {
-  std::string text = "curve,kind,along";
+std::string csv_of(const Boundaries& found) {
+  std::string text(csv_head);
   for (const Axis& axis : found.axes) text += fmt::format(",{}", axis.key);
   text += ",below,above\n";
   std::vector<bool> on_curve(found.cliffs.size(), false);
@@ -142,7 +143,7 @@ void write_csv(const std::string& path, const Boundaries& found) {
     for (const std::size_t cliff : found.curves[k].cliffs) line(fmt::format("{}", k), cliff);
   for (std::size_t i = 0; i < found.cliffs.size(); ++i)
     if (!on_curve[i]) line("", i);
-  write_text(path, text);
+  return text;
 }
 
 void print_counts(const Boundaries& found) {
@@ -160,7 +161,7 @@ void print_counts(const Boundaries& found) {
 
 Spec spec_of_input(const BoundariesArguments& arguments) {
   if (!hdf5::is_hdf5(arguments.input, arguments.locking))
-    return read_spec(arguments.input, arguments.overrides);
+    return read_given_spec(arguments.input, arguments.overrides);
   if (!arguments.overrides.empty())
     throw InputError(
         "--set: has no use with a map; allowed: with a spec, or the map's own by leapmap info --spec");
@@ -170,12 +171,14 @@ Spec spec_of_input(const BoundariesArguments& arguments) {
 int run(const BoundariesArguments& arguments) {
   const Spec spec = spec_of_input(arguments);
   refuse_scatter(arguments.overrides, "cliffs are of hoops as drawn");
-  refuse_text_over("--csv", arguments.csv, {arguments.input, arguments.output}, arguments.locking);
+  const std::array inputs{NamedPath{"SPEC|MAP", arguments.input}, NamedPath{"design.points", spec.points}};
+  const std::array outputs{NamedPath{"-o", arguments.output, true}, NamedPath{"--csv", arguments.csv}};
+  refuse_same_files(inputs, outputs);
   if (arguments.options.phases && !model_of(spec.scene).slips)
     throw InputError(
         "--phases: has no use where the contact never slips; allowed: with friction = \"coulomb\"");
-  if (!arguments.output.empty())
-    hdf5::refuse_other_file(arguments.output, cliffs_filetype, arguments.locking);
+  if (!arguments.output.empty()) refuse_taken(arguments.output, cliffs_filetype, arguments.locking);
+  TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
   BoundaryOptions options = arguments.options;
@@ -215,7 +218,7 @@ int run(const BoundariesArguments& arguments) {
       tell_of_folder(arguments.output);
     if (!arguments.quiet) say("file     {}\n", arguments.output);
   }
-  if (!arguments.csv.empty()) write_csv(arguments.csv, found);
+  if (!arguments.csv.empty()) csv.commit(csv_of(found));
   return 0;
 }
 
@@ -226,16 +229,18 @@ void add_boundaries(CLI::App& app, int& status) {
       app.add_subcommand("boundaries", "find where outcomes jump between neighbours of a grid, to rounding");
   auto arguments = std::make_shared<BoundariesArguments>();
   command->add_option("SPEC|MAP", arguments->input, "a sweep's spec, TOML, or the map that it made, HDF5")
-      ->required();
+      ->required()
+      ->check(named_file());
   command->add_option("-o,--output", arguments->output, "write cliffs and curves to this file, HDF5")
       ->check(named_file());
   command->add_option("--csv", arguments->csv, "write the cliffs, a line each, to this file, too")
       ->check(named_file());
+  command->add_flag("--overwrite", arguments->overwrite, "let --csv replace whatever file has that name");
   add_set(*command, arguments->overrides, ", for example --set tolerance=1e-12");
   command->add_flag("--phases", arguments->options.phases,
                     "with friction: tell sequences of phases apart, too");
   command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
-      ->check(CLI::Range(1, most_threads));
+      ->transform(whole_number(1, most_threads));
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   add_no_lock(*command, arguments->locking);
   command->footer(

@@ -99,13 +99,15 @@ void add_check(CLI::App& app, int& status) {
   auto arguments = std::make_shared<CheckArguments>();
   CheckOptions& options = arguments->options;
   options.stop_requested = [] { return noted_signal() != 0; };
-  command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")->required();
+  command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")
+      ->required()
+      ->check(named_file());
   command
       ->add_option("--sample", options.sample,
                    "solve so many designs again by another method and compare; default: 200; 0: none")
-      ->check(CLI::Range(0.0, 1e15));
+      ->transform(whole_number(0, 1e15));
   command->add_option("--threads", options.threads, "threads to use; default: all")
-      ->check(CLI::Range(1, most_threads));
+      ->transform(whole_number(1, most_threads));
   add_no_lock(*command, options.locking);
   command->footer(
       "Each chunk has a checksum, the tiles together have one, and so has the file. Quantities are compared "

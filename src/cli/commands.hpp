@@ -25,11 +25,20 @@ void add_check(CLI::App& app, int& status);
 /// Refuses an empty file name.
 CLI::Validator named_file();
 
+/// Takes a number in a range, or a whole one; whatever else is written is refused, NaN among it. To be used
+/// with transform(): CLI11's own conversion sees the number as leapmap read it.
+CLI::Validator number(const Range& range);
+CLI::Validator whole_number(double least, double most);
+inline constexpr double most_seed = 9e15;
+
 /// --no-lock, of every command that opens files of ours.
 void add_no_lock(CLI::App& command, Locking& locking);
 
 /// --set KEY=VALUE, which adds to overrides; example: what --help adds of one.
 void add_set(CLI::App& command, std::vector<std::string>& overrides, const std::string& example = {});
+
+/// read_spec, which says of a key that is given twice on the command line which value is used: the last.
+Spec read_given_spec(const std::string& path, const std::vector<std::string>& overrides);
 
 /// Throws InputError if one of the overrides is of a spec's [scatter] or [goal]; why: what is to be told.
 void refuse_scatter(const std::vector<std::string>& overrides, const std::string& why);

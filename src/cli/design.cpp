@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// leapmap design: the designs of a box that reach their goals best.
 #include <fmt/format.h>
+#include <array>
 
 #include <algorithm>
 #include <cmath>
@@ -15,14 +16,13 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
-#include "cli/text_file.hpp"
 #include "design/question.hpp"
 #include "leapmap/find_designs.hpp"
 #include "leapmap/sweep.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/reader.hpp"
 #include "model/model.hpp"
-#include "sweep/begin_map.hpp"
+#include "support/output_file.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/parallel.hpp"
@@ -206,10 +206,14 @@ void print_json(const Spec& spec, const Question& question, const FoundDesigns& 
 }
 
 /// The columns that design.points takes.
-std::string csv_of(const Question& question, const FoundDesigns& found) {
+std::string csv_head(const Question& question) {
   std::vector<std::string> names;
   for (const FreeParameter& parameter : question.free) names.push_back(parameter.name);
-  std::string text = fmt::format("{}\n", fmt::join(names, ","));
+  return fmt::format("{}\n", fmt::join(names, ","));
+}
+
+std::string csv_of(const Question& question, const FoundDesigns& found) {
+  std::string text = csv_head(question);
   for (const FoundDesign& one : found.designs) {
     std::vector<std::string> cells;
     for (const FreeParameter& parameter : question.free)
@@ -228,16 +232,20 @@ bool is_found_list(const std::string& path, Locking locking) {
 }
 
 int run(const DesignArguments& arguments) {
-  const Spec spec = read_spec(arguments.spec, arguments.overrides);
+  const Spec spec = read_given_spec(arguments.spec, arguments.overrides);
   const Question question = question_of(spec);
   const std::string map = behind_links(arguments.output.empty() ? spec.output.file : arguments.output);
-  refuse_text_over("--csv", arguments.csv, {arguments.spec, map}, arguments.locking);
+  const std::array inputs{NamedPath{"SPEC", arguments.spec}, NamedPath{"design.points", spec.points}};
+  const std::array outputs{NamedPath{"-o", map, true}, NamedPath{"--csv", arguments.csv}};
+  refuse_same_files(inputs, outputs);
   std::error_code ignored;
   const bool replaces = !map.empty() && std::filesystem::exists(map, ignored);
   if (replaces && !arguments.overwrite && !is_found_list(map, arguments.locking))
     throw InputError(fmt::format(
         "{}: is there, and no list that leapmap design wrote; allowed: another name by -o, or --overwrite",
         map));
+  if (!map.empty()) refuse_unwritable(map);
+  TextOutput csv("--csv", arguments.csv, csv_head(question), arguments.overwrite);
   note_signals();
   FindOptions options = arguments.options;
   options.stop_requested = [] { return noted_signal() != 0; };
@@ -262,13 +270,14 @@ int run(const DesignArguments& arguments) {
   else if (!arguments.quiet)
     print_found(question, found);
   if (!found.reached) return 1;
-  if (!arguments.csv.empty()) write_text(arguments.csv, csv_of(question, found));
-  if (map.empty()) return 0;
-  sweep(list_of(spec, found), map,
-        {.overwrite = true,
-         .threads = arguments.options.threads,
-         .lock = arguments.locking == Locking::required});
-  if (!arguments.quiet && !arguments.json) say("\nlist     {}\n", map);
+  if (!map.empty()) {
+    sweep(list_of(spec, found), map,
+          {.overwrite = true,
+           .threads = arguments.options.threads,
+           .lock = arguments.locking == Locking::required});
+    if (!arguments.quiet && !arguments.json) say("\nlist     {}\n", map);
+  }
+  if (!arguments.csv.empty()) csv.commit(csv_of(question, found));
   return 0;
 }
 
@@ -278,7 +287,9 @@ void add_design(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("design", "find the designs that reach their goals best, or a Pareto front");
   auto arguments = std::make_shared<DesignArguments>();
-  command->add_option("SPEC", arguments->spec, "a spec, TOML, whose axes { from, to } are free")->required();
+  command->add_option("SPEC", arguments->spec, "a spec, TOML, whose axes { from, to } are free")
+      ->required()
+      ->check(named_file());
   command
       ->add_option(
           "-o,--output", arguments->output,
@@ -292,18 +303,20 @@ void add_design(CLI::App& app, int& status) {
   add_set(*command, arguments->overrides, ", for example --set 'goal.jump_height={at_least=0.8}'");
   for (const Option* option : hop_options())
     if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
-  command->add_option("--seed", arguments->options.seed,
-                      "of all chance; the same seed, the same designs; default: 1");
+  command
+      ->add_option("--seed", arguments->options.seed,
+                   "of all chance; the same seed, the same designs; default: 1")
+      ->transform(whole_number(0, most_seed));
   command
       ->add_option("--most", arguments->options.most,
                    "designs told, one a basin; default: 8, of a front 2,048")
-      ->check(CLI::Range(1, 100000));
+      ->transform(whole_number(1, 1e5));
   command
       ->add_option("--sample", arguments->options.sample,
                    "designs of the first, dense sample; default: as many as take a second or two")
-      ->check(CLI::Range(16, 1 << 27));
+      ->transform(whole_number(16, 1 << 27));
   command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
-      ->check(CLI::Range(1, most_threads));
+      ->transform(whole_number(1, most_threads));
   command->add_flag("--json", arguments->json, "print JSON and nothing else");
   command->add_flag("--overwrite", arguments->overwrite,
                     "replace a file that is no list of an earlier search, too");

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -13,10 +14,10 @@
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
-#include "cli/text_file.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "support/output_file.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
@@ -29,8 +30,7 @@ struct FitArguments {
   std::vector<std::string> overrides;
   MeasurementOptions reading;
   FitOptions options;
-  bool json = false;
-  Locking locking = Locking::required;
+  bool json = false, overwrite = false;
 };
 
 /// What hop needs of it.
@@ -108,20 +108,36 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
   const bool film = measured.events.empty();
   if (!film || !std::isnan(measured.film.error))
     say("  chi-square {:.4g} for {} degrees of freedom{}\n", fit.chi_square, fit.degrees,
-        std::isnan(fit.probability)
-            ? ": the errors are those of the numbers alone"
+        fit.degrees == 0
+            ? ": as many numbers as free parameters, so that a true model passes within their errors"
             : fmt::format("; a true model has as much in {:.2g} of 100 cases", 100.0 * fit.probability));
   if (film)
     say("  residuals {:.3g} {} rms{}\n", fit.error, measured.film.phi.empty() ? "m" : "rad",
         std::isnan(measured.film.error) ? ", from which the errors above are told" : "");
-  if (!explains(fit))
-    say("  This does not explain what was measured{}. Look at slope, radius, masses, L/R{}; or free them.\n",
-        film ? fmt::format(": residuals are {:.3g} times the scatter from line to line", fit.misfit) : "",
+  if (film && fit.correlation > 1.0 && explains(fit))
+    say("  neighbouring residuals are alike over {:.3g} lines, as in a smoothed film: {:.3g} of {} lines are "
+        "independent, and errors allow for that\n",
+        fit.correlation, fit.independent, grouped(measured.film.t.size()));
+  if (!fit.judged)
+    say("  Too few lines to say whether this explains what was measured; allowed: more lines, or --error.\n");
+  else if (!explains(fit))
+    say("  This does not explain what was measured{}. Check slope, radius, masses, L/R{}; or free them.\n",
+        !film || !std::isnan(fit.probability) ? ""
+        : runs(fit)
+            ? fmt::format(": residuals stay on one side for long, only {:.3g} of the lines are independent",
+                          fit.independent)
+            : fmt::format(": residuals are {:.3g} times the scatter from line to line", fit.misfit),
         film && measured.film.phi.empty() ? ", --scale, --y-down and the sign of x" : "");
   print_events(measured, fit);
   if (fit.after_landing > 0)
-    say("  {} lines of the film are after this model's landing, where it is not followed: leave them out\n",
-        grouped(fit.after_landing));
+    say("  {} lines of the film are after the model's last landing, where it is not followed: leave them "
+        "out, "
+        "or --set jumps=...{}\n",
+        grouped(fit.after_landing),
+        fit.scene.jumps > 1 && fit.outcome.sequence_end != Status::jumped
+            ? fmt::format("; the sequence ended early, {}, with runway = {}",
+                          name_of(fit.outcome.sequence_end), fit.scene.runway)
+            : "");
   say("  jump: {}, height {:.4g}, at {:.4g} s\n  {}\n", name_of(fit.outcome.status), fit.outcome.jump_height,
       fit.outcome.jump_time, hop_command(spec_of(fit), fit.design));
 }
@@ -158,17 +174,20 @@ std::string json_of(const ModelFit& fit) {
       "  {{\"friction\": \"{}\", \"found\": {}, \"explains\": {}, \"parameters\": {{{}}},\n   "
       "\"correlations\": {}, "
       "\"chi_square\": {}, "
-      "\"degrees\": {}, \"error\": {}, \"information\": {},\n   \"model\": {},\n   \"residuals\": {},\n   "
+      "\"degrees\": {}, \"error\": {}, \"information\": {}, \"correlation\": {}, \"independent\": {},\n   "
+      "\"model\": {},\n   \"residuals\": {},\n   "
       "\"hop\": \"{}\"}}",
       model_of(fit.scene).name, fit.found, explains(fit), fmt::join(parameters, ", "),
       json_of(fit.correlations), json_number(fit.chi_square), fit.degrees, json_number(fit.error),
-      json_number(fit.information), json_of(fit.model), json_of(fit.residuals),
-      fit.found ? hop_command(spec_of(fit), fit.design) : "");
+      json_number(fit.information), json_number(fit.correlation), json_number(fit.independent),
+      json_of(fit.model), json_of(fit.residuals), fit.found ? hop_command(spec_of(fit), fit.design) : "");
 }
+
+constexpr std::string_view csv_head = "t,quantity,measured";
 
 /// A line of each number measured: what it is, what each model has in its place.
 std::string csv_of(const Measurements& measured, const FitReport& report) {
-  std::string text = "t,quantity,measured";
+  std::string text(csv_head);
   for (const ModelFit& fit : report.models)
     if (fit.found) text += fmt::format(",model_{0},residual_{0}", model_of(fit.scene).name);
   text += "\n";
@@ -204,11 +223,19 @@ void tell_fitted_anew(const Spec& spec) {
 int run(const FitArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   const auto only = std::ranges::find(models(), arguments.model, &Model::name);
-  if (only != models().end() && only->slips)
-    overrides.insert(overrides.begin(), "scene.friction=" + arguments.model);
-  const Spec spec = read_spec(arguments.spec, overrides);
+  if (only != models().end()) {
+    for (const std::string& set : overrides)
+      if (set.starts_with("friction=") || set.starts_with("scene.friction="))
+        throw InputError(fmt::format("--model {} and --set {}: say the friction twice; allowed: one of them",
+                                     arguments.model, set));
+    if (only->slips) overrides.insert(overrides.begin(), "scene.friction=" + arguments.model);
+  }
+  const Spec spec = read_given_spec(arguments.spec, overrides);
   tell_fitted_anew(spec);
-  refuse_text_over("--csv", arguments.csv, {arguments.data, arguments.spec}, arguments.locking);
+  const std::array inputs{NamedPath{"DATA", arguments.data}, NamedPath{"SPEC", arguments.spec}};
+  const std::array outputs{NamedPath{"--csv", arguments.csv}};
+  refuse_same_files(inputs, outputs);
+  TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
   const Measurements measured = read_measurements(arguments.data, arguments.reading);
   FitOptions options = arguments.options;
   if (only != models().end()) options.models = {only->friction};
@@ -231,7 +258,7 @@ int run(const FitArguments& arguments) {
     print_preference(report);
   }
   if (!report.models[0].found) return 1;
-  if (!arguments.csv.empty()) write_text(arguments.csv, csv_of(measured, report));
+  if (!arguments.csv.empty()) csv.commit(csv_of(measured, report));
   return 0;
 }
 
@@ -244,10 +271,13 @@ void add_fit(CLI::App& app, int& status) {
   command
       ->add_option("DATA", arguments->data,
                    "measurements, CSV: columns t, phi; or t, x_P, y_P, x_O, y_O; or event, value, error")
-      ->required();
-  command->add_option("SPEC", arguments->spec,
-                      "a spec, TOML: the hoop, and free parameters { from, to }; default: the paper's hoop, "
-                      "its release and friction free");
+      ->required()
+      ->check(named_file());
+  command
+      ->add_option("SPEC", arguments->spec,
+                   "a spec, TOML: the hoop, and free parameters { from, to }; default: the paper's hoop, "
+                   "its release and friction free")
+      ->check(named_file());
   std::vector<std::string> names{"both"};
   for (const Model& model : models()) names.emplace_back(model.name);
   command
@@ -257,9 +287,9 @@ void add_fit(CLI::App& app, int& status) {
   command
       ->add_option("--error", arguments->reading.error,
                    "standard error of a film's angles [rad] or positions [m]; default: told by the residuals")
-      ->check(CLI::PositiveNumber);
+      ->transform(number({0.0, 1e300, false}));
   command->add_option("--scale", arguments->reading.scale, "metres a unit of marker positions, for pixels")
-      ->check(CLI::PositiveNumber);
+      ->transform(number({0.0, 1e300, false}));
   command->add_flag("--y-down", arguments->reading.y_down,
                     "marker positions y count towards the plane, as rows of a picture do");
   command->add_flag("--allow-gaps", arguments->reading.allow_gaps, "let films pass that have lines missing");
@@ -267,10 +297,12 @@ void add_fit(CLI::App& app, int& status) {
       ->add_option("--csv", arguments->csv,
                    "write measured numbers, models and residuals to this file, for fit_chart.py")
       ->check(named_file());
+  command->add_flag("--overwrite", arguments->overwrite, "let --csv replace whatever file has that name");
   add_set(*command, arguments->overrides, ", for example --set radius=0.05 --set 'slope={from=0.3,to=0.5}'");
-  command->add_option("--seed", arguments->options.seed, "of the coarse map; default: 1");
+  command->add_option("--seed", arguments->options.seed, "of the coarse map; default: 1")
+      ->transform(whole_number(0, most_seed));
   command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
-      ->check(CLI::Range(1, most_threads));
+      ->transform(whole_number(1, most_threads));
   command->add_flag("--json", arguments->json, "print JSON and nothing else");
   command->footer(
       "Without free parameters of a spec or --set release_angle, release_spin and, where the contact slips, "

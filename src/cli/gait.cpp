@@ -40,7 +40,8 @@ void print_gaits(const Gaits& found, int most_period) {
         most_period, found.returns.size());
     return;
   }
-  say("Every gait found of up to {} jumps, by its return map in {} places:\n\n{:>6} {:>9} {:>12} {:>12} "
+  say("Gaits found of up to {} jumps, by the return map in {} places and, of those that jump again at each "
+      "landing, from a grid of starts:\n\n{:>6} {:>9} {:>12} {:>12} "
       "{:>11} "
       "{:>12}  "
       "{}\n",
@@ -96,7 +97,7 @@ int run(const GaitArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
   refuse_scatter(overrides, "allowed: one design as drawn");
-  Spec spec = read_spec(arguments.spec, overrides);
+  Spec spec = read_given_spec(arguments.spec, overrides);
   if (!spec.axes.empty() || !spec.points.empty())
     throw InputError(
         fmt::format("{}: has many designs; allowed: one for leapmap gait, and leapmap sweep with [gait] "
@@ -142,12 +143,13 @@ void add_gait(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("gait", "how one hoop goes on jumping for ever: its periodic jumps, stable or not");
   auto arguments = std::make_shared<GaitArguments>();
-  command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop");
+  command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop")
+      ->check(named_file());
   for (const Option* option : hop_options())
     if (option->key != "jumps") add_flag_of(*command, *option, arguments->flags);
   add_set(*command, arguments->overrides, ", for example gait.settle=2000");
   command->add_option("--most-period", arguments->most_period, "longest gait looked for, in jumps; default 2")
-      ->check(CLI::Range(1, 16));
+      ->transform(whole_number(1, 16));
   command->add_flag("--json", arguments->json, "print JSON, with the return map where it was looked at");
   command->footer(
       "A gait is stable where its multiplier, by which small errors grow from one round to the next, is "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// leapmap hop: one design, told in full.
 #include <fmt/format.h>
+#include <array>
 
 #include <algorithm>
 #include <cmath>
@@ -14,14 +15,16 @@
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
 #include "cli/told_sequences.hpp"
+#include "coulomb/contact_phases.hpp"
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
+#include "map/table_file.hpp"
 #include "map/trace_file.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
+#include "support/output_file.hpp"
 #include "support/printable.hpp"
 #include "sweep/audit.hpp"
-#include "sweep/begin_map.hpp"
 #include "sweep/options.hpp"
 #include "sweep/provenance.hpp"
 
@@ -59,6 +62,8 @@ std::string verdict(const Motion& motion, const Scene& scene) {
       return "It comes to where the rigid-body equations have no answer or two: sliding (Painleve), or where "
              "the motor alone lifts off what it does not carry in flight.";
     default:
+      if (motion.outcome.failure && std::string_view(motion.outcome.failure) == endless_rebounds)
+        return fmt::format("The method gave up: {}.", endless_rebounds);
       return fmt::format(
           "The method gave up: {}. Try another tolerance, more max_steps, a shorter fixed_step or another "
           "method.",
@@ -256,7 +261,7 @@ std::string json_text(const Spec& spec, const Motion& motion, const Outcome& che
 int run(const HopArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
-  const Spec spec = read_spec(arguments.spec, overrides);
+  const Spec spec = read_given_spec(arguments.spec, overrides);
   if (!spec.axes.empty())
     throw InputError(
         fmt::format("{}: design.{} is an axis; allowed: one number for a hop, for example --set {}={}",
@@ -268,6 +273,10 @@ int run(const HopArguments& arguments) {
   const bool driven = spec.design.drive_torque != 0.0, is_example = arguments.mass == 0.0;
   if (!driven && !is_example)
     throw InputError("--mass: has no use without a motor; allowed: with --drive-torque");
+  const std::array inputs{NamedPath{"SPEC", arguments.spec}};
+  const std::array outputs{NamedPath{"--trace", arguments.trace, true}};
+  refuse_same_files(inputs, outputs);
+  if (!arguments.trace.empty()) refuse_taken(arguments.trace, trace_filetype, arguments.locking);
   if (!arguments.scatter) refuse_scatter(arguments.overrides, "allowed: with --scatter");
   std::optional<ScatterReport> made;
   if (arguments.scatter) made = scatter(spec);
@@ -303,7 +312,8 @@ int run(const HopArguments& arguments) {
 void add_hop(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("hop", "solve one design and tell its phases, lift-offs and jump");
   auto arguments = std::make_shared<HopArguments>();
-  command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop");
+  command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop")
+      ->check(named_file());
   for (const Option* option : hop_options()) add_flag_of(*command, *option, arguments->flags);
   add_set(*command, arguments->overrides);
   command->add_option("--trace", arguments->trace, "write the motion over time to this HDF5 file")
@@ -312,12 +322,12 @@ void add_hop(CLI::App& app, int& status) {
       ->add_option("--trace-interval", arguments->trace_interval,
                    "seconds between its samples; default 0.001")
       ->needs("--trace")
-      ->check(CLI::Range(1e-9, 1e9));
+      ->transform(number({1e-9, 1e9}));
   command
       ->add_option("--mass", arguments->mass,
                    "kilograms of hoop and weight together, for what --drive-torque asks of a motor; default "
                    "0.0282, the paper's hoop")
-      ->check(CLI::Range(1e-9, 1e9));
+      ->transform(number({1e-9, 1e9}));
   command->add_flag("--gradient", arguments->gradient,
                     "tell the derivatives of every quantity by every parameter, too");
   command->add_flag(

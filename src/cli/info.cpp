@@ -298,7 +298,9 @@ void add_info(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("info", "tell what is in a map: axes, statuses, extremes and where they are");
   auto arguments = std::make_shared<InfoArguments>();
-  command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")->required();
+  command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")
+      ->required()
+      ->check(named_file());
   command->add_flag("--spec", arguments->only_spec, "print the resolved spec that made it, and nothing else");
   command
       ->add_flag("--failed", arguments->failed,
@@ -307,11 +309,16 @@ void add_info(CLI::App& app, int& status) {
   command
       ->add_option("--at", arguments->at,
                    "AXIS=VALUE,...: tell a design's outcome and gradient, and the nearest cliffs around it")
+      ->check(CLI::Validator(
+          [](const std::string& at) {
+            return at.empty() ? std::string("is empty; allowed: AXIS=VALUE,...") : "";
+          },
+          ""))
       ->excludes("--spec")
       ->excludes("--failed");
   command->add_option("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
       ->needs("--failed")
-      ->check(CLI::Range(0.0, 1e15));
+      ->transform(whole_number(0, 1e15));
   add_no_lock(*command, arguments->locking);
   command->footer(
       "Examples:\n"

@@ -107,6 +107,7 @@ void print_place(const Spec& original, const std::string& at) {
   const NearCliffs cliffs = near_cliffs(original, one.design);
   one.axes.clear();
   one.output = {};
+  check_scatter(one);  // a percentage may be one of nothing just here
   Outcome outcome;
   make_solver(one)({&one.design, 1}, {&outcome, 1});
   print_outcome(outcome, one.scene);

@@ -66,7 +66,7 @@ void add_join(CLI::App& app, int& status) {
   command
       ->add_option("--shards", arguments->options.shards,
                    "how many shards it has; default: as many as their names say")
-      ->check(CLI::Range(std::size_t{1}, most_shards));
+      ->transform(whole_number(1, most_shards));
   command->add_flag(
       "--virtual", arguments->options.as_virtual,
       "leave the values in the shards and look them up there: for a map too large to copy; it needs the "

@@ -2,6 +2,8 @@
 /// leapmap: which slope, mass ratio and L/R make a passive hoop jump, how high and how soon.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -12,6 +14,7 @@
 #include "cli/output.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/version.hpp"
+#include "support/number.hpp"
 #include "support/posix.hpp"
 
 namespace {
@@ -100,6 +103,30 @@ CLI::Validator leapmap::cli::named_file() {
           ""};
 }
 
+CLI::Validator leapmap::cli::number(const Range& range) {
+  return {[range](std::string& text) {
+            const auto value = number_in(text);
+            if (!value || !range.holds(*value))
+              return fmt::format("'{}' is {}; allowed: {}", text, value ? "out of range" : "not a number",
+                                 allowed_values(range, ""));
+            text = fmt::format("{}", *value);
+            return std::string();
+          },
+          ""};
+}
+
+CLI::Validator leapmap::cli::whole_number(double least, double most) {
+  return {[range = Range{least, most}](std::string& text) {
+            const auto value = number_in(text);
+            if (!value || *value != std::floor(*value) || !range.holds(*value))
+              return fmt::format("'{}' is {}; allowed: {}", text, value ? "no such number" : "not a number",
+                                 allowed_values(range, "", "a whole number"));
+            text = fmt::format("{}", static_cast<long long>(*value));
+            return std::string();
+          },
+          ""};
+}
+
 void leapmap::cli::add_no_lock(CLI::App& command, Locking& locking) {
   command.add_flag_callback(
       "--no-lock", [&locking] { locking = Locking::if_possible; },
@@ -112,6 +139,29 @@ void leapmap::cli::add_set(CLI::App& command, std::vector<std::string>& override
   command.add_option("--set", overrides, "KEY=VALUE: override a key of the spec" + example)
       ->expected(1)
       ->take_all();
+}
+
+leapmap::Spec leapmap::cli::read_given_spec(const std::string& path,
+                                            const std::vector<std::string>& overrides) {
+  const auto key_of = [](const std::string& set) -> const Option* {
+    const std::string name = set.substr(0, set.find('='));
+    const std::size_t dot = name.find('.');
+    return dot == std::string::npos ? find_option("", name)
+                                    : find_option(name.substr(0, dot), name.substr(dot + 1));
+  };
+  Spec spec = read_spec(path, overrides);  // first, so that what is wrong is said alone
+  for (std::size_t i = 0; i < overrides.size(); ++i) {
+    const Option* key = key_of(overrides[i]);
+    const auto later = [&](std::size_t k) { return key && key_of(overrides[k]) == key; };
+    std::size_t last = i;
+    for (std::size_t k = i + 1; k < overrides.size(); ++k)
+      if (later(k)) last = k;
+    const bool is_first = std::none_of(overrides.begin(), overrides.begin() + static_cast<std::ptrdiff_t>(i),
+                                       [&](const std::string& set) { return key && key_of(set) == key; });
+    if (last != i && is_first)
+      tell(fmt::format("{} is given twice on the command line: {} is used", key->key, overrides[last]));
+  }
+  return spec;
 }
 
 void leapmap::cli::refuse_scatter(const std::vector<std::string>& overrides, const std::string& why) {

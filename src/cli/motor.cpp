@@ -11,20 +11,30 @@
 namespace leapmap::cli {
 
 Motor motor_of(const Spec& spec, const Motion& motion, double mass) {
-  constexpr double samples = 4000.0;
+  constexpr double samples = 4000.0, most_samples = 1e6;
   const auto tell = model_of(spec.scene).tell_exactly;
   const double tolerance = std::max(spec.numerics.tolerance, 1e-10);
-  double end = motion.outcome.jump_time;
-  if (std::isnan(end))
-    end = tell(spec.design, spec.scene, tolerance, std::numeric_limits<double>::infinity()).end;
+  const double whole = tell(spec.design, spec.scene, tolerance, std::numeric_limits<double>::infinity()).end;
+  const double end = std::isnan(motion.outcome.jump_time) ? whole : motion.outcome.jump_time;
   Motor motor{.mass = mass,
               .torque = spec.design.drive_torque * mass * spec.scene.gravity * spec.scene.radius,
               .power = -std::numeric_limits<double>::infinity(),
               .spin = 0.0,
               .work = 0.0};
-  const Motion sampled = tell(spec.design, spec.scene, tolerance, std::max(end, 1e-6) / samples);
+  // A flight may last ten million times as long as the contact before it. However few samples that leaves to
+  // the contact, its ends are among them.
+  const double interval = std::max({end / samples, whole / most_samples, 1e-10});
+  const Motion sampled = tell(spec.design, spec.scene, tolerance, interval);
+  std::vector<MotionPoint> points = sampled.points;
+  const auto put = [&](double t, double phi, double spin, Phase phase) {
+    points.push_back({t, phi, spin, 0.0, 0.0, 0.0, 0.0, phase});
+  };
+  for (const Candidate& lift_off : sampled.candidates)
+    put(lift_off.t, lift_off.phi, lift_off.spin, Phase::rolling);  // the last of contact
+  for (const PhaseStart& start : sampled.phases) put(start.t, start.phi, start.spin, start.phase);
+  std::ranges::stable_sort(points, {}, &MotionPoint::t);
   const MotionPoint* before = nullptr;
-  for (const MotionPoint& at : sampled.points) {
+  for (const MotionPoint& at : points) {
     if (before && before->phase != Phase::flight && at.phase != Phase::flight)
       motor.work += motor.torque * (at.phi - before->phi);
     before = &at;

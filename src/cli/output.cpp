@@ -23,7 +23,7 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 
 std::string json_string(std::string_view text) {
   std::string told = "\"";
-  for (const char c : text) {
+  for (const char c : printable(text, "\n\t")) {
     if (static_cast<unsigned char>(c) < 0x20) {
       told += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
       continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// leapmap precision: speed against accuracy, all methods in one run.
 #include <fmt/format.h>
+#include <array>
 
 #include <algorithm>
 #include <chrono>
@@ -16,8 +17,8 @@
 #include "map/table_file.hpp"
 #include "model/model.hpp"
 #include "study/precision.hpp"
+#include "support/output_file.hpp"
 #include "support/printable.hpp"
-#include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/point_list.hpp"
 #include "sweep/provenance.hpp"
@@ -109,6 +110,9 @@ int run(PrecisionArguments arguments, bool designs_given) {
   PrecisionOptions& options = arguments.options;
   if (options.quick && !designs_given) options.designs = 40;
   if (options.quick) options.budget = 0.3;
+  const std::array inputs{NamedPath{"--points", arguments.points}};
+  const std::array outputs{NamedPath{"-o", arguments.table, true}};
+  refuse_same_files(inputs, outputs);
   if (!arguments.points.empty()) options.points = read_designs(arguments.points);
   const Scene scene{.friction = arguments.friction, .runway = 4.0};
   const std::vector<Contestant> contestants = precision_contestants(true, scene.friction);
@@ -116,7 +120,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
     if (std::ranges::find(contestants, method, &Contestant::method) == contestants.end())
       throw InputError(fmt::format(
           "--methods {}: knows no friction; allowed with --friction coulomb: exact, gsl-...", method));
-  hdf5::refuse_other_file(arguments.table, filetype, arguments.locking);  // not after minutes of work
+  refuse_taken(arguments.table, filetype, arguments.locking);  // not after minutes of work
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
   print_head();
@@ -155,8 +159,9 @@ void add_precision(CLI::App& app, int& status) {
   auto* designs =
       command
           ->add_option("--designs", arguments->options.designs, "random designs; default: 200, 40 if quick")
-          ->check(CLI::Range(1, 1'000'000));
-  auto* seed = command->add_option("--seed", arguments->options.seed, "of the random designs; default: 1");
+          ->transform(whole_number(1, 1e6));
+  auto* seed = command->add_option("--seed", arguments->options.seed, "of the random designs; default: 1")
+                   ->transform(whole_number(0, most_seed));
   command
       ->add_option("--points", arguments->points,
                    "a CSV list of designs, as for sweeps, in place of random ones and the paper's hoop")

@@ -14,8 +14,8 @@
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
 #include "study/stability.hpp"
+#include "support/output_file.hpp"
 #include "support/printable.hpp"
-#include "sweep/begin_map.hpp"
 #include "sweep/provenance.hpp"
 
 namespace leapmap::cli {
@@ -117,7 +117,7 @@ Table table_of(std::span<const StabilityRow> rows) {
 }
 
 int run(const StabilityArguments& arguments) {
-  hdf5::refuse_other_file(arguments.table, filetype, arguments.locking);  // not after minutes of work
+  refuse_taken(arguments.table, filetype, arguments.locking);  // not after minutes of work
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
   say("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", "case", "method",

@@ -15,8 +15,8 @@
 #include "cli/sweep.hpp"
 #include "cli/told_sequences.hpp"
 #include "leapmap/version.hpp"
+#include "support/output_file.hpp"
 #include "support/printable.hpp"
-#include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
@@ -75,7 +75,7 @@ int tell_report(const SweepArguments& arguments, const Spec& spec, const std::st
 }
 
 int run(const SweepArguments& arguments) {
-  const Spec spec = read_spec(arguments.spec, arguments.overrides);
+  const Spec spec = read_given_spec(arguments.spec, arguments.overrides);
   const std::string map = behind_links(arguments.map.empty() ? spec.output.file : arguments.map);
   if (arguments.dry_run) {
     check_spec(spec);
@@ -177,8 +177,10 @@ void print_totals(const StatusCounts& totals) {
 void add_sweep(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("sweep", "solve the designs of a spec into a map (HDF5)");
   auto arguments = std::make_shared<SweepArguments>();
-  command->add_option("SPEC", arguments->spec,
-                      "the sweep's spec, TOML; default: every key at its default, the paper's hoop");
+  command
+      ->add_option("SPEC", arguments->spec,
+                   "the sweep's spec, TOML; default: every key at its default, the paper's hoop")
+      ->check(named_file());
   command
       ->add_option("-o,--output", arguments->map,
                    "the map to write, in a folder made if need be; default: output.file of the spec")
@@ -195,7 +197,7 @@ void add_sweep(CLI::App& app, int& status) {
   for (const Option* option : hop_options())
     if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
   command->add_option("--threads", arguments->threads, "threads to use; default: all")
-      ->check(CLI::Range(1, most_threads));
+      ->transform(whole_number(1, most_threads));
   auto* resume = command->add_flag("--resume", arguments->resume,
                                    "go on with the MAP.part that an interrupted sweep left, if there is one");
   auto* overwrite = command->add_flag("--overwrite", arguments->overwrite,
@@ -213,7 +215,7 @@ void add_sweep(CLI::App& app, int& status) {
       ->add_option("--commit-interval", arguments->commit_interval,
                    "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
                    "hand; default: 1")
-      ->check(CLI::Range(0.0, 86400.0));
+      ->transform(number({0.0, 86400.0}));
   command
       ->add_option_function<std::string>(
           "--shard", [arguments](const std::string& text) { arguments->shard = parse_shard(text); },
@@ -228,14 +230,14 @@ void add_sweep(CLI::App& app, int& status) {
       ->needs(dry)
       ->excludes(command->get_option("--shard"))
       ->excludes(command->get_option("--retry-failed"))
-      ->check(CLI::Range(std::size_t{1}, most_shards));
+      ->transform(whole_number(1, most_shards));
   command
       ->add_option("--time-limit", arguments->time_limit,
                    "of --dry-run: hours that a job may take, which tells how many parts there must be")
       ->needs(dry)
       ->excludes(command->get_option("--shard"))
       ->excludes(command->get_option("--retry-failed"))
-      ->check(CLI::Range(1e-3, 1e4));
+      ->transform(number({1e-3, 1e4}));
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->footer(
       "Examples:\n"

@@ -36,16 +36,12 @@ std::size_t print_existing(const SweepArguments& arguments, const std::string& m
   return arguments.resume ? designs : 0;
 }
 
-double file_bytes(const MapLayout& layout, const Tiling& tiling) {
-  return static_cast<double>(map_bytes(layout, tiling)) + 5e4;
-}
-
 /// What the sweep, and what reads its map, take at most. The constants are measured, with room to spare: what
 /// the program or Python takes by itself, and what HDF5 keeps of a file's own structure.
 std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling& tiling, int threads) {
   constexpr double program = 3e7, python = 1e8, most_structure = 4e7, explorer_per_design = 70.0;
   constexpr std::size_t most_on_page = 4'000'000;  // analysis/explorer, MOST_DESIGNS
-  const double file = file_bytes(layout, tiling), designs = static_cast<double>(tiling.designs());
+  const double file = map_file_bytes(layout, tiling), designs = static_cast<double>(tiling.designs());
   double axis_values = 0.0;
   for (const Axis& axis : spec.axes) axis_values += static_cast<double>(axis.values.size());
   const double held =
@@ -120,7 +116,7 @@ void print_shards(const SweepArguments& arguments, const Spec& spec, const std::
       grouped(shards),
       grouped(static_cast<std::size_t>(std::ceil(static_cast<double>(tiling.designs()) * even))),
       spoken_duration(longest(shards)), threads, std::ranges::max(sums_of(efforts, shards)) / (all * even),
-      spoken_bytes(file_bytes(layout, tiling) * even));
+      spoken_bytes(map_file_bytes(layout, tiling) * even));
   if (!map.empty())
     say("         leapmap sweep ... --shard 1/{0} to --shard {0}/{0}, then leapmap join {1}\n", shards, map);
 }
@@ -153,7 +149,7 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   say("audit    {:g} of them, again by {}\n", spec.numerics.audit, audit_method(spec.numerics));
   say("fields   {} in {}\n", fmt::join(fields, ", "), spec.output.precision);
   say("memory   {}\n", memory_line(spec, layout, tiling, threads));
-  say("file     about {}{}\n", spoken_bytes(file_bytes(layout, tiling)),
+  say("file     about {}{}\n", spoken_bytes(map_file_bytes(layout, tiling)),
       layout.compression > 0 ? " before compression" : "");
   const double alone = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already);
   const double seconds = alone / static_cast<double>(std::clamp<std::size_t>(

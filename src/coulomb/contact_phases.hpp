@@ -11,8 +11,8 @@
 ///     v > 0 or  | v comes back to zero                | R if |F| <= mu_s N, else S the other way
 ///     v < 0     | Ic + rho s q falls to zero          | indeterminate (Painleve)
 ///   F flight    | its apex reaches hop_height         | jumped
-///               | it sinks at once, as the motor that | indeterminate: the plane would have to
-///               |   lifted it off idles in flight     |   pull in contact, and is in the way
+///               | it begins by sinking, as the motor  | indeterminate: the plane would have to
+///               |   that lifted it idles in flight    |   pull in contact, and is in the way
 ///               | y comes back to zero                | landing, impulses at once; then F if it
 ///               |                                     |   rebounds or n0 <= 0, S if v is not zero,
 ///               |                                     |   else as where v comes back to zero
@@ -71,6 +71,9 @@ Contact<S> contact_of(const Design& design, const Scene& scene) {
 }
 
 inline constexpr int most_phases = 2'000;
+/// Why a hoop fails that rebounds ever less, and never so little that rest_speed counts it as none.
+inline constexpr const char* endless_rebounds =
+    "its rebounds never end, as rest_speed counts none as the last: set rest_speed = 1e-3, or 1e-12 at least";
 
 /// phase_sequence: two bits a phase, the first lowest, up to 32.
 class PhaseSequence {

@@ -13,6 +13,7 @@
 #include "physics/landing.hpp"
 #include "physics/sliding.hpp"
 #include "physics/stick.hpp"
+#include "support/stop.hpp"
 #include "trajectory/jump_rule.hpp"
 #include "trajectory/units.hpp"
 
@@ -116,7 +117,7 @@ class PhaseMachine {
   /// On from the flight that was told last: it lands, unless that was it.
   std::optional<NextPhase> after(const Flight<S>& flight) {
     const LiftOff<S> lift_off{at_.time, at_.angle, at_.spin};
-    if (sinks_without_motor(flight, trig(at_.angle))) return ended_as(Status::indeterminate);
+    if (sinks_without_motor()) return ended_as(Status::indeterminate);
     begin_phase(Phase::flight, 0);
     const bool jumps = look_at(lift_off, flight);
     at_ = after_flight(hoop_, at_, flight.flight_time);
@@ -149,7 +150,9 @@ class PhaseMachine {
 
   std::optional<NextPhase> go_on(ContactPhase next) {
     if (sequence_.count() >= most_phases)
-      return ended_as(Status::failed, "more phases than a design may go through");
+      return ended_as(Status::failed, contact_.restitution > S(0) && contact_.rest_speed < S(1e-12)
+                                          ? endless_rebounds
+                                          : "more phases than a design may go through");
     if (next == ContactPhase::leaves) return NextPhase{Phase::flight, 0};
     slides_ = next != ContactPhase::rolls;
     const NextPhase phase{slides_ ? Phase::sliding : Phase::rolling, !slides_ ? 0
@@ -183,10 +186,12 @@ class PhaseMachine {
     return std::nullopt;
   }
 
-  /// Whether it is the motor alone that lifted the hoop off: in flight it idles, and the plane is in the way.
-  bool sinks_without_motor(const Flight<S>& flight, const Trig<S>& phi) const {
-    const S held_down = hoop_.cos_slope + hoop_.rho * phi.cos * at_.spin * at_.spin;
-    return hoop_.drive != S(0) && !(flight.flight_time > S(0)) && held_down > S(1e-9);
+  /// Whether it is the motor alone that lifts the hoop off: in flight it idles, so that the flight would
+  /// begin by sinking into the plane, even if it came up again later. Neither contact nor flight is
+  /// consistent then.
+  bool sinks_without_motor() const {
+    const S held_down = hoop_.cos_slope + hoop_.rho * trig(at_.angle).cos * at_.spin * at_.spin;
+    return hoop_.drive != S(0) && !(at_.normal > S(0)) && held_down > S(1e-9);
   }
 
   /// Tells of a flight, and whether it is the jump.
@@ -223,6 +228,7 @@ Outcome go_through_phases(Start start, const Design& design, ContactState<S>& fr
                           const CoulombObserver& observer, const Roll& roll, const Slide& slide) {
   PhaseMachine<S> machine(design, from, scene, observer);
   for (auto next = machine.begin(start); next;) {
+    throw_if_stopped();
     if (next->phase == Phase::flight) {
       next = machine.after(flight_from(machine.hoop(), machine.at()));
       continue;

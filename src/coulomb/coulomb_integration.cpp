@@ -6,6 +6,7 @@
 
 #include "coulomb/coulomb_automaton.hpp"
 #include "physics/sliding.hpp"
+#include "support/stop.hpp"
 
 namespace leapmap {
 namespace {
@@ -102,6 +103,7 @@ PhaseEnd CoulombIntegration::follow(Phase phase, int direction, ContactState<dou
   if (!integrator_.start(start, 0.01 / (1.0 + std::abs(at.spin)))) return PhaseEnd::failed;
   const auto retake = [&](double tau, Y& y) { return integrator_.retake(tau, y); };
   for (;;) {
+    throw_if_stopped();
     if (++steps_ > options_.max_steps || !integrator_.advance()) return PhaseEnd::failed;
     const Step<4>& step = integrator_.step();
     const double turned = std::abs(step.y1[0] - step.y0[0]);
@@ -132,7 +134,7 @@ PhaseEnd CoulombIntegration::follow(Phase phase, int direction, ContactState<dou
 PhaseEnd CoulombIntegration::roll(const Hoop<double>& hoop, const Contact<double>& contact,
                                   ContactState<double>& at, double runway, const StepObserver& step_told) {
   system_.hoop = hoop, system_.friction = rolls;
-  const double sets_out = setting_out(hoop, trig(at.angle), at.spin);
+  const double sets_out = setting_out(hoop, at.angle, trig(at.angle), at.spin);
   if (sets_out == 0.0) return PhaseEnd::stalls;
   double way = std::copysign(1.0, sets_out);
   const Guard downhill{[&](const Y&y) { return hold(hoop, contact.mu_static, 1.0, y); },

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coulomb/coulomb_lanes.hpp"
+#include "support/stop.hpp"
 
 #include <algorithm>
 
@@ -30,6 +31,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
     free_.push_back(place);
   };
   for (std::size_t unbegun = 0; unbegun < designs.size() || free_.size() < most_on_their_way;) {
+    throw_if_stopped();
     while (unbegun < designs.size() && !free_.empty()) {
       const std::uint32_t place = free_.back();
       free_.pop_back();

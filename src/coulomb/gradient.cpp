@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "coulomb/model.hpp"
 #include "physics/landing.hpp"
@@ -148,7 +149,7 @@ class Chain {
     slide.free_force = free_normal_force(hoop_, trig(at_.angle), at_.spin * at_.spin);
     if (at_.spin == D(0.0)) set_out_from_rest(slide.friction);
     for (const auto& one : taken)
-      if (!over_panel(slide, one, HUGE_VAL)) return false;
+      if (!over_panel(slide, dual_part(slide, one), HUGE_VAL)) return false;
     const Trig<D> phi = trig(at_.angle);
     const SlidingMotion<D> motion = sliding_motion(hoop_, phi, at_.spin * at_.spin, slide.friction);
     const double travels = at_.slip.value + at_.spin.value;
@@ -176,30 +177,58 @@ class Chain {
     return true;
   }
 
+  /// A panel as the plain solver took it; nothing by angle: by time.
+  struct Part {
+    std::optional<SlidingPanels<D>::Stretch> stretch;
+    D duration;
+  };
+
+  /// The plain solver's panel in duals. Where the hoop has just set out, u = w^2 is small, and time's
+  /// derivatives go as u^(-3/2): fixed nodes would not resolve them however well they resolve the values. So
+  /// the stretch moves with the zero of u just before its start, as SlidingPanels::stretch_of places it, and
+  /// all is smooth along it again. Its end stays in place. A zero that is farther behind needs no such care,
+  /// and would move so much that digits are lost.
+  Part dual_part(const SlidingPanels<D>::Slide& slide, const SlidingPanels<double>::Taken& taken) const {
+    if (!taken.stretch) return {{}, D(taken.duration)};
+    const auto& plain = *taken.stretch;
+    SlidingPanels<D>::Stretch stretch{D(plain.shift), D(plain.begin), D(plain.span)};
+    const SlidingMotion<D> start =
+        sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, slide.friction);
+    const D rise = at_.spin < D(0.0) ? -start.angular : start.angular;
+    if (at_.spin == D(0.0) || !(rise > D(0.0))) return {stretch, {}};
+    const auto moving = SlidingPanels<D>::stretch_of(at_.spin, rise, D(HUGE_VAL));
+    constexpr double near = 0.25;  // of the panel's length
+    const bool is_near = -plain.shift < near * plain.length();
+    if (!is_near || !(std::abs(moving.shift.value - plain.shift) <= 1e-3 * std::abs(plain.shift)))
+      return {stretch, {}};
+    stretch.shift.by = moving.shift.by, stretch.begin.by = moving.begin.by;
+    stretch.span = D(plain.begin + plain.span) - stretch.begin;
+    return {stretch, {}};
+  }
+
   /// Slides over a panel, in halves where that resolves the values but not their derivatives, and as long as
   /// that helps. excess: of the panel that it is half of.
-  bool over_panel(SlidingPanels<D>::Slide& slide, const SlidingPanels<double>::Taken& one, double excess) {
+  bool over_panel(SlidingPanels<D>::Slide& slide, const Part& part, double excess) {
     constexpr double resolved = 1e3;  // times the finest tolerance
     constexpr int most_panels = 2'000;
     SlidingPanels<D>::Panel panel;
-    if (one.stretch)
-      panels_.solve_by_angle(slide, at_, {D(one.stretch->shift), D(one.stretch->begin), D(one.stretch->span)},
-                             panel);
+    if (part.stretch)
+      panels_.solve_by_angle(slide, at_, *part.stretch, panel);
     else
-      panels_.solve_by_time(slide, at_, D(one.duration), panel);
+      panels_.solve_by_time(slide, at_, part.duration, panel);
     if (!std::isfinite(panel.excess) || ++panels_taken_ > most_panels) return false;
     if (panel.excess <= resolved || !(panel.excess < 0.5 * excess)) {
       at_ = panel.end;
       slide.free_force = panel.free_force.end.value;
       return true;
     }
-    SlidingPanels<double>::Taken first = one, second = one;
-    if (one.stretch) {
-      const double half = 0.5 * one.stretch->span;
+    Part first = part, second = part;
+    if (part.stretch) {
+      const D half = 0.5 * part.stretch->span;
       first.stretch->span = second.stretch->span = half;
       second.stretch->shift -= first.stretch->length(), second.stretch->begin += half;
     } else {
-      first.duration = second.duration = 0.5 * one.duration;
+      first.duration = second.duration = 0.5 * part.duration;
     }
     return over_panel(slide, first, panel.excess) && over_panel(slide, second, panel.excess);
   }

@@ -50,7 +50,7 @@ void RollingLanes<T>::alone(const Phase& phase, std::vector<EndedPhase<S>>& ende
 template <class T>
 bool RollingLanes<T>::bracket(const Phase& phase, Bracketed& found) const {
   const Trig<S> phi = trig(phase.at.angle);
-  const S sets_out = setting_out(phase.hoop, phi, phase.at.spin);
+  const S sets_out = setting_out(phase.hoop, phase.at.angle, phi, phase.at.spin);
   if (sets_out == S(0)) return false;
   found.phase = phase;
   found.way = sets_out < S(0) ? S(-1) : S(1);

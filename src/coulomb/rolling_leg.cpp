@@ -16,7 +16,7 @@ template <class S>
 PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactState<S>& at, const S& runway,
                             const Told& turns) const {
   const ContactState<S> from = at;
-  const S sets_out = setting_out(hoop, trig(at.angle), at.spin);
+  const S sets_out = setting_out(hoop, at.angle, trig(at.angle), at.spin);
   if (sets_out == S(0)) return PhaseEnd::stalls;
   S way = sets_out < S(0) ? S(-1) : S(1);
   for (int turned = 0;; way = -way) {

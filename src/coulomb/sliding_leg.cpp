@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "numerics/panel_fall.hpp"
+#include "support/stop.hpp"
 
 namespace leapmap {
 
@@ -134,6 +135,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   };
   int refined = 0, shortened = 0;
   for (int tried = 0; tried < most_panels; ++tried) {
+    throw_if_stopped();
     // By angle while the hoop turns and its spin does not vanish soon; else by time.
     slide.edge.reset();
     if (const auto* near = edges.near()) slide.edge = near->edge, slide.left = near->left;

@@ -143,7 +143,7 @@ void leave_one_a_basin(Judge& judge, std::vector<Place>& places, std::size_t mos
 std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps) {
   std::vector<Place> places = starts_of(sampled(judge, effort, options, steps), effort.starts);
   // Each start on a thread of its own: CMA-ES asks for one design at a time.
-  parallel_for_each(places.size(), judge.threads(), [&] {
+  parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {
     return [&, own = std::shared_ptr<Judge>(judge.alone())](std::size_t i) {
       const std::uint64_t seed = options.seed * 1000 + i;
       evolve(*own, places[i], seed);
@@ -261,7 +261,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
   all.scatter = {};
   std::vector<FoundDesign> told(places.size());
   std::vector<char> stays(places.size(), 1);
-  parallel_for_each(places.size(), judge.threads(), [&] {
+  parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {
     return [&, solve = make_solver(all)](std::size_t i) {
       if (options.stop_requested && options.stop_requested()) throw Stopped("the search was asked to stop");
       FoundDesign& one = told[i];

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "design/correlated.hpp"
 #include "design/explained.hpp"
 #include "design/least_squares.hpp"
 #include "leapmap/solve.hpp"
@@ -44,7 +45,7 @@ void map_coarsely(const Explained& explained, const FitOptions& options, const S
   const std::size_t samples = points.samples(), dimensions = explained.free().size();
   std::vector<std::vector<double>> found(samples, std::vector<double>(dimensions));
   std::vector<double> sums(samples);
-  parallel_for_each((samples + a_block - 1) / a_block, options.threads, [&] {
+  parallel_for_each((samples + a_block - 1) / a_block, options.threads, options.stop_requested, [&] {
     return [&](std::size_t block) {
       if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
       const std::size_t first = block * a_block, count = std::min(a_block, samples - first);
@@ -107,7 +108,7 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
 LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<std::vector<double>>& starts,
                          const FitOptions& options, std::size_t& evaluations) {
   std::vector<LeastSquaresFit> fits(starts.size());
-  parallel_for_each(starts.size(), options.threads, [&] {
+  parallel_for_each(starts.size(), options.threads, options.stop_requested, [&] {
     return [&](std::size_t i) {
       if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
       fits[i] = minimize(problem, starts[i]);
@@ -225,32 +226,32 @@ void refuse_what_has_no_use(const Spec& spec) {
   if (resolved_method(spec.numerics) != "exact") refuse("a method other than \"exact\"");
 }
 
-/// The scatter of a film from line to line, by third differences, which a smooth motion hardly has: their
-/// median, so that single slips count for nothing. NaN of four lines or fewer.
-double scatter_of(const Film& film) {
-  std::vector<double> differences;
-  for (const auto* column :
-       {&film.phi, &film.markers[0], &film.markers[1], &film.markers[2], &film.markers[3]})
-    for (std::size_t i = 3; i < column->size(); ++i) {
-      const auto at = [&](std::size_t back) { return (*column)[i - back]; };
-      differences.push_back(std::abs(at(0) - 3.0 * at(1) + 3.0 * at(2) - at(3)));
-    }
-  if (differences.size() < 2) return nan;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::ranges::nth_element(differences, middle);
-  const double of_normal = 0.6745 * std::sqrt(20.0);  // 1 + 9 + 9 + 1
-  return *middle / of_normal;
-}
-
-/// Lines later than the landing of the jump that the model has.
+/// Lines later than the landing of the last jump that the model follows.
 std::size_t lines_after_landing(const Measurements& measured, const Outcome& outcome) {
-  const double landing = outcome.jump_time + outcome.flight_time;
+  const bool first = outcome.later_jumps.empty();
+  const double landing = first ? outcome.jump_time + outcome.flight_time
+                               : outcome.later_jumps.back().time + outcome.later_jumps.back().flight_time;
   return static_cast<std::size_t>(
       std::ranges::count_if(measured.film.t, [&](double t) { return t > landing; }));
 }
 
-ModelFit fit_model(const Measurements& measured, const Spec& spec, Friction friction,
-                   const FitOptions& options) {
+/// A model's fit, and what its information needs.
+struct Fitted {
+  ModelFit told;
+  double sum = 0.0;  ///< of squares of residuals over their errors, or over their unit
+  bool errors_known = false;
+};
+
+/// Akaike's information, of numbers so many of which count as one.
+double information_of(const Fitted& fitted, double correlation) {
+  const double numbers = static_cast<double>(fitted.told.residuals.size()) / correlation,
+               free = static_cast<double>(fitted.told.parameters.size());
+  if (fitted.errors_known) return 2.0 * free + fitted.sum / correlation;
+  return 2.0 * free + numbers * std::log(fitted.sum / (numbers * correlation));
+}
+
+Fitted fit_model(const Measurements& measured, const Spec& spec, Friction friction,
+                 const FitOptions& options) {
   const Explained explained(measured, spec, friction);
   LeastSquares problem = explained.problem();
   problem.evaluate = [&](std::span<const double> at, std::span<double> residuals,
@@ -264,39 +265,53 @@ ModelFit fit_model(const Measurements& measured, const Spec& spec, Friction fric
                                  problem.residuals, problem.bounds.size(),
                                  known ? "" : ", and their error to be told",
                                  known ? "as many numbers or more" : "more numbers, or --error"));
-  ModelFit told{.scene = explained.scene()};
+  Fitted fitted{.told = {.scene = explained.scene()}, .errors_known = known};
+  ModelFit& told = fitted.told;
   const auto starts = coarse_starts(explained, options);
   told.starts = starts.size();
-  if (starts.empty()) return told;
+  if (starts.empty()) return fitted;
   std::vector<std::vector<double>> whole;
   for (const auto& start : starts) whole.push_back(explained.with_origin(start));
   const LeastSquaresFit best = best_fit(problem, whole, options, told.evaluations);
-  if (best.residuals.empty()) return told;
+  if (best.residuals.empty()) return fitted;
   told.found = true;
   told.design = explained.design_at(best.at);
   told.outcome = solve(told.design, told.scene);
   told.after_landing = lines_after_landing(measured, told.outcome);
-  const auto numbers = static_cast<double>(problem.residuals),
-             free = static_cast<double>(problem.bounds.size());
+  const auto numbers = static_cast<double>(problem.residuals);
   told.degrees = problem.residuals - problem.bounds.size();
   // Where nobody says how good the numbers are, the residuals do; those of numbers without any error by a
   // rounding.
   constexpr double rounding = 1e-20;
-  const double sum = std::max(best.sum, rounding * numbers),
-               variance = known ? 1.0 : sum / static_cast<double>(told.degrees);
+  fitted.sum = known ? best.sum : std::max(best.sum, rounding * numbers);
+  const double variance = known ? 1.0 : fitted.sum / static_cast<double>(told.degrees);
+  double uncertainty = variance;  // what errors of parameters are told by
+  if (explained.is_film()) {
+    const std::size_t columns = problem.residuals / measured.film.t.size();
+    const Correlation correlation = correlation_of(best.residuals, columns, problem.bounds.size());
+    told.correlation = correlation.lines;
+    told.independent = static_cast<double>(measured.film.t.size()) / correlation.lines;
+    if (correlation.lines > 1.0) uncertainty = std::max(variance, correlation.variance);
+  }
   told.chi_square = known ? best.sum : static_cast<double>(told.degrees);
   told.error = std::sqrt(best.sum / numbers) * explained.unit_error();
-  if (known && told.degrees > 0)
-    told.probability = gsl_cdf_chisq_Q(best.sum, static_cast<double>(told.degrees));
   constexpr double least_scatter = 1e-6;  // of numbers without noise no more is asked than six digits
-  if (explained.is_film()) told.misfit = told.error / std::max(scatter_of(measured.film), least_scatter);
-  told.information = 2.0 * free + (known ? best.sum : numbers * std::log(sum / numbers));
+  const double scatter = explained.is_film() && !known ? scatter_of(measured.film) : nan;
+  if (!std::isnan(scatter)) told.misfit = told.error / std::max(scatter, least_scatter);
+  told.judged = known || !std::isnan(scatter);
   for (std::size_t k = 0; k < explained.free().size(); ++k)
     told.parameters.push_back({.name = explained.free()[k].name, .value = best.at[k]});
-  tell_uncertainty(problem, best, variance, told);
+  tell_uncertainty(problem, best, uncertainty, told);
+  if (known) {
+    // A true model passes through as many numbers as it has free parameters, but those at their bounds.
+    const auto held =
+        static_cast<double>(std::ranges::count(told.parameters, true, &FittedParameter::at_bound));
+    const double freedom = numbers / told.correlation - static_cast<double>(problem.bounds.size()) + held;
+    told.probability = gsl_cdf_chisq_Q(best.sum / told.correlation, std::max(freedom, 1.0));
+  }
   told.model = explained.model_at(best.residuals);
   for (const double residual : best.residuals) told.residuals.push_back(residual / std::sqrt(variance));
-  return told;
+  return fitted;
 }
 
 }  // namespace
@@ -308,15 +323,24 @@ FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& 
   refuse_what_has_no_use(spec);
   check_measurements(measured, spec);
   FitReport report;
+  std::vector<Fitted> fits;
   std::size_t refused = 0;
   for (const Friction friction : options.models) {
     try {
-      report.models.push_back(fit_model(measured, spec, friction, options));
+      fits.push_back(fit_model(measured, spec, friction, options));
     } catch (const InputError& error) {  // the other model may have fewer free parameters
       if (++refused == options.models.size()) throw;
-      ModelFit& without = report.models.emplace_back();
+      ModelFit& without = fits.emplace_back().told;
       without.scene = spec.scene, without.scene.friction = friction, without.why = error.what();
     }
+  }
+  // Of one film there are as many independent numbers whichever model: as many as the better one leaves.
+  double correlation = HUGE_VAL;
+  for (const Fitted& one : fits)
+    if (one.told.found) correlation = std::min(correlation, one.told.correlation);
+  for (Fitted& one : fits) {
+    if (one.told.found) one.told.information = information_of(one, correlation);
+    report.models.push_back(std::move(one.told));
   }
   std::ranges::stable_sort(report.models, {}, &ModelFit::information);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

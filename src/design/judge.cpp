@@ -158,7 +158,7 @@ void Judge::judge_designs(std::span<const Design> designs, std::span<Verdict> ve
   if (blocks == 1)
     work()(0);
   else
-    parallel_for_each(blocks, threads_, work);
+    parallel_for_each(blocks, threads_, stop_requested_, work);
 }
 
 void Judge::judge(std::span<const double> places, std::span<Verdict> verdicts) {

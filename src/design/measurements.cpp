@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "design/correlated.hpp"
 #include "leapmap/fit.hpp"
 #include "model/fields.hpp"
 #include "physics/parameters.hpp"
+#include "physics/rolling.hpp"
 #include "support/csv.hpp"
+#include "support/number.hpp"
 #include "sweep/spacing.hpp"
 #include "trajectory/units.hpp"
 
@@ -24,12 +26,16 @@ constexpr std::string_view forms =
 constexpr std::array<std::string_view, 4> marker_names{"x_P", "y_P", "x_O", "y_O"};
 
 double to_number(const std::string& cell, const std::string& place, std::string_view column) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
+  const auto value = number_in(cell);
+  if (!value)
     throw InputError(fmt::format("{}: {} = '{}' is no number; allowed: a finite number in every line", place,
                                  column, cell));
-  return value;
+  return *value;
+}
+
+/// What programs write where a mark was not found.
+bool is_no_mark(const std::string& cell) {
+  return cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA" || cell == "-";
 }
 
 /// Where a number came from.
@@ -38,7 +44,32 @@ std::string place_of(const Measurements& measured, std::size_t row) {
                                 : fmt::format("{}:{}", measured.origin, measured.lines[row]);
 }
 
-void check_event(const Measurements& measured, std::size_t row) {
+/// How large a quantity of a hoop may be before it must be in another unit.
+struct Size {
+  double least, most;
+  std::string_view unit;
+};
+
+Size size_of(const Field& field, const Spec& spec) {
+  constexpr double longest = 60.0, highest = 50.0, fastest = 100.0;
+  double release = std::abs(spec.design.release_angle), torque = std::abs(spec.design.drive_torque);
+  for (const Axis& axis : spec.axes)
+    for (const double value : axis.values) {
+      if (axis.key == "release_angle") release = std::max(release, std::abs(value));
+      if (axis.key == "drive_torque") torque = std::max(torque, std::abs(value));
+    }
+  const double farthest = 2.0 * std::numbers::pi * (spec.scene.runway + 1.0);
+  const auto& quantity = std::get<Quantity>(field.source);
+  if (quantity.measure == Measure::time) return {0.0, longest, "seconds"};
+  if (quantity.measure == Measure::height)
+    return {field.name == "dip" ? -highest : 0.0, field.name == "dip" ? 0.0 : highest, "hoop diameters"};
+  if (field.unit == "rad") return {-release - farthest, release + farthest, "radians"};
+  if (field.name.ends_with("_spin")) return {-fastest, fastest, "sqrt(g/R)"};
+  if (field.name.ends_with("_distance")) return {-farthest, farthest, "hoop radii"};
+  return {-farthest * (1.0 + torque) - fastest, farthest * (1.0 + torque) + fastest, field.unit};
+}
+
+void check_event(const Measurements& measured, std::size_t row, const Spec& spec) {
   const auto& [name, value, error] = measured.events[row];
   const std::string place = place_of(measured, row);
   const Field* field = find_field(name);
@@ -53,15 +84,23 @@ void check_event(const Measurements& measured, std::size_t row) {
   if (!(error > 0.0 && std::isfinite(error)))
     throw InputError(
         fmt::format("{}: error = {} of {}; allowed: a standard error above 0", place, error, name));
-  constexpr double longest = 60.0, highest = 50.0;
+  if (!has(spec.scene, *field))
+    throw InputError(
+        fmt::format("{}: {} is of more jumps, or of gaits, than the scene asks for; allowed: with "
+                    "scene.jumps or [gait]",
+                    place, name));
   if (!std::isfinite(value))
     throw InputError(fmt::format("{}: {} = {}; allowed: a finite number", place, name, value));
-  if (quantity->measure == Measure::time && !(value >= 0.0 && value <= longest))
-    throw InputError(fmt::format("{}: {} = {} looks like another unit; allowed: seconds, from 0 to {}", place,
-                                 name, value, longest));
-  if (quantity->measure == Measure::height && !(std::abs(value) <= highest))
-    throw InputError(fmt::format("{}: {} = {} looks like another unit; allowed: hoop diameters, up to {}",
-                                 place, name, value, highest));
+  const Size size = size_of(*field, spec);
+  if (!(value >= size.least && value <= size.most))
+    throw InputError(fmt::format("{}: {} = {} looks like {}; allowed: {}, from {:.4g} to {:.4g}", place, name,
+                                 value, size.unit == "radians" ? "degrees" : "another unit", size.unit,
+                                 size.least, size.most));
+  const double largest = std::max(std::abs(size.least), std::abs(size.most));
+  if (!(error <= largest && error >= 1e-12 * largest))
+    throw InputError(
+        fmt::format("{}: error = {} of {} is no size of an error; allowed: {}, from {:.4g} to {:.4g}", place,
+                    error, name, size.unit, 1e-12 * largest, largest));
 }
 
 void check_times(const Measurements& measured, double second) {
@@ -108,12 +147,40 @@ void check_angles(const Measurements& measured, double second) {
                       "like an angle cut "
                       "off at a turn; allowed: radians that go on over turns",
                       place_of(measured, i), turned, passed));
+  constexpr double turns = 2.0 * std::numbers::pi;
+  if (std::abs(film.phi.front()) > 2.0 * turns)
+    throw InputError(
+        fmt::format("{}: phi = {:.6g} at the beginning looks like degrees; allowed: radians, from "
+                    "{:.4g} to {:.4g} there",
+                    place_of(measured, 0), film.phi.front(), -2.0 * turns, 2.0 * turns));
   // Degrees of a slow hoop change slowly, too.
   const auto [low, high] = std::ranges::minmax(film.phi);
   if (high - low > 2.0 * std::numbers::pi * 4.0 * (1.0 + (film.t.back() - film.t.front()) / second / 8.0))
     throw InputError(
         fmt::format("{}: phi goes from {:.4g} to {:.4g} in {:.4g} s: it looks like degrees; allowed: radians",
                     measured.origin, low, high, film.t.back() - film.t.front()));
+}
+
+/// A film that shows the hoop held before it is let go: it stays where it is for much longer than one that is
+/// free does, whose angle grows by half the acceleration times the square of the time.
+void check_held(const Measurements& measured, const Spec& spec, double second) {
+  const Film& film = measured.film;
+  constexpr std::size_t first = 5;
+  if (film.phi.size() < 3 * first || !spec.axes.empty()) return;
+  std::vector<double> begin(film.phi.begin(), film.phi.begin() + first);
+  std::ranges::nth_element(begin, begin.begin() + first / 2);
+  const double at = begin[first / 2], scatter = scatter_of(film);
+  std::size_t leaves = 0;
+  while (leaves < film.phi.size() && !(std::abs(film.phi[leaves] - at) > 6.0 * scatter + 1e-3)) ++leaves;
+  if (leaves < 2 * first || leaves == film.phi.size()) return;
+  const Hoop<double> hoop = derive<double>(spec.design);
+  const double acceleration = angular_acceleration(hoop, trig(at), 0.0) / (second * second);
+  const double t = film.t[leaves] - film.t.front();
+  if (0.5 * std::abs(acceleration) * t * t > 50.0 * (scatter + 1e-4))
+    throw InputError(
+        fmt::format("{}: phi stays at {:.4g} for {:.3g} s, in which a hoop that is free turns by "
+                    "{:.2g}: it is held; allowed: times from the release on",
+                    place_of(measured, leaves), at, t, 0.5 * std::abs(acceleration) * t * t));
 }
 
 /// length: L of the hoop, from the least to the most that it may be.
@@ -157,6 +224,7 @@ void check_film(const Measurements& measured, const Spec& spec) {
   check_times(measured, second);
   if (!markers) {
     check_angles(measured, second);
+    check_held(measured, spec, second);
     return;
   }
   const auto axis = std::ranges::find(spec.axes, "offset_ratio", &Axis::key);
@@ -186,7 +254,7 @@ void check_measurements(const Measurements& measured, const Spec& spec) {
     throw InputError(fmt::format("{}: {}; allowed: {}", measured.origin,
                                  measured.events.empty() ? "nothing was measured" : "has events and a film",
                                  forms));
-  for (std::size_t i = 0; i < measured.events.size(); ++i) check_event(measured, i);
+  for (std::size_t i = 0; i < measured.events.size(); ++i) check_event(measured, i, spec);
   if (!measured.film.t.empty()) check_film(measured, spec);
 }
 
@@ -213,6 +281,10 @@ Measurements read_measurements(const std::string& path, const MeasurementOptions
   std::vector<std::string> cells;
   while (file.next(cells)) {
     const std::string& place = file.place();
+    if (!events && std::ranges::any_of(cells, is_no_mark)) {
+      if (options.allow_gaps) continue;
+      throw InputError(place + ": a frame without a mark; allowed: numbers in every line, or --allow-gaps");
+    }
     measured.lines.push_back(file.line());
     const auto number = [&](std::size_t column, std::string_view name) {
       return to_number(cells[column], place, name);

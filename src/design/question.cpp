@@ -100,14 +100,12 @@ std::vector<FreeParameter> free_parameters(const Spec& spec) {
   std::vector<FreeParameter> free;
   for (const Axis& axis : spec.axes) {
     const auto [low, high] = std::ranges::minmax(axis.values);
-    const auto spacing = spacing_of(axis.values);
-    if (!axis.free && axis.values.size() > 2 && !spacing)
+    if (!axis.free && !axis.spaced)
       refuse(spec, fmt::format("design.{} is a list of values", axis.key),
              "{ from, to }, between which it is free, or a number");
     if (!(low < high))
       refuse(spec, fmt::format("design.{} is nothing but {}", axis.key, low), "two bounds, or a number");
-    free.push_back(
-        {axis.key, member_of(axis.key), {low, high, axis.free ? axis.log : spacing && spacing->log}});
+    free.push_back({axis.key, member_of(axis.key), {low, high, axis.log}});
   }
   return free;
 }
@@ -155,6 +153,14 @@ Question question_of(const Spec& spec) {
     check_spec(checked);
   }
   question.free = free_parameters(spec);
+  for (const Spread& spread : spec.scatter.spreads)
+    for (const FreeParameter& parameter : question.free)
+      if (spread.percent && spread.width > 0.0 && spread.parameter == parameter.name &&
+          parameter.side.low < 0.0 && parameter.side.high > 0.0)
+        refuse(spec,
+               fmt::format("scatter.{} is {} % of nothing where the parameter is 0, between its bounds",
+                           spread.parameter, spread.width),
+               "a width in the parameter's unit");
   for (const std::string& name : spec.maximize)
     question.objectives.push_back(objective_of(spec, question.free, name, true));
   for (const std::string& name : spec.minimize) {

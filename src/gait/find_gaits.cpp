@@ -171,6 +171,7 @@ class Search {
           look_between(section, two_pi * i / first_angles, two_pi * (i + 1) / first_angles, k);
       keep_samples(way);
     }
+    for (int period = 1; period <= options_.most_period; ++period) look_for_bouncing(period);
     std::ranges::sort(found_.gaits, [](const Gait& a, const Gait& b) {
       return a.jumps.size() != b.jumps.size() ? a.jumps.size() < b.jumps.size() : a.height < b.height;
     });
@@ -228,11 +229,31 @@ class Search {
     }
   }
 
+  /// Orbits all of whose jumps begin at the landing, where N <= 0 right after it: none of them is on the
+  /// curve N = 0, and the map has two dimensions there. Newton's iteration from a grid of angles and of spins
+  /// beyond that curve.
+  void look_for_bouncing(int period) {
+    constexpr int angles = 120, spins = 16;
+    constexpr double fastest = 3.0;  // times the spin at which the hoop just leaves the plane
+    const Hoop<double> hoop = derive<double>(design_);
+    for (int i = 0; i < angles; ++i) {
+      const double angle = two_pi * (i + 0.5) / angles;
+      const Trig<double> phi = trig(angle);
+      const LiftTerms<double> terms = lift_terms(hoop, phi);
+      const double E = -(terms.P * terms.J) / (hoop.rho * terms.K);
+      if (!(E > 0.0 && terms.K < 0.0) || !std::isfinite(E)) continue;  // N is above zero at any spin
+      const double least = std::sqrt(E / contact_inertia(hoop, phi));
+      for (const double way : {1.0, -1.0})
+        for (int k = 0; k < spins; ++k) {
+          const double share = 1.0 + (fastest - 1.0) * (k + 0.5) / spins;
+          close({.angle = angle, .spin = way * least * share}, period);
+        }
+    }
+  }
+
   void close(const Landed& near, int period) {
     Orbit orbit;
     if (!map_.close(design_, period, near, orbit)) return;
-    // On no curve N = 0, to which Newton's iteration may come from beside it.
-    if (std::ranges::all_of(orbit.jumps, [](const Jump& jump) { return jump.time == 0.0; })) return;
     for (const Orbit& known : orbits_) {
       if (known.landings.size() != orbit.landings.size()) continue;
       for (const Landed& landing : known.landings)

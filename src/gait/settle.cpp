@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gait/settle.hpp"
+#include "support/stop.hpp"
 
 #include <array>
 #include <cmath>
@@ -39,8 +40,10 @@ void GaitSolver::settle(std::span<const Design> designs) {
   for (std::size_t i = 0; i < designs.size(); ++i)
     going_.push_back(i), states_.push_back(released<double>(designs[i]));
   seen_.assign(designs.size(), {});
-  for (long jump = 0; jump < scene_.settle && !going_.empty(); ++jump)
+  for (long jump = 0; jump < scene_.settle && !going_.empty(); ++jump) {
+    throw_if_stopped();
     jump_on(jump == 0 ? Start::release : Start::landing);
+  }
 }
 
 /// As many jumps more as the longest period has.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -85,15 +86,26 @@ struct ModelFit {
       std::numeric_limits<double>::quiet_NaN();  ///< that a true model has such a chi-square, or more
   double misfit =
       std::numeric_limits<double>::quiet_NaN();  ///< of a film: residuals over the scatter from line to line
+  double correlation = 1.0;  ///< lines of a film whose residuals count as one, as neighbours are alike
+  double independent = std::numeric_limits<double>::quiet_NaN();  ///< lines of a film, in such units
+  bool judged = true;  ///< false: a film of too few lines to say whether the model explains it
   double information = std::numeric_limits<double>::infinity();  ///< Akaike's; less is better
   std::vector<double> model{}, residuals{};  ///< of every number measured; residuals over their errors
   std::size_t starts = 0, evaluations = 0;
 };
 
-/// Whether a fit explains what was measured: of events by their chi-square, of a film by its scatter.
+/// Whether residuals stay on one side for so long that another motion would fit better: few lines count.
+inline bool runs(const ModelFit& fit) {
+  return fit.correlation > 1.0 && fit.independent < 4.0 * (1.0 + static_cast<double>(fit.parameters.size()));
+}
+
+/// Whether a fit explains what was measured: numbers with errors by their chi-square, a film without by its
+/// scatter from line to line or, if neighbouring lines are alike, by how many of its lines are independent.
 inline bool explains(const ModelFit& fit) {
   constexpr double least_likely = 1e-3, most_misfit = 2.0;
-  return fit.found && !(fit.probability < least_likely) && !(fit.misfit > most_misfit);
+  if (!fit.found || !fit.judged) return false;
+  if (!std::isnan(fit.probability)) return fit.probability >= least_likely;
+  return fit.correlation > 1.0 ? !runs(fit) : !(fit.misfit > most_misfit);
 }
 
 struct FitReport {

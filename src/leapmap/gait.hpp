@@ -47,7 +47,8 @@ struct Gaits {
 /// The periodic orbits of the return map of one hoop that never slips, as far as a scan can tell: the map is
 /// sampled every sixteenth of a degree and more densely between samples that lie on other branches, or where
 /// a cubic does not foretell what is between them. A branch between two samples that are alike may be missed.
-/// Orbits all of whose jumps begin where the one before lands are not on the map. The runway counts from each
+/// Orbits all of whose jumps begin where the one before lands are not on that curve: they are found by
+/// Newton's iteration from some thousand starts, so that one may be missed. The runway counts from each
 /// landing: with a longer one there are more gaits, of ever higher jumps. Throws InputError as solve does,
 /// and with friction, where the map has more dimensions.
 Gaits find_gaits(const Design& design, const Scene& scene = {}, const GaitOptions& options = {});

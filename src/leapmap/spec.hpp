@@ -38,7 +38,10 @@ struct Axis {
   std::string key{};
   std::vector<double> values{};
   bool free = false;  ///< values are two bounds, and all between is meant: of find_designs only
-  bool log = false;   ///< of a free one: equal ratios count as equal steps
+  bool log = false;   ///< of a free or spaced one: equal ratios count as equal steps
+  /// Written as { from, to } with a count or a step: find_designs takes the least and the largest value as
+  /// bounds. A list of values is none, whatever they are.
+  bool spaced = false;
 };
 
 /// Designs one by one: a column of values for each parameter named, all equally long.

@@ -5,6 +5,7 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -201,6 +202,7 @@ std::vector<std::string> read_texts(hid_t dataset, std::size_t most_bytes, const
   const std::vector<hsize_t> shape = shape_of(dataset);
   if (H5Tis_variable_str(there) <= 0 || shape.size() != 1) throw IoError(what + ": it is no row of texts");
   bytes_in_memory(dataset, what);
+  refuse_inflation(dataset, {0}, {shape[0]}, what);
   TextMemory memory{most_bytes + 1};  // with the zero at its end
   check(H5Pset_vlen_mem_manager(transfer, allocate_text, &memory, free_text, &memory), what);
   std::vector<char*> read(shape[0]);
@@ -285,12 +287,17 @@ std::string read_text(hid_t object, const std::string& name) {
   return copy;
 }
 
-double read_number(hid_t object, const std::string& name) {
+double read_number(hid_t object, const std::string& name, bool may_be_infinite) {
   const std::string what = fmt::format("reading attribute {}", name);
   const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, what);
-  if (points_of(attribute, what) != 1) throw IoError(what + ": it is not one number");
+  const Handle type(H5Aget_type(attribute), H5Tclose, what);
+  const H5T_class_t kind = H5Tget_class(type);
+  if (points_of(attribute, what) != 1 || (kind != H5T_INTEGER && kind != H5T_FLOAT))
+    throw IoError(what + ": it is not one number");
   double value = 0.0;
   check(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), what);
+  if (std::isnan(value) || (std::isinf(value) && !may_be_infinite))
+    throw IoError(fmt::format("{}: it is {}", what, value));
   return value;
 }
 
@@ -300,9 +307,18 @@ std::vector<std::int64_t> read_integers(hid_t object, const std::string& name, s
   const hssize_t count = points_of(attribute, what);
   if (count < 1 || static_cast<std::size_t>(count) > most)
     throw IoError(fmt::format("{}: it is not 1 to {} numbers", what, most));
+  const Handle type(H5Aget_type(attribute), H5Tclose, what);
+  if (H5Tget_class(type) != H5T_INTEGER) throw IoError(what + ": it is no whole number");
   std::vector<std::int64_t> values(static_cast<std::size_t>(count));
   check(H5Aread(attribute, H5T_NATIVE_INT64, values.data()), what);
   return values;
+}
+
+std::int64_t read_integer(hid_t object, const std::string& name, std::int64_t least, std::int64_t most) {
+  const std::vector<std::int64_t> values = read_integers(object, name, 1);
+  if (values[0] < least || values[0] > most)
+    throw BrokenFile(fmt::format("reading attribute {}: it is {}", name, values[0]));
+  return values[0];
 }
 
 std::uint32_t read_chunk(hid_t dataset, const std::vector<hsize_t>& place, std::vector<std::byte>& bytes,
@@ -318,6 +334,7 @@ std::uint32_t read_chunk(hid_t dataset, const std::vector<hsize_t>& place, std::
 
 std::vector<double> read_block(hid_t dataset, const std::vector<std::size_t>& start,
                                const std::vector<std::size_t>& extent, const std::string& what) {
+  refuse_inflation(dataset, start, extent, what);
   const auto [memory, file] = select(dataset, start, extent, what);
   std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(memory)));
   check(H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, file, H5P_DEFAULT, values.data()), what);
@@ -332,6 +349,7 @@ void write_block(hid_t dataset, const std::vector<std::size_t>& start, const std
 
 std::vector<std::uint64_t> read_words(hid_t dataset, const std::vector<std::size_t>& start,
                                       const std::vector<std::size_t>& extent, const std::string& what) {
+  refuse_inflation(dataset, start, extent, what);
   const auto [memory, file] = select(dataset, start, extent, what);
   std::vector<std::uint64_t> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(memory)));
   check(H5Dread(dataset, H5T_NATIVE_UINT64, memory, file, H5P_DEFAULT, values.data()), what);

@@ -6,6 +6,7 @@
 #include <hdf5.h>
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -113,9 +114,14 @@ void remove_attribute(hid_t object, const std::string& name);
 bool has_attribute(hid_t object, const std::string& name);
 /// Each throws IoError if there is no such attribute, or it is of another kind.
 std::string read_text(hid_t object, const std::string& name);
-double read_number(hid_t object, const std::string& name);
+/// A number that is none, or infinite where it may not be, is of another kind.
+double read_number(hid_t object, const std::string& name, bool may_be_infinite = false);
 /// most: numbers that there may be.
 std::vector<std::int64_t> read_integers(hid_t object, const std::string& name, std::size_t most = 64);
+
+/// One of them, in a range; BrokenFile if it is outside.
+std::int64_t read_integer(hid_t object, const std::string& name, std::int64_t least,
+                          std::int64_t most = std::numeric_limits<std::int64_t>::max());
 
 /// The raw bytes of a chunk as stored, and which filters were skipped for it. Throws IoError.
 std::uint32_t read_chunk(hid_t dataset, const std::vector<hsize_t>& place, std::vector<std::byte>& bytes,

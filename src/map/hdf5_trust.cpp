@@ -2,10 +2,15 @@
 #include "map/hdf5_trust.hpp"
 
 #include <fmt/format.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <memory>
+#include <new>
+#include <optional>
+#include <span>
 
 #include "leapmap/errors.hpp"
 #include "support/printable.hpp"
@@ -55,6 +60,10 @@ std::string refusal_of_dataset(hid_t dataset, const std::string& name) {
   if (layout != H5D_CHUNKED) return {};
   std::array<hsize_t, H5S_MAX_RANK> chunk{};
   const int rank = H5Pget_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
+  const std::vector<hsize_t> extents = shape_of(dataset);
+  for (int i = 0; i < rank; ++i)
+    if (const auto k = static_cast<std::size_t>(i); chunk[k] > std::max<hsize_t>(extents[k], 1))
+      return "has chunks larger than itself";
   hsize_t bytes = H5Tget_size(type);
   for (int i = 0; i < rank && bytes <= most_chunk_bytes; ++i)
     bytes = chunk[static_cast<std::size_t>(i)] > most_chunk_bytes
@@ -84,6 +93,12 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* link, void* contex
       survey.refusal = "holds more objects than any file of leapmap's";
       return 1;
     }
+    // Ours lie at most three deep. HDF5 goes all the way down again for each object.
+    constexpr std::ptrdiff_t deepest = 8;
+    if (const std::string_view place = name; std::ranges::count(place, '/') > deepest) {
+      survey.refusal = "is nested deeper than any file of leapmap's";
+      return 1;
+    }
     const std::string refusal = refusal_of_link(group, name, *link, survey.sources);
     if (refusal.empty()) return 0;
     survey.refusal = fmt::format("{} {}", printable(name), refusal);
@@ -103,6 +118,73 @@ SourceNames refuse_foreign_parts(hid_t file, const std::string& path) {
   check(visited, path + ": cannot be surveyed");
   if (!survey.refusal.empty()) throw ForeignFile(fmt::format("{}: is refused: {}", path, survey.refusal));
   return std::move(survey.sources);
+}
+
+namespace {
+
+/// Where in the line of a dataset's filters one stands; nothing: it is none of them.
+std::optional<unsigned> place_of_filter(hid_t creation, H5Z_filter_t filter) {
+  const int filters = H5Pget_nfilters(creation);
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    const auto k = static_cast<unsigned>(i);
+    if (H5Pget_filter2(creation, k, &flags, &values, nullptr, 0, nullptr, nullptr) == filter) return k;
+  }
+  return {};
+}
+
+/// Whether a chunk as it is stored inflates to exactly so many bytes.
+bool inflates_to(std::span<const std::byte> stored, std::size_t bytes) {
+  std::vector<std::byte> values(bytes);
+  const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
+      libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+  if (!decompressor) throw std::bad_alloc();
+  return libdeflate_zlib_decompress(decompressor.get(), stored.data(), stored.size(), values.data(),
+                                    values.size(), nullptr) == LIBDEFLATE_SUCCESS;
+}
+
+}  // namespace
+
+void refuse_inflation(hid_t dataset, const std::vector<std::size_t>& start,
+                      const std::vector<std::size_t>& extent, const std::string& what) {
+  constexpr std::size_t harmless = std::size_t{1} << 27;  // what a chunk may inflate to without being asked
+  constexpr std::size_t checksum_bytes = 4;
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, what),
+      type(H5Dget_type(dataset), H5Tclose, what);
+  if (H5Pget_layout(creation) != H5D_CHUNKED) return;
+  std::array<hsize_t, H5S_MAX_RANK> chunk{};
+  const int rank = H5Pget_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
+  if (rank != static_cast<int>(start.size())) fail(what);
+  std::size_t bytes = H5Tget_size(type);
+  for (std::size_t k = 0; k < start.size(); ++k) bytes *= chunk[k];
+  const auto deflate = place_of_filter(creation, H5Z_FILTER_DEFLATE);
+  const bool has_checksum = place_of_filter(creation, H5Z_FILTER_FLETCHER32).has_value();
+  const auto refuse = [&] { throw BrokenFile(what + ": a chunk inflates to more than its values"); };
+  std::vector<hsize_t> first, last, at;
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    if (extent[k] == 0) return;
+    first.push_back(start[k] / chunk[k]), last.push_back((start[k] + extent[k] - 1) / chunk[k]);
+  }
+  at = first;
+  for (std::vector<std::byte> stored;;) {
+    std::vector<hsize_t> place;
+    for (std::size_t k = 0; k < at.size(); ++k) place.push_back(at[k] * chunk[k]);
+    hsize_t size = 0;  // of a chunk that was never written
+    haddr_t address = 0;
+    unsigned skipped_here = 0;
+    check(H5Dget_chunk_info_by_coord(dataset, place.data(), &skipped_here, &address, &size), what);
+    if (size > bytes + bytes / 1000 + 64) refuse();
+    if (deflate && size * most_deflation > harmless) {
+      const std::uint32_t skipped = read_chunk(dataset, place, stored, what);
+      if (has_checksum) stored.resize(stored.size() - std::min(checksum_bytes, stored.size()));
+      if (!(skipped >> *deflate & 1u) && !inflates_to(stored, bytes)) refuse();
+    }
+    std::size_t k = at.size();
+    while (k > 0 && at[k - 1] == last[k - 1]) --k, at[k] = first[k];
+    if (k == 0) return;
+    ++at[k - 1];
+  }
 }
 
 std::size_t bytes_in_memory(hid_t dataset, const std::string& what) {

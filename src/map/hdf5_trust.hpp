@@ -20,6 +20,12 @@ using SourceNames = std::set<std::string, std::less<>>;
 /// `path` is for messages. Returns the files beside it that its virtual datasets are made of.
 SourceNames refuse_foreign_parts(hid_t file, const std::string& path);
 
+/// Throws BrokenFile if a chunk that holds a part of [start, start + extent) would take more memory than its
+/// values: what is stored for it is more than deflate ever makes of them, or inflates to something else. To
+/// be asked before HDF5 reads them, as its filters take whatever memory they are told to.
+void refuse_inflation(hid_t dataset, const std::vector<std::size_t>& start,
+                      const std::vector<std::size_t>& extent, const std::string& what);
+
 /// The bytes of a dataset's values. Throws IoError if the bytes stored for it could not hold so many: to be
 /// asked before memory is taken for all of them. `what` is for messages.
 std::size_t bytes_in_memory(hid_t dataset, const std::string& what);

@@ -15,6 +15,7 @@
 
 #include "leapmap/errors.hpp"
 #include "support/file_calls.hpp"
+#include "support/output_file.hpp"
 #include "support/posix.hpp"
 
 namespace leapmap {
@@ -204,6 +205,8 @@ bool JournaledFile::rename(const std::string& path, bool replace) {
   };
   refuse_other(is_named(path_), path_);
   const std::string folder = folder_of(path);
+  if (struct stat replaced{}; replace && ::stat(path.c_str(), &replaced) == 0 && S_ISREG(replaced.st_mode))
+    take_over(descriptor_, replaced);
   std::string name = path;  // once it is renamed nothing may fail for want of memory
   int failed = -1;
   if (!replace) failed = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);

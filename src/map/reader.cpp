@@ -47,9 +47,7 @@ MapReader::Dimension read_dimension(hid_t dataset, const std::string& name) {
   if (name == "design") return dimension;
   if (shape[0] > static_cast<hsize_t>(most_axis_values))
     throw IoError(fmt::format("{}: has {} values; allowed: at most {}", name, shape[0], most_axis_values));
-  dimension.values.resize(shape[0]);
-  check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, dimension.values.data()),
-        "reading " + name);
+  dimension.values = hdf5::read_block(dataset, {0}, {shape[0]}, "reading " + name);
   return dimension;
 }
 
@@ -74,7 +72,8 @@ void MapReader::survey(Accept accept) {
     throw IoError(
         fmt::format("{}: is not a leapmap map (its attribute filetype is not \"{}\")", path_, map_filetype));
   const std::vector<std::int64_t> version = hdf5::read_integers(file_, "version");
-  if (version.size() != 2) throw IoError(path_ + ": its version is not two numbers");
+  if (version.size() != 2 || version[0] < 1 || version[1] < 0)
+    throw BrokenFile(path_ + ": its version is no pair of whole numbers");
   if (version[0] > format_major)
     throw IoError(fmt::format("{}: has format version {}; this program reads up to {}: use a newer leapmap",
                               path_, version[0], format_major));

@@ -6,6 +6,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_driver.hpp"
+#include "support/output_file.hpp"
 
 namespace leapmap {
 namespace {
@@ -28,6 +29,12 @@ TableColumn numbered_rows(std::size_t count) {
   std::vector<double> numbers(count);
   std::iota(numbers.begin(), numbers.end(), 0.0);
   return {"row", "1", "number of the row, from 0", numbers};
+}
+
+void refuse_taken(const std::string& path, std::string_view filetype, Locking locking) {
+  const std::string file = behind_links(path);
+  hdf5::refuse_other_file(file, filetype, locking);
+  refuse_unwritable(file);
 }
 
 bool write_tables(const std::string& path, const std::string& filetype, std::span<const Table> tables,

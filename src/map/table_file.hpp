@@ -24,6 +24,10 @@ using Table = std::vector<TableColumn>;
 /// The dimension of a table whose rows have nothing but a number.
 TableColumn numbered_rows(std::size_t count);
 
+/// Before the work that fills tables: throws InputError if what has that name is of another type, IoError if
+/// no file can be made there.
+void refuse_taken(const std::string& path, std::string_view filetype, Locking locking);
+
 /// Writes the tables as a netCDF-readable HDF5 file, replacing path only once it is whole and was read again.
 /// Returns false if a power cut may undo that (JournaledFile::rename). Throws InputError if path is a file of
 /// another type, IoError if it cannot be written.

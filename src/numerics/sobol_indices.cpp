@@ -29,9 +29,11 @@ struct PairSums {
     return count > 0.0 && variance > 1e-14 * squares / count ? (products / count - mean * mean) / variance
                                                              : std::numeric_limits<double>::quiet_NaN();
   }
-  /// To what the correlation is known at best: one part in as many values as bring the variance, which are
-  /// few where a few are far from all others.
-  double resolution() const { return 2.0 * fourths / (squares * squares); }
+  /// How many values bring the variance: few where a few are far from all others, beyond a discontinuity,
+  /// say.
+  double carrying() const { return squares * squares / fourths; }
+  /// To what the correlation is known at best: one part in so many.
+  double resolution() const { return 2.0 / carrying(); }
 };
 
 struct Correlation {
@@ -61,7 +63,9 @@ Correlation correlation(const std::vector<double>& a, const std::vector<double>&
     return others.correlation();
   });
   const double value = whole.correlation();
-  return {{value, value == value ? std::hypot(jackknife_error(without), whole.resolution()) : value},
+  const bool is_known = value == value && carries_replicates(0.5 * whole.carrying(), whole.count);
+  const double error = std::hypot(jackknife_error(without), whole.resolution());
+  return {{value, is_known ? error : std::numeric_limits<double>::quiet_NaN()},
           whole.count / static_cast<double>(a.size())};
 }
 

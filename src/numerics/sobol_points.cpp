@@ -59,4 +59,9 @@ double jackknife_error(std::span<const double> without) {
   return student * std::sqrt(squares * (number - 1.0) / number);
 }
 
+bool carries_replicates(double carrying, double values) {
+  constexpr double share = 0.1;  // of a normal law a third carries a variance, of a uniform one half
+  return carrying >= static_cast<double>(SobolPoints::replicates) || carrying >= share * values;
+}
+
 }  // namespace leapmap

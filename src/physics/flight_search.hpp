@@ -67,6 +67,9 @@ Flight<S> walk_toss(const Toss<S>& toss, const S& launch = S(0)) {
   };
   S start(0), climb_start = launch;
   for (long knot = 0; start <= last; ++knot) {
+    // y(psi + 2 pi) - y(psi) = 2 pi (s - gamma (psi + pi)): from half a turn before the vertex on, every turn
+    // lies below the one before, so that a hoop that was not above the plane in one of them never is.
+    if (!above && start > std::max(vertex, S(0)) + two_pi) return {};
     const S end = knot_at(knot);
     if (end <= start) continue;
     const long leap = 2 * static_cast<long>(floor((next_of_interest(start) - toss.top) / two_pi)) + 1;

@@ -40,10 +40,16 @@ T torque(const Hoop<T>& hoop, const Trig<T>& phi) {
 }
 
 /// Which way a hoop sets out: above zero downhill, below zero uphill, by its spin or, at rest, by its torque;
-/// zero: nothing moves it. A spin whose square is lost counts as none.
+/// zero: it rests in an equilibrium. A spin whose square is lost counts as none. A design's numbers are
+/// doubles, whatever T is: torque and spin within their rounding count as none too, or it would be the
+/// rounding of pi that sets a hoop going. phi: trig(angle).
 template <class T>
-T setting_out(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin) {
-  return select(spin * spin == T(0), torque(hoop, phi), spin);
+T setting_out(const Hoop<T>& hoop, const T& angle, const Trig<T>& phi, const T& spin) {
+  using std::abs;
+  const T rounding = T(ScalarOf<T>(4.0 * std::numeric_limits<double>::epsilon())) * (T(1) + abs(angle));
+  const T push = torque(hoop, phi), of_terms = abs(hoop.sin_slope) + abs(hoop.drive) + hoop.rho;
+  const MaskOf<T> rests = (abs(push) <= rounding * of_terms) & (abs(spin) <= rounding);
+  return select(rests, T(0), select(spin * spin == T(0), push, spin));
 }
 
 /// phi: trig(release).

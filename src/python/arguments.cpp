@@ -25,11 +25,11 @@ std::string shown(const py::handle& value) {
   return std::string(begin) + (py::len(text) > most ? "..." : "");
 }
 
-/// Real numbers without holes; anything else that numpy would turn into numbers is a mistake.
+/// Real numbers, none of them masked; anything else that numpy would turn into numbers is a mistake.
 bool is_numbers(const py::handle& value, const py::array& array) {
   const char kind = array.dtype().kind();
   return (kind == 'f' || kind == 'i' || kind == 'u') &&
-         !py::module_::import("numpy").attr("ma").attr("isMaskedArray")(value).cast<bool>();
+         !py::module_::import("numpy").attr("ma").attr("is_masked")(value).cast<bool>();
 }
 
 const Parameter& parameter_of(const std::string& name) {
@@ -129,6 +129,7 @@ void Designs::broadcast() {
 }
 
 void Designs::fill(std::size_t first, std::span<Design> designs) const {
+  if (designs.empty()) return;  // a shape without designs has no places to count
   std::fill(designs.begin(), designs.end(), common_);
   for (const Column& column : columns_) {
     std::vector<std::size_t> index(shape_.size());

@@ -215,7 +215,8 @@ py::dict dict_of(const ModelFit& fit) {
   told["parameters"] = parameters, told["correlations"] = correlations, told["chi_square"] = fit.chi_square;
   told["explains"] = explains(fit), told["probability"] = fit.probability, told["misfit"] = fit.misfit;
   told["after_landing"] = fit.after_landing, told["degrees"] = fit.degrees, told["error"] = fit.error,
-  told["information"] = fit.information;
+  told["information"] = fit.information, told["correlation"] = fit.correlation,
+  told["independent"] = fit.independent;
   told["model"] = py::array_t<double>(static_cast<py::ssize_t>(fit.model.size()), fit.model.data());
   told["residuals"] =
       py::array_t<double>(static_cast<py::ssize_t>(fit.residuals.size()), fit.residuals.data());

@@ -16,6 +16,9 @@
 #include "python/arguments.hpp"
 #include "python/calls.hpp"
 #include "python/results.hpp"
+#include "support/printable.hpp"
+#include "sweep/designs.hpp"
+#include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
 #include "sweep/solve_blocks.hpp"
 #include "sweep/spec.hpp"
@@ -231,9 +234,9 @@ PYBIND11_MODULE(_core, module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const InputError& error) {
-      PyErr_SetString(PyExc_ValueError, error.what());
+      PyErr_SetString(PyExc_ValueError, printable(error.what()).c_str());
     } catch (const IoError& error) {
-      PyErr_SetString(PyExc_OSError, error.what());
+      PyErr_SetString(PyExc_OSError, printable(error.what()).c_str());
     } catch (const Stopped& error) {
       PyErr_SetString(PyExc_KeyboardInterrupt, error.what());
     }
@@ -248,6 +251,12 @@ PYBIND11_MODULE(_core, module) {
   module.def("spec_file", [](const std::string& path_or_text, const std::optional<std::string>& origin,
                              const std::vector<std::string>& overrides) {
     return python::spec_of(path_or_text, origin, overrides).output.file;
+  });
+  module.def("sweep_bytes", [](const std::string& path_or_text, const std::optional<std::string>& origin,
+                               const std::vector<std::string>& overrides) {
+    const Spec spec = python::spec_of(path_or_text, origin, overrides);
+    check_spec(spec);
+    return map_file_bytes(layout_of(spec), tiling_of(spec));
   });
   module.def("parameters", &python::parameter_rows);
   module.def("fields", &python::field_rows);

@@ -55,6 +55,15 @@ Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
   return {z[0], z[1], z[2], z[3], z[4]};
 }
 
+bool rests(const Body& body, const Motion& at) {
+  const auto& [m, m_p, R, L, I, g, slope, motor] = body;
+  const double of_weight = (m + m_p) * g * R * std::sin(slope), of_mass = m_p * g * L;
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + std::abs(at.phi));
+  return std::abs(motor + of_weight - of_mass * std::sin(slope + at.phi)) <=
+             rounding * (std::abs(motor) + std::abs(of_weight) + of_mass) &&
+         std::abs(at.spin) <= rounding * std::sqrt(g / R);
+}
+
 double sliding_determinant(const Body& body, const Mode& mode, const Motion& at) {
   const Mode frictionless{Mode::slides, 0.0};
   return equations(body, mode, at.phi).determinant() / equations(body, frictionless, at.phi).determinant();

@@ -47,6 +47,9 @@ struct Forces {
 };
 /// Solves (7) to (9), the motor's torque in (9), with the mode's two equations.
 Forces forces_of(const Body& body, const Mode& mode, const Motion& at);
+/// Whether a hoop in contact is at rest in an equilibrium, within the rounding of the numbers that say so: of
+/// gravity's and the motor's moments about the contact next to nothing is left.
+bool rests(const Body& body, const Motion& at);
 /// Of those five equations, divided by what it is without friction: where it falls to zero, sliding has no
 /// answer.
 double sliding_determinant(const Body& body, const Mode& mode, const Motion& at);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "referee/referee.hpp"
+#include "support/stop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,7 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
   };
   std::vector<Event> events;
   for (;;) {
+    throw_if_stopped();
     if (++steps_ > most_steps_ || !integrator_.advance()) return false;
     const Step<6>& step = integrator_.step();
     const double turned = std::abs(step.y1[2] - step.y0[2]);
@@ -135,7 +137,7 @@ Outcome Referee::solve_sticking() {
   };
   if (released.normal <= 0.0) return ended(Status::airborne_at_release);
   const bool from_rest = at_.spin == 0.0;
-  if (from_rest && released.phi == 0.0) return ended(Status::stalled);
+  if (rests(body, at_)) return ended(Status::stalled);
   const double runway = 2.0 * std::numbers::pi * scene_.runway * scene_.radius;
   double side = 0.0;  // where it turned first
   for (int turns = 0;; ++turns) {

@@ -101,7 +101,7 @@ class Referee::Slipping {
     begin(Phase::rolling);
     for (int turns = 0; turns < 2; ++turns) {  // who has turned twice has seen every angle there is
       const double sets_out = at_.spin != 0.0 ? at_.spin : forces_of(body_, {Mode::rolls}, at_).phi;
-      if (sets_out == 0.0) return ended(Status::stalled);
+      if (sets_out == 0.0 || rests(body_, at_)) return ended(Status::stalled);
       const double way = std::copysign(1.0, sets_out);
       const std::vector<Guard> guards{[&](const Motion& at) { return hold(body_, at, mu_static_, 1.0); },
                                       [&](const Motion& at) { return hold(body_, at, mu_static_, -1.0); },
@@ -142,10 +142,10 @@ class Referee::Slipping {
     const double R = referee_.scene_.radius, weight = body_.mass() * body_.g;
     const Flown flown = fly(body_, at_);
     if (flown.failed) return ended(Status::failed);
-    const double held_down =
-        weight * std::cos(body_.slope) + body_.m_p * body_.L * std::cos(at_.phi) * at_.spin * at_.spin;
-    if (body_.motor != 0.0 && !(flown.landing_time > 0.0) && held_down > 1e-9 * weight)
-      return ended(Status::indeterminate);  // the motor alone lifted it off, and idles in flight
+    Body idle = body_;
+    idle.motor = 0.0;  // as it is in flight
+    const bool sinks = !(at_.y_rate > 0.0) && free_rise(idle, at_) < -1e-9 * body_.g;
+    if (sinks) return ended(Status::indeterminate);  // it would fly through the plane
     begin(Phase::flight);
     const bool jumps = referee_.count_lift_off(flown);
     if (jumps) outcome_.energy_lost = (released_ + driven_ - energy(body_, at_)) / (weight * R);

@@ -7,6 +7,7 @@
 
 #include "rolling/leg.hpp"
 #include "rolling/prepare.hpp"
+#include "support/stop.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap {
@@ -47,6 +48,7 @@ void ExactSolver<T>::solve_block(Start start, std::span<const Design> designs,
   take_off_.bounce(block_, designs, scene, outcomes, block_.searching);
   unscanned_ = block_.searching;
   while (!block_.searching.empty()) {
+    throw_if_stopped();
     scan_.run(block_, unscanned_);
     pick_intervals(outcomes);
     classify_.run(block_, take_off_.falls, going_on_);

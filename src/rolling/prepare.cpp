@@ -44,7 +44,7 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
     }
     const Trig<T> phi = trig(nearest);
     const T force = normal_force(hoop, phi, spin, angular_acceleration(hoop, phi, spin)),
-            sets_out = setting_out(hoop, phi, spin);
+            sets_out = setting_out(hoop, release_angle, phi, spin);
     const T way = select(sets_out < T(0), T(-1), T(1));
     const Roll<T> roll = begin_roll(seen(hoop, way), way * nearest, seen(phi, way), way * spin);
 

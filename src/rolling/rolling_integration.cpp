@@ -8,6 +8,8 @@
 
 #include "physics/flight_search.hpp"
 #include "physics/landing.hpp"
+#include "physics/rolling_by_angle.hpp"
+#include "support/stop.hpp"
 #include "trajectory/jump_rule.hpp"
 #include "trajectory/units.hpp"
 
@@ -264,13 +266,14 @@ Outcome Integration<Model>::roll(Start start, const Design& design, const Contac
     if (start == Start::release || take(rolling, {from.time, from.angle, from.spin}, 0.0))
       return rolling.outcome;
   }
-  if (rolling.spin.value == 0.0 && rolling.spin.rate == 0.0) {
+  if (setting_out(system_.model.hoop, from.angle, trig(from.angle), from.spin) == 0.0) {
     rolling.outcome.status = Status::stalled;
     return rolling.outcome;
   }
   if (!integrator_.start(release, 0.01 / (1.0 + std::abs(rolling.spin.value))))
     return failed_outcome(no_step);
   for (long taken = 0; taken < options_.max_steps; ++taken) {
+    throw_if_stopped();
     if (!advance()) return failed_outcome(no_step);
     if (settle(rolling)) return rolling.outcome;
   }

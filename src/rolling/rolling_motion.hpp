@@ -46,7 +46,7 @@ class RollingMotion {
 
 /// 1 for a release that sets out downhill, -1 for uphill; 0: at rest, and nothing pulls.
 inline double way_of(const Hoop<double>& hoop, double angle, double spin) {
-  const double sets_out = setting_out(hoop, trig(angle), spin);
+  const double sets_out = setting_out(hoop, angle, trig(angle), spin);
   return sets_out > 0.0 ? 1.0 : sets_out < 0.0 ? -1.0 : 0.0;
 }
 

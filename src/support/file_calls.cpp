@@ -41,6 +41,15 @@ void write_all(int descriptor, const std::string& path, std::uint64_t offset,
   }
 }
 
+void write_stream(int descriptor, const std::string& path, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t count = uninterrupted([&] { return ::write(descriptor, text.data(), text.size()); });
+    if (count < 0) fail_with_errno(path, "cannot be written");
+    if (count == 0) throw IoError(path + ": cannot be written: the system takes no bytes");
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
 void cut(int descriptor, const std::string& path, std::uint64_t size) {
   if (uninterrupted([&] { return ::ftruncate(descriptor, static_cast<off_t>(size)); }) != 0)
     fail_with_errno(path, "cannot be written");

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace leapmap {
 
@@ -17,6 +18,8 @@ struct stat status_of(int descriptor, const std::string& path);
 void read_all(int descriptor, const std::string& path, std::uint64_t offset, std::span<std::byte> bytes);
 void write_all(int descriptor, const std::string& path, std::uint64_t offset,
                std::span<const std::byte> bytes);
+/// Writes to a device or a pipe, which has no places.
+void write_stream(int descriptor, const std::string& path, std::string_view text);
 /// Makes the file `size` bytes long.
 void cut(int descriptor, const std::string& path, std::uint64_t size);
 /// Returns once what was written is on disk.

@@ -3,6 +3,8 @@
 /// told with the file and the reason.
 #pragma once
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstddef>
 #include <string>
@@ -31,26 +33,37 @@ bool open_standard_streams();
 /// not be read, and file systems that cannot sync folders, are as good as it gets.
 bool sync_folder(const std::string& folder);
 
-/// Reads a text file from its beginning to its end.
+/// Reads a text file from its beginning to its end. A device may go on for ever, and a file may be anything:
+/// more than most_bytes, or a line longer than most_line, is refused before memory is filled with it.
 class TextFile {
  public:
+  static constexpr std::size_t most_line = std::size_t{1} << 24;
+
   /// Throws InputError, saying what is `allowed`, if there is no such file that may be read, IoError if the
   /// system fails.
-  TextFile(const std::string& path, std::string_view allowed);
+  TextFile(const std::string& path, std::string_view allowed, std::size_t most_bytes);
   ~TextFile();
   TextFile(const TextFile&) = delete;
   TextFile& operator=(const TextFile&) = delete;
 
-  /// The next line without its end; false after the last one. Throws IoError.
+  /// What the file begins with, up to so many bytes; it is read again by what follows.
+  std::string_view peek(std::size_t bytes);
+  /// The next line without its end; false after the last one. Throws InputError, and IoError also if the file
+  /// ends before its size says, or changes meanwhile.
   bool next_line(std::string& line);
-  /// All that was not read yet. Throws IoError.
+  /// All that was not read yet. Throws as next_line does.
   std::string rest();
 
  private:
   /// False at the end of the file.
   bool read_more();
+  /// That a plain file ends where its size says.
+  void check_end() const;
 
-  std::string path_;
+  std::string path_, allowed_;
+  std::size_t most_bytes_, read_ = 0;
+  struct stat opened_ {};
+  bool ended_ = false;
   int descriptor_;
   std::string buffer_;
   std::size_t next_ = 0;  ///< the first character of buffer_ that was not handed out

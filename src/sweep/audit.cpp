@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 
+#include "leapmap/errors.hpp"
 #include "map/hdf5.hpp"
 #include "model/fields.hpp"
 #include "numerics/mixed.hpp"
@@ -324,10 +325,14 @@ AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int th
                   const std::function<bool()>& stop_requested, std::size_t referee_every) {
   AuditReport report = begin_audit(spec);
   std::mutex reporting;
-  parallel_for_each(samples.size(), threads, [&] {
+  parallel_for_each(samples.size(), threads, stop_requested, [&] {
     return [&, auditor = Auditor(spec, referee_every)](std::size_t i) {
       AuditReport one;
-      auditor.look_at(samples[i], one);
+      try {
+        auditor.look_at(samples[i], one);
+      } catch (const Stopped&) {
+        return false;
+      }
       const std::lock_guard lock(reporting);
       merge(report, one);
       return !(stop_requested && stop_requested());

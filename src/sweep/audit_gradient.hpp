@@ -17,16 +17,17 @@ class GradientAuditor {
   /// Keeps a reference to spec.
   explicit GradientAuditor(const Spec& spec);
 
-  /// Looks at the derivatives by one parameter, which the design's number picks. gradient: those of all
-  /// quantities, each by all parameters that the spec asks for. A design that has another outcome a hair away
-  /// is undecided.
+  /// Compares the derivatives by some parameters, which the design's number picks: by all of them in a small
+  /// audit, by one in a large one. gradient: those of all quantities, each by all parameters that the spec
+  /// asks for. A design that has another outcome nearby, whichever parameter moves, is undecided.
   void look_at(std::size_t number, const Design& design, const Outcome& ours,
                std::span<const double> gradient, AuditReport& report) const;
 
  private:
   const Spec& spec_;
   GradientWanted wanted_;
-  double rounding_;  ///< of what is stored, relative
+  std::size_t parameters_each_;  ///< compared of each design
+  double rounding_;              ///< of what is stored, relative
 };
 
 }  // namespace leapmap

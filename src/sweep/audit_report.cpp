@@ -117,15 +117,12 @@ AuditReport read_audit(const MapReader& map) {
   const auto has = [&](const auto& row) { return version[1] >= row.since; };
   const auto designs = static_cast<std::int64_t>(designs_of(map.shape()));
   const auto count = [&](const char* name, std::int64_t least, std::int64_t most) {
-    const std::int64_t value = hdf5::read_integers(map.file(), name)[0];
-    if (value < least || value > most)
-      throw BrokenFile(fmt::format("{}: is damaged: its {} is {}", map.path(), name, value));
-    return value;
+    return hdf5::read_integer(map.file(), name, least, most);
   };
   for (const auto& row : counts)
     if (has(row)) report.*row.member = static_cast<std::size_t>(count(row.name, 0, designs * row.most));
   for (const auto& row : errors)
-    if (has(row)) report.*row.member = hdf5::read_number(map.file(), row.name);
+    if (has(row)) report.*row.member = hdf5::read_number(map.file(), row.name, true);
   for (const auto& row : firsts)
     if (const std::int64_t design = has(row) ? count(row.name, -1, designs - 1) : -1; design >= 0)
       report.*row.member = static_cast<std::size_t>(design);

@@ -8,6 +8,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
+#include "support/output_file.hpp"
 #include "support/printable.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/provenance.hpp"
@@ -62,15 +63,6 @@ void refuse_other_beginning(const MapReader& part, const std::string& name, cons
 
 }  // namespace
 
-std::string behind_links(const std::string& map) {
-  constexpr int most_links = 40;  // as the kernel: links may form a ring
-  std::filesystem::path path = map;
-  std::error_code error;
-  for (int i = 0; i < most_links && std::filesystem::is_symlink(path, error); ++i)
-    path = path.parent_path() / std::filesystem::read_symlink(path, error);
-  return path.string();
-}
-
 MapWriter begin_map(const std::string& map, const Spec& spec, const MapLayout& layout, const Tiling& tiling,
                     std::span<const hdf5::Attribute> opening, const SweepOptions& options, Locking locking) {
   const std::string part = part_of(map);
@@ -91,11 +83,9 @@ MapWriter begin_map(const std::string& map, const Spec& spec, const MapLayout& l
 
 void refuse_own_input(const Spec& spec, const std::string& map) {
   for (const std::string& input : {spec.origin, spec.points})
-    for (const std::string& output : {map, part_of(map)}) {
-      std::error_code ignored;  // one of them is not there
-      if (!input.empty() && std::filesystem::equivalent(input, output, ignored))
+    for (const std::string& output : {map, part_of(map)})
+      if (!input.empty() && same_file(input, output))
         throw InputError(fmt::format("{}: is what the sweep is made from; allowed: another -o", output));
-    }
 }
 
 bool is_done(const std::string& map, const Spec& spec, std::span<const hdf5::Attribute> opening,

@@ -10,9 +10,6 @@
 
 namespace leapmap {
 
-/// The file behind a symbolic link, which is to stay one; any other name as it is.
-std::string behind_links(const std::string& map);
-
 /// Refuses (InputError) to write the map over what it is made from: the spec or its list of designs.
 void refuse_own_input(const Spec& spec, const std::string& map);
 

@@ -103,7 +103,7 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
   std::vector<std::vector<Cliff>> found((edges.size() + at_once - 1) / at_once);
   std::mutex telling;
   std::size_t done = 0;
-  parallel_for_each(found.size(), options.threads, [&] {
+  parallel_for_each(found.size(), options.threads, options.stop_requested, [&] {
     return [&, solve = make_solver(spec)](std::size_t block) {
       const std::span some =
           std::span(edges).subspan(block * at_once, std::min(at_once, edges.size() - block * at_once));

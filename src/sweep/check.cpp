@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_virtual.hpp"
@@ -13,6 +14,7 @@
 #include "map/reader.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
+#include "sweep/audit_report.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/shard.hpp"
@@ -91,7 +93,8 @@ void check_shards(Check& check, const std::string& path) {
 
 void check_tiles(Check& check, const MapLayout& layout) {
   for (std::size_t t = 0; t < check.report.tiles && !check.stopped(); ++t)
-    for (const Field* field : layout.fields) check_tile(check, *field, t);
+    for (const Field* field : layout.fields)
+      if (!check.stopped()) check_tile(check, *field, t);
   const bool counted = std::ranges::any_of(layout.fields, [](const Field* f) { return f->name == "status"; });
   if (check.stopped() || !check.report.findings.empty()) return;
   if (counted && check.statuses != check.map.status_counts())
@@ -142,10 +145,24 @@ void check_sample(Check& check) {
 /// How many tiles are there.
 std::size_t tiles_of(const MapReader& map, const Tiling& tiling) {
   if (map.is_whole()) return tiling.size();
-  const std::int64_t done = hdf5::read_integers(map.file(), "tiles_done")[0];
-  if (done < 0 || static_cast<std::size_t>(done) > tiling.size())
+  const std::int64_t done = hdf5::read_integer(map.file(), "tiles_done", 0);
+  if (static_cast<std::size_t>(done) > tiling.size())
     throw BrokenFile("it says that more tiles are done than it has");
   return static_cast<std::size_t>(done);
+}
+
+/// The numbers and texts that the root has beside its datasets are of the kinds that they should be.
+void check_attributes(const MapReader& map) {
+  for (const char* text : {"title", "program_version", "git_revision", "instruction_set", "math_library",
+                           "date", "host", "method", "audit_method"})
+    if (hdf5::has_attribute(map.file(), text)) hdf5::read_text(map.file(), text);
+  for (const auto& [name, least] :
+       {std::pair{"threads", std::int64_t{1}}, {"shards", 1}, {"retry_designs", 0}, {"tiles_checksum", 0}})
+    if (hdf5::has_attribute(map.file(), name)) hdf5::read_integer(map.file(), name, least);
+  for (const char* number : {"wall_time", "tolerance"})
+    if (hdf5::has_attribute(map.file(), number) && !(hdf5::read_number(map.file(), number) >= 0.0))
+      throw BrokenFile(fmt::format("reading attribute {}: it is below zero", number));
+  if (hdf5::has_attribute(map.file(), "audit_designs")) read_audit(map);
 }
 
 void check_content(const JournaledFile& bytes, const MapReader& map, const std::string& path,
@@ -161,6 +178,7 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   report.tiles = tiles_of(map, tiling);
   report.designs = designs_in(map.status_counts());
   Check check{bytes, map, spec, tiling, options, report};
+  check_attributes(map);
   check_layout(map.file(), layout, tiling, path);
   map.shards().empty() ? check_tiles(check, layout) : check_shards(check, path);
   if (report.findings.empty() && !check.stopped()) check_sample(check);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "leapmap/errors.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/ordered_delivery.hpp"
 #include "sweep/parallel.hpp"
@@ -83,7 +84,7 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
   const auto points = points_of(spec.scatter);
   const bool scattered = !spec.scatter.spreads.empty();
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
-  parallel_for_each(tiles, thread_count(options.threads), [&] {
+  parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
     return [&, solver = BlockSolver(spec, piece, points), work = make_work(),
             designs = std::vector<Design>(piece)](std::size_t i) mutable {
@@ -109,6 +110,9 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
         const std::size_t bytes = prepared.bytes;
         const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
         return wanted && !(options.stop_requested && options.stop_requested());
+      } catch (const Stopped&) {  // inside a design that takes long: the tile is given up
+        delivery.close(options.first_tile + i);
+        return false;
       } catch (...) {
         delivery.abandon();
         throw;

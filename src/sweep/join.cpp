@@ -14,6 +14,7 @@
 #include "map/schema.hpp"
 #include "map/shard_name.hpp"
 #include "map/writer.hpp"
+#include "support/output_file.hpp"
 #include "support/printable.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/begin_map.hpp"
@@ -213,7 +214,7 @@ class Joining {
     const StatusCounts counts = shard.status_counts();
     for (std::size_t s = 0; s < counts.size(); ++s) progress_.statuses[s] += counts[s];
     progress_.seconds += hdf5::read_number(shard.file(), "wall_time");
-    threads_ = std::max(threads_, hdf5::read_integers(shard.file(), "threads")[0]);
+    threads_ = std::max(threads_, hdf5::read_integer(shard.file(), "threads", 1));
     if (!hdf5::has_attribute(shard.file(), "audit_first_mismatch")) return;
     const AuditReport audit = read_audit(shard);
     if (!audit_) {

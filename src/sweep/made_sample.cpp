@@ -122,11 +122,14 @@ double MadeSample::error_of_moments(Statistic statistic) {
   };
   std::array<Moments, SobolPoints::replicates> parts;
   Moments whole;
+  double fourths = 0.0;
   const double middle = mean(values_);  // about which sums lose no digits
   std::size_t first = 0;
   for (std::size_t r = 0; r < parts.size(); ++r) {
-    for (const double value : std::span(values_).subspan(first, counts_[r]))
-      parts[r].sum += value - middle, parts[r].squares += (value - middle) * (value - middle);
+    for (const double value : std::span(values_).subspan(first, counts_[r])) {
+      const double square = (value - middle) * (value - middle);
+      parts[r].sum += value - middle, parts[r].squares += square, fourths += square * square;
+    }
     parts[r].count = static_cast<double>(counts_[r]);
     whole.count += parts[r].count, whole.sum += parts[r].sum, whole.squares += parts[r].squares;
     first += counts_[r];
@@ -138,7 +141,9 @@ double MadeSample::error_of_moments(Statistic statistic) {
                ? average
                : std::sqrt(((whole.squares - part.squares) - count * average * average) / (count - 1.0));
   });
-  return jackknife_error(without);
+  const bool known = statistic == Statistic::mean || fourths == 0.0 ||
+                     carries_replicates(whole.squares * whole.squares / fourths, whole.count);
+  return known ? jackknife_error(without) : nan;
 }
 
 double MadeSample::error(Statistic statistic) {

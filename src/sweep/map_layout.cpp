@@ -45,6 +45,11 @@ MapLayout layout_of(const Spec& spec) {
   return layout;
 }
 
+double map_file_bytes(const MapLayout& layout, const Tiling& tiling) {
+  constexpr double structure = 5e4;  // HDF5's own, and attributes
+  return static_cast<double>(map_bytes(layout, tiling)) + structure;
+}
+
 std::string title_of(const Spec& spec) {
   std::vector<std::string_view> names;
   for (const Axis& axis : spec.axes) names.push_back(axis.key);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "numerics/gsl_integrator.hpp"
+#include "support/number.hpp"
 
 namespace leapmap {
 namespace {
@@ -364,12 +364,10 @@ double parse_number(const Option& option, std::string_view text) {
     unit = factor;
     break;
   }
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty())
+  const auto number = number_in(digits);
+  if (!number)
     throw InputError(fmt::format("'{}' is not a number; allowed: {}", text, allowed_values(option)));
-  value *= unit;
+  const double value = *number * unit;
   if (!in_range(option, value))
     throw InputError(fmt::format("'{}' is not allowed; allowed: {}", text, allowed_values(option)));
   return value;

@@ -12,6 +12,8 @@
 #include <memory>
 #include <utility>
 
+#include "support/stop.hpp"
+
 namespace leapmap {
 
 /// As many as --threads takes; OMP_NUM_THREADS may ask for more than the machine can bear.
@@ -33,9 +35,11 @@ inline std::function<bool()> latched(std::function<bool()> stop_requested) {
 
 /// Calls make_worker() once on each thread, then the worker it returns with 0, 1, ..., count - 1: numbers are
 /// begun in order, each by whichever thread is free. A worker that returns false ends its thread's part. An
-/// exception ends the loop and is thrown on from here (none may leave an OpenMP region).
+/// exception ends the loop and is thrown on from here (none may leave an OpenMP region). Loops inside designs
+/// ask `stop` (support/stop.hpp).
 template <class MakeWorker>
-void parallel_for_each(std::size_t count, int threads, const MakeWorker& make_worker) {
+void parallel_for_each(std::size_t count, int threads, const std::function<bool()>& stop,
+                       const MakeWorker& make_worker) {
   std::atomic<std::size_t> next{0};
   std::exception_ptr failure;
   const auto team =
@@ -43,6 +47,7 @@ void parallel_for_each(std::size_t count, int threads, const MakeWorker& make_wo
 #pragma omp parallel num_threads(team)
   {
     try {
+      const StopScope scope(stop);
       auto worker = make_worker();
       for (std::size_t number = next++; number < count; number = next++)
         if (!worker(number)) break;

@@ -11,6 +11,7 @@
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "model/fields.hpp"
+#include "support/output_file.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"
@@ -35,14 +36,18 @@ void solve(const Spec& spec, const Tiling& tiling, std::vector<Failed>& designs,
            const std::function<bool()>& stop_requested) {
   constexpr std::size_t at_once = 64;
   const DesignSpace space(spec);
-  parallel_for_each((designs.size() + at_once - 1) / at_once, threads, [&] {
+  parallel_for_each((designs.size() + at_once - 1) / at_once, threads, stop_requested, [&] {
     return [&, solver = make_solver(spec)](std::size_t group) {
       std::vector<Design> some;
       const std::size_t first = group * at_once, last = std::min(first + at_once, designs.size());
       for (std::size_t i = first; i < last; ++i)
         some.push_back(space.at(tiling.number(tiling.tile(designs[i].tile), designs[i].index)));
       std::vector<Outcome> outcomes(some.size());
-      solver(some, outcomes);
+      try {
+        solver(some, outcomes);
+      } catch (const Stopped&) {
+        return false;
+      }
       for (std::size_t i = first; i < last; ++i) designs[i].outcome = outcomes[i - first];
       return !(stop_requested && stop_requested());
     };
@@ -126,7 +131,7 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
   write_tiles_checksum(file, layout, tiling, path);
   hdf5::write_attribute(file, "status_counts", report.statuses);
   const std::int64_t before =
-      hdf5::has_attribute(file, "retry_designs") ? hdf5::read_integers(file, "retry_designs")[0] : 0;
+      hdf5::has_attribute(file, "retry_designs") ? hdf5::read_integer(file, "retry_designs", 0) : 0;
   hdf5::write_attribute(file, "retry_designs", before + static_cast<std::int64_t>(report.retried));
   hdf5::write_attribute(file, "retry_method", resolved_method(spec.numerics));
   hdf5::write_attribute(file, "retry_tolerance", spec.numerics.tolerance);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "leapmap/errors.hpp"
@@ -23,12 +24,26 @@ constexpr double Outcome::*usual[]{&Outcome::jump_height, &Outcome::jump_time};
   throw InputError(fmt::format("{}: {}.{} {}; allowed: {}", origin_of(spec), section, key, what, allowed));
 }
 
-/// The parameter's values over all designs of the spec.
+/// The parameter's values over all designs of the spec. One that follows another has the other's.
 std::vector<double> values_of(const Spec& spec, const Option& parameter) {
   for (const auto* varying : {&spec.axes, &spec.list.columns})
     for (const Axis& axis : *varying)
       if (axis.key == parameter.key) return axis.values;
-  return {value_of(parameter, spec.design)};
+  const double value = value_of(parameter, spec.design);
+  if (std::isnan(value)) return values_of(spec, *find_option("scene", "mu_static"));
+  return {value};
+}
+
+/// A percentage of zero, or of what is zero but for the rounding of a step, is no scatter at all.
+void refuse_percent_of_nothing(const Spec& spec, const Spread& spread, std::span<const double> values) {
+  if (!spread.percent || spread.width == 0.0) return;
+  double most = 0.0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  for (const double value : values)
+    if (std::abs(value) <= 1e-12 * most)
+      refuse(spec, "scatter", spread.parameter,
+             fmt::format("is {} % of nothing: a nominal value is {}", spread.width, value),
+             "a width in the parameter's unit");
 }
 
 void check_spread(const Spec& spec, const Spread& spread) {
@@ -45,10 +60,7 @@ void check_spread(const Spec& spec, const Spread& spread) {
   const MadeHoops hoops({{spread}, SobolPoints::replicates, 0},
                         std::make_shared<const SobolPoints>(1, SobolPoints::replicates, 0));
   const std::vector<double> values = values_of(spec, parameter);
-  if (spread.percent && std::ranges::all_of(values, [](double value) { return value == 0.0; }))
-    refuse(spec, "scatter", spread.parameter,
-           fmt::format("is {} % of nothing: the value drawn is 0", spread.width),
-           "a width in the parameter's unit");
+  refuse_percent_of_nothing(spec, spread, values);
   for (const double value : values) {
     Design drawn = spec.design;
     drawn.*member_of(parameter) = value;

@@ -44,21 +44,23 @@ class Workshop {
   /// take(first, designs, outcomes) of each block of hoops, from any thread.
   template <class Take>
   void make(const Scatter& scatter, std::span<const std::size_t> dimensions, const Take& take) const {
-    parallel_for_each((samples() + made_at_once - 1) / made_at_once, options_.threads, [&] {
-      MadeHoops hoops(scatter, points_);
-      hoops.draw(spec_.design, dimensions);
-      return [&, hoops = std::move(hoops), solve = make_solver(solved_),
-              made = std::vector<Design>(made_at_once),
-              outcomes = std::vector<Outcome>(made_at_once)](std::size_t block) mutable {
-        if (options_.stop_requested && options_.stop_requested()) throw Stopped("scatter was asked to stop");
-        const std::size_t first = block * made_at_once, count = std::min(made_at_once, samples() - first);
-        hoops.fill(first, std::span(made).first(count));
-        solve(std::span(made).first(count), std::span(outcomes).first(count));
-        take(first, std::span<const Design>(made).first(count),
-             std::span<const Outcome>(outcomes).first(count));
-        return true;
-      };
-    });
+    parallel_for_each(
+        (samples() + made_at_once - 1) / made_at_once, options_.threads, options_.stop_requested, [&] {
+          MadeHoops hoops(scatter, points_);
+          hoops.draw(spec_.design, dimensions);
+          return [&, hoops = std::move(hoops), solve = make_solver(solved_),
+                  made = std::vector<Design>(made_at_once),
+                  outcomes = std::vector<Outcome>(made_at_once)](std::size_t block) mutable {
+            if (options_.stop_requested && options_.stop_requested())
+              throw Stopped("scatter was asked to stop");
+            const std::size_t first = block * made_at_once, count = std::min(made_at_once, samples() - first);
+            hoops.fill(first, std::span(made).first(count));
+            solve(std::span(made).first(count), std::span(outcomes).first(count));
+            take(first, std::span<const Design>(made).first(count),
+                 std::span<const Outcome>(outcomes).first(count));
+            return true;
+          };
+        });
   }
 
  private:

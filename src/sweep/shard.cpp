@@ -47,7 +47,7 @@ std::vector<Sampled> sample_tiles(const Spec& spec, const Tiling& tiling, std::s
                                   const std::vector<std::size_t>& wanted, int threads) {
   const DesignSpace space(spec);
   std::vector<Sampled> sampled(wanted.size());
-  parallel_for_each(wanted.size(), thread_count(threads), [&] {
+  parallel_for_each(wanted.size(), thread_count(threads), {}, [&] {
     return [&, effort = effort_of(spec)](std::size_t t) {
       const Tile tile = tiling.tile(stride * t);
       const std::size_t designs = std::min(wanted[t], tile.count);

@@ -50,7 +50,7 @@ void check_designs(std::span<const Design> block, const Scene& scene, std::size_
 template <class MakeBlock>
 void in_blocks(std::string_view what, std::size_t designs, std::size_t most, const SolveOptions& options,
                const MakeBlock& make_block) {
-  parallel_for_each((designs + most - 1) / most, options.threads, [&] {
+  parallel_for_each((designs + most - 1) / most, options.threads, options.stop_requested, [&] {
     return [&, solve_block = make_block()](std::size_t block) mutable {
       const std::size_t first = block * most;
       solve_block(first, std::min(most, designs - first));

@@ -13,6 +13,8 @@
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
 #include "model/model.hpp"
+#include "support/csv.hpp"
+#include "support/number.hpp"
 #include "support/posix.hpp"
 #include "sweep/point_list.hpp"
 #include "sweep/spec_entry.hpp"
@@ -123,8 +125,13 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
   return entries;
 }
 
-/// KEY=VALUE as a table { v = VALUE }; a bare word is a string.
+/// KEY=VALUE as a table { v = VALUE }; numbers as every flag takes them, a bare word is a string.
 toml::table parse_override(const std::string& text, std::string_view value) {
+  if (const auto number = number_in(value)) {
+    const auto whole = static_cast<std::int64_t>(std::clamp(*number, -1e15, 1e15));
+    if (static_cast<double>(whole) == *number) return toml::table{{"v", whole}};
+    return toml::table{{"v", *number}};
+  }
   try {
     toml::table table = toml::parse(fmt::format("v = {}", value));
     if (table.size() != 1) throw InputError(fmt::format("--set {}: allowed: one KEY=VALUE", text));
@@ -191,8 +198,20 @@ void read_points_of(Spec& spec) {
   }
 }
 
+namespace {
+
+/// A million values of an axis are some 25 MB.
+std::string text_of_spec(const std::string& path) {
+  constexpr std::string_view allowed = "a spec in TOML";
+  TextFile file(path, allowed, std::size_t{1} << 26);
+  refuse_other_form(path, file.peek(4096), allowed);
+  return file.rest();
+}
+
+}  // namespace
+
 Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {
-  Spec spec = parse_spec(path.empty() ? "" : TextFile(path, "a spec in TOML").rest(), path, overrides);
+  Spec spec = parse_spec(path.empty() ? "" : text_of_spec(path), path, overrides);
   read_points_of(spec);
   return spec;
 }

@@ -140,7 +140,8 @@ Axis to_axis(const Entry& entry, const toml::table& table) {
   const Spacing spacing = to_spacing(entry, table);
   axis.values = values_of(spacing);
   axis.free = !table.contains("step") && !table.contains("count");
-  axis.log = axis.free && spacing.log;
+  axis.spaced = !axis.free;
+  axis.log = spacing.log;
   return axis;
 }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "model/fields.hpp"
+#include "support/number.hpp"
 #include "sweep/spec_entry.hpp"
 
 namespace leapmap {
@@ -22,12 +22,7 @@ std::optional<double> to_percent(const toml::node& node) {
   if (!text || !text->get().ends_with('%')) return std::nullopt;
   std::string_view digits = text->get();
   digits.remove_suffix(1);
-  while (digits.starts_with(' ')) digits.remove_prefix(1);
-  while (digits.ends_with(' ')) digits.remove_suffix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty()) return std::nullopt;
-  return value;
+  return number_in(digits);
 }
 
 /// A phase_sequence by its letters, for example "RSF".

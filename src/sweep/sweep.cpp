@@ -11,6 +11,7 @@
 
 #include "map/schema.hpp"
 #include "map/writer.hpp"
+#include "support/output_file.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/begin_map.hpp"
 #include "sweep/designs.hpp"

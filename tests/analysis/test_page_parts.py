@@ -372,3 +372,30 @@ def test_one_hoop_has_one_answer_left_and_right(browser, html):
     assert browser.find_element("id", "place").text != browser.find_element("id", "hop-title").text
     browser.execute_script("document.getElementById('map').dispatchEvent(new PointerEvent('pointerleave'))")
     assert float(browser.execute_script("return document.getElementById('readout').dataset.value")) == right
+
+
+def test_ticks_of_any_two_numbers_are_few_ascend_and_differ_in_their_texts(page):
+    """From neighbouring doubles to 1e300: the count of ticks once had no end."""
+    bad = page.execute_script("""
+        const bad = [], seeded = (seed => () => (seed = (seed * 16807) % 2147483647) / 2147483647)(45);
+        const number = () => (seeded() < 0.5 ? -1 : 1) * 10 ** (seeded() * 600 - 300);
+        for (let i = 0; i < 20000; ++i) {
+          let low = number(), high = seeded() < 0.5 ? low * (1 + 2.3e-16 * (1 + 5 * seeded())) : number();
+          if (low > high) [low, high] = [high, low];
+          const ticks = linearTicks(low, high), texts = tickTexts(ticks);
+          if (!ticks.length || ticks.length > 12 || new Set(texts).size !== texts.length
+              || ticks.some((v, k) => !Number.isFinite(v) || (k > 0 && v <= ticks[k - 1]))) bad.push([low, high]);
+          if (low > 0 && logTicks(low, high).length > 60) bad.push(["log", low, high]);
+        }
+        return bad;""")
+    assert bad == []
+    assert page.execute_script("return tickTexts(logTicks(1, 1e7))") == ["1", "10", "100", "1000", "10000", "10⁵", "10⁶", "10⁷"]
+
+
+def test_a_list_whose_values_differ_by_a_rounding_opens(browser, tmp_path):
+    (tmp_path / "list.csv").write_text("slope\n0.3\n0.30000000000000004\n")
+    path = sweep(tmp_path, f'[design]\npoints = "{tmp_path / "list.csv"}"\n')
+    html = tmp_path / "list.html"
+    done = finished("/usr/bin/python3", TOP / "analysis/explorer", path, "--module", BUILD / "leapmap.wasm", "-o", html)
+    assert done.returncode == 0, done.stderr
+    at(browser, html, "")

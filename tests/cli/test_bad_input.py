@@ -4,10 +4,13 @@ import os
 import shutil
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 
 import pytest
 from support.program import PROGRAM, SMALL, leapmap, sweep
+
+INPUTS = Path(__file__).parent / "inputs"
 
 BAD = {
     "unknown key": ('[design]\nslop = 0.4', ["slop", "slope"]),
@@ -112,14 +115,118 @@ def test_a_folder_that_may_not_be_written_ends_with_status_3():
         locked.mkdir(mode=0o555)
         folder.chmod(0o755)
         become = ["setpriv", "--reuid=65534", "--clear-groups"] if os.geteuid() == 0 else []
-        done = subprocess.run([*become, folder / "leapmap", "sweep", folder / "spec.toml", "-o", locked / "map.h5"],
-                              capture_output=True, text=True)
-        assert done.returncode == 3, done.stderr
-        assert done.stderr.count("\n") == 1
-        assert os.listdir(locked) == []
+        (folder / "wide.toml").write_text(SMALL.replace("count = 12", "count = 1200").replace("count = 11", "count = 1100"))
+        (folder / "question.toml").write_text('[design]\nslope = { from = 0.1, to = 0.5 }\n[goal]\nmaximize = ["jump_height"]\n')
+        for command in (["sweep", "spec.toml", "-o", "locked/map.h5"], ["boundaries", "wide.toml", "-o", "locked/c.h5"],
+                        ["boundaries", "wide.toml", "--csv", "locked/c.csv"], ["design", "question.toml", "-o", "locked/d.h5"],
+                        ["precision", "-o", "locked/p.h5"], ["hop", "--trace", "locked/t.h5"]):
+            begin = time.monotonic()
+            done = subprocess.run([*become, folder / "leapmap", *command], capture_output=True, text=True, cwd=folder)
+            assert done.returncode == 3, done.stderr
+            assert done.stderr.count("\n") == 1
+            assert os.listdir(locked) == []
+            assert time.monotonic() - begin < 3, "before the work, which takes longer"
 
 
 def test_a_bad_design_is_a_status_and_the_sweep_goes_on(tmp_path):
     path = sweep(tmp_path, '[design]\nslope = { values = [0.4] }\nmass_ratio = { values = [2, 3] }\n[numerics]\nmethod = "gsl-rk8pd"\nmax_steps = 20\naudit = 0\n')
     text = leapmap("info", path).stdout
     assert "failed" in text
+
+
+NUMBERS = [  # a command up to its flag
+    ["hop", "--drive-torque", "0.05", "--mass"], ["hop", "--trace", "t.h5", "--trace-interval"], ["hop", "--mass-ratio"], ["hop", "--runway"],
+    ["sweep", "--dry-run", "--time-limit"], ["sweep", "--dry-run", "--threads"], ["sweep", "--dry-run", "--commit-interval"],
+    ["sweep", "--dry-run", "--shards"], ["fit", "film.csv", "--error"], ["fit", "film.csv", "--scale"], ["fit", "film.csv", "--seed"],
+    ["design", "spec.toml", "--most"], ["design", "spec.toml", "--sample"], ["design", "spec.toml", "--seed"], ["gait", "--most-period"],
+    ["boundaries", "spec.toml", "--threads"], ["check", "m.h5", "--sample"], ["precision", "--designs"],
+]
+
+
+@pytest.mark.parametrize("command", NUMBERS, ids=lambda command: "".join(command[::len(command) - 1]))
+@pytest.mark.parametrize("value", ["nan", "inf", "1e999", "+-1", "", "0x1p-3", "1 2"])
+def test_every_flag_refuses_what_is_no_number_by_its_name(command, value, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = leapmap(*command[:-1], f"{command[-1]}={value}")
+    assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1, done.stderr
+    assert command[-1].strip("-").replace("-", "_") in done.stderr.replace("-", "_")
+    assert os.listdir(tmp_path) == []
+
+
+def test_numbers_are_read_alike_by_every_flag(tmp_path):
+    plain = leapmap("hop", "--json", "--slope", "0.5", "--mass-ratio", "0.5", "--set", "runway=4").stdout
+    assert leapmap("hop", "--json", "--slope=+.5", "--mass-ratio=.5", "--runway", "+4.0").stdout == plain
+    assert leapmap("sweep", "--dry-run", "--threads", "1e0").returncode == 0
+
+
+@pytest.mark.parametrize("arguments, used", [
+    (["hop", "--set", "slope=0.1", "--set", "slope=0.2"], "slope=0.2 is used"), (["hop", "--slope", "0.1", "--set", "design.slope=0.2"], "design.slope=0.1 is used"),
+    (["sweep", "--dry-run", "--set", "tolerance=1e-9", "--set", "numerics.tolerance=1e-8"], "numerics.tolerance=1e-8 is used"),
+    (["gait", "--set", "slope=0.21", "--set", "mass_ratio=3", "--set", "slope=0.2"], "slope=0.2 is used"),
+])
+def test_of_a_key_given_twice_the_value_that_is_used_is_said(arguments, used):
+    done = leapmap(*arguments)
+    assert done.returncode == 0 and used in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+def test_a_fit_of_one_model_refuses_another_friction():
+    done = leapmap("fit", INPUTS / "events_impossible.csv", "--model", "sticking", "--set", "friction=coulomb")
+    assert done.returncode == 2 and "twice" in done.stderr and done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("arguments", [["hop", ""], ["sweep", "", "--dry-run"], ["info", ""], ["info", "m.h5", "--at", ""], ["fit", "x.csv", ""],
+                                       ["design", ""], ["boundaries", ""], ["check", ""], ["gait", ""]])
+def test_an_empty_name_is_refused(arguments):
+    done = leapmap(*arguments)
+    assert done.returncode == 2 and "is empty" in done.stderr, done.stderr
+
+
+@pytest.mark.parametrize("name, words", [
+    ("film.mp4", ["a film itself"]), ("points_utf16.csv", ["UTF-16"]), ("points_nul.csv", ["byte 0"]), ("points_semicolon.csv", ["semicolons"]),
+    ("film_tabs.csv", ["tabs"]), ("film_degrees_2000fps.csv", ["degrees"]), ("film_held_before_release.csv", ["held"]),
+    ("film_two_nan_rows.csv", [":22:", "--allow-gaps"]), ("events_degrees.csv", ["jump_angle = 700", "degrees"]),
+])
+def test_a_file_of_another_form_is_recognised(name, words):
+    done = leapmap("fit", INPUTS / name)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+    assert all(word in done.stderr for word in [name, "allowed", *words]), done.stderr
+
+
+@pytest.mark.parametrize("head, words", [(b"PK\3\4" + b"\0" * 26 + b"xl/workbook.xml", "xlsx"), (b"\xd0\xcf\x11\xe0", "xls"), (b"\x89HDF\r\n", "HDF5"),
+                                         (b"<?xml version", "XML"), (b"RIFF\0\0\0\0AVI LIST", "film"), (b"\xff\xfet\0", "UTF-16")])
+@pytest.mark.parametrize("how", [["fit", "x"], ["sweep", "--dry-run", "--points", "x"], ["sweep", "--dry-run", "x"]], ids=["film", "points", "spec"])
+def test_what_is_no_text_is_named_wherever_texts_are_read(head, words, how, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "x").write_bytes(head)
+    done = leapmap(*how)
+    assert done.returncode == 2 and words in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+def test_rebounds_without_end_name_the_key_that_ends_them():
+    done = leapmap("hop", "--friction", "coulomb", "--restitution", "0.5", "--set", "rest_speed=0")
+    assert "rest_speed" in done.stdout.splitlines()[-2], done.stdout[-300:]
+
+
+@pytest.mark.parametrize("how", [["--slope", "0"], ["--slope", "0", "--mass-ratio", "13.5", "--set", "hop_height=0"],
+                                 ["--slope", "0", "--friction", "coulomb"], ["--slope", "0", "--release-angle", "540deg"]])
+def test_a_hoop_at_rest_on_its_equilibrium_is_stalled_and_its_check_agrees(how):
+    done = leapmap("hop", *how)
+    assert done.returncode == 0 and "stalls" in done.stdout and "agrees" in done.stdout, done.stdout
+
+
+def test_a_sweep_over_level_ground_agrees_with_its_audit(tmp_path):
+    sweep(tmp_path, '[scene]\nhop_height = 0\n[design]\nslope = 0\nmass_ratio = { values = [1, 13.5, 20] }\n[numerics]\naudit = 1\n')
+
+
+def test_a_flight_ten_million_times_as_long_as_its_contact_is_told():
+    for how in (["--slope", "-1.57", "--drive-torque", "1000"], ["--mass-ratio", "1e9", "--slope=-89.9deg", "--drive-torque", "10"]):
+        done = leapmap("hop", *how)
+        assert done.returncode == 0 and "The motor" in done.stdout, done.stderr
+
+
+def test_one_endless_design_heeds_a_signal(tmp_path):
+    """Before, 870 s and no end."""
+    done = subprocess.run(["timeout", "-s", "TERM", "1", PROGRAM, "sweep", "-o", tmp_path / "m.h5", "--set", "runway=1e6", "--set", "mass_ratio=1e12",
+                           "--set", "audit=0"], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 124, done.stderr  # timeout's own, if it has sent the signal
+    assert "interrupted" in done.stderr

@@ -445,3 +445,55 @@ def test_check_says_where_or_that_no_value_is_touched(original, tmp_path):
     done = leapmap("check", tmp_path / "bare.h5")
     assert done.returncode == 1 and "WRONG" in done.stdout
     assert leapmap("check", tmp_path / "nowhere.h5").returncode == 3
+
+
+def bomb(dataset, mebibytes=256):
+    """A chunk of zeros without end, deflated, in place of the first one."""
+    raw = zlib.compress(bytes(mebibytes * 2**20), 9)
+    sums = dataset.fletcher32
+    dataset.id.write_direct_chunk((0,) * dataset.ndim, raw + (b"\0" * 4 if sums else b""))
+
+
+def test_a_chunk_that_inflates_beyond_its_values_is_refused(original, tmp_path):
+    path = tmp_path / "bomb.h5"
+    shutil.copy(original, path)
+    with h5py.File(path, "r+") as m:
+        for name in ("jump_height", "jump_time", "jump_angle"):
+            bomb(m[name])
+    begin = time.monotonic()
+    for command in (["info", path], ["check", path], ["boundaries", path]):
+        done = limited(300, PROGRAM, *command)
+        assert "Traceback" not in done.stderr and "memory" not in done.stderr and (command[0] == "boundaries" or done.returncode != 0), done.stderr
+    with pytest.raises(NotAMap, match="inflates"):
+        read_map(path)
+    assert time.monotonic() - begin < 20
+
+
+def test_chunks_beyond_the_map_and_groups_without_end_are_refused_at_once(original, tmp_path):
+    wide, deep = tmp_path / "wide.h5", tmp_path / "deep.h5"
+    shutil.copy(original, wide)
+    shutil.copy(original, deep)
+
+    def create(m, name, shape):
+        m.create_dataset(name, shape, chunks=(512,) * len(shape), maxshape=(None,) * len(shape), dtype="f8", compression=1)
+    replaced(wide, "jump_height", create)
+    with h5py.File(deep, "r+") as m:
+        group = m.id
+        for _ in range(2000):
+            group = h5py.h5g.create(group, b"g")
+    for path, word in ((wide, "chunks"), (deep, "nested")):
+        begin = time.monotonic()
+        for command in ("info", "check", "boundaries"):
+            done = limited(300, PROGRAM, command, path)
+            assert done.returncode != 0 and word in done.stdout + done.stderr, (command, done.stdout, done.stderr)
+        assert time.monotonic() - begin < 5
+
+
+def test_texts_without_end_are_refused_before_memory_is_filled(tmp_path):
+    (tmp_path / "wide.csv").write_text(",".join(f"c{i}" for i in range(500_000)) + "\n1\n")
+    begin = time.monotonic()
+    for command in (["hop", "/dev/zero"], ["sweep", "/dev/zero", "--dry-run"], ["fit", "/dev/zero"], ["sweep", "--dry-run", "--points", "/dev/zero"],
+                    ["sweep", "--dry-run", "--points", tmp_path / "wide.csv"], ["fit", tmp_path / "wide.csv"]):
+        done = limited(500, PROGRAM, *command)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and len(done.stderr) < 2000, done.stderr[:300]
+    assert time.monotonic() - begin < 20

@@ -44,8 +44,10 @@ TEST(Question, ReachesTheBoundsToTheLastBitAndTheMiddleByItsSpacing) {
 TEST(Question, TakesAGridsRangesToo) {
   const Question question = question_of(
       parse_spec("[design]\nslope = { from = 0.1, to = 0.4, count = 7 }\nmass_ratio = { from = 0.1, to = 20, "
-                 "count = 9, scale = \"log\" }\n[goal]\nmaximize = [\"jump_height\"]"));
+                 "count = 9, scale = \"log\" }\noffset_ratio = { from = 0.5, to = 1, count = 3 }\n[goal]\n"
+                 "maximize = [\"jump_height\"]"));
   EXPECT_EQ(question.free[0].side.high, 0.4);
+  EXPECT_EQ(question.free[2].side.low, 0.5) << "however few values";
   EXPECT_TRUE(question.free[1].side.log);
 }
 
@@ -108,6 +110,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadQuestion{"a_list_of_values",
                     "[design]\nslope = { values = [0.1, 0.2, 0.5] }\n[goal]\nmaximize = [\"jump_height\"]",
                     {"slope", "list of values"}},
+        BadQuestion{"two_values",
+                    "[design]\nslope = { values = [0.1, 0.5] }\n[goal]\nmaximize = [\"jump_height\"]",
+                    {"slope", "list of values"}},
+        BadQuestion{"values_at_equal_steps",
+                    "[design]\nslope = { values = [0.1, 0.2, 0.3, 0.4] }\n[goal]\nmaximize = [\"jump_height\"]",
+                    {"slope", "list of values"}},
+        BadQuestion{"a_percentage_of_a_bound_beyond_zero",
+                    "[design]\nslope = { from = -0.1, to = 0.5 }\n[scatter]\nslope = { normal = \"5 %\" }\n"
+                    "[goal]\nmaximize = [\"jump_height\"]",
+                    {"scatter.slope", "nothing"}},
         BadQuestion{
             "a_goal_against_itself",
             box + "[goal]\njump_time = { at_least = 2.0, at_most = 1.0 }\nmaximize = [\"jump_height\"]",

@@ -137,7 +137,7 @@ TEST(ExactSolver, AgainstIntegrationEveryMismatchIsDecidedForItByTheWiderType) {
   std::vector<std::size_t> mismatches;
   double height = 0.0, time = 0.0;
   std::mutex noting;
-  parallel_for_each(designs.size(), 0, [&] {
+  parallel_for_each(designs.size(), 0, {}, [&] {
     return [&, rolling = std::make_unique<RollingIntegration>(testing::adaptive("gsl-rk8pd", 1e-12))](
                std::size_t i) {
       const Outcome integrated = rolling->solve(designs[i], scene);

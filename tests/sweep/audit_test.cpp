@@ -251,6 +251,31 @@ TEST(Audit, LooksAtDerivativesByEveryParameter) {
   }
 }
 
+/// One design whose derivative by one parameter is wrong, as a panel that does not resolve it makes it.
+TEST(Audit, ConvictsOneWrongDerivativeWithFriction) {
+  const Spec spec =
+      read_spec("", {"friction=coulomb", "slope=0.30637631722143877", "mass_ratio=2.483827084653167",
+                     "offset_ratio=0.5830303986127652", "release_angle=4.658042210229609",
+                     "release_spin=-0.9399108160617516", "mu_static=0.10873542033895064",
+                     "mu_kinetic=0.09786187830505558", "gradients=[\"jump_time\"]", "audit=1"});
+  const std::vector<Design> designs{DesignSpace(spec).at(0)};
+  std::vector<Outcome> outcomes(1);
+  Gradients gradients(gradients_of(spec));
+  make_gradient_solver(spec)(designs, outcomes, gradients);
+  const std::size_t parameters = gradients.wanted().by.size();
+  ASSERT_EQ(parameters, differentiable.size());
+  for (std::size_t spoiled = 0; spoiled <= parameters; ++spoiled) {  // the last one: none
+    AuditSample sample{0, outcomes[0], {}};
+    for (std::size_t j = 0; j < parameters; ++j)
+      sample.gradient.push_back(gradients.column(0, j)[0] * (j == spoiled ? 1.0 + 1e-2 : 1.0));
+    // Without a rebound the restitution does not act: nothing times anything is nothing. And with any motor
+    // that pulls the other way its flight would begin by sinking.
+    const bool is_decided = spoiled < parameters && differentiable[spoiled] != &Design::drive_torque;
+    const bool is_wrong = is_decided && gradients.column(0, spoiled)[0] != 0.0;
+    EXPECT_EQ(audit(spec, {&sample, 1}, 0).gradients_wrong, is_wrong ? 1u : 0u) << spoiled;
+  }
+}
+
 TEST(Audit, NeverAuditsAMethodByItself) {
   Numerics numerics;
   EXPECT_NE(audit_method(numerics), resolved_method(numerics));

@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSpec{"field_twice", "[output]\nfields = [\"dip\", \"dip\"]", {"dip", "twice"}},
         BadSpec{"hop_height_negative", "[scene]\nhop_height = -0.1", {"hop_height", "-0.1"}},
         BadSpec{"unreadable_csv", "[design]\npoints = \"nowhere.csv\"", {"nowhere.csv", "cannot be read"}},
-        BadSpec{"empty_csv", "[design]\npoints = \"empty.csv\"", {"empty.csv", "no designs"}},
+        BadSpec{"empty_csv", "[design]\npoints = \"empty.csv\"", {"empty.csv", "is empty"}},
         BadSpec{"csv_without_designs",
                 "[design]\npoints = \"header_only.csv\"",
                 {"header_only.csv", "no designs"}},

@@ -236,9 +236,9 @@ TEST(OrderedDelivery, AbandoningLetsWaitingThreadsGo) {
 
 TEST(ParallelForEach, EachNumberOnceAndAnExceptionFromAnyThreadIsThrownOn) {
   std::vector<std::atomic<int>> seen(1000);
-  parallel_for_each(seen.size(), 4, [&] { return [&](std::size_t i) { return ++seen[i], true; }; });
+  parallel_for_each(seen.size(), 4, {}, [&] { return [&](std::size_t i) { return ++seen[i], true; }; });
   for (const auto& count : seen) EXPECT_EQ(count, 1);
-  EXPECT_THROW(parallel_for_each(100, 4,
+  EXPECT_THROW(parallel_for_each(100, 4, {},
                                  [] {
                                    return [](std::size_t i) {
                                      if (i == 42) throw std::runtime_error("42");

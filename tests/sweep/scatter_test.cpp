@@ -16,6 +16,7 @@
 #include "support/designs.hpp"
 #include "support/scattered.hpp"
 #include "support/temporary_folder.hpp"
+#include "sweep/made_sample.hpp"
 #include "sweep/solve_blocks.hpp"
 #include "sweep/spec.hpp"
 
@@ -270,7 +271,7 @@ TEST(Scatter, HoopsThatTheMethodGaveUpOnAreTold) {
 }
 
 /// Sobol' indices of the paper's hoop, of which one in four hundred misses its goal: 1.96 errors hold in 85
-/// of 100 cases or more, of every index.
+/// of 100 cases or more, of every index, or are not known, as where five hoops miss it.
 TEST(Scatter, ErrorsOfIndicesHoldWhereFewHoopsMissTheGoal) {
   constexpr int seeds = 100;
   Spec spec = scattered();
@@ -283,6 +284,7 @@ TEST(Scatter, ErrorsOfIndicesHoldWhereFewHoopsMissTheGoal) {
   const ScatterReport truth = scatter(spec);
   spec.scatter.samples = 2048;
   std::map<std::string, int> held;
+  int known = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
     spec.scatter.seed = seed;
     const ScatterReport report = scatter(spec);
@@ -293,11 +295,27 @@ TEST(Scatter, ErrorsOfIndicesHoldWhereFewHoopsMissTheGoal) {
           const auto& theirs = total ? truth.importance[i].total[k] : truth.importance[i].first[k];
           if (std::isnan(theirs.value)) continue;
           held[report.importance[i].of + (total ? " total " : " first ") + std::to_string(k)] +=
+              std::isnan(ours.error) ||
               std::abs(ours.value - theirs.value) <= of_95 * std::hypot(ours.error, theirs.error);
+          known += !std::isnan(ours.error);
         }
   }
+  EXPECT_GT(known, 0);
   EXPECT_EQ(held.size(), 18u);
   for (const auto& [name, count] : held) EXPECT_GE(count, 85) << name;
+}
+
+/// A few hoops far from all others bring all of a deviation, and most replicates have none of them.
+TEST(Scatter, AnErrorThatHangsOnFewHoopsIsNotKnown) {
+  for (const auto& [beyond, known] : {std::pair{5u, false}, {12u, false}, {40u, true}, {0u, true}}) {
+    MadeSample sample;
+    for (std::size_t i = 0; i < 1024; ++i) {
+      const bool far = beyond > 0 && i % (1024 / beyond) == 0;
+      sample.add(1.0 + 1e-3 * std::sin(static_cast<double>(i)) + (far ? 1.0 : 0.0), i / 64);
+    }
+    EXPECT_EQ(std::isfinite(sample.error(Statistic::sd)), known) << beyond;
+    EXPECT_TRUE(std::isfinite(sample.error(Statistic::mean)));
+  }
 }
 
 TEST(Scatter, IsReadFromASpecAndToldInItAgain) {

@@ -8,7 +8,19 @@
 
 `solve` and `trace` say which parameters there are and what they mean: help(leapmap.solve).
 """
-from leapmap import _core
+try:
+    import leapmap._core as _core
+except ModuleNotFoundError as error:
+    if error.name != "leapmap._core":
+        raise
+    import glob
+    import os
+    import sys
+
+    _here = os.path.dirname(os.path.abspath(__file__))
+    _cores = ", ".join(os.path.basename(path) for path in glob.glob(os.path.join(glob.escape(_here), "_core.*"))) or "no compiled core"
+    raise ImportError(f"{_here}: has {_cores}, and this is {sys.executable}, Python {sys.version.split()[0]}; allowed: the Python that it was "
+                      "built for, as a rule /usr/bin/python3, or a build with cmake -DLEAPMAP_PYTHON=...") from None
 from leapmap._design import DesignProblem, Found, design
 from leapmap._fit import Fit, FittedParameter, fit
 from leapmap._results import Motion, Outcomes, Status

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a question to designs: what leapmap design does, and the same question for optimizers of others."""
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from leapmap import _core
+from leapmap._arguments import array, mapping, names, path, whole
 from leapmap._results import Outcomes
 from leapmap._sweep import _keyed, _toml
 
@@ -53,7 +53,8 @@ def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed
     threads: 0 for all cores. overrides: keys of the spec.
 
     Returns Found. Raises ValueError, naming the key, its value and what is allowed. Ctrl-C ends it."""
-    told = _core.design(*_question(spec, goal, maximize, minimize, scatter, overrides), int(seed), int(most), int(sample), int(threads))
+    told = _core.design(*_question(spec, goal, maximize, minimize, scatter, overrides), whole("seed", seed, 0), whole("most", most, 0, 10**5),
+                        whole("sample", sample, 0, 2**27), whole("threads", threads, 0, 4096))
     return Found(**told | {"outcomes": Outcomes(told["outcomes"], {"friction": "any"})})
 
 
@@ -69,7 +70,7 @@ class DesignProblem:
     and more, the more it misses."""
 
     def __init__(self, spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, threads=0, **overrides):
-        self._asked = (*_question(spec, goal, maximize, minimize, scatter, overrides), int(threads))
+        self._asked = (*_question(spec, goal, maximize, minimize, scatter, overrides), whole("threads", threads, 0, 4096))
         self._start()
 
     def _start(self):
@@ -93,7 +94,8 @@ class DesignProblem:
 
     def judge(self, places):
         """Of an array of designs, a row each: costs, an array of as many rows, and violations, 0 where every goal is reached."""
-        return self._core.judge(np.atleast_2d(np.asarray(places, float)))
+        rows = np.atleast_2d(array("places", places) if np.size(places) else np.empty((0, len(self.names))))
+        return self._core.judge(rows)
 
     def costs(self, places):
         """Of an array of designs, a row each: an array of costs, a row each."""
@@ -110,7 +112,7 @@ class DesignProblem:
         return self.costs(place)[0]
 
     def batch_fitness(self, places):
-        return self.costs(np.asarray(places, float).reshape(-1, len(self.names))).ravel()
+        return self.costs(array("places", places).reshape(-1, len(self.names))).ravel()
 
     def has_batch_fitness(self):
         return True
@@ -127,12 +129,11 @@ class DesignProblem:
 
 
 def _question(spec, goal, maximize, minimize, scatter, overrides):
-    text, origin = (os.fspath(spec), None) if spec is not None and not isinstance(spec, Mapping) else (_toml(spec or {}), "<dict>")
+    text, origin = (path("spec", spec), None) if spec is not None and not isinstance(spec, Mapping) else (_toml(spec or {}), "<dict>")
     changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
     for section, keys in (("scatter", scatter), ("goal", goal)):
-        changes += [f"{section}.{key}={_keyed(key, value)}" for key, value in (keys or {}).items()]
-    for key, names in (("maximize", maximize), ("minimize", minimize)):
-        names = [names] if isinstance(names, str) else list(names)
-        if names:
-            changes.append(f"goal.{key}={_keyed(key, names)}")
+        changes += [f"{section}.{key}={_keyed(key, value)}" for key, value in mapping(section, keys).items()]
+    for key, asked in (("maximize", maximize), ("minimize", minimize)):
+        if found := names(key, asked):
+            changes.append(f"goal.{key}={_keyed(key, found)}")
     return text, origin, changes

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From measurements to a hoop: what leapmap fit does."""
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from leapmap import _core
+from leapmap._arguments import array, path, real, shown, text, whole
 from leapmap._design import _question
 
 
@@ -27,6 +27,8 @@ class Fit:
     """One model, fitted. friction: its name. found: False: no hoop of the box does anything like it, or why tells the reason.
     explains: whether it explains the data: of events, or a film with a known error, probability is that of such a chi-square, or
     more, if the model is true; misfit: of a film, residuals over the scatter from line to line.
+    correlation: of a film, lines that count as one, as neighbouring residuals are alike in smoothed films; errors allow for it.
+    independent: lines of a film in such units.
     after_landing: lines of a film after the model's landing, where it is not followed.
 
     parameters: {name: FittedParameter}, correlations: array, in their order. chi_square over degrees of freedom. error: of a film the rms
@@ -45,18 +47,17 @@ class Fit:
     degrees: int
     error: float
     information: float
+    correlation: float
+    independent: float
     model: np.ndarray
     residuals: np.ndarray
 
 
 def _event(name, value):
-    try:
-        if np.ndim(value) != 1:
-            raise TypeError
-        number, error = value
-        return float(number), float(error)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r} is no event; allowed: (value, standard error), or a film with 't'") from None
+    if np.ndim(value) != 1 or np.shape(value) != (2,) or isinstance(value[0], str):
+        raise ValueError(f"{name} = {shown(value)} is no event; allowed: (value, standard error), or a film with 't'")
+    pair = array(name, value)
+    return float(pair[0]), float(pair[1])
 
 
 def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, threads=0, **overrides):
@@ -76,16 +77,22 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
     seed: of the coarse map. threads: 0 for all cores. overrides: keys of the spec.
 
     Returns a list of Fit, the model that the data prefer first. Raises ValueError, naming line, number and what is allowed."""
-    models = ["sticking", "coulomb"] if model == "both" else [model]
+    models = ["sticking", "coulomb"] if text("model", model) == "both" else [model]
+    if isinstance(data, Mapping):
+        for name in data:
+            text("a name in data", name)
     if isinstance(data, Mapping) and "t" in data:
-        data = {key: np.asarray(value, float) for key, value in data.items()}
+        data = {key: array(key, value, 1) for key, value in data.items()}
     elif isinstance(data, Mapping):
         for name, given in (("error", error is not None), ("allow_gaps", allow_gaps)):
             if given:
                 raise ValueError(f"{name}: has no use with events, each of which has an error of its own; allowed: with a film")
         data = {key: _event(key, value) for key, value in data.items()}
     else:
-        data = os.fspath(data)
-    text, origin, changes = _question(spec, None, (), (), None, overrides)
-    told = _core.fit(data, text, origin, changes, models, float("nan") if error is None else float(error), bool(allow_gaps), int(seed), int(threads))
+        data = path("data", data)
+    if error is not None and not 0.0 < real("error", error) < float("inf"):
+        raise ValueError(f"error = {shown(error)} is out of range; allowed: a standard error above 0")
+    toml, origin, changes = _question(spec, None, (), (), None, overrides)
+    told = _core.fit(data, toml, origin, changes, models, float("nan") if error is None else float(error), bool(allow_gaps),
+                     whole("seed", seed, 0), whole("threads", threads, 0, 4096))
     return [Fit(**one | {"parameters": {name: FittedParameter(**of) for name, of in one["parameters"].items()}}) for one in told]

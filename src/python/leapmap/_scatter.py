@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from leapmap import _core
+from leapmap._arguments import whole
 from leapmap._design import _question
 from leapmap._results import Outcomes
 
@@ -39,7 +40,7 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
 
     Raises ValueError, naming the key, its value and what is allowed. Ctrl-C ends it."""
     text, origin, changes = _question(spec, goal, (), (), scatter, overrides)
-    told = _core.scatter(text, origin, changes, int(threads))
+    told = _core.scatter(text, origin, changes, whole("threads", threads, 0, 4096))
     outcomes = Outcomes(told.pop("outcomes"), {"friction": "any"})
     return _estimates(told) | {"outcomes": outcomes}
 

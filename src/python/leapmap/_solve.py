@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """solve and trace, with what they take written into their docstrings and signatures from leapmap's own tables."""
 import inspect
-import numbers
 import os
 
 import numpy as np
 
 from leapmap import _core
+from leapmap._arguments import count, names, real, text, whole
 from leapmap._results import Motion, Outcomes
 
 
@@ -29,10 +29,10 @@ def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None
     {fields}
 
     Raises ValueError, naming the parameter, its value and what is allowed. Ctrl-C ends it."""
-    parameters |= {name: value for name, value, usual in (("jumps", jumps, 1), ("settle", settle, 0), ("most_period", most_period, 16))
-                   if type(value) is not int or value != usual}
-    columns = _core.solve(parameters, friction, _names(fields), method, tolerance, _whole("max_steps", max_steps, 1),
-                          _whole("threads", threads, 0, 4096))
+    counts = (("jumps", jumps, 1, 1), ("settle", settle, 0, 0), ("most_period", most_period, 1, 16))
+    parameters |= {name: number for name, value, least, usual in counts if (number := count(name, value, least)) != usual}
+    columns = _core.solve(parameters, text("friction", friction), _names(fields), text("method", method), real("tolerance", tolerance),
+                          whole("max_steps", max_steps, 1), whole("threads", threads, 0, 4096))
     given = {name: np.array(value) if isinstance(value, np.ndarray) else value for name, value in parameters.items()}
     return Outcomes({name: column[()] for name, column in columns.items()}, given | {"friction": friction})
 
@@ -50,7 +50,8 @@ def gradient(*, of="jump_height", friction="sticking", tolerance=1e-10, threads=
     fold, or not known to six digits, and by mu_kinetic where that follows mu_static.
 
     Raises ValueError, naming the parameter, its value and what is allowed. Ctrl-C ends it."""
-    columns = _core.gradient(parameters, friction, of, tolerance, _whole("threads", threads, 0, 4096))
+    columns = _core.gradient(_whole_counts(parameters), text("friction", friction), text("of", of), real("tolerance", tolerance),
+                             whole("threads", threads, 0, 4096))
     return {name: column[()] for name, column in columns.items()}
 
 
@@ -62,12 +63,14 @@ def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10,
     friction, method, tolerance, max_steps: as in solve.
 
     Returns a Motion. Raises ValueError, naming the parameter, its value and what is allowed."""
-    told = _core.trace(parameters, friction, interval, method, tolerance, _whole("max_steps", max_steps, 1))
+    told = _core.trace(_whole_counts(parameters), text("friction", friction), real("interval", interval), text("method", method),
+                       real("tolerance", tolerance), whole("max_steps", max_steps, 1))
     return Motion(told, parameters | {"friction": friction})
 
 
 def gaits(*, most_period=1, tolerance=1e-10, **parameters):
-    """Every gait of one hoop that never slips: the periodic orbits of its map from lift-off to lift-off, stable or not.
+    """The gaits of one hoop that never slips: the periodic orbits of its map from lift-off to lift-off, stable or not. Those that
+    jump again at each landing are searched from a grid of starts, so that one may be missed.
 
     Parameters
     ----------
@@ -83,22 +86,21 @@ def gaits(*, most_period=1, tolerance=1e-10, **parameters):
     for name in ("friction", "mu_static", "mu_kinetic", "restitution", "jumps", "settle"):
         if name in parameters:
             raise ValueError(f"{name}: has no use here, where every gait of a hoop that never slips is looked for; allowed: solve(..., settle=500)")
-    return _core.gaits(parameters, _whole("most_period", most_period, 1, 16), tolerance)
+    return _core.gaits(parameters, whole("most_period", most_period, 1, 16), real("tolerance", tolerance))
 
 
 def _names(fields):
     if fields is None:
         return []
-    names = [fields] if isinstance(fields, str) else [str(name) for name in fields]
-    if not names:
+    found = names("fields", fields)
+    if not found:
         raise ValueError("fields = [] names none; allowed: names of fields, or None for all")
-    return names
+    return found
 
 
-def _whole(name, value, least, most=10**15):
-    if isinstance(value, bool) or not isinstance(value, numbers.Real) or value != int(value) or not least <= value <= most:
-        raise ValueError(f"{name} = {value!r} is out of range; allowed: a whole number from {least} to {most}")
-    return int(value)
+def _whole_counts(parameters):
+    counts = {"jumps": 1, "settle": 0, "most_period": 1}
+    return {name: count(name, value, counts[name]) if name in counts else value for name, value in parameters.items()}
 
 
 def _parameter_line(row):

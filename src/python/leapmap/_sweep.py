@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sweeps of a spec, and the maps they write."""
+import contextlib
+import errno
 import json
+import math
 import os
 import re
+import resource
+import shutil
+import signal
 import tempfile
 import threading
 import warnings
@@ -11,6 +17,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from leapmap import _analysis, _core
+from leapmap._arguments import path, shown, whole
 
 try:
     from h5py._objects import phil as _hdf5  # HDF5 is one for the whole process: h5py's other threads wait
@@ -33,18 +40,66 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
 
     Raises ValueError for a spec that is not allowed, OSError for a file that cannot be written. Ctrl-C ends it, and MAP.part
     keeps what is done for resume."""
-    text, origin = (_toml(spec), "<dict>") if isinstance(spec, Mapping) else (os.fspath(spec), None)
+    text, origin = (_toml(spec), "<dict>") if isinstance(spec, Mapping) else (path("spec", spec), None)
     changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
     if in_memory and file is not None:
         raise ValueError(f"file = {file!r} has no use with in_memory=True; allowed: one of the two")
     target = None if in_memory else os.fspath(file) if file is not None else _core.spec_file(text, origin, changes) or None
     if target is None and (resume or overwrite):
         raise ValueError("resume and overwrite have no use in memory; allowed: with a file")
-    work = _Sweep(text, origin, changes, resume, overwrite, int(threads), progress)
+    threads = whole("threads", threads, 0, 4096)
+    work = _Sweep(text, origin, changes, resume, overwrite, threads, progress)
+    size = _core.sweep_bytes(text, origin, changes)
+    _refuse_beyond_memory(size)
     if target is not None:
         return work.into(target, kept=True)
-    with tempfile.TemporaryDirectory(prefix="leapmap-") as folder:
+    free = shutil.disk_usage(tempfile.gettempdir()).free
+    if size > free:
+        raise OSError(errno.ENOSPC, f"a map of {size / 1e9:.3g} GB in a folder with {free / 1e9:.3g} GB free; allowed: less of it, or with "
+                                    "file= where there is room", tempfile.gettempdir())
+    with _ends_by_signal(), tempfile.TemporaryDirectory(prefix="leapmap-") as folder:
         return work.into(os.path.join(folder, "map.h5"), kept=False)
+
+
+def _refuse_beyond_memory(size):
+    """A sweep returns its map in memory: one that does not fit is refused before it is solved."""
+    free = math.inf
+    try:
+        with open("/proc/meminfo") as file:
+            free = next(1024 * int(line.split()[1]) for line in file if line.startswith("MemAvailable"))
+    except (OSError, StopIteration, ValueError, IndexError):
+        pass  # not Linux: nothing is known
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    free = min(free, math.inf if limit == resource.RLIM_INFINITY else limit)
+    if size > free:
+        raise MemoryError(f"a map of {size / 1e9:.3g} GB, and {free / 1e9:.3g} GB of memory; allowed: fewer designs or fields, or leapmap sweep, "
+                          "which keeps no map in memory")
+
+
+class _Ended(BaseException):
+    """A signal that would have ended the process at once."""
+
+
+@contextlib.contextmanager
+def _ends_by_signal():
+    """SIGTERM and SIGHUP end the process as they would, but after what is inside has cleaned up."""
+    caught = []
+
+    def end(number, _):
+        caught.append(number)
+        raise _Ended
+
+    mine = [number for number in (signal.SIGTERM, signal.SIGHUP)
+            if threading.current_thread() is threading.main_thread() and signal.getsignal(number) is signal.SIG_DFL]
+    for number in mine:
+        signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number in mine:
+            signal.signal(number, signal.SIG_DFL)
+        if caught:
+            os.kill(os.getpid(), caught[0])
 
 
 class _Sweep:
@@ -98,6 +153,8 @@ def load(path):
     reader = _analysis.reader()
     try:
         m = reader.read_map(os.fspath(path))
+    except reader.Unreadable as error:
+        raise OSError(error.errno, str(error)) from None
     except reader.NotAMap as error:
         raise ValueError(str(error)) from None
     plain = ("units", "long_name", "flag_values", "flag_meanings")
@@ -119,21 +176,28 @@ def _key(key):
     return key if re.fullmatch("[A-Za-z0-9_-]+", str(key)) else _text(str(key))
 
 
-def _value(value, in_table=False):
+def _value(value, in_table=False, depth=0):
     """A value as TOML; an array is an axis, but for one inside an axis."""
+    if depth > 8:
+        raise ValueError("{...} holds dictionaries nine deep, or itself; allowed: a number, a text, or { from, to } and the like")
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (str, os.PathLike)):
         return _text(value)
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(key)} = {_value(item, True)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{_key(key)} = {_value(item, True, depth + 1)}" for key, item in value.items()) + " }"
     if isinstance(value, (int, np.integer)):
         return str(int(value))
-    if isinstance(value, (list, tuple)) and all(isinstance(item, str) for item in value):
+    if isinstance(value, (list, tuple)) and value and all(isinstance(item, str) for item in value):
         return "[" + ", ".join(map(_text, value)) + "]"
-    array = np.asarray(value)
+    if np.ma.is_masked(value):
+        raise ValueError(f"{shown(value)} has masked values; allowed: numbers, without those that are masked")
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        array = np.asarray(None)
     if array.dtype.kind not in "fiu" or array.ndim > 1:
-        raise ValueError(f"{value!r} is no value of a spec; allowed: a number, a text, or one list of numbers for an axis")
+        raise ValueError(f"{shown(value)} is no value of a spec; allowed: a number, a text, or one list of numbers for an axis")
     if array.ndim == 0:
         return repr(float(array))
     numbers = "[" + ", ".join(repr(float(number)) for number in array) + "]"

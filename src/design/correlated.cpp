@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "design/correlated.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t most_lags = 2000, most_coefficients = 500;
+
+double sum_of_squares(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return sum;
+}
+
+/// Of neighbours so many lines apart, relative to those of none.
+double autocorrelation(std::span<const double> residuals, std::size_t columns, std::size_t lag, double sum) {
+  double product = 0.0;
+  for (std::size_t i = 0; i + lag * columns < residuals.size(); ++i)
+    product += residuals[i] * residuals[i + lag * columns];
+  return product / sum;
+}
+
+/// The sum of squares of the first orthonormal cosine coefficients (DCT-II) of each column.
+double slow_squares(std::span<const double> residuals, std::size_t columns, std::size_t coefficients) {
+  const std::size_t lines = residuals.size() / columns;
+  double sum = 0.0;
+  for (std::size_t c = 0; c < columns; ++c)
+    for (std::size_t j = 0; j < coefficients; ++j) {
+      double coefficient = 0.0;
+      for (std::size_t i = 0; i < lines; ++i)
+        coefficient += residuals[i * columns + c] *
+                       std::cos(std::numbers::pi * static_cast<double>(j) * (static_cast<double>(i) + 0.5) /
+                                static_cast<double>(lines));
+      sum += coefficient * coefficient * (j == 0 ? 1.0 : 2.0) / static_cast<double>(lines);
+    }
+  return sum;
+}
+
+}  // namespace
+
+Correlation correlation_of(std::span<const double> residuals, std::size_t columns, std::size_t parameters) {
+  const auto numbers = static_cast<double>(residuals.size()), free = static_cast<double>(parameters);
+  const std::size_t lines = residuals.size() / columns;
+  const double sum = sum_of_squares(residuals);
+  Correlation found{.lines = 1.0, .variance = sum / std::max(numbers - free, 1.0)};
+  if (!(sum > 0.0)) return found;
+  const double noise = 2.0 / std::sqrt(numbers) - free / numbers;
+  double correlated = 0.0;
+  std::size_t lags = 0;
+  for (; lags < std::min(lines / 4, most_lags); ++lags) {
+    const double at = autocorrelation(residuals, columns, lags + 1, sum);
+    if (!(at > noise)) break;
+    correlated += at;
+  }
+  if (lags == 0) return found;
+  const double lost = 2.0 * free * (static_cast<double>(lags) - correlated) / numbers;
+  found.lines = (1.0 + 2.0 * correlated) / std::max(0.2, 1.0 - lost);
+  const auto least = static_cast<std::size_t>(std::ceil((free + 4.0) / static_cast<double>(columns)));
+  const auto slow = static_cast<std::size_t>(std::round(static_cast<double>(lines) / (3.0 * found.lines)));
+  const std::size_t kept = std::min({std::max(slow, least), lines, std::max(most_coefficients, least)});
+  const double degrees = static_cast<double>(kept * columns) - free;
+  if (degrees >= 1.0)
+    found.variance = std::max(found.variance, slow_squares(residuals, columns, kept) / degrees);
+  return found;
+}
+
+double scatter_of(const Film& film) {
+  std::vector<double> differences;
+  for (const auto* column :
+       {&film.phi, &film.markers[0], &film.markers[1], &film.markers[2], &film.markers[3]})
+    for (std::size_t i = 3; i < column->size(); ++i) {
+      const auto at = [&](std::size_t back) { return (*column)[i - back]; };
+      differences.push_back(std::abs(at(0) - 3.0 * at(1) + 3.0 * at(2) - at(3)));
+    }
+  if (differences.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::ranges::nth_element(differences, middle);
+  const double of_normal = 0.6745 * std::sqrt(20.0);  // 1 + 9 + 9 + 1
+  return *middle / of_normal;
+}
+
+}  // namespace leapmap

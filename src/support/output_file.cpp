@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/output_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <vector>
+
+#include "leapmap/errors.hpp"
+#include "support/file_calls.hpp"
+#include "support/posix.hpp"
+
+namespace leapmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const fs::path& path) { return path.parent_path().empty() ? "." : path.parent_path(); }
+
+/// A new file beside `path`, of a name that nothing has.
+int create_beside(const std::string& path, std::string& name) {
+  constexpr int most_trials = 100;
+  for (int trial = 0; trial < most_trials; ++trial) {
+    name = fmt::format("{}.{}-{}.new", path, ::getpid(), trial);
+    const int descriptor = uninterrupted(
+        [&] { return ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666); });
+    if (descriptor >= 0) return descriptor;
+    if (errno != EEXIST) break;
+  }
+  fail_with_errno(path, "cannot be written");
+}
+
+/// What an existing file begins with.
+std::string first_bytes(const std::string& path, std::size_t count) {
+  std::string head(count, '\0');
+  const int descriptor = uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
+  if (descriptor < 0) return {};  // not to be read, so that nobody knows whose it is
+  const ssize_t read = uninterrupted([&] { return ::pread(descriptor, head.data(), count, 0); });
+  ::close(descriptor);
+  head.resize(read > 0 ? static_cast<std::size_t>(read) : 0);
+  return head;
+}
+
+}  // namespace
+
+std::string behind_links(const std::string& name) {
+  constexpr int most_links = 40;  // as the kernel
+  fs::path path = name;
+  std::error_code error;
+  for (int i = 0; fs::is_symlink(path, error); ++i) {
+    if (i == most_links) throw InputError(name + ": is a ring of symbolic links; allowed: a file's name");
+    path = path.parent_path() / fs::read_symlink(path, error);
+  }
+  return path.string();
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  const fs::path first = behind_links(a), second = behind_links(b);
+  std::error_code error;
+  if (const auto there = fs::status(first, error); fs::exists(there)) {
+    if (!fs::is_regular_file(there) && !fs::is_directory(there)) return false;
+    if (fs::equivalent(first, second, error)) return true;
+  }
+  if (first.filename() != second.filename()) return false;
+  const fs::path folder = folder_of(first), other = folder_of(second);
+  return fs::equivalent(folder, other, error) ||
+         fs::weakly_canonical(folder, error) == fs::weakly_canonical(other, error);
+}
+
+void refuse_same_files(std::span<const NamedPath> inputs, std::span<const NamedPath> outputs) {
+  const auto written = [](const NamedPath& output) {
+    const std::string path = behind_links(output.path);
+    return output.is_map ? std::vector<std::string>{path, path + ".part", path + ".retry"}
+                         : std::vector<std::string>{path};
+  };
+  for (const NamedPath& output : outputs) {
+    if (output.path.empty()) continue;
+    for (const std::string& path : written(output)) {
+      for (const NamedPath& input : inputs)
+        if (!input.path.empty() && same_file(path, input.path))
+          throw InputError(
+              fmt::format("{} {}: is the file of something else here, {} {}; allowed: another name",
+                          output.name, path, input.name, input.path));
+      for (const NamedPath& other : outputs) {
+        if (&other == &output || other.path.empty()) continue;
+        for (const std::string& also : written(other))
+          if (same_file(path, also))
+            throw InputError(
+                fmt::format("{} {}: is the file of something else here, {} {}; allowed: another name",
+                            output.name, output.path, other.name, other.path));
+      }
+    }
+  }
+}
+
+void refuse_unwritable(const std::string& path) {
+  const std::string file = behind_links(path);
+  std::error_code error;
+  fs::create_directories(folder_of(file), error);
+  if (error) throw IoError(fmt::format("{}: its folder cannot be made: {}", path, error.message()));
+  std::string name;
+  const int descriptor = create_beside(file, name);
+  ::unlink(name.c_str());
+  ::close(descriptor);
+}
+
+void take_over(int descriptor, const struct stat& replaced) {
+  // The owner first: changing it takes set-id bits away. Who may not give a file away keeps it.
+  const bool given = ::fchown(descriptor, replaced.st_uid, replaced.st_gid) == 0;
+  const mode_t mode = replaced.st_mode & (given ? mode_t{07777} : mode_t{0777});
+  static_cast<void>(::fchmod(descriptor, mode) != 0);  // some file systems have no modes
+}
+
+TextOutput::TextOutput(std::string_view flag, const std::string& path, std::string_view head,
+                       bool overwrite) {
+  if (path.empty()) return;
+  path_ = behind_links(path);
+  if (::stat(path_.c_str(), &replaced_) == 0) {
+    if (S_ISCHR(replaced_.st_mode) || S_ISFIFO(replaced_.st_mode)) return;  // opened when there is something
+    if (!S_ISREG(replaced_.st_mode))
+      throw InputError(fmt::format("{} {}: is no file; allowed: a file's name", flag, path));
+    replaces_ = true;
+    constexpr std::string_view hdf5 = "\x89HDF";
+    const std::string there = first_bytes(path_, std::max(head.size(), hdf5.size()));
+    if (there.starts_with(hdf5))
+      throw InputError(fmt::format("{} {}: is an HDF5 file; allowed: another name", flag, path));
+    if (!overwrite && replaced_.st_size > 0 && !there.starts_with(head))
+      throw InputError(
+          fmt::format("{} {}: is there, and not what leapmap writes; allowed: another name, or "
+                      "--overwrite",
+                      flag, path));
+  }
+  descriptor_ = create_beside(path_, temporary_);
+}
+
+TextOutput::~TextOutput() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void TextOutput::commit(std::string_view text) {
+  if (path_.empty()) return;
+  const bool is_device = temporary_.empty();
+  if (is_device) {
+    descriptor_ = uninterrupted([&] { return ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY); });
+    if (descriptor_ < 0) fail_with_errno(path_, "cannot be written");
+    write_stream(descriptor_, path_, text);
+    return;
+  }
+  write_all(descriptor_, path_, 0, std::as_bytes(std::span(text)));
+  if (replaces_) take_over(descriptor_, replaced_);
+  sync(descriptor_, path_);
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail_with_errno(path_, "cannot be given its name");
+  temporary_.clear();
+  sync_folder(folder_of(path_).string());  // the file is in its place either way
+}
+
+}  // namespace leapmap

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/stop.hpp"
+
+#include <chrono>
+#include <optional>
+
+#include "leapmap/errors.hpp"
+
+namespace leapmap {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds grace{2};
+constexpr unsigned between = 64;  // calls
+
+// A thread's own, as solvers are.
+thread_local const std::function<bool()>* asked_here = nullptr;
+thread_local unsigned calls = 0;
+thread_local std::optional<Clock::time_point> since;
+
+}  // namespace
+
+StopScope::StopScope(const std::function<bool()>& asked) : before_(asked_here) {
+  asked_here = asked ? &asked : nullptr;
+  since.reset();
+}
+
+StopScope::~StopScope() { asked_here = before_; }
+
+void throw_if_stopped() {
+  if (!asked_here || ++calls % between != 0) return;
+  if (!(*asked_here)()) return;
+  if (!since) since = Clock::now();
+  if (Clock::now() - *since > grace) throw Stopped("the work was asked to stop");
+}
+
+}  // namespace leapmap
