@@ -281,9 +281,12 @@ Measurements read_measurements(const std::string& path, const MeasurementOptions
   std::vector<std::string> cells;
   while (file.next(cells)) {
     const std::string& place = file.place();
-    if (!events && std::ranges::any_of(cells, is_no_mark)) {
+    if (const auto none = std::ranges::find_if(cells, is_no_mark); !events && none != cells.end()) {
       if (options.allow_gaps) continue;
-      throw InputError(place + ": a frame without a mark; allowed: numbers in every line, or --allow-gaps");
+      throw InputError(
+          fmt::format("{}: {} = '{}' is a frame without a mark; allowed: numbers in every line, or "
+                      "--allow-gaps",
+                      place, file.header()[static_cast<std::size_t>(none - cells.begin())], *none));
     }
     measured.lines.push_back(file.line());
     const auto number = [&](std::size_t column, std::string_view name) {

@@ -115,7 +115,14 @@ herr_t read(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t offset, size_t size, void* 
 }
 
 herr_t write(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t offset, size_t size, const void* buffer) {
-  return guarded([&] { driver(base).file->write(offset, {static_cast<const std::byte*>(buffer), size}); });
+  // What fails is noted by the file, and every commit throws it from then on. HDF5 is not told: of a file that
+  // it could not write it keeps remains, on which it crashes as a process ends that others use it in, too.
+  try {
+    driver(base).file->write(offset, {static_cast<const std::byte*>(buffer), size});
+  } catch (const std::exception& error) {
+    driver(base).file->note_failure(error.what());
+  }
+  return 0;
 }
 
 hid_t driver_id() {
@@ -242,6 +249,7 @@ File File::create(const std::string& path, std::string_view filetype, Locking lo
   const Handle access = access_to(file.bytes_, none), creation = creation_of(path);
   file.handle_ = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose,
                   path + ": cannot be created"};
+  file.bytes_->rethrow_failure();
   return file;
 }
 

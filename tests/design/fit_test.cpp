@@ -274,9 +274,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadData{"unknown_columns", "time,angle\n0,1\n", {"data.csv:1", "time, angle", "t, phi"}},
         BadData{"a_column_missing", "t,x_P,y_P,x_O\n0,1,1,1\n", {"data.csv:1", "x_P, y_P, x_O, y_O"}},
         BadData{"a_column_too_many", "t,phi,spin\n0,1,1\n", {"data.csv:1"}},
-        BadData{
-            "nan", "t,phi\n0,3.1\n0.001,nan\n0.002,3.1\n", {"data.csv:3", "without a mark", "--allow-gaps"}},
-        BadData{"an_empty_cell", "t,phi\n0,3.1\n0.001,\n0.002,3.1\n", {"data.csv:3", "without a mark"}},
+        BadData{"nan", "t,phi\n0,3.1\n0.001,nan\n0.002,3.1\n", {"data.csv:3", "phi", "nan", "--allow-gaps"}},
+        BadData{"an_empty_cell", "t,phi\n0,3.1\n0.001,\n0.002,3.1\n", {"data.csv:3", "phi"}},
         BadData{"unsorted_times", "t,phi\n0,3.1\n0.002,3.1\n0.001,3.1\n", {"data.csv:4", "ascend"}},
         BadData{"the_same_time_twice", "t,phi\n0,3.1\n0.001,3.1\n0.001,3.1\n", {"data.csv:4", "ascend"}},
         BadData{"a_gap",

@@ -32,6 +32,9 @@ audit = 0.03
 """
 FAILING = SPEC.replace("audit = 0.03", 'method = "gsl-rk8pd"\nmax_steps = 40\naudit = 0')
 POINTS = "slope,mass_ratio\n0.4,2.4\n0.3,3\n0.5,1\n"
+SMALL = SPEC.replace("count = 9", "count = 4").replace("count = 11", "count = 3").replace("audit = 0.03", "audit = 0")
+QUESTION = '[design]\nslope = { from = 0.3, to = 0.5 }\n[goal]\nmaximize = ["jump_height"]\n'
+EVENTS = "event,value,error\njump_time,0.54,0.005\njump_height,0.98,0.02\n"
 LIST = '[design]\npoints = "points.csv"\n'
 SECONDS = 60  # a run that takes longer hangs: the longest takes two
 
@@ -61,6 +64,17 @@ COMMANDS = {c.name: c for c in (
     Command("info", "info {0}/map.h5", {"spec.toml": SPEC}, [SWEEP], keeps=("map.h5",)),
     Command("failed", "info {0}/map.h5 --failed", {"spec.toml": FAILING}, [SWEEP], keeps=("map.h5",)),
     Command("check", "check {0}/map.h5", {"spec.toml": SPEC}, [SWEEP], keeps=("map.h5",)),
+    Command("boundaries", "boundaries {0}/spec.toml -o {0}/cliffs.h5 --csv {0}/cliffs.csv --quiet --threads 1", {"spec.toml": SMALL, "cliffs.csv": "curve,kind,along\n"},
+            output="cliffs.csv", keeps=("cliffs.csv",)),
+    Command("design", "design {0}/question.toml -o {0}/best.h5 --csv {0}/best.csv --quiet --threads 1 --sample 256 --most 2",
+            {"question.toml": QUESTION, "best.csv": "slope\n0.1\n"}, output="best.csv", keeps=("best.csv",)),
+    Command("fit", "fit {0}/events.csv --model sticking --csv {0}/fit.csv --json --threads 1", {"events.csv": EVENTS, "fit.csv": "t,quantity,measured\n"},
+            output="fit.csv", keeps=("fit.csv", "events.csv")),
+    Command("gait", "gait {0}/hoop.toml --most-period 1", {"hoop.toml": "[scene]\nrunway = 2\n[design]\nslope = 0.2\nmass_ratio = 3\noffset_ratio = 0.5\n"}),
+    Command("shard", SWEEP + " --shard 1/2", {"spec.toml": SMALL}, output="map.1-of-2.h5", after=SWEEP + " --shard 1/2 --resume"),
+    Command("join", "join {0}/map.h5", {"spec.toml": SMALL}, [SWEEP + " --shard 1/2", SWEEP + " --shard 2/2"], "map.h5", "join {0}/map.h5 --overwrite",
+            ("map.1-of-2.h5", "map.2-of-2.h5")),
+    Command("python", "PYTHON {0}/spec.toml {0}/map.h5", {"spec.toml": SMALL}, output="map.h5", after="PYTHON {0}/spec.toml {0}/map.h5 overwrite"),
     Command("explorer", "EXPLORER {0}/map.h5", {"spec.toml": SPEC}, [SWEEP, "EXPLORER {0}/map.h5"], "map.html", keeps=("map.h5", "map.html")),
 )}
 
@@ -68,12 +82,17 @@ COMMANDS = {c.name: c for c in (
 def argv(words, folder):
     if words.startswith("EXPLORER"):
         return ["/usr/bin/python3", str(TOP / "analysis/explorer"), *shlex.split(words.format(folder))[1:]]
+    if words.startswith("PYTHON"):
+        script = ("import sys, leapmap\ntry: leapmap.sweep(*sys.argv[1:3], threads=1, overwrite=len(sys.argv) > 3)\n"
+                  "except (OSError, ValueError, MemoryError) as error: sys.exit(f'leapmap: {error!r}')")
+        return ["/usr/bin/python3", "-c", script, *shlex.split(words.format(folder))[1:]]
     return [PROGRAM, *shlex.split(words.format(folder))]
 
 
 def run(words, folder, **fault):
     """Runs a command; fault: the injector's environment without FAULT_."""
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", PYTHONDONTWRITEBYTECODE="1", MPLCONFIGDIR="/tmp/leapmap-faults-mpl")
+    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", PYTHONDONTWRITEBYTECODE="1", MPLCONFIGDIR="/tmp/leapmap-faults-mpl",
+                       PYTHONPATH=str(Path(PROGRAM).parent / "python"))
     if fault:
         environment.update({"LD_PRELOAD": INJECTOR, **{"FAULT_" + k.upper(): str(v) for k, v in fault.items()}})
     return subprocess.run(argv(words, folder), env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=SECONDS)
@@ -175,7 +194,7 @@ def walk(names, errors, sticky, every, memory="", report=print):
             each = begin(command, Path(name), memory)
             faults = [{"number": i, "error": e, **({"sticky": 1} if s else {}), **({"memory": memory} if memory else {})}
                       for e in errors for s in sticky for i in range(number % every, each.calls, every)
-                      if not (e == "EINTR" and s and command.name == "explorer")]  # Python tries again for ever, as it should
+                      if not (e == "EINTR" and s and command.name in ("explorer", "python"))]  # Python tries again for ever, as it should
             found = [f for f in pool.map(each.fail, faults) if f]
             runs, findings = runs + len(faults), findings + found
             report(f"{command.name}: {each.calls} calls, {len(faults)} runs, {len(found)} findings", flush=True)
