@@ -38,11 +38,11 @@ def _bytes_at(file, begin, count):
 
 
 class Watched(io.RawIOBase):
-    """A file for HDF5, which must not be thrown at: where the system fails to read, zeros stand, and the reason is kept."""
+    """A file for HDF5, which must not be thrown at: where reading fails zeros stand, and the reason is kept."""
 
     def __init__(self, file):
         super().__init__()
-        self.file, self.failure = file, 0
+        self.file, self.errno, self.damage = file, 0, ""
 
     def readable(self):
         return True
@@ -50,11 +50,17 @@ class Watched(io.RawIOBase):
     def seekable(self):
         return True
 
+    def _note(self, error):
+        if error.errno:
+            self.errno = self.errno or error.errno
+        else:
+            self.damage = self.damage or str(error)
+
     def seek(self, offset, whence=io.SEEK_SET):
         try:
             return self.file.seek(offset, whence)
         except OSError as error:
-            self.failure = self.failure or error.errno or 5
+            self._note(error)
             return offset
 
     def tell(self):
@@ -62,19 +68,19 @@ class Watched(io.RawIOBase):
 
     def readinto(self, buffer):
         view = memoryview(buffer).cast("B")
+        count = 0
         try:
-            count = self.file.readinto(view)
-            if count or not len(view):
-                return count
-            return 0
+            count = self.file.readinto(view) or 0
         except OSError as error:
-            self.failure = self.failure or error.errno or 5
-        view[:] = bytes(len(view))
+            self._note(error)
+        view[count:] = bytes(len(view) - count)  # as HDF5's own driver does beyond a file's end
         return len(view)
 
     def rethrow(self):
-        if self.failure:
-            raise OSError(self.failure, os.strerror(self.failure))
+        if self.errno:
+            raise OSError(self.errno, os.strerror(self.errno))
+        if self.damage:
+            raise Refused(f"is damaged: {self.damage}")
 
 
 class WithJournal(io.RawIOBase):

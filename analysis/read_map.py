@@ -207,13 +207,15 @@ def _values_of(dataset):
     """A dataset's values. A chunk that inflates to more than its values would take any memory: HDF5's filter does as it is told."""
     if dataset.chunks and dataset.compression == "gzip":
         size = math.prod(dataset.chunks) * dataset.dtype.itemsize
+        plan = dataset.id.get_create_plist()
+        deflate = [plan.get_filter(i)[0] for i in range(plan.get_nfilters())].index(h5py.h5z.FILTER_DEFLATE)
         for i in range(dataset.id.get_num_chunks()):
             chunk = dataset.id.get_chunk_info(i)
             if chunk.size > size + size // 1000 + 64:
                 raise ValueError(f"a chunk of {dataset.name} inflates to more than its values")
             if chunk.size * 1032 > 2**27:  # zlib packs no more into a byte; what cannot be large is left to HDF5
                 raw = dataset.id.read_direct_chunk(chunk.chunk_offset)[1]
-                if chunk.filter_mask == 0 and len(zlib.decompressobj().decompress(raw, size + 1)) > size:
+                if not chunk.filter_mask >> deflate & 1 and len(zlib.decompressobj().decompress(raw, size + 1)) > size:
                     raise ValueError(f"a chunk of {dataset.name} inflates to more than its values")
     return dataset[()]
 

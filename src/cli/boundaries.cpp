@@ -178,8 +178,8 @@ int run(const BoundariesArguments& arguments) {
     throw InputError(
         "--phases: has no use where the contact never slips; allowed: with friction = \"coulomb\"");
   if (!arguments.output.empty()) refuse_taken(arguments.output, cliffs_filetype, arguments.locking);
-  TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
   note_signals();
+  TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
   const auto begin = std::chrono::steady_clock::now();
   BoundaryOptions options = arguments.options;
   options.stop_requested = [] { return noted_signal() != 0; };

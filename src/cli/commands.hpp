@@ -29,7 +29,7 @@ CLI::Validator named_file();
 /// with transform(): CLI11's own conversion sees the number as leapmap read it.
 CLI::Validator number(const Range& range);
 CLI::Validator whole_number(double least, double most);
-inline constexpr double most_seed = 9e15;
+inline constexpr double most_seed = 1e15;
 
 /// --no-lock, of every command that opens files of ours.
 void add_no_lock(CLI::App& command, Locking& locking);

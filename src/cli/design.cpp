@@ -206,14 +206,10 @@ void print_json(const Spec& spec, const Question& question, const FoundDesigns& 
 }
 
 /// The columns that design.points takes.
-std::string csv_head(const Question& question) {
+std::string csv_of(const Question& question, const FoundDesigns& found) {
   std::vector<std::string> names;
   for (const FreeParameter& parameter : question.free) names.push_back(parameter.name);
-  return fmt::format("{}\n", fmt::join(names, ","));
-}
-
-std::string csv_of(const Question& question, const FoundDesigns& found) {
-  std::string text = csv_head(question);
+  std::string text = fmt::format("{}\n", fmt::join(names, ","));
   for (const FoundDesign& one : found.designs) {
     std::vector<std::string> cells;
     for (const FreeParameter& parameter : question.free)
@@ -244,9 +240,9 @@ int run(const DesignArguments& arguments) {
     throw InputError(fmt::format(
         "{}: is there, and no list that leapmap design wrote; allowed: another name by -o, or --overwrite",
         map));
-  if (!map.empty()) refuse_unwritable(map);
-  TextOutput csv("--csv", arguments.csv, csv_head(question), arguments.overwrite);
   note_signals();
+  if (!map.empty()) refuse_unwritable(map);
+  TextOutput csv("--csv", arguments.csv, {}, arguments.overwrite);  // any list of designs begins like ours
   FindOptions options = arguments.options;
   options.stop_requested = [] { return noted_signal() != 0; };
   std::optional<Progress> progress;

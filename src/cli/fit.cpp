@@ -144,7 +144,7 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
 
 /// Which model the data prefer, by Akaike's weights.
 void print_preference(const FitReport& report) {
-  if (report.models.size() < 2 || !report.models[1].found) return;
+  if (report.models.size() < 2 || !report.models[1].found || !report.models[0].judged) return;
   if (!explains(report.models[0])) {
     say("\nNeither model explains the data as they stand.\n");
     return;
@@ -171,13 +171,14 @@ std::string json_of(const ModelFit& fit) {
         parameter.name, json_number(parameter.value), json_number(parameter.error),
         json_number(parameter.low), json_number(parameter.high), parameter.identified, parameter.at_bound));
   return fmt::format(
-      "  {{\"friction\": \"{}\", \"found\": {}, \"explains\": {}, \"parameters\": {{{}}},\n   "
+      "  {{\"friction\": \"{}\", \"found\": {}, \"judged\": {}, \"explains\": {}, \"parameters\": {{{}}},\n  "
+      " "
       "\"correlations\": {}, "
       "\"chi_square\": {}, "
       "\"degrees\": {}, \"error\": {}, \"information\": {}, \"correlation\": {}, \"independent\": {},\n   "
       "\"model\": {},\n   \"residuals\": {},\n   "
       "\"hop\": \"{}\"}}",
-      model_of(fit.scene).name, fit.found, explains(fit), fmt::join(parameters, ", "),
+      model_of(fit.scene).name, fit.found, fit.judged, explains(fit), fmt::join(parameters, ", "),
       json_of(fit.correlations), json_number(fit.chi_square), fit.degrees, json_number(fit.error),
       json_number(fit.information), json_number(fit.correlation), json_number(fit.independent),
       json_of(fit.model), json_of(fit.residuals), fit.found ? hop_command(spec_of(fit), fit.design) : "");
@@ -235,11 +236,11 @@ int run(const FitArguments& arguments) {
   const std::array inputs{NamedPath{"DATA", arguments.data}, NamedPath{"SPEC", arguments.spec}};
   const std::array outputs{NamedPath{"--csv", arguments.csv}};
   refuse_same_files(inputs, outputs);
-  TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
   const Measurements measured = read_measurements(arguments.data, arguments.reading);
   FitOptions options = arguments.options;
   if (only != models().end()) options.models = {only->friction};
   note_signals();
+  TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
   options.stop_requested = [] { return noted_signal() != 0; };
   FitReport report;
   try {

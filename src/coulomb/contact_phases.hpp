@@ -73,7 +73,7 @@ Contact<S> contact_of(const Design& design, const Scene& scene) {
 inline constexpr int most_phases = 2'000;
 /// Why a hoop fails that rebounds ever less, and never so little that rest_speed counts it as none.
 inline constexpr const char* endless_rebounds =
-    "its rebounds never end, as rest_speed counts none as the last: set rest_speed = 1e-3, or 1e-12 at least";
+    "its rebounds never end, as rest_speed counts none as the last; allowed: rest_speed = 1e-12 or more";
 
 /// phase_sequence: two bits a phase, the first lowest, up to 32.
 class PhaseSequence {

@@ -186,7 +186,7 @@ class Chain {
   /// The plain solver's panel in duals. Where the hoop has just set out, u = w^2 is small, and time's
   /// derivatives go as u^(-3/2): fixed nodes would not resolve them however well they resolve the values. So
   /// the stretch moves with the zero of u just before its start, as SlidingPanels::stretch_of places it, and
-  /// all is smooth along it again. Its end stays in place. A zero that is farther behind needs no such care,
+  /// all is smooth along it again. Its end keeps its q. A zero that is farther behind needs no such care,
   /// and would move so much that digits are lost.
   Part dual_part(const SlidingPanels<D>::Slide& slide, const SlidingPanels<double>::Taken& taken) const {
     if (!taken.stretch) return {{}, D(taken.duration)};

@@ -14,6 +14,8 @@ struct Correlation {
   double lines =
       1.0;  ///< that count as one: 1 + 2 sum of the autocorrelation up to where it is lost in noise
   double variance = 0.0;  ///< of a residual as an independent one would have it, if errors are not known
+  double carrying =
+      0.0;  ///< cosine coefficients that bring the residuals, all of white noise: few of another motion
 };
 
 /// Residuals line by line, `columns` of each, after a fit of so many parameters. The autocorrelation is

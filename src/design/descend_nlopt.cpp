@@ -3,6 +3,7 @@
 #include <nlopt.hpp>
 
 #include "design/engines.hpp"
+#include "leapmap/errors.hpp"
 #include "sweep/solver.hpp"
 
 namespace leapmap {
@@ -137,6 +138,8 @@ void descend(Judge& judge, Place& place) {
     // It left the branch: what it met before stands.
   } catch (const nlopt::roundoff_limited&) {
     // As near as numbers go.
+  } catch (const Stopped&) {
+    throw;
   } catch (const std::runtime_error&) {
     // SLSQP's own trouble is no error of the search.
   }

@@ -17,6 +17,7 @@
 #include "leapmap/units.hpp"
 #include "model/model.hpp"
 #include "numerics/sobol_points.hpp"
+#include "support/stop.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
 #include "sweep/solver.hpp"
@@ -313,6 +314,7 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
   const Question question = question_of(spec);
   FindOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
+  const StopScope scope(options.stop_requested);
   Judge judge(question, options.threads, options.stop_requested);
   const Effort effort = effort_of(judge, options);
   Steps steps(options, sample_steps + effort.starts + effort.climbed);

@@ -19,6 +19,7 @@
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "numerics/sobol_points.hpp"
+#include "support/stop.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
 #include "sweep/spec.hpp"
@@ -290,7 +291,8 @@ Fitted fit_model(const Measurements& measured, const Spec& spec, Friction fricti
     const std::size_t columns = problem.residuals / measured.film.t.size();
     const Correlation correlation = correlation_of(best.residuals, columns, problem.bounds.size());
     told.correlation = correlation.lines;
-    told.independent = static_cast<double>(measured.film.t.size()) / correlation.lines;
+    told.independent =
+        std::min(static_cast<double>(measured.film.t.size()) / correlation.lines, correlation.carrying);
     if (correlation.lines > 1.0) uncertainty = std::max(variance, correlation.variance);
   }
   told.chi_square = known ? best.sum : static_cast<double>(told.degrees);
@@ -306,8 +308,8 @@ Fitted fit_model(const Measurements& measured, const Spec& spec, Friction fricti
     // A true model passes through as many numbers as it has free parameters, but those at their bounds.
     const auto held =
         static_cast<double>(std::ranges::count(told.parameters, true, &FittedParameter::at_bound));
-    const double freedom = numbers / told.correlation - static_cast<double>(problem.bounds.size()) + held;
-    told.probability = gsl_cdf_chisq_Q(best.sum / told.correlation, std::max(freedom, 1.0));
+    const double freedom = numbers - static_cast<double>(problem.bounds.size()) + held;
+    told.probability = gsl_cdf_chisq_Q(best.sum, std::max(freedom, 1.0));
   }
   told.model = explained.model_at(best.residuals);
   for (const double residual : best.residuals) told.residuals.push_back(residual / std::sqrt(variance));
@@ -320,6 +322,7 @@ FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& 
   const auto begin = std::chrono::steady_clock::now();
   FitOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
+  const StopScope scope(options.stop_requested);
   refuse_what_has_no_use(spec);
   check_measurements(measured, spec);
   FitReport report;

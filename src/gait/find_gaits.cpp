@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -240,15 +241,26 @@ class Search {
       const double angle = two_pi * (i + 0.5) / angles;
       const Trig<double> phi = trig(angle);
       const LiftTerms<double> terms = lift_terms(hoop, phi);
-      const double E = -(terms.P * terms.J) / (hoop.rho * terms.K);
-      if (!(E > 0.0 && terms.K < 0.0) || !std::isfinite(E)) continue;  // N is above zero at any spin
-      const double least = std::sqrt(E / contact_inertia(hoop, phi));
+      if (!(terms.K < 0.0)) continue;  // a spin holds it down
+      // N = P / J + rho K w^2 / J: it leaves the plane beyond this spin, or at any where P is below zero.
+      const double least = std::sqrt(std::max(terms.P, 0.0) / (-hoop.rho * terms.K));
+      const double unit = least > 0.0 ? least : 1.0;
       for (const double way : {1.0, -1.0})
         for (int k = 0; k < spins; ++k) {
-          const double share = 1.0 + (fastest - 1.0) * (k + 0.5) / spins;
-          close({.angle = angle, .spin = way * least * share}, period);
+          const Landed start{.angle = angle,
+                             .spin = way * (least + unit * (fastest - 1.0) * (k + 0.5) / spins)};
+          if (bounces_again(hoop, start)) close(start, period);
         }
     }
+  }
+
+  /// Whether a jump from there, N being below zero, lands so that it is below zero again.
+  bool bounces_again(const Hoop<double>& hoop, const Landed& start) {
+    std::array<Landed, 1> at{start};
+    map_.next(Start::landing, {&design_, 1}, at, outcomes_);
+    if (outcomes_[0].status != Status::jumped) return false;
+    const Trig<double> phi = trig(at[0].angle);
+    return normal_force(hoop, phi, at[0].spin, angular_acceleration(hoop, phi, at[0].spin)) <= 0.0;
   }
 
   void close(const Landed& near, int period) {
@@ -269,6 +281,7 @@ class Search {
   ReturnMap map_;
   std::map<double, Sampled> samples_;  // of one way, by angle
   std::vector<Orbit> orbits_;
+  std::vector<Outcome> outcomes_;  // a workspace
   Gaits found_;
 };
 

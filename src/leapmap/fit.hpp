@@ -87,7 +87,8 @@ struct ModelFit {
   double misfit =
       std::numeric_limits<double>::quiet_NaN();  ///< of a film: residuals over the scatter from line to line
   double correlation = 1.0;  ///< lines of a film whose residuals count as one, as neighbours are alike
-  double independent = std::numeric_limits<double>::quiet_NaN();  ///< lines of a film, in such units
+  double independent =
+      std::numeric_limits<double>::quiet_NaN();  ///< lines of a film that say something of their own
   bool judged = true;  ///< false: a film of too few lines to say whether the model explains it
   double information = std::numeric_limits<double>::infinity();  ///< Akaike's; less is better
   std::vector<double> model{}, residuals{};  ///< of every number measured; residuals over their errors

@@ -12,6 +12,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/hdf5_trust.hpp"
+#include "support/output_file.hpp"
 #include "support/posix.hpp"
 
 namespace leapmap::hdf5 {
@@ -115,8 +116,9 @@ herr_t read(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t offset, size_t size, void* 
 }
 
 herr_t write(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t offset, size_t size, const void* buffer) {
-  // What fails is noted by the file, and every commit throws it from then on. HDF5 is not told: of a file that
-  // it could not write it keeps remains, on which it crashes as a process ends that others use it in, too.
+  // What fails is noted by the file, and every commit throws it from then on. HDF5 is not told: of a file
+  // that it could not write it keeps remains, on which it crashes as a process ends that others use it in,
+  // too.
   try {
     driver(base).file->write(offset, {static_cast<const std::byte*>(buffer), size});
   } catch (const std::exception& error) {
@@ -221,19 +223,6 @@ std::optional<std::string> filetype_of(const std::string& path, Locking locking)
   }
 }
 
-/// Makes a folder and those above it, and brings the names of new ones to disk.
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::vector<std::filesystem::path> parents;  // of what is new
-  for (auto made = folder; !made.empty() && !std::filesystem::exists(made, error); made = made.parent_path())
-    parents.push_back(made.parent_path());
-  std::filesystem::create_directories(folder, error);
-  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-  for (const auto& parent : parents)
-    if (!sync_folder(parent.empty() ? "." : parent.string()))
-      throw IoError(folder.string() + ": cannot be brought to disk");
-}
-
 }  // namespace
 
 bool is_hdf5(const std::string& path, Locking locking) {
@@ -242,7 +231,7 @@ bool is_hdf5(const std::string& path, Locking locking) {
 }
 
 File File::create(const std::string& path, std::string_view filetype, Locking locking) {
-  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) make_folder(folder);
+  make_folder(folder_of(path));
   refuse_other_unfinished(path, filetype, locking);
   File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::create, locking));
   const std::shared_ptr<const SourceNames> none;

@@ -23,11 +23,6 @@ namespace {
 
 constexpr std::uint64_t signature_bytes = 8;
 
-std::string folder_of(const std::string& path) {
-  const std::string parent = std::filesystem::path(path).parent_path();
-  return parent.empty() ? "." : parent;
-}
-
 }  // namespace
 
 template <class F>

@@ -144,6 +144,10 @@ void MapReader::check_shards() const {
         shard.shape() != shape() || !hdf5::has_attribute(shard.file_, tiles_checksum_attribute) ||
         hdf5::read_integers(shard.file_, tiles_checksum_attribute)[0] != told[k])
       throw BrokenFile(fmt::format("{}: its shard {} is another; {}", path_, path, again));
+    // HDF5 reads the shard's chunks behind this map's back.
+    for (const std::string& field : fields_)
+      hdf5::refuse_inflation(shard.open(field), std::vector<std::size_t>(shape().size(), 0), shape(),
+                             fmt::format("{}: {}", path, field));
   }
 }
 

@@ -155,6 +155,7 @@ void MapWriter::write(const EncodedTile& tile) {
   }
   ++progress_.tiles;
   for (std::size_t s = 0; s < status_count; ++s) progress_.statuses[s] += tile.statuses[s];
+  file_.bytes().rethrow_failure();  // a full disk is told of now, not at the next commit
 }
 
 void MapWriter::put(const Tile& tile, std::size_t field, const EncodedChunk& chunk) {

@@ -46,9 +46,9 @@ double error_of(double whole, std::span<const double> replicates, std::span<cons
 /// (the jackknife): for ratios, to which replicates contribute unequally. NaN if one of them is.
 double jackknife_error(std::span<const double> without);
 
-/// Whether replicates vary as a moment's error says: not if fewer of so many values than one a replicate bring
-/// nearly all of it, as those few beyond a discontinuity may do. Most replicates have none of them then, and
-/// their agreement means nothing. Few values in all are no such case.
+/// Whether replicates vary as a moment's error says: not if fewer of so many values than one a replicate
+/// bring nearly all of it, as those few beyond a discontinuity may do. Most replicates have none of them
+/// then, and their agreement means nothing. Few values in all are no such case.
 bool carries_replicates(double carrying, double values);
 
 }  // namespace leapmap

@@ -213,7 +213,8 @@ py::dict dict_of(const ModelFit& fit) {
   std::copy(fit.correlations.begin(), fit.correlations.end(), correlations.mutable_data());
   told["friction"] = std::string(model_of(fit.scene).name), told["found"] = fit.found, told["why"] = fit.why;
   told["parameters"] = parameters, told["correlations"] = correlations, told["chi_square"] = fit.chi_square;
-  told["explains"] = explains(fit), told["probability"] = fit.probability, told["misfit"] = fit.misfit;
+  told["judged"] = fit.judged, told["explains"] = explains(fit), told["probability"] = fit.probability,
+  told["misfit"] = fit.misfit;
   told["after_landing"] = fit.after_landing, told["degrees"] = fit.degrees, told["error"] = fit.error,
   told["information"] = fit.information, told["correlation"] = fit.correlation,
   told["independent"] = fit.independent;

@@ -66,7 +66,8 @@ void refuse_other_form(const std::string& path, std::string_view head, std::stri
   if (at(0, "\xff\xfe") || at(0, "\xfe\xff") ||
       (std::min(even, odd) == 0 && 4 * (even + odd) >= head.size() && head.size() >= 4))
     refuse("text in UTF-16: save it as UTF-8");
-  if (at(4, "ftyp") || at(4, "moov") || at(4, "mdat") || at(4, "wide") || at(4, "free") ||
+  const bool boxes = head.starts_with('\0');  // the length of its first box
+  if ((boxes && (at(4, "ftyp") || at(4, "moov") || at(4, "mdat") || at(4, "wide") || at(4, "free"))) ||
       (at(0, "RIFF") && at(8, "AVI ")) || at(0, "\x1a\x45\xdf\xa3"))
     refuse("a film itself: what is read are the coordinates of its marks over time");
   if (at(0, "PK\x03\x04"))

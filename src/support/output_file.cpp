@@ -20,7 +20,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path folder_of(const fs::path& path) { return path.parent_path().empty() ? "." : path.parent_path(); }
+/// Where a device, a pipe, or what standard output is turned to is named, links are the system's own.
+bool is_stream(const struct stat& status) {
+  return S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode);
+}
+
+/// The descriptor of ours, standard output or error, that already writes to a file; -1: neither.
+int own_descriptor(const struct stat& status) {
+  for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO})
+    if (struct stat own{};
+        ::fstat(descriptor, &own) == 0 && own.st_dev == status.st_dev && own.st_ino == status.st_ino)
+      return descriptor;
+  return -1;
+}
 
 /// A new file beside `path`, of a name that nothing has.
 int create_beside(const std::string& path, std::string& name) {
@@ -48,8 +60,25 @@ std::string first_bytes(const std::string& path, std::size_t count) {
 
 }  // namespace
 
+std::string folder_of(const std::string& path) {
+  const std::string parent = fs::path(path).parent_path();
+  return parent.empty() ? "." : parent;
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> parents;  // of what is new
+  for (fs::path made = folder; !made.empty() && !fs::exists(made, error); made = made.parent_path())
+    parents.push_back(folder_of(made.string()));
+  fs::create_directories(folder, error);
+  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder, error.message()));
+  for (const std::string& parent : parents)
+    if (!sync_folder(parent)) throw IoError(folder + ": cannot be brought to disk");
+}
+
 std::string behind_links(const std::string& name) {
   constexpr int most_links = 40;  // as the kernel
+  if (struct stat status{}; ::stat(name.c_str(), &status) == 0 && is_stream(status)) return name;
   fs::path path = name;
   std::error_code error;
   for (int i = 0; fs::is_symlink(path, error); ++i) {
@@ -67,7 +96,7 @@ bool same_file(const std::string& a, const std::string& b) {
     if (fs::equivalent(first, second, error)) return true;
   }
   if (first.filename() != second.filename()) return false;
-  const fs::path folder = folder_of(first), other = folder_of(second);
+  const fs::path folder = folder_of(first.string()), other = folder_of(second.string());
   return fs::equivalent(folder, other, error) ||
          fs::weakly_canonical(folder, error) == fs::weakly_canonical(other, error);
 }
@@ -100,9 +129,7 @@ void refuse_same_files(std::span<const NamedPath> inputs, std::span<const NamedP
 
 void refuse_unwritable(const std::string& path) {
   const std::string file = behind_links(path);
-  std::error_code error;
-  fs::create_directories(folder_of(file), error);
-  if (error) throw IoError(fmt::format("{}: its folder cannot be made: {}", path, error.message()));
+  make_folder(folder_of(file));
   std::string name;
   const int descriptor = create_beside(file, name);
   ::unlink(name.c_str());
@@ -110,9 +137,11 @@ void refuse_unwritable(const std::string& path) {
 }
 
 void take_over(int descriptor, const struct stat& replaced) {
-  // The owner first: changing it takes set-id bits away. Who may not give a file away keeps it.
-  const bool given = ::fchown(descriptor, replaced.st_uid, replaced.st_gid) == 0;
-  const mode_t mode = replaced.st_mode & (given ? mode_t{07777} : mode_t{0777});
+  mode_t mode = replaced.st_mode & mode_t{0777};
+  // Who may not give a file away keeps it; its group, which may be another then, gets no rights.
+  if (::fchown(descriptor, replaced.st_uid, replaced.st_gid) != 0 &&
+      ::fchown(descriptor, static_cast<uid_t>(-1), replaced.st_gid) != 0)
+    mode &= ~mode_t{070};
   static_cast<void>(::fchmod(descriptor, mode) != 0);  // some file systems have no modes
 }
 
@@ -121,7 +150,7 @@ TextOutput::TextOutput(std::string_view flag, const std::string& path, std::stri
   if (path.empty()) return;
   path_ = behind_links(path);
   if (::stat(path_.c_str(), &replaced_) == 0) {
-    if (S_ISCHR(replaced_.st_mode) || S_ISFIFO(replaced_.st_mode)) return;  // opened when there is something
+    if (is_stream(replaced_) || own_descriptor(replaced_) >= 0) return;  // opened when there is something
     if (!S_ISREG(replaced_.st_mode))
       throw InputError(fmt::format("{} {}: is no file; allowed: a file's name", flag, path));
     replaces_ = true;
@@ -129,7 +158,7 @@ TextOutput::TextOutput(std::string_view flag, const std::string& path, std::stri
     const std::string there = first_bytes(path_, std::max(head.size(), hdf5.size()));
     if (there.starts_with(hdf5))
       throw InputError(fmt::format("{} {}: is an HDF5 file; allowed: another name", flag, path));
-    if (!overwrite && replaced_.st_size > 0 && !there.starts_with(head))
+    if (!overwrite && replaced_.st_size > 0 && (head.empty() || !there.starts_with(head)))
       throw InputError(
           fmt::format("{} {}: is there, and not what leapmap writes; allowed: another name, or "
                       "--overwrite",
@@ -145,9 +174,12 @@ TextOutput::~TextOutput() {
 
 void TextOutput::commit(std::string_view text) {
   if (path_.empty()) return;
-  const bool is_device = temporary_.empty();
-  if (is_device) {
-    descriptor_ = uninterrupted([&] { return ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY); });
+  if (temporary_.empty()) {
+    std::fflush(stdout);  // what was printed comes first
+    const int own = own_descriptor(replaced_);
+    descriptor_ = own >= 0
+                      ? ::fcntl(own, F_DUPFD_CLOEXEC, 0)
+                      : uninterrupted([&] { return ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY); });
     if (descriptor_ < 0) fail_with_errno(path_, "cannot be written");
     write_stream(descriptor_, path_, text);
     return;
@@ -155,9 +187,21 @@ void TextOutput::commit(std::string_view text) {
   write_all(descriptor_, path_, 0, std::as_bytes(std::span(text)));
   if (replaces_) take_over(descriptor_, replaced_);
   sync(descriptor_, path_);
+  refuse_if_changed();
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail_with_errno(path_, "cannot be given its name");
   temporary_.clear();
-  sync_folder(folder_of(path_).string());  // the file is in its place either way
+  sync_folder(folder_of(path_));  // the file is in its place either way
+}
+
+/// The work may have taken minutes: what has that name now is what was there before, or nothing.
+void TextOutput::refuse_if_changed() const {
+  struct stat now {};
+  const bool there = ::stat(path_.c_str(), &now) == 0;
+  const bool same = there && replaces_ && now.st_dev == replaced_.st_dev && now.st_ino == replaced_.st_ino &&
+                    now.st_size == replaced_.st_size && now.st_mtim.tv_sec == replaced_.st_mtim.tv_sec &&
+                    now.st_mtim.tv_nsec == replaced_.st_mtim.tv_nsec;
+  if (there && !same)
+    throw IoError(path_ + ": another program has written it meanwhile; allowed: another name");
 }
 
 }  // namespace leapmap

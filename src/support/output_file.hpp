@@ -14,8 +14,14 @@
 
 namespace leapmap {
 
-/// The file behind a symbolic link, which is to stay one; any other name as it is. Throws InputError for
-/// links that form a ring.
+/// The folder that a file lies in: "." of a bare name.
+std::string folder_of(const std::string& path);
+
+/// Makes a folder and those above it, and brings the names of new ones to disk. Throws IoError.
+void make_folder(const std::string& folder);
+
+/// The file behind a symbolic link, which is to stay one; any other name as it is, and that of a device or a
+/// pipe, /dev/stdout say. Throws InputError for links that form a ring.
 std::string behind_links(const std::string& path);
 
 /// Whether two names are of one file, there or not: the same name in the same folder behind all links, or the
@@ -43,9 +49,9 @@ void take_over(int descriptor, const struct stat& replaced);
 class TextOutput {
  public:
   /// Before the work: makes a temporary file beside the one to be written, or finds the device or pipe to
-  /// write to. An existing file is replaced if it begins with `head`, as leapmap's own does, if it is empty,
-  /// or with `overwrite`; a folder or an HDF5 file never. flag: what names it. An empty path is none. Throws
-  /// InputError and IoError.
+  /// write to. An existing file is replaced if it begins with `head`, as leapmap's own does (none: no file is
+  /// known as its own), if it is empty, or with `overwrite`; a folder or an HDF5 file never. flag: what names
+  /// it. An empty path is none. Throws InputError and IoError.
   TextOutput(std::string_view flag, const std::string& path, std::string_view head, bool overwrite);
   ~TextOutput();
   TextOutput(const TextOutput&) = delete;
@@ -55,6 +61,8 @@ class TextOutput {
   void commit(std::string_view text);
 
  private:
+  void refuse_if_changed() const;
+
   std::string path_, temporary_;
   int descriptor_ = -1;
   bool replaces_ = false;

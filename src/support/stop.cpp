@@ -21,7 +21,7 @@ thread_local std::optional<Clock::time_point> since;
 }  // namespace
 
 StopScope::StopScope(const std::function<bool()>& asked) : before_(asked_here) {
-  asked_here = asked ? &asked : nullptr;
+  if (asked) asked_here = &asked;
   since.reset();
 }
 

@@ -7,7 +7,7 @@
 
 namespace leapmap {
 
-/// While it lives, loops inside designs on this thread ask `asked`; empty: they do not.
+/// While it lives, loops inside designs on this thread ask `asked`; empty: they ask as before.
 class StopScope {
  public:
   explicit StopScope(const std::function<bool()>& asked);

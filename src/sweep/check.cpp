@@ -14,6 +14,7 @@
 #include "map/reader.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
+#include "support/stop.hpp"
 #include "sweep/audit_report.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
@@ -108,20 +109,26 @@ void check_sample(Check& check) {
   if (check.options.sample == 0 || check.report.designs == 0) return;
   const double share =
       std::min(1.0, static_cast<double>(check.options.sample) / static_cast<double>(check.tiling.designs()));
-  const Solver solve = make_solver(check.spec);
-  AuditReport audited = begin_audit(check.spec);
+  Spec sampled = check.spec;
+  sampled.numerics.audit = share;  // what is compared of each design hangs on how many there are
+  const Solver solve = make_solver(sampled);
+  AuditReport audited = begin_audit(sampled);
   std::vector<AuditSample> samples;
   const auto look_at_samples = [&] {
     constexpr std::size_t by_referee_all = 1;
     merge(audited,
-          audit(check.spec, samples, check.options.threads, check.options.stop_requested, by_referee_all));
+          audit(sampled, samples, check.options.threads, check.options.stop_requested, by_referee_all));
     samples.clear();
   };
-  for (std::size_t t = 0; t < check.report.tiles && !check.stopped(); ++t) {
-    std::ranges::move(audit_samples(check.map, check.spec, share, check.tiling, check.tiling.tile(t), solve),
-                      std::back_inserter(samples));
-    if (samples.size() >= most_samples_held) look_at_samples();
-  }
+  const StopScope scope(check.options.stop_requested);
+  for (std::size_t t = 0; t < check.report.tiles && !check.stopped(); ++t) try {
+      std::ranges::move(
+          audit_samples(check.map, check.spec, share, check.tiling, check.tiling.tile(t), solve),
+          std::back_inserter(samples));
+      if (samples.size() >= most_samples_held) look_at_samples();
+    } catch (const Stopped&) {
+      return;
+    }
   look_at_samples();
   check.bytes.rethrow_failure();
   const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
@@ -152,17 +159,29 @@ std::size_t tiles_of(const MapReader& map, const Tiling& tiling) {
 }
 
 /// The numbers and texts that the root has beside its datasets are of the kinds that they should be.
-void check_attributes(const MapReader& map) {
+void check_attributes(Check& check) {
+  const hid_t root = check.map.file();
+  const auto look_at = [&](const char* name, const auto& read) {
+    if (!hdf5::has_attribute(root, name)) return;
+    try {
+      read(name);
+    } catch (const IoError& error) {
+      check.bytes.rethrow_failure();
+      check.find(error.what());
+    }
+  };
   for (const char* text : {"title", "program_version", "git_revision", "instruction_set", "math_library",
                            "date", "host", "method", "audit_method"})
-    if (hdf5::has_attribute(map.file(), text)) hdf5::read_text(map.file(), text);
-  for (const auto& [name, least] :
+    look_at(text, [&](const char* name) { hdf5::read_text(root, name); });
+  for (const auto& [whole, least] :
        {std::pair{"threads", std::int64_t{1}}, {"shards", 1}, {"retry_designs", 0}, {"tiles_checksum", 0}})
-    if (hdf5::has_attribute(map.file(), name)) hdf5::read_integer(map.file(), name, least);
+    look_at(whole, [&, from = least](const char* name) { hdf5::read_integer(root, name, from); });
   for (const char* number : {"wall_time", "tolerance"})
-    if (hdf5::has_attribute(map.file(), number) && !(hdf5::read_number(map.file(), number) >= 0.0))
-      throw BrokenFile(fmt::format("reading attribute {}: it is below zero", number));
-  if (hdf5::has_attribute(map.file(), "audit_designs")) read_audit(map);
+    look_at(number, [&](const char* name) {
+      if (!(hdf5::read_number(root, name) >= 0.0))
+        throw BrokenFile(fmt::format("reading attribute {}: it is below zero", name));
+    });
+  look_at("audit_designs", [&](const char*) { read_audit(check.map); });
 }
 
 void check_content(const JournaledFile& bytes, const MapReader& map, const std::string& path,
@@ -178,7 +197,7 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   report.tiles = tiles_of(map, tiling);
   report.designs = designs_in(map.status_counts());
   Check check{bytes, map, spec, tiling, options, report};
-  check_attributes(map);
+  check_attributes(check);
   check_layout(map.file(), layout, tiling, path);
   map.shards().empty() ? check_tiles(check, layout) : check_shards(check, path);
   if (report.findings.empty() && !check.stopped()) check_sample(check);

@@ -92,7 +92,8 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
         const std::size_t number = options.first_tile + i;
         const Tile tile = tiling.tile(number);
         for (std::size_t first = 0; first < tile.count; first += piece) {
-          // A tile of many hoops as made may take minutes, and is given up; any other is brought to its end.
+          // A tile of many hoops as made may take minutes, and is given up; any other is brought to its end,
+          // unless that takes seconds.
           if (scattered && options.stop_requested && options.stop_requested()) {
             delivery.close(number);
             return false;

@@ -113,9 +113,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadQuestion{"two_values",
                     "[design]\nslope = { values = [0.1, 0.5] }\n[goal]\nmaximize = [\"jump_height\"]",
                     {"slope", "list of values"}},
-        BadQuestion{"values_at_equal_steps",
-                    "[design]\nslope = { values = [0.1, 0.2, 0.3, 0.4] }\n[goal]\nmaximize = [\"jump_height\"]",
-                    {"slope", "list of values"}},
+        BadQuestion{
+            "values_at_equal_steps",
+            "[design]\nslope = { values = [0.1, 0.2, 0.3, 0.4] }\n[goal]\nmaximize = [\"jump_height\"]",
+            {"slope", "list of values"}},
         BadQuestion{"a_percentage_of_a_bound_beyond_zero",
                     "[design]\nslope = { from = -0.1, to = 0.5 }\n[scatter]\nslope = { normal = \"5 %\" }\n"
                     "[goal]\nmaximize = [\"jump_height\"]",

@@ -66,7 +66,7 @@ COMMANDS = {c.name: c for c in (
     Command("check", "check {0}/map.h5", {"spec.toml": SPEC}, [SWEEP], keeps=("map.h5",)),
     Command("boundaries", "boundaries {0}/spec.toml -o {0}/cliffs.h5 --csv {0}/cliffs.csv --quiet --threads 1", {"spec.toml": SMALL, "cliffs.csv": "curve,kind,along\n"},
             output="cliffs.csv", keeps=("cliffs.csv",)),
-    Command("design", "design {0}/question.toml -o {0}/best.h5 --csv {0}/best.csv --quiet --threads 1 --sample 256 --most 2",
+    Command("design", "design {0}/question.toml -o {0}/best.h5 --csv {0}/best.csv --quiet --threads 1 --sample 256 --most 2 --overwrite",
             {"question.toml": QUESTION, "best.csv": "slope\n0.1\n"}, output="best.csv", keeps=("best.csv",)),
     Command("fit", "fit {0}/events.csv --model sticking --csv {0}/fit.csv --json --threads 1", {"events.csv": EVENTS, "fit.csv": "t,quantity,measured\n"},
             output="fit.csv", keeps=("fit.csv", "events.csv")),

@@ -25,7 +25,7 @@ class FittedParameter:
 @dataclass(frozen=True)
 class Fit:
     """One model, fitted. friction: its name. found: False: no hoop of the box does anything like it, or why tells the reason.
-    explains: whether it explains the data: of events, or a film with a known error, probability is that of such a chi-square, or
+    judged: False: a film of too few lines to say whether it explains them. explains: whether it explains the data: of events, or a film with a known error, probability is that of such a chi-square, or
     more, if the model is true; misfit: of a film, residuals over the scatter from line to line.
     correlation: of a film, lines that count as one, as neighbouring residuals are alike in smoothed films; errors allow for it.
     independent: lines of a film in such units.
@@ -37,6 +37,7 @@ class Fit:
     friction: str
     found: bool
     why: str
+    judged: bool
     explains: bool
     probability: float
     misfit: float
@@ -54,9 +55,10 @@ class Fit:
 
 
 def _event(name, value):
-    if np.ndim(value) != 1 or np.shape(value) != (2,) or isinstance(value[0], str):
+    is_pair = isinstance(value, (tuple, list, np.ndarray)) and len(value) == 2 and not any(isinstance(one, (str, tuple, list)) for one in value)
+    if not is_pair:
         raise ValueError(f"{name} = {shown(value)} is no event; allowed: (value, standard error), or a film with 't'")
-    pair = array(name, value)
+    pair = array(name, value, 1)
     return float(pair[0]), float(pair[1])
 
 

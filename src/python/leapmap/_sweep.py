@@ -86,6 +86,8 @@ def _ends_by_signal():
     caught = []
 
     def end(number, _):
+        for each in mine:
+            signal.signal(each, signal.SIG_IGN)  # what cleans up is not interrupted
         caught.append(number)
         raise _Ended
 
