@@ -101,7 +101,9 @@ std::vector<FreeParameter> free_parameters(const Spec& spec) {
   for (const Axis& axis : spec.axes) {
     const auto [low, high] = std::ranges::minmax(axis.values);
     if (!axis.free && !axis.spaced)
-      refuse(spec, fmt::format("design.{} is a list of values", axis.key),
+      refuse(spec,
+             fmt::format("design.{} is a list of values, {}{}", axis.key, axis.values[0],
+                         axis.values.size() > 1 ? ", ..." : ""),
              "{ from, to }, between which it is free, or a number");
     if (!(low < high))
       refuse(spec, fmt::format("design.{} is nothing but {}", axis.key, low), "two bounds, or a number");
