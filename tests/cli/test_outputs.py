@@ -10,7 +10,11 @@ from support.program import PROGRAM, SMALL, leapmap, sweep
 
 QUESTION = '[design]\nslope = { from = 0.3, to = 0.5 }\n[goal]\nmaximize = ["jump_height"]\n'
 EVENTS = "event,value,error\njump_time,0.54,0.005\njump_height,0.98,0.02\n"
-CSV = {"boundaries": ["boundaries", "spec.toml"], "design": ["design", "question.toml", "--quiet"], "fit": ["fit", "events.csv", "--model", "sticking"]}
+CSV = {
+    "boundaries": ["boundaries", "spec.toml"],
+    "design": ["design", "question.toml", "--quiet"],
+    "fit": ["fit", "events.csv", "--model", "sticking"],
+}
 
 
 @pytest.fixture
@@ -29,11 +33,15 @@ def test_a_strangers_file_is_replaced_with_overwrite_alone_and_keeps_its_mode(co
     notes.chmod(0o600)
     os.symlink("notes", folder / "link")
     done = leapmap(*CSV[command], "--csv", "link")
-    assert done.returncode == 2 and "--overwrite" in done.stderr and notes.read_text() == "mine\n", done.stderr
+    assert (
+        done.returncode == 2 and "--overwrite" in done.stderr and notes.read_text() == "mine\n"
+    ), done.stderr
     assert leapmap(*CSV[command], "--csv", "link", "--overwrite").returncode == 0
     assert (folder / "link").is_symlink() and notes.read_text() != "mine\n"
     assert stat.S_IMODE(notes.stat().st_mode) == 0o600
-    assert leapmap(*CSV[command], "--csv", "notes").returncode == (2 if command == "design" else 0), "it is ours now, but any list begins like a design's"
+    assert leapmap(*CSV[command], "--csv", "notes").returncode == (
+        2 if command == "design" else 0
+    ), "it is ours now, but any list begins like a design's"
     assert not [name for name in os.listdir(folder) if name.endswith(".new")]
 
 
@@ -53,13 +61,21 @@ def test_devices_and_pipes_are_written_through(command, folder):
     assert leapmap(*CSV[command], "--csv", "/dev/full").returncode == 3
 
 
-@pytest.mark.parametrize("command", [
-    ["boundaries", "spec.toml", "-o", "x.h5", "--csv", "./x.h5"], ["boundaries", "spec.toml", "-o", "x.h5", "--csv", "dangling"],
-    ["boundaries", "spec.toml", "-o", "x.h5", "--csv", "x.h5.part"], ["boundaries", "spec.toml", "--csv", "./spec.toml", "--overwrite"],
-    ["design", "question.toml", "-o", "x.h5", "--csv", "./x.h5"], ["design", "question.toml", "-o", "./question.toml", "--overwrite"],
-    ["fit", "events.csv", "--csv", "second", "--overwrite"], ["fit", "events.csv", "spec.toml", "--csv", "spec.toml", "--overwrite"],
-    ["hop", "empty.toml", "--trace", "./empty.toml"], ["sweep", "spec.toml", "-o", "./spec.toml", "--overwrite"],
-])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["boundaries", "spec.toml", "-o", "x.h5", "--csv", "./x.h5"],
+        ["boundaries", "spec.toml", "-o", "x.h5", "--csv", "dangling"],
+        ["boundaries", "spec.toml", "-o", "x.h5", "--csv", "x.h5.part"],
+        ["boundaries", "spec.toml", "--csv", "./spec.toml", "--overwrite"],
+        ["design", "question.toml", "-o", "x.h5", "--csv", "./x.h5"],
+        ["design", "question.toml", "-o", "./question.toml", "--overwrite"],
+        ["fit", "events.csv", "--csv", "second", "--overwrite"],
+        ["fit", "events.csv", "spec.toml", "--csv", "spec.toml", "--overwrite"],
+        ["hop", "empty.toml", "--trace", "./empty.toml"],
+        ["sweep", "spec.toml", "-o", "./spec.toml", "--overwrite"],
+    ],
+)
 def test_one_file_under_two_names_is_refused_before_the_work(command, folder):
     os.symlink("x.h5", folder / "dangling")
     os.link(folder / "events.csv", folder / "second")
@@ -67,11 +83,20 @@ def test_one_file_under_two_names_is_refused_before_the_work(command, folder):
     before = {name: (folder / name).read_bytes() for name in os.listdir(folder) if (folder / name).exists()}
     done = leapmap(*command)
     assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
-    assert {name: (folder / name).read_bytes() for name in os.listdir(folder) if (folder / name).exists()} == before
+    assert {
+        name: (folder / name).read_bytes() for name in os.listdir(folder) if (folder / name).exists()
+    } == before
 
 
-@pytest.mark.parametrize("command", [["sweep", "spec.toml", "-o", "x.h5", "--overwrite", "--quiet"], ["hop", "--trace", "x.h5"],
-                                     ["boundaries", "spec.toml", "-o", "x.h5"], ["design", "question.toml", "-o", "x.h5", "--quiet"]])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["sweep", "spec.toml", "-o", "x.h5", "--overwrite", "--quiet"],
+        ["hop", "--trace", "x.h5"],
+        ["boundaries", "spec.toml", "-o", "x.h5"],
+        ["design", "question.toml", "-o", "x.h5", "--quiet"],
+    ],
+)
 def test_hdf5_outputs_keep_the_mode_of_what_they_replace(command, folder):
     for _ in range(2):
         assert leapmap(*command).returncode == 0
@@ -82,10 +107,15 @@ def test_hdf5_outputs_keep_the_mode_of_what_they_replace(command, folder):
 
 def test_standard_output_takes_a_table_wherever_it_is_turned_to(folder):
     shell = f"{PROGRAM} fit events.csv --model sticking --csv /dev/stdout"
-    assert "t,quantity,measured" in subprocess.run(f"{shell} | cat", shell=True, capture_output=True, text=True).stdout
+    assert (
+        "t,quantity,measured"
+        in subprocess.run(f"{shell} | cat", shell=True, capture_output=True, text=True).stdout
+    )
     subprocess.run(f"{shell} > out.txt", shell=True, check=True)
     told = (folder / "out.txt").read_text()
-    assert told.index("friction") < told.index("t,quantity,measured"), "the report and then the table, in one file"
+    assert told.index("friction") < told.index(
+        "t,quantity,measured"
+    ), "the report and then the table, in one file"
 
 
 def test_a_map_that_cannot_be_written_leaves_no_csv_beside_it(folder):
@@ -98,15 +128,31 @@ def test_a_map_that_cannot_be_written_leaves_no_csv_beside_it(folder):
 def test_a_version_that_is_no_pair_of_whole_numbers_is_damage(tmp_path):
     h5py = pytest.importorskip("h5py")
     import numpy as np
+
     path = sweep(tmp_path)
-    for name, value in [("version", [1.5, np.nan]), ("version", [-3, -7]), ("version", [1]), ("threads", np.nan), ("wall_time", np.nan), ("wall_time", -1.0),
-                        ("audit_designs", 30.6), ("audit_first_mismatch", -0.5), ("status_counts", np.full(7, 0.4)), ("method", 3.0)]:
+    for name, value in [
+        ("version", [1.5, np.nan]),
+        ("version", [-3, -7]),
+        ("version", [1]),
+        ("threads", np.nan),
+        ("wall_time", np.nan),
+        ("wall_time", -1.0),
+        ("audit_designs", 30.6),
+        ("audit_first_mismatch", -0.5),
+        ("status_counts", np.full(7, 0.4)),
+        ("method", 3.0),
+    ]:
         with h5py.File(path, "r+") as m:
             before = m.attrs[name]
             del m.attrs[name]
             m.attrs[name] = value
         done = leapmap("check", path, "--sample", "0")
-        assert done.returncode == 1 and (name.split("_")[0] in done.stdout + done.stderr), (name, value, done.stdout, done.stderr)
+        assert done.returncode == 1 and (name.split("_")[0] in done.stdout + done.stderr), (
+            name,
+            value,
+            done.stdout,
+            done.stderr,
+        )
         with h5py.File(path, "r+") as m:
             del m.attrs[name]
             m.attrs[name] = before

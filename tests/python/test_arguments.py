@@ -29,12 +29,22 @@ def test_no_designs_have_no_derivatives_and_no_outcomes(friction, shape):
 MASKED = np.ma.masked_array([0.4, 0.2], mask=[0, 1])
 
 
-@pytest.mark.parametrize("call", [
-    lambda: leapmap.solve(slope=MASKED), lambda: leapmap.gradient(slope=MASKED), lambda: leapmap.sweep({"design": {"slope": MASKED}}),
-    lambda: leapmap.sweep({}, slope=MASKED), lambda: leapmap.sweep({"design": {"slope": {"values": MASKED}}}), lambda: leapmap.sweep({}, slope=np.ma.masked),
-    lambda: leapmap.fit({"t": np.arange(9) * 0.01, "phi": np.ma.masked_array(np.full(9, 3.1), np.arange(9) == 4)}, slope=0.4),
-    lambda: leapmap.design(slope={"from": 0.1, "to": 0.5}, mass_ratio=MASKED, maximize="jump_height"),
-])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: leapmap.solve(slope=MASKED),
+        lambda: leapmap.gradient(slope=MASKED),
+        lambda: leapmap.sweep({"design": {"slope": MASKED}}),
+        lambda: leapmap.sweep({}, slope=MASKED),
+        lambda: leapmap.sweep({"design": {"slope": {"values": MASKED}}}),
+        lambda: leapmap.sweep({}, slope=np.ma.masked),
+        lambda: leapmap.fit(
+            {"t": np.arange(9) * 0.01, "phi": np.ma.masked_array(np.full(9, 3.1), np.arange(9) == 4)},
+            slope=0.4,
+        ),
+        lambda: leapmap.design(slope={"from": 0.1, "to": 0.5}, mass_ratio=MASKED, maximize="jump_height"),
+    ],
+)
 def test_masked_values_are_refused_everywhere(call):
     with pytest.raises(ValueError, match="slope|phi|mass_ratio"):
         call()
@@ -46,17 +56,33 @@ def test_a_mask_that_hides_nothing_is_none():
     assert (leapmap.sweep({"design": {"slope": masked}}).slope == plain).all()
 
 
-@pytest.mark.parametrize("call, name", [
-    (lambda: leapmap.solve(friction=None), "friction"), (lambda: leapmap.solve(method=None), "method"), (lambda: leapmap.solve(tolerance="x"), "tolerance"),
-    (lambda: leapmap.solve(threads=float("nan")), "threads"), (lambda: leapmap.solve(threads=float("inf")), "threads"), (lambda: leapmap.solve(jumps=True), "jumps"),
-    (lambda: leapmap.solve(jumps=10**30), "jumps"), (lambda: leapmap.trace(interval=None), "interval"), (lambda: leapmap.gradient(of=None), "of"),
-    (lambda: leapmap.scatter(scatter="x"), "scatter"), (lambda: leapmap.scatter(scatter={"slope": {"normal": 0.1}}, goal="x"), "goal"),
-    (lambda: leapmap.sweep({"design": CYCLE}), "a"), (lambda: leapmap.sweep({}, threads=1.5), "threads"), (lambda: leapmap.sweep({}, threads=-3), "threads"),
-    (lambda: leapmap.sweep({}, threads="2"), "threads"), (lambda: leapmap.sweep(""), "spec"), (lambda: leapmap.design(maximize=None), "maximize"),
-    (lambda: leapmap.design(maximize="jump_height", slope={"from": 0.1, "to": 0.2}, seed=1.7), "seed"), (lambda: leapmap.fit({"t": [1], 3: [1]}), "data"),
-    (lambda: leapmap.fit("x.csv", model=None), "model"), (lambda: leapmap.fit("x.csv", error=float("nan")), "error"),
-    (lambda: leapmap.design(maximize="jump_height", slope=[0.1, 0.3]), "slope"),
-])
+@pytest.mark.parametrize(
+    "call, name",
+    [
+        (lambda: leapmap.solve(friction=None), "friction"),
+        (lambda: leapmap.solve(method=None), "method"),
+        (lambda: leapmap.solve(tolerance="x"), "tolerance"),
+        (lambda: leapmap.solve(threads=float("nan")), "threads"),
+        (lambda: leapmap.solve(threads=float("inf")), "threads"),
+        (lambda: leapmap.solve(jumps=True), "jumps"),
+        (lambda: leapmap.solve(jumps=10**30), "jumps"),
+        (lambda: leapmap.trace(interval=None), "interval"),
+        (lambda: leapmap.gradient(of=None), "of"),
+        (lambda: leapmap.scatter(scatter="x"), "scatter"),
+        (lambda: leapmap.scatter(scatter={"slope": {"normal": 0.1}}, goal="x"), "goal"),
+        (lambda: leapmap.sweep({"design": CYCLE}), "a"),
+        (lambda: leapmap.sweep({}, threads=1.5), "threads"),
+        (lambda: leapmap.sweep({}, threads=-3), "threads"),
+        (lambda: leapmap.sweep({}, threads="2"), "threads"),
+        (lambda: leapmap.sweep(""), "spec"),
+        (lambda: leapmap.design(maximize=None), "maximize"),
+        (lambda: leapmap.design(maximize="jump_height", slope={"from": 0.1, "to": 0.2}, seed=1.7), "seed"),
+        (lambda: leapmap.fit({"t": [1], 3: [1]}), "data"),
+        (lambda: leapmap.fit("x.csv", model=None), "model"),
+        (lambda: leapmap.fit("x.csv", error=float("nan")), "error"),
+        (lambda: leapmap.design(maximize="jump_height", slope=[0.1, 0.3]), "slope"),
+    ],
+)
 def test_a_wrong_argument_is_refused_by_its_name(call, name):
     with pytest.raises((ValueError, TypeError), match=name):
         call()
@@ -85,7 +111,11 @@ def test_a_sweep_larger_than_memory_is_refused_before_it_begins(tmp_path, monkey
 
 def test_sigterm_leaves_no_temporary_map(tmp_path):
     script = "import leapmap, numpy as np; leapmap.sweep({'design': {'slope': np.linspace(.1, .8, 2000), 'mass_ratio': np.linspace(1, 9, 2000)}})"
-    process = subprocess.Popen([sys.executable, "-c", script], env=dict(os.environ, TMPDIR=str(tmp_path), PYTHONPATH=str(Path(leapmap.__file__).parents[1])), stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(
+        [sys.executable, "-c", script],
+        env=dict(os.environ, TMPDIR=str(tmp_path), PYTHONPATH=str(Path(leapmap.__file__).parents[1])),
+        stderr=subprocess.DEVNULL,
+    )
     for _ in range(300):
         if any(tmp_path.iterdir()):
             break
@@ -105,5 +135,10 @@ def test_another_python_is_told_which_one_to_use(tmp_path):
         if name.endswith(".py"):
             (package / name).write_text(open(os.path.join(source, name)).read())
     (package / "_core.cpython-399-x86_64-linux-gnu.so").write_bytes(b"")
-    done = subprocess.run([sys.executable, "-c", "import leapmap"], env=dict(os.environ, PYTHONPATH=str(tmp_path)), capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", "import leapmap"],
+        env=dict(os.environ, PYTHONPATH=str(tmp_path)),
+        capture_output=True,
+        text=True,
+    )
     assert "cpython-399" in done.stderr and "allowed" in done.stderr and "circular" not in done.stderr

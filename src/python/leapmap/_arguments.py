@@ -20,7 +20,9 @@ def shown(value):
 def array(name, value, ndim=None):
     """An array of numbers as floats. A masked array is taken if nothing of it is masked. ndim: how many dimensions; None: any."""
     if np.ma.is_masked(value):
-        raise ValueError(f"{name} = {shown(value)} has masked values; allowed: numbers, without those that are masked")
+        raise ValueError(
+            f"{name} = {shown(value)} has masked values; allowed: numbers, without those that are masked"
+        )
     try:
         found = np.asarray(value)
     except (TypeError, ValueError):
@@ -38,7 +40,9 @@ def real(name, value):
 
 def whole(name, value, least, most=10**15):
     """A whole number in a range; 2.0 is one, True is none."""
-    refused = ValueError(f"{name} = {shown(value)} is out of range; allowed: a whole number from {least} to {most}")
+    refused = ValueError(
+        f"{name} = {shown(value)} is out of range; allowed: a whole number from {least} to {most}"
+    )
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise refused
     if not math.isfinite(value) or value != int(value) or not least <= value <= most:
