@@ -192,19 +192,19 @@ MOST_ATTRIBUTE = 2**24  # bytes of an attribute's numbers; texts have one each
 
 
 def _attributes_of(thing):
-    """All of them, but for those that no file of ours has: thousands of texts may all be the same long one in the file."""
+    """All attributes. What no file of ours has is refused: a list of texts may take far more memory than its file."""
     found = {}
     for name in thing.attrs:
-        space = h5py.h5a.open(thing.id, name.encode()).get_space()
-        kind = thing.attrs.get_id(name)
-        if h5py.check_string_dtype(kind.dtype) and space.get_simple_extent_npoints() > 1 or kind.get_storage_size() > MOST_ATTRIBUTE:
+        attribute = thing.attrs.get_id(name)
+        is_list_of_texts = h5py.check_string_dtype(attribute.dtype) and attribute.get_space().get_simple_extent_npoints() > 1
+        if is_list_of_texts or attribute.get_storage_size() > MOST_ATTRIBUTE:
             raise ValueError(f"its attribute {name!r} is larger than any of leapmap's")
         found[name] = thing.attrs[name]
     return found
 
 
 def _values_of(dataset):
-    """A dataset's values. A chunk that inflates to more than its values would take any memory: HDF5's filter does as it is told."""
+    """A dataset's values. A chunk that inflates to more than its values is refused, as HDF5 would take all the memory it needs."""
     if dataset.chunks and dataset.compression == "gzip":
         size = math.prod(dataset.chunks) * dataset.dtype.itemsize
         plan = dataset.id.get_create_plist()

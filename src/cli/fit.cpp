@@ -131,8 +131,7 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
   print_events(measured, fit);
   if (fit.after_landing > 0)
     say("  {} lines of the film are after the model's last landing, where it is not followed: leave them "
-        "out, "
-        "or --set jumps=...{}\n",
+        "out, or --set jumps=...{}\n",
         grouped(fit.after_landing),
         fit.scene.jumps > 1 && fit.outcome.sequence_end != Status::jumped
             ? fmt::format("; the sequence ended early, {}, with runway = {}",
@@ -171,10 +170,8 @@ std::string json_of(const ModelFit& fit) {
         parameter.name, json_number(parameter.value), json_number(parameter.error),
         json_number(parameter.low), json_number(parameter.high), parameter.identified, parameter.at_bound));
   return fmt::format(
-      "  {{\"friction\": \"{}\", \"found\": {}, \"judged\": {}, \"explains\": {}, \"parameters\": {{{}}},\n  "
-      " "
-      "\"correlations\": {}, "
-      "\"chi_square\": {}, "
+      "  {{\"friction\": \"{}\", \"found\": {}, \"judged\": {}, \"explains\": {}, \"parameters\": {{{}}},\n"
+      "   \"correlations\": {}, \"chi_square\": {}, "
       "\"degrees\": {}, \"error\": {}, \"information\": {}, \"correlation\": {}, \"independent\": {},\n   "
       "\"model\": {},\n   \"residuals\": {},\n   "
       "\"hop\": \"{}\"}}",

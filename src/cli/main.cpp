@@ -150,16 +150,14 @@ leapmap::Spec leapmap::cli::read_given_spec(const std::string& path,
                                     : find_option(name.substr(0, dot), name.substr(dot + 1));
   };
   Spec spec = read_spec(path, overrides);  // first, so that what is wrong is said alone
-  for (std::size_t i = 0; i < overrides.size(); ++i) {
-    const Option* key = key_of(overrides[i]);
-    const auto later = [&](std::size_t k) { return key && key_of(overrides[k]) == key; };
-    std::size_t last = i;
-    for (std::size_t k = i + 1; k < overrides.size(); ++k)
-      if (later(k)) last = k;
-    const bool is_first = std::none_of(overrides.begin(), overrides.begin() + static_cast<std::ptrdiff_t>(i),
-                                       [&](const std::string& set) { return key && key_of(set) == key; });
-    if (last != i && is_first)
-      tell(fmt::format("{} is given twice on the command line: {} is used", key->key, overrides[last]));
+  std::vector<const Option*> keys;
+  for (const std::string& set : overrides) keys.push_back(key_of(set));
+  for (auto key = keys.begin(); key != keys.end(); ++key) {
+    if (!*key || std::find(keys.begin(), key, *key) != key) continue;  // told of where it is first
+    const auto last = std::find(keys.rbegin(), keys.rend(), *key).base() - 1;
+    if (last != key)
+      tell(fmt::format("{} is given twice on the command line: {} is used", (*key)->key,
+                       overrides[static_cast<std::size_t>(last - keys.begin())]));
   }
   return spec;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// leapmap precision: speed against accuracy, all methods in one run.
 #include <fmt/format.h>
-#include <array>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coulomb/coulomb_lanes.hpp"
-#include "support/stop.hpp"
 
 #include <algorithm>
+
+#include "support/stop.hpp"
 
 namespace leapmap {
 

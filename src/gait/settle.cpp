@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gait/settle.hpp"
-#include "support/stop.hpp"
 
 #include <array>
 #include <cmath>
+
+#include "support/stop.hpp"
 
 namespace leapmap {
 

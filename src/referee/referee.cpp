@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "referee/referee.hpp"
-#include "support/stop.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "support/stop.hpp"
 
 namespace leapmap::referee {
 namespace {
