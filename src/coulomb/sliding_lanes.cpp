@@ -215,11 +215,10 @@ auto SlidingLanes<T>::look_at_panel(const InLanes& slides, const Ahead& ahead) c
   if (any(comes))
     seen.inside =
         panels_.state_at(slides.slide, slides.from, ahead.stretch, panel_, smaller(seen.events.place, one));
-  // Of a panel that lasts so long the event's place has few digits.
-  const MaskOf<T> lasts =
-      (panel_.end.time - slides.from.time > T(S(longest_time))) & (seen.events.place < T(S(least_place)));
-  seen.ends_inside = comes & seen.inside.is_sharp & !lasts;
-  seen.ends_again = comes & !seen.inside.is_sharp & !lasts;
+  const MaskOf<T> too_soon =
+      comes_too_soon(seen.events.place, slides.from.time, T(panel_.end.time - slides.from.time));
+  seen.ends_inside = comes & seen.inside.is_sharp & !too_soon;
+  seen.ends_again = comes & !seen.inside.is_sharp & !too_soon;
 
   const MaskOf<T> vanishes =
       ahead.turns & !seen.is_steep & !slides.is_given & panel_.spin_vanishes & !(slides.from.spin == T(S(0)));

@@ -179,10 +179,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       ++refined;
       continue;
     }
-    // A panel that lasts so much longer holds the event's place to few digits: at almost no spin it lasts for
-    // ever.
-    const bool lasts = panel.end.time - at.time > S(longest_time);
-    if (lasts && event.place < S(least_place) && ++shortened < most_shortened) {
+    if (comes_too_soon(event.place, at.time, S(panel.end.time - at.time)) && ++shortened < most_shortened) {
       const S to = std::max(S(2) * event.place, S(0.5 * least_place));
       if (by_angle)
         length = stretch.angle(to);

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "coulomb/coulomb.hpp"
-#include "support/designs.hpp"
+#include "physics/sliding.hpp"
+#include "support/aimed.hpp"
+#include "support/exact.hpp"
 
 namespace leapmap {
 namespace {
@@ -75,6 +77,47 @@ TEST(CoulombLanes, AnOutcomeDependsOnTheDesignAlone) {
       EXPECT_TRUE(alone.*field == together[i].*field ||
                   (std::isnan(alone.*field) && std::isnan(together[i].*field)))
           << i;
+  }
+}
+
+/// A hoop released so fast that the plane carries but a share `left` of its weight while it slides.
+std::optional<Design> about_to_lift_off(std::mt19937_64& random, double left) {
+  Design design = testing::either_way(random);
+  design.mu_static = testing::uniform(random, 0.05, 0.9);
+  const Hoop<double> hoop = derive<double>(design);
+  const Trig<double> phi = trig(design.release_angle);
+  const double at_rest = free_normal_force(hoop, phi, 0.0),
+               by_spin = free_normal_force(hoop, phi, 1.0) - at_rest;
+  const double spin_squared = (left - at_rest) / by_spin;
+  if (!(spin_squared > 0.0 && spin_squared < 100.0)) return {};
+  design.release_spin = std::copysign(std::sqrt(spin_squared), design.release_spin);
+  return design;
+}
+
+/// The first panel of a slide is as long as any: where an event came right after the release, its time had the
+/// digits of the whole panel, and few of its own.
+TEST(CoulombLanes, ShortContactsHaveTheDigitsThatAreAskedFor) {
+  constexpr double tolerance = 1e-10;
+  CoulombLanes<Batch> lanes(tolerance);
+  CoulombSolver<double> one_by_one(tolerance);
+  CoulombSolver<long double> reference(1e-15);
+  std::mt19937_64 random(43287);
+  std::size_t compared = 0;
+  for (const std::size_t most = testing::how_many(3'000); compared < most;) {
+    const double left = std::pow(10.0, testing::uniform(random, -8.0, -1.0));
+    const auto design = about_to_lift_off(random, left);
+    if (!design) continue;
+    const double time = static_cast<double>(reference.solve(*design, coulomb).first_jump_time);
+    if (!(time > 0.0 && time < 0.1)) continue;
+    Outcome together;
+    lanes.solve({&*design, 1}, coulomb, {&together, 1});
+    const Outcome alone = one_by_one.solve(*design, coulomb);
+    ++compared;
+    // What is left of the force is known to some roundings of the weight and of what the spin takes of it.
+    const double spin_squared = design->release_spin * design->release_spin;
+    const double allowed = tolerance + 2e-15 * (1.0 + spin_squared) / left;
+    EXPECT_NEAR(together.first_jump_time / time, 1.0, allowed) << testing::told(*design);
+    EXPECT_NEAR(alone.first_jump_time / time, 1.0, allowed) << testing::told(*design);
   }
 }
 

@@ -12,6 +12,7 @@
 ///                  kill: the program is killed in place of the call
 ///   FAULT_STICKY   set: every call after it fails as well
 ///   FAULT_COUNT    a file that the number of calls is written to at the end
+///   FAULT_WAITS    set: nothing is counted before the program calls begin_faults()
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -80,7 +81,7 @@ void copy(char (&to)[4096], const char* from) {
     for (const auto& k : known)
       if (strcmp(k.name, error) == 0) plan.error = k.value, plan.fault = k.fault;
   }
-  plan.ready = true;
+  plan.ready = getenv("FAULT_WAITS") == nullptr;
 }
 
 [[gnu::destructor]] void write_count() {
@@ -177,6 +178,8 @@ mode_t mode_in(int flags, va_list arguments) {
   }
 
 extern "C" {
+
+void begin_faults() { plan.ready = true; }
 
 FAULTY_OPEN(open)
 FAULTY_OPEN(open64)

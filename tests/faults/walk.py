@@ -83,7 +83,8 @@ def argv(words, folder):
     if words.startswith("EXPLORER"):
         return ["/usr/bin/python3", str(TOP / "analysis/explorer"), *shlex.split(words.format(folder))[1:]]
     if words.startswith("PYTHON"):
-        script = ("import sys, leapmap\ntry: leapmap.sweep(*sys.argv[1:3], threads=1, overwrite=len(sys.argv) > 3)\n"
+        # Allocations of libraries that are being loaded (pagmo's) end the program by their own doing: later ones count.
+        script = ("import ctypes, os, sys, leapmap\nif 'FAULT_WAITS' in os.environ: ctypes.CDLL(None).begin_faults()\ntry: leapmap.sweep(*sys.argv[1:3], threads=1, overwrite=len(sys.argv) > 3)\n"
                   "except (OSError, ValueError, MemoryError) as error: sys.exit(f'leapmap: {error!r}')")
         return ["/usr/bin/python3", "-c", script, *shlex.split(words.format(folder))[1:]]
     return [PROGRAM, *shlex.split(words.format(folder))]
@@ -95,6 +96,8 @@ def run(words, folder, **fault):
                        PYTHONPATH=str(Path(PROGRAM).parent / "python"))
     if fault:
         environment.update({"LD_PRELOAD": INJECTOR, **{"FAULT_" + k.upper(): str(v) for k, v in fault.items()}})
+        if words.startswith("PYTHON") and "memory" in fault:
+            environment["FAULT_WAITS"] = "1"
     return subprocess.run(argv(words, folder), env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=SECONDS)
 
 
