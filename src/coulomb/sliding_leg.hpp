@@ -16,7 +16,7 @@ inline constexpr double shortest_angle = 1e-12;                  ///< of 1 + |an
 /// Where the spin vanishes within less than this, panels are by time.
 inline constexpr double vanishing_angle = 0.05;
 inline constexpr double longest_time = 1.0, first_time = 0.25, shortest_time = 1e-12;  ///< [sqrt(R/g)]
-inline constexpr double least_place = 0.02;  ///< see comes_too_soon
+inline constexpr double least_place = 0.02;                                            ///< see comes_too_soon
 
 /// An event's place in a panel has the panel's digits. It comes too soon for its time to have as many in a
 /// panel that lasts long, as at almost no spin, and in one that lasts long beside all that came before it.

@@ -94,8 +94,8 @@ std::optional<Design> about_to_lift_off(std::mt19937_64& random, double left) {
   return design;
 }
 
-/// The first panel of a slide is as long as any: where an event came right after the release, its time had the
-/// digits of the whole panel, and few of its own.
+/// The first panel of a slide is as long as any: where an event came right after the release, its time had
+/// the digits of the whole panel, and few of its own.
 TEST(CoulombLanes, ShortContactsHaveTheDigitsThatAreAskedFor) {
   constexpr double tolerance = 1e-10;
   CoulombLanes<Batch> lanes(tolerance);
