@@ -4,6 +4,8 @@ pybind11_add_module(leapmap-python MODULE NO_EXTRAS src/python/arguments.cpp src
 set_target_properties(leapmap-python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${package}
                                                 CXX_VISIBILITY_PRESET hidden)
 target_link_libraries(leapmap-python PRIVATE leapmap leapmap-options)
+target_compile_options(leapmap-python PRIVATE $<$<CONFIG:Release>:-O1>)
+target_precompile_headers(leapmap-python PRIVATE <pybind11/numpy.h> <pybind11/stl.h> <fmt/format.h>)
 
 file(GLOB modules CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src/python/leapmap ${PROJECT_SOURCE_DIR}/src/python/leapmap/*.py
      ${PROJECT_SOURCE_DIR}/src/python/leapmap/py.typed)

@@ -224,26 +224,25 @@ int run(const BoundariesArguments& arguments) {
 
 }  // namespace
 
-void add_boundaries(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("boundaries", "find where outcomes jump between neighbours of a grid, to rounding");
+void add_boundaries(CommandLine& line, int& status) {
+  Command command =
+      line.command("boundaries", "find where outcomes jump between neighbours of a grid, to rounding");
   auto arguments = std::make_shared<BoundariesArguments>();
-  command->add_option("SPEC|MAP", arguments->input, "a sweep's spec, TOML, or the map that it made, HDF5")
-      ->required()
-      ->check(named_file());
-  command->add_option("-o,--output", arguments->output, "write cliffs and curves to this file, HDF5")
-      ->check(named_file());
-  command->add_option("--csv", arguments->csv, "write the cliffs, a line each, to this file, too")
-      ->check(named_file());
-  command->add_flag("--overwrite", arguments->overwrite, "let --csv replace whatever file has that name");
-  add_set(*command, arguments->overrides, ", for example --set tolerance=1e-12");
-  command->add_flag("--phases", arguments->options.phases,
-                    "with friction: tell sequences of phases apart, too");
-  command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
-      ->transform(whole_number(1, most_threads));
-  command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
-  add_no_lock(*command, arguments->locking);
-  command->footer(
+  command.value("SPEC|MAP", arguments->input, "a sweep's spec, TOML, or the map that it made, HDF5")
+      .required()
+      .check(named_file());
+  command.value("-o,--output", arguments->output, "write cliffs and curves to this file, HDF5")
+      .check(named_file());
+  command.value("--csv", arguments->csv, "write the cliffs, a line each, to this file, too")
+      .check(named_file());
+  command.flag("--overwrite", arguments->overwrite, "let --csv replace whatever file has that name");
+  add_set(command, arguments->overrides, ", for example --set tolerance=1e-12");
+  command.flag("--phases", arguments->options.phases, "with friction: tell sequences of phases apart, too");
+  command.value("--threads", arguments->options.threads, "threads to use; default: all")
+      .check(whole_number(1, most_threads));
+  command.flag("--quiet", arguments->quiet, "print nothing but errors");
+  add_no_lock(command, arguments->locking);
+  command.footer(
       "Each neighbouring pair of the grid whose status, flag or number of the lift-off that jumps differs is "
       "bisected\n"
       "until no number is left between. Where what lies beside a cliff is not what the two designs have, "
@@ -262,7 +261,7 @@ void add_boundaries(CLI::App& app, int& status) {
       "  leapmap boundaries sweeps/slope_mass_ratio.toml -o maps/slope_mass_ratio.cliffs.h5\n"
       "  leapmap boundaries maps/slope_mass_ratio.h5 --csv cliffs.csv\n"
       "A chart of MAP.h5 draws the cliffs of MAP.cliffs.h5 if that is beside it.");
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

@@ -93,30 +93,28 @@ int run(const CheckArguments& arguments) {
 
 }  // namespace
 
-void add_check(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
+void add_check(CommandLine& line, int& status) {
+  Command command = line.command(
       "check", "read all of a map and tell what is wrong in it, and where; exit status 1 if anything is");
   auto arguments = std::make_shared<CheckArguments>();
   CheckOptions& options = arguments->options;
   options.stop_requested = [] { return noted_signal() != 0; };
-  command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")
-      ->required()
-      ->check(named_file());
+  command.value("MAP", arguments->path, "the map, or the .part of one, HDF5").required().check(named_file());
   command
-      ->add_option("--sample", options.sample,
-                   "solve so many designs again by another method and compare; default: 200; 0: none")
-      ->transform(whole_number(0, 1e15));
-  command->add_option("--threads", options.threads, "threads to use; default: all")
-      ->transform(whole_number(1, most_threads));
-  add_no_lock(*command, options.locking);
-  command->footer(
+      .value("--sample", options.sample,
+             "solve so many designs again by another method and compare; default: 200; 0: none")
+      .check(whole_number(0, 1e15));
+  command.value("--threads", options.threads, "threads to use; default: all")
+      .check(whole_number(1, most_threads));
+  add_no_lock(command, options.locking);
+  command.footer(
       "Each chunk has a checksum, the tiles together have one, and so has the file. Quantities are compared "
       "with "
       "what\ntheir fields may hold, designs by status with their count, axes and texts with the spec.\n"
       "Examples:\n"
       "  leapmap check maps/slope_mass_ratio.h5\n"
       "  leapmap check maps/slope_mass_ratio.h5 --sample 10000");
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

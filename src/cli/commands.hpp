@@ -3,39 +3,32 @@
 /// of its run into `status`; errors are exceptions, which main turns into a line and a status.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
+#include "cli/command_line.hpp"
 #include "map/journaled_file.hpp"
 #include "sweep/options.hpp"
 
 namespace leapmap::cli {
 
-void add_sweep(CLI::App& app, int& status);
-void add_hop(CLI::App& app, int& status);
-void add_info(CLI::App& app, int& status);
-void add_precision(CLI::App& app, int& status);
-void add_stability(CLI::App& app, int& status);
-void add_boundaries(CLI::App& app, int& status);
-void add_design(CLI::App& app, int& status);
-void add_fit(CLI::App& app, int& status);
-void add_gait(CLI::App& app, int& status);
-void add_join(CLI::App& app, int& status);
-void add_check(CLI::App& app, int& status);
-
-/// Refuses an empty file name.
-CLI::Validator named_file();
-
-/// Takes a number in a range, or a whole one; whatever else is written is refused, NaN among it. To be used
-/// with transform(): CLI11's own conversion sees the number as leapmap read it.
-CLI::Validator number(const Range& range);
-CLI::Validator whole_number(double least, double most);
-inline constexpr double most_seed = 1e15;
+void add_sweep(CommandLine& line, int& status);
+void add_hop(CommandLine& line, int& status);
+void add_info(CommandLine& line, int& status);
+void add_precision(CommandLine& line, int& status);
+void add_stability(CommandLine& line, int& status);
+void add_boundaries(CommandLine& line, int& status);
+void add_design(CommandLine& line, int& status);
+void add_fit(CommandLine& line, int& status);
+void add_gait(CommandLine& line, int& status);
+void add_join(CommandLine& line, int& status);
+void add_check(CommandLine& line, int& status);
 
 /// --no-lock, of every command that opens files of ours.
-void add_no_lock(CLI::App& command, Locking& locking);
+void add_no_lock(Command& command, Locking& locking);
 
 /// --set KEY=VALUE, which adds to overrides; example: what --help adds of one.
-void add_set(CLI::App& command, std::vector<std::string>& overrides, const std::string& example = {});
+void add_set(Command& command, std::vector<std::string>& overrides, const std::string& example = {});
 
 /// read_spec, which says of a key that is given twice on the command line which value is used: the last.
 Spec read_given_spec(const std::string& path, const std::vector<std::string>& overrides);
@@ -44,6 +37,6 @@ Spec read_given_spec(const std::string& path, const std::vector<std::string>& ov
 void refuse_scatter(const std::vector<std::string>& overrides, const std::string& why);
 
 /// The flag of a spec's key, which adds KEY=VALUE to overrides.
-void add_flag_of(CLI::App& command, const Option& option, std::vector<std::string>& overrides);
+void add_flag_of(Command& command, const Option& option, std::vector<std::string>& overrides);
 
 }  // namespace leapmap::cli

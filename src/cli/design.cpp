@@ -279,46 +279,41 @@ int run(const DesignArguments& arguments) {
 
 }  // namespace
 
-void add_design(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("design", "find the designs that reach their goals best, or a Pareto front");
+void add_design(CommandLine& line, int& status) {
+  Command command = line.command("design", "find the designs that reach their goals best, or a Pareto front");
   auto arguments = std::make_shared<DesignArguments>();
-  command->add_option("SPEC", arguments->spec, "a spec, TOML, whose axes { from, to } are free")
-      ->required()
-      ->check(named_file());
+  command.value("SPEC", arguments->spec, "a spec, TOML, whose axes { from, to } are free")
+      .required()
+      .check(named_file());
   command
-      ->add_option(
-          "-o,--output", arguments->output,
-          "write the designs found to this map, a list, best first; default: output.file of the spec")
-      ->check(named_file());
+      .value("-o,--output", arguments->output,
+             "write the designs found to this map, a list, best first; default: output.file of the spec")
+      .check(named_file());
   command
-      ->add_option("--csv", arguments->csv,
-                   "write them to this file, too, as leapmap sweep --points FILE reads it, with a spec that "
-                   "has no axes")
-      ->check(named_file());
-  add_set(*command, arguments->overrides, ", for example --set 'goal.jump_height={at_least=0.8}'");
+      .value("--csv", arguments->csv,
+             "write them to this file, too, as leapmap sweep --points FILE reads it, with a spec that "
+             "has no axes")
+      .check(named_file());
+  add_set(command, arguments->overrides, ", for example --set 'goal.jump_height={at_least=0.8}'");
   for (const Option* option : hop_options())
-    if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
+    if (option->section == "scene") add_flag_of(command, *option, arguments->overrides);
   command
-      ->add_option("--seed", arguments->options.seed,
-                   "of all chance; the same seed, the same designs; default: 1")
-      ->transform(whole_number(0, most_seed));
+      .value("--seed", arguments->options.seed, "of all chance; the same seed, the same designs; default: 1")
+      .check(whole_number(0, most_seed));
+  command.value("--most", arguments->options.most, "designs told, one a basin; default: 8, of a front 2,048")
+      .check(whole_number(1, 1e5));
   command
-      ->add_option("--most", arguments->options.most,
-                   "designs told, one a basin; default: 8, of a front 2,048")
-      ->transform(whole_number(1, 1e5));
-  command
-      ->add_option("--sample", arguments->options.sample,
-                   "designs of the first, dense sample; default: as many as take a second or two")
-      ->transform(whole_number(16, 1 << 27));
-  command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
-      ->transform(whole_number(1, most_threads));
-  command->add_flag("--json", arguments->json, "print JSON and nothing else");
-  command->add_flag("--overwrite", arguments->overwrite,
-                    "replace a file that is no list of an earlier search, too");
-  command->add_flag("--quiet", arguments->quiet, "print nothing but errors, or that no design does it");
-  add_no_lock(*command, arguments->locking);
-  command->footer(
+      .value("--sample", arguments->options.sample,
+             "designs of the first, dense sample; default: as many as take a second or two")
+      .check(whole_number(16, 1 << 27));
+  command.value("--threads", arguments->options.threads, "threads to use; default: all")
+      .check(whole_number(1, most_threads));
+  command.flag("--json", arguments->json, "print JSON and nothing else");
+  command.flag("--overwrite", arguments->overwrite,
+               "replace a file that is no list of an earlier search, too");
+  command.flag("--quiet", arguments->quiet, "print nothing but errors, or that no design does it");
+  add_no_lock(command, arguments->locking);
+  command.footer(
       "A spec for it:\n"
       "  [design]\n"
       "  slope = { from = \"2 deg\", to = \"20 deg\" }\n"
@@ -335,7 +330,7 @@ void add_design(CLI::App& app, int& status) {
       "Examples:\n"
       "  leapmap design sweeps/questions/highest.toml -o maps/best.h5\n"
       "  leapmap design sweeps/questions/height_against_mass.toml -o maps/front.h5 --csv front.csv");
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

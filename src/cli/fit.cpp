@@ -262,47 +262,47 @@ int run(const FitArguments& arguments) {
 
 }  // namespace
 
-void add_fit(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("fit", "find the release, friction and torque that explain a measured motion");
+void add_fit(CommandLine& line, int& status) {
+  Command command =
+      line.command("fit", "find the release, friction and torque that explain a measured motion");
   auto arguments = std::make_shared<FitArguments>();
   command
-      ->add_option("DATA", arguments->data,
-                   "measurements, CSV: columns t, phi; or t, x_P, y_P, x_O, y_O; or event, value, error")
-      ->required()
-      ->check(named_file());
+      .value("DATA", arguments->data,
+             "measurements, CSV: columns t, phi; or t, x_P, y_P, x_O, y_O; or event, value, error")
+      .required()
+      .check(named_file());
   command
-      ->add_option("SPEC", arguments->spec,
-                   "a spec, TOML: the hoop, and free parameters { from, to }; default: the paper's hoop, "
-                   "its release and friction free")
-      ->check(named_file());
+      .value("SPEC", arguments->spec,
+             "a spec, TOML: the hoop, and free parameters { from, to }; default: the paper's hoop, "
+             "its release and friction free")
+      .check(named_file());
   std::vector<std::string> names{"both"};
   for (const Model& model : models()) names.emplace_back(model.name);
   command
-      ->add_option("--model", arguments->model,
-                   "fit this model only; default: both, and tell which one the data prefer")
-      ->check(CLI::IsMember(names));
+      .value("--model", arguments->model,
+             "fit this model only; default: both, and tell which one the data prefer")
+      .check(one_of(names));
   command
-      ->add_option("--error", arguments->reading.error,
-                   "standard error of a film's angles [rad] or positions [m]; default: told by the residuals")
-      ->transform(number({0.0, 1e300, false}));
-  command->add_option("--scale", arguments->reading.scale, "metres a unit of marker positions, for pixels")
-      ->transform(number({0.0, 1e300, false}));
-  command->add_flag("--y-down", arguments->reading.y_down,
-                    "marker positions y count towards the plane, as rows of a picture do");
-  command->add_flag("--allow-gaps", arguments->reading.allow_gaps, "let films pass that have lines missing");
+      .value("--error", arguments->reading.error,
+             "standard error of a film's angles [rad] or positions [m]; default: told by the residuals")
+      .check(number({0.0, 1e300, false}));
+  command.value("--scale", arguments->reading.scale, "metres a unit of marker positions, for pixels")
+      .check(number({0.0, 1e300, false}));
+  command.flag("--y-down", arguments->reading.y_down,
+               "marker positions y count towards the plane, as rows of a picture do");
+  command.flag("--allow-gaps", arguments->reading.allow_gaps, "let films pass that have lines missing");
   command
-      ->add_option("--csv", arguments->csv,
-                   "write measured numbers, models and residuals to this file, for fit_chart.py")
-      ->check(named_file());
-  command->add_flag("--overwrite", arguments->overwrite, "let --csv replace whatever file has that name");
-  add_set(*command, arguments->overrides, ", for example --set radius=0.05 --set 'slope={from=0.3,to=0.5}'");
-  command->add_option("--seed", arguments->options.seed, "of the coarse map; default: 1")
-      ->transform(whole_number(0, most_seed));
-  command->add_option("--threads", arguments->options.threads, "threads to use; default: all")
-      ->transform(whole_number(1, most_threads));
-  command->add_flag("--json", arguments->json, "print JSON and nothing else");
-  command->footer(
+      .value("--csv", arguments->csv,
+             "write measured numbers, models and residuals to this file, for fit_chart.py")
+      .check(named_file());
+  command.flag("--overwrite", arguments->overwrite, "let --csv replace whatever file has that name");
+  add_set(command, arguments->overrides, ", for example --set radius=0.05 --set 'slope={from=0.3,to=0.5}'");
+  command.value("--seed", arguments->options.seed, "of the coarse map; default: 1")
+      .check(whole_number(0, most_seed));
+  command.value("--threads", arguments->options.threads, "threads to use; default: all")
+      .check(whole_number(1, most_threads));
+  command.flag("--json", arguments->json, "print JSON and nothing else");
+  command.footer(
       "Without free parameters of a spec or --set release_angle, release_spin and, where the contact slips, "
       "mu_static are free; with "
       "any only those.\n"
@@ -314,7 +314,7 @@ void add_fit(CLI::App& app, int& status) {
       "  leapmap fit sweeps/paper_events.csv\n"
       "  leapmap fit film.csv hoop.toml --set 'mass_ratio={from=1,to=4}' --csv fit.csv\n"
       "Exit status 1: no hoop of the box does anything like it.");
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

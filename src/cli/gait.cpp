@@ -139,19 +139,19 @@ int run(const GaitArguments& arguments) {
 
 }  // namespace
 
-void add_gait(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("gait", "how one hoop goes on jumping for ever: its periodic jumps, stable or not");
+void add_gait(CommandLine& line, int& status) {
+  Command command =
+      line.command("gait", "how one hoop goes on jumping for ever: its periodic jumps, stable or not");
   auto arguments = std::make_shared<GaitArguments>();
-  command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop")
-      ->check(named_file());
+  command.value("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop")
+      .check(named_file());
   for (const Option* option : hop_options())
-    if (option->key != "jumps") add_flag_of(*command, *option, arguments->flags);
-  add_set(*command, arguments->overrides, ", for example gait.settle=2000");
-  command->add_option("--most-period", arguments->most_period, "longest gait looked for, in jumps; default 2")
-      ->transform(whole_number(1, 16));
-  command->add_flag("--json", arguments->json, "print JSON, with the return map where it was looked at");
-  command->footer(
+    if (option->key != "jumps") add_flag_of(command, *option, arguments->flags);
+  add_set(command, arguments->overrides, ", for example gait.settle=2000");
+  command.value("--most-period", arguments->most_period, "longest gait looked for, in jumps; default 2")
+      .check(whole_number(1, 16));
+  command.flag("--json", arguments->json, "print JSON, with the return map where it was looked at");
+  command.footer(
       "A gait is stable where its multiplier, by which small errors grow from one round to the next, is "
       "below 1 in\n"
       "size. Without slip N = 0 ties spin to angle at a lift-off, so that the map from one lift-off to the "
@@ -159,7 +159,7 @@ void add_gait(CLI::App& app, int& status) {
       "curve: its periodic orbits are looked for, unstable ones too. With friction the gait is told that "
       "the\n"
       "release settles on. The runway counts from one landing to the next.");
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

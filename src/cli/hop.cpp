@@ -309,35 +309,32 @@ int run(const HopArguments& arguments) {
 
 }  // namespace
 
-void add_hop(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("hop", "solve one design and tell its phases, lift-offs and jump");
+void add_hop(CommandLine& line, int& status) {
+  Command command = line.command("hop", "solve one design and tell its phases, lift-offs and jump");
   auto arguments = std::make_shared<HopArguments>();
-  command->add_option("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop")
-      ->check(named_file());
-  for (const Option* option : hop_options()) add_flag_of(*command, *option, arguments->flags);
-  add_set(*command, arguments->overrides);
-  command->add_option("--trace", arguments->trace, "write the motion over time to this HDF5 file")
-      ->check(named_file());
+  command.value("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop")
+      .check(named_file());
+  for (const Option* option : hop_options()) add_flag_of(command, *option, arguments->flags);
+  add_set(command, arguments->overrides);
+  command.value("--trace", arguments->trace, "write the motion over time to this HDF5 file")
+      .check(named_file());
+  command.value("--trace-interval", arguments->trace_interval, "seconds between its samples; default 0.001")
+      .needs("--trace")
+      .check(number({1e-9, 1e9}));
   command
-      ->add_option("--trace-interval", arguments->trace_interval,
-                   "seconds between its samples; default 0.001")
-      ->needs("--trace")
-      ->transform(number({1e-9, 1e9}));
-  command
-      ->add_option("--mass", arguments->mass,
-                   "kilograms of hoop and weight together, for what --drive-torque asks of a motor; default "
-                   "0.0282, the paper's hoop")
-      ->transform(number({1e-9, 1e9}));
-  command->add_flag("--gradient", arguments->gradient,
-                    "tell the derivatives of every quantity by every parameter, too");
-  command->add_flag(
-      "--scatter", arguments->scatter,
-      "tell what becomes of the design as it is made, by the spec's [scatter] and [goal]: yield, "
-      "quantiles, which tolerance matters");
-  command->add_flag("--json", arguments->json, "print JSON, under the map's names and units");
-  command->footer(options_help());
-  add_no_lock(*command, arguments->locking);
-  command->callback([arguments, &status] { status = run(*arguments); });
+      .value("--mass", arguments->mass,
+             "kilograms of hoop and weight together, for what --drive-torque asks of a motor; default "
+             "0.0282, the paper's hoop")
+      .check(number({1e-9, 1e9}));
+  command.flag("--gradient", arguments->gradient,
+               "tell the derivatives of every quantity by every parameter, too");
+  command.flag("--scatter", arguments->scatter,
+               "tell what becomes of the design as it is made, by the spec's [scatter] and [goal]: yield, "
+               "quantiles, which tolerance matters");
+  command.flag("--json", arguments->json, "print JSON, under the map's names and units");
+  command.footer(options_help());
+  add_no_lock(command, arguments->locking);
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

@@ -294,39 +294,33 @@ int run(const InfoArguments& arguments) {
 
 }  // namespace
 
-void add_info(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("info", "tell what is in a map: axes, statuses, extremes and where they are");
+void add_info(CommandLine& line, int& status) {
+  Command command =
+      line.command("info", "tell what is in a map: axes, statuses, extremes and where they are");
   auto arguments = std::make_shared<InfoArguments>();
-  command->add_option("MAP", arguments->path, "the map, or the .part of one, HDF5")
-      ->required()
-      ->check(named_file());
-  command->add_flag("--spec", arguments->only_spec, "print the resolved spec that made it, and nothing else");
+  command.value("MAP", arguments->path, "the map, or the .part of one, HDF5").required().check(named_file());
+  command.flag("--spec", arguments->only_spec, "print the resolved spec that made it, and nothing else");
   command
-      ->add_flag("--failed", arguments->failed,
-                 "list the failed designs, each as the command that reproduces it")
-      ->excludes("--spec");
+      .flag("--failed", arguments->failed, "list the failed designs, each as the command that reproduces it")
+      .excludes("--spec");
   command
-      ->add_option("--at", arguments->at,
-                   "AXIS=VALUE,...: tell a design's outcome and gradient, and the nearest cliffs around it")
-      ->check(CLI::Validator(
-          [](const std::string& at) {
-            return at.empty() ? std::string("is empty; allowed: AXIS=VALUE,...") : "";
-          },
-          ""))
-      ->excludes("--spec")
-      ->excludes("--failed");
-  command->add_option("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
-      ->needs("--failed")
-      ->transform(whole_number(0, 1e15));
-  add_no_lock(*command, arguments->locking);
-  command->footer(
+      .value("--at", arguments->at,
+             "AXIS=VALUE,...: tell a design's outcome and gradient, and the nearest cliffs around it")
+      .check(
+          [](std::string& at) { return at.empty() ? std::string("is empty; allowed: AXIS=VALUE,...") : ""; })
+      .excludes("--spec")
+      .excludes("--failed");
+  command.value("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
+      .needs("--failed")
+      .check(whole_number(0, 1e15));
+  add_no_lock(command, arguments->locking);
+  command.footer(
       "Examples:\n"
       "  leapmap info m.h5                                       axes, statuses, extremes\n"
       "  leapmap info m.h5 --spec > again.toml                   the spec that makes it again\n"
       "  leapmap info m.h5 --at slope=0.4,mass_ratio=2.4         one design, and how far the next cliff is\n"
       "  leapmap info m.h5 --failed --limit 3                    commands that show what failed");
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

@@ -55,32 +55,31 @@ int run(JoinArguments& arguments) {
 
 }  // namespace
 
-void add_join(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("join", "make one map of the shards that sweeps with --shard I/N left beside it");
+void add_join(CommandLine& line, int& status) {
+  Command command =
+      line.command("join", "make one map of the shards that sweeps with --shard I/N left beside it");
   auto arguments = std::make_shared<JoinArguments>();
+  command.value("MAP", arguments->map, "the map to make; its shards are MAP.1-of-N.h5 and so on, and stay")
+      .required()
+      .check(named_file());
   command
-      ->add_option("MAP", arguments->map, "the map to make; its shards are MAP.1-of-N.h5 and so on, and stay")
-      ->required()
-      ->check(named_file());
-  command
-      ->add_option("--shards", arguments->options.shards,
-                   "how many shards it has; default: as many as their names say")
-      ->transform(whole_number(1, most_shards));
-  command->add_flag(
+      .value("--shards", arguments->options.shards,
+             "how many shards it has; default: as many as their names say")
+      .check(whole_number(1, most_shards));
+  command.flag(
       "--virtual", arguments->options.as_virtual,
       "leave the values in the shards and look them up there: for a map too large to copy; it needs the "
       "shards beside it");
-  command->add_flag("--overwrite", arguments->options.overwrite, "replace an existing map");
-  add_no_lock(*command, arguments->locking);
-  command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
-  command->footer(
+  command.flag("--overwrite", arguments->options.overwrite, "replace an existing map");
+  add_no_lock(command, arguments->locking);
+  command.flag("--quiet", arguments->quiet, "print nothing but errors");
+  command.footer(
       "Examples:\n"
       "  for i in 1 2 3; do leapmap sweep s.toml -o m.h5 --shard $i/3; done     on one machine or many\n"
       "  leapmap join m.h5                                                      the map of one sweep, bit "
       "for bit\n"
       "On a cluster: sweeps/cluster/README.md.");
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

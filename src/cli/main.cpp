@@ -3,18 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <iostream>
 #include <new>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/version.hpp"
-#include "support/number.hpp"
 #include "support/posix.hpp"
 
 namespace {
@@ -34,10 +31,10 @@ int complain(int status, std::string_view what) noexcept {
 /// Reads the command line, runs its command, and turns errors into a line and a status.
 int run(int argc, char** argv) {
   int status = done;
-  CLI::App app{
+  leapmap::cli::CommandLine line(
       "leapmap maps the jumps of passive hoops: thin hoops with an off-centre mass that roll down a plane "
-      "and leap."};
-  app.footer(
+      "and leap.",
+
       "Examples:\n"
       "  leapmap hop                                       the paper's hoop: phases, times, the jump\n"
       "  leapmap hop --slope 30deg --trace hop.h5          another slope, its motion written to a file\n"
@@ -49,39 +46,31 @@ int run(int argc, char** argv) {
       "motion\n"
       "  leapmap check maps/slope_mass_ratio.h5            whether it is what was written, and right\n"
       "Exit status: 0 done, 1 failure or failed audit, 2 bad usage or input, 3 input/output, 130/143 "
-      "interrupted.");
-  app.set_version_flag("--version", fmt::format("leapmap {} (git {}), using {}", leapmap::program_version(),
-                                                leapmap::git_revision(), leapmap::instruction_set()));
-  app.require_subcommand(1);
-  app.fallthrough();  // so that it may stand after the command, too
-  app.add_option_function<std::string>(
-         "--instruction-set", [](const std::string& name) { leapmap::use_instruction_set(name); },
-         fmt::format(
-             "solve by a lower instruction set than the best of this machine, where bits should agree "
-             "with another "
-             "machine's; one of {}",
-             fmt::join(leapmap::instruction_sets(), ", ")))
-      ->trigger_on_parse();
-  leapmap::cli::add_sweep(app, status);
-  leapmap::cli::add_hop(app, status);
-  leapmap::cli::add_info(app, status);
-  leapmap::cli::add_boundaries(app, status);
-  leapmap::cli::add_design(app, status);
-  leapmap::cli::add_fit(app, status);
-  leapmap::cli::add_gait(app, status);
-  leapmap::cli::add_join(app, status);
-  leapmap::cli::add_check(app, status);
-  leapmap::cli::add_precision(app, status);
-  leapmap::cli::add_stability(app, status);
+      "interrupted.",
+      fmt::format("leapmap {} (git {}), using {}", leapmap::program_version(), leapmap::git_revision(),
+                  leapmap::instruction_set()));
+  line.shared()
+      .value(
+          "--instruction-set", [](const std::string& name) { leapmap::use_instruction_set(name); },
+          fmt::format(
+              "solve by a lower instruction set than the best of this machine, where bits should agree "
+              "with another machine's; one of {}",
+              fmt::join(leapmap::instruction_sets(), ", ")))
+      .at_once();
+  leapmap::cli::add_sweep(line, status);
+  leapmap::cli::add_hop(line, status);
+  leapmap::cli::add_info(line, status);
+  leapmap::cli::add_boundaries(line, status);
+  leapmap::cli::add_design(line, status);
+  leapmap::cli::add_fit(line, status);
+  leapmap::cli::add_gait(line, status);
+  leapmap::cli::add_join(line, status);
+  leapmap::cli::add_check(line, status);
+  leapmap::cli::add_precision(line, status);
+  leapmap::cli::add_stability(line, status);
   try {
-    app.parse(argc, argv);
+    line.run(argc, argv);
     leapmap::cli::flush_out();
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {  // --help, --version
-      app.exit(error);
-      return std::cout.flush() ? done : complain(io_failure, "standard output: cannot be written");
-    }
-    return complain(bad_input, fmt::format("{} (leapmap --help, leapmap COMMAND --help)", error.what()));
   } catch (const leapmap::InputError& error) {
     return complain(bad_input, error.what());
   } catch (const leapmap::IoError& error) {
@@ -96,49 +85,16 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-CLI::Validator leapmap::cli::named_file() {
-  return {[](const std::string& name) {
-            return name.empty() ? std::string("is empty; allowed: a file's name") : "";
-          },
-          ""};
-}
-
-CLI::Validator leapmap::cli::number(const Range& range) {
-  return {[range](std::string& text) {
-            const auto value = number_in(text);
-            if (!value || !range.holds(*value))
-              return fmt::format("'{}' is {}; allowed: {}", text, value ? "out of range" : "not a number",
-                                 allowed_values(range, ""));
-            text = fmt::format("{}", *value);
-            return std::string();
-          },
-          ""};
-}
-
-CLI::Validator leapmap::cli::whole_number(double least, double most) {
-  return {[range = Range{least, most}](std::string& text) {
-            const auto value = number_in(text);
-            if (!value || *value != std::floor(*value) || !range.holds(*value))
-              return fmt::format("'{}' is {}; allowed: {}", text, value ? "no such number" : "not a number",
-                                 allowed_values(range, "", "a whole number"));
-            text = fmt::format("{}", static_cast<long long>(*value));
-            return std::string();
-          },
-          ""};
-}
-
-void leapmap::cli::add_no_lock(CLI::App& command, Locking& locking) {
-  command.add_flag_callback(
+void leapmap::cli::add_no_lock(Command& command, Locking& locking) {
+  command.flag(
       "--no-lock", [&locking] { locking = Locking::if_possible; },
       "do without locks on a file system that has none; make sure that nothing else uses the file. Elsewhere "
       "a file in use is refused all the same");
 }
 
-void leapmap::cli::add_set(CLI::App& command, std::vector<std::string>& overrides,
+void leapmap::cli::add_set(Command& command, std::vector<std::string>& overrides,
                            const std::string& example) {
-  command.add_option("--set", overrides, "KEY=VALUE: override a key of the spec" + example)
-      ->expected(1)
-      ->take_all();
+  command.value("--set", overrides, "KEY=VALUE: override a key of the spec" + example);
 }
 
 leapmap::Spec leapmap::cli::read_given_spec(const std::string& path,
@@ -168,8 +124,8 @@ void leapmap::cli::refuse_scatter(const std::vector<std::string>& overrides, con
       if (set.starts_with(begin)) throw InputError("--set " + set + ": has no use here; " + why);
 }
 
-void leapmap::cli::add_flag_of(CLI::App& command, const Option& option, std::vector<std::string>& overrides) {
-  command.add_option_function<std::string>(
+void leapmap::cli::add_flag_of(Command& command, const Option& option, std::vector<std::string>& overrides) {
+  command.value(
       flag_of(option),
       [&option, &overrides](const std::string& value) {
         overrides.push_back(fmt::format("{}.{}={}", option.section, option.key, value));

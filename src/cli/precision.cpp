@@ -149,53 +149,51 @@ int run(PrecisionArguments arguments, bool designs_given) {
 
 }  // namespace
 
-void add_precision(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
+void add_precision(CommandLine& line, int& status) {
+  Command command = line.command(
       "precision",
       "measure speed against accuracy: every method at every setting on the same designs, in one run");
   auto arguments = std::make_shared<PrecisionArguments>();
-  command->add_option("-o,--output", arguments->table, "the table to write, HDF5; default: maps/precision.h5")
-      ->check(named_file());
-  auto* designs =
-      command
-          ->add_option("--designs", arguments->options.designs, "random designs; default: 200, 40 if quick")
-          ->transform(whole_number(1, 1e6));
-  auto* seed = command->add_option("--seed", arguments->options.seed, "of the random designs; default: 1")
-                   ->transform(whole_number(0, most_seed));
+  command.value("-o,--output", arguments->table, "the table to write, HDF5; default: maps/precision.h5")
+      .check(named_file());
+  const Flag designs =
+      command.value("--designs", arguments->options.designs, "random designs; default: 200, 40 if quick")
+          .check(whole_number(1, 1e6));
+  command.value("--seed", arguments->options.seed, "of the random designs; default: 1")
+      .check(whole_number(0, most_seed));
   command
-      ->add_option("--points", arguments->points,
-                   "a CSV list of designs, as for sweeps, in place of random ones and the paper's hoop")
-      ->check(CLI::ExistingFile)
-      ->excludes(designs)
-      ->excludes(seed);
+      .value("--points", arguments->points,
+             "a CSV list of designs, as for sweeps, in place of random ones and the paper's hoop")
+      .check(named_file())
+      .excludes("--designs")
+      .excludes("--seed");
   std::vector<std::string> methods;
   for (const Contestant& contestant : precision_contestants(true))
     if (std::ranges::find(methods, contestant.method) == methods.end()) methods.push_back(contestant.method);
-  command
-      ->add_option("--methods", arguments->options.methods, "only these, with commas between; default: all")
-      ->delimiter(',')
-      ->check(CLI::IsMember(methods));
+  command.value("--methods", arguments->options.methods, "only these, with commas between; default: all")
+      .with_commas()
+      .check(one_of(methods));
   std::vector<std::string> frictions;
   for (const Model& model : models()) frictions.emplace_back(model.name);
   command
-      ->add_option_function<std::string>(
+      .value(
           "--friction",
           [arguments](const std::string& word) {
             arguments->friction = std::ranges::find(models(), word, &Model::name)->friction;
           },
           "sticking (never slips), or coulomb: then random designs have a random mu_static and mu_kinetic")
-      ->check(CLI::IsMember(frictions));
-  command->add_flag("--quick", arguments->options.quick,
-                    "fewer designs and settings, less time for each: within 30 s");
-  command->footer(
+      .check(one_of(frictions));
+  command.flag("--quick", arguments->options.quick,
+               "fewer designs and settings, less time for each: within 30 s");
+  command.footer(
       "Errors are the largest over the designs whose status, flag and number of lift-offs are right, against "
       "exact in\n"
       "long double where gsl-rk8pd at 1e-13 agrees with it, else against that; wrong: the share of the "
       "others. rhs: how often a design asked for the acceleration. One "
       "thread.\n"
       "A method's settings that would take longer than a few seconds are left out.");
-  add_no_lock(*command, arguments->locking);
-  command->callback([arguments, designs, &status] { status = run(*arguments, designs->count() > 0); });
+  add_no_lock(command, arguments->locking);
+  command.runs([arguments, designs, &status] { status = run(*arguments, designs.is_given()); });
 }
 
 }  // namespace leapmap::cli

@@ -150,14 +150,14 @@ int run(const StabilityArguments& arguments) {
 
 }  // namespace
 
-void add_stability(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
+void add_stability(CommandLine& line, int& status) {
+  Command command = line.command(
       "stability", "find where methods fail: thirteen walks into trouble, every method's verdict in each");
   auto arguments = std::make_shared<StabilityArguments>();
-  command->add_option("-o,--output", arguments->table, "the table to write, HDF5; default: maps/stability.h5")
-      ->check(named_file());
-  command->add_flag("--quick", arguments->options.quick, "fewer places on each walk: within a minute");
-  command->footer(
+  command.value("-o,--output", arguments->table, "the table to write, HDF5; default: maps/stability.h5")
+      .check(named_file());
+  command.flag("--quick", arguments->options.quick, "fewer places on each walk: within a minute");
+  command.footer(
       "The cases: needle (a mass on the rim of an ever lighter hoop), release (ever closer to the unstable "
       "equilibrium),\n"
       "graze (across the fold where a pair of lift-offs is born), long (up to 10,000 turns to the jump), "
@@ -189,8 +189,8 @@ void add_stability(CLI::App& app, int& status) {
       "the most\n"
       "right-hand sides that a design took. --quick leaves out places, and so may find a better verdict. One "
       "thread.");
-  add_no_lock(*command, arguments->locking);
-  command->callback([arguments, &status] { status = run(*arguments); });
+  add_no_lock(command, arguments->locking);
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

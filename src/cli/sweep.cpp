@@ -174,72 +174,71 @@ void print_totals(const StatusCounts& totals) {
           name_of(static_cast<Status>(i)));
 }
 
-void add_sweep(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("sweep", "solve the designs of a spec into a map (HDF5)");
+void add_sweep(CommandLine& line, int& status) {
+  Command command = line.command("sweep", "solve the designs of a spec into a map (HDF5)");
   auto arguments = std::make_shared<SweepArguments>();
   command
-      ->add_option("SPEC", arguments->spec,
-                   "the sweep's spec, TOML; default: every key at its default, the paper's hoop")
-      ->check(named_file());
+      .value("SPEC", arguments->spec,
+             "the sweep's spec, TOML; default: every key at its default, the paper's hoop")
+      .check(named_file());
   command
-      ->add_option("-o,--output", arguments->map,
-                   "the map to write, in a folder made if need be; default: output.file of the spec")
-      ->check(named_file());
-  add_set(*command, arguments->overrides, ", for example --set tolerance=1e-12");
+      .value("-o,--output", arguments->map,
+             "the map to write, in a folder made if need be; default: output.file of the spec")
+      .check(named_file());
+  add_set(command, arguments->overrides, ", for example --set tolerance=1e-12");
   command
-      ->add_option_function<std::string>(
+      .value(
           "--points",
-          [arguments](const std::string& file) { arguments->overrides.push_back("design.points=" + file); },
+          [arguments](const std::string& file) { arguments->overrides.push_back(fmt::format("design.points={}", file)); },
           "solve the designs of this CSV file in place of axes, one a line, as leapmap design --csv writes "
           "them")
-      ->check(named_file());
+      .check(named_file());
 
   for (const Option* option : hop_options())
-    if (option->section == "scene") add_flag_of(*command, *option, arguments->overrides);
-  command->add_option("--threads", arguments->threads, "threads to use; default: all")
-      ->transform(whole_number(1, most_threads));
-  auto* resume = command->add_flag("--resume", arguments->resume,
-                                   "go on with the MAP.part that an interrupted sweep left, if there is one");
-  auto* overwrite = command->add_flag("--overwrite", arguments->overwrite,
-                                      "replace an existing map; without --resume its .part as well");
+    if (option->section == "scene") add_flag_of(command, *option, arguments->overrides);
+  command.value("--threads", arguments->threads, "threads to use; default: all")
+      .check(whole_number(1, most_threads));
+  command.flag("--resume", arguments->resume,
+               "go on with the MAP.part that an interrupted sweep left, if there is one");
+  command.flag("--overwrite", arguments->overwrite,
+               "replace an existing map; without --resume its .part as well");
   command
-      ->add_flag(
-          "--retry-failed", arguments->retry_failed,
-          "solve the failed designs of an existing map again: by exact if it was made by a stepper, by "
-          "gsl-rk8pd if it was made by exact, at tolerance 1e-12; or as --set says, if that is another way "
-          "than "
-          "the map's (method, tolerance, max_steps, ...)")
-      ->excludes(resume)
-      ->excludes(overwrite);
+      .flag("--retry-failed", arguments->retry_failed,
+            "solve the failed designs of an existing map again: by exact if it was made by a stepper, by "
+            "gsl-rk8pd if it was made by exact, at tolerance 1e-12; or as --set says, if that is another way "
+            "than "
+            "the map's (method, tolerance, max_steps, ...)")
+      .excludes("--resume")
+      .excludes("--overwrite");
   command
-      ->add_option("--commit-interval", arguments->commit_interval,
-                   "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
-                   "hand; default: 1")
-      ->transform(number({0.0, 86400.0}));
+      .value("--commit-interval", arguments->commit_interval,
+             "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
+             "hand; default: 1")
+      .check(number({0.0, 86400.0}));
   command
-      ->add_option_function<std::string>(
+      .value(
           "--shard", [arguments](const std::string& text) { arguments->shard = parse_shard(text); },
           "I/N: solve part I of N of the map only, into a file of its own beside it, MAP.I-of-N.h5; leapmap "
           "join "
           "MAP makes one of all. Parts are whole tiles, each as much work as the others")
-      ->excludes(command->get_option("--retry-failed"));
-  add_no_lock(*command, arguments->locking);
-  CLI::Option* dry = command->add_flag("--dry-run", arguments->dry_run,
-                                       "tell designs, memory, file size and time, and compute nothing else");
-  command->add_option("--shards", arguments->shards, "of --dry-run: how each of so many parts would fare")
-      ->needs(dry)
-      ->excludes(command->get_option("--shard"))
-      ->excludes(command->get_option("--retry-failed"))
-      ->transform(whole_number(1, most_shards));
+      .excludes("--retry-failed");
+  add_no_lock(command, arguments->locking);
+  command.flag("--dry-run", arguments->dry_run,
+               "tell designs, memory, file size and time, and compute nothing else");
+  command.value("--shards", arguments->shards, "of --dry-run: how each of so many parts would fare")
+      .needs("--dry-run")
+      .excludes("--shard")
+      .excludes("--retry-failed")
+      .check(whole_number(1, most_shards));
   command
-      ->add_option("--time-limit", arguments->time_limit,
-                   "of --dry-run: hours that a job may take, which tells how many parts there must be")
-      ->needs(dry)
-      ->excludes(command->get_option("--shard"))
-      ->excludes(command->get_option("--retry-failed"))
-      ->transform(number({1e-3, 1e4}));
-  command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
-  command->footer(
+      .value("--time-limit", arguments->time_limit,
+             "of --dry-run: hours that a job may take, which tells how many parts there must be")
+      .needs("--dry-run")
+      .excludes("--shard")
+      .excludes("--retry-failed")
+      .check(number({1e-3, 1e4}));
+  command.flag("--quiet", arguments->quiet, "print nothing but errors");
+  command.footer(
       "Examples:\n"
       "  leapmap sweep s.toml -o m.h5 --dry-run                  what it would take\n"
       "  leapmap sweep s.toml -o m.h5                            Ctrl-C stops it and keeps m.h5.part\n"
@@ -248,7 +247,7 @@ void add_sweep(CLI::App& app, int& status) {
       "  leapmap sweep s.toml -o n.h5 --set 'slope={from=0.1,to=0.8,count=99}' --set "
       "output.precision=f4\n\n" +
       options_help());
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command.runs([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace leapmap::cli

@@ -159,8 +159,10 @@ class PhaseMachine {
                                                                      : next == ContactPhase::slides_forwards
                                                                          ? 1
                                                                          : -1};
-    if (begin_phase(phase.phase, phase.direction)) return ended_as(Status::stalled);
-    return phase;
+    if (!begin_phase(phase.phase, phase.direction)) return phase;
+    ended_as(Status::stalled);
+    outcome_.slip_distance = Outcome::none;  // it goes on slipping, a little less on every swing
+    return std::nullopt;
   }
 
   /// Returns whether the hoop rocks to rest: the phase is then its last.

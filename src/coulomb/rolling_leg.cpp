@@ -31,7 +31,11 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
     if (end == PhaseEnd::stalls) {
       if (!back) x = refined_turn(begin, x, S(0), S(x + S(1)));
       angle = begin.release + x;
-      if (turned == 0 && x > S(0)) taken = duration_to_rest(begin, x);
+      // Within a rounding of the angle the motion is uniformly slowed, and panels have nothing to resolve.
+      if (turned == 0 && x > S(0))
+        taken = angle == begin.release
+                    ? contact_inertia(seen_hoop, begin.release_trig) * std::abs(at.spin / begin.push)
+                    : duration_to_rest(begin, x);
     } else if (x > S(0)) {
       taken = duration(begin, x);
       if (std::isnan(taken)) taken = duration_near_rest(begin, x);

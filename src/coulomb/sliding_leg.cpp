@@ -151,11 +151,13 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       const S left = edges.on(way).left;
       if (!std::isnan(left)) longest = std::min(longest, S(share_of_edge) * left);
     }
+    // Near the edge panels are as short as what is left, to which all that happens there is in proportion.
+    const S shortest = S(shortest_angle) * (slide.edge ? slide.left : S(1) + std::abs(at.angle)),
+            briefest = S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1));
     typename Panels::Stretch stretch{};
     bool by_angle = at.spin != S(0) || start.angular != S(0);
     if (by_angle) {
       length = std::min(length, longest);
-      const S shortest = S(shortest_angle) * (slide.edge ? slide.left : S(1) + std::abs(at.angle));
       for (;; length *= shrink(panel)) {
         stretch = Panels::stretch_of(at.spin, S(way * start.angular), length);
         panels_.solve_by_angle(slide, at, stretch, panel);
@@ -169,8 +171,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       for (;; duration *= shrink(panel)) {
         panels_.solve_by_time(slide, at, duration, panel);
         if (panel.excess <= S(1)) break;
-        if (!(duration > S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1))))
-          return panel.indeterminate ? PhaseEnd::indeterminate : PhaseEnd::failed;
+        if (!(duration > briefest)) return panel.indeterminate ? PhaseEnd::indeterminate : PhaseEnd::failed;
       }
     }
     const Event event = first_event(runway, direction, panel);
@@ -179,12 +180,11 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       ++refined;
       continue;
     }
-    if (comes_too_soon(event.place, at.time, S(panel.end.time - at.time)) && ++shortened < most_shortened) {
-      const S to = std::max(S(2) * event.place, S(0.5 * least_place));
-      if (by_angle)
-        length = stretch.angle(to);
-      else
-        duration *= to;
+    const S to = std::max(S(2) * event.place, S(0.5 * least_place));
+    const S shorter = by_angle ? stretch.angle(to) : duration * to;
+    if (comes_too_soon(event.place, at.time, S(panel.end.time - at.time)) &&
+        shorter > (by_angle ? shortest : briefest) && ++shortened < most_shortened) {
+      (by_angle ? length : duration) = shorter;
       continue;
     }
     refined = shortened = 0;

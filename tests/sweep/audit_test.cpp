@@ -204,6 +204,23 @@ TEST(Audit, LooksAtEveryQuantity) {
   }
 }
 
+/// A hoop that slips a little less on every swing is seen to rock to rest long before it does: what it has
+/// slid until then is not what it slides to the end.
+TEST(Audit, TellsNoSlipOfAHoopThatRocksToRest) {
+  const Spec spec = read_spec(
+      "", {"friction=coulomb", "runway=5", "slope=-0.12186865540293429", "mass_ratio=6.919339825756405",
+           "offset_ratio=0.769311213770517", "inertia_factor=0.559395597147864",
+           "release_angle=1.8161537140794959", "drive_torque=0.30999656790168906",
+           "mu_static=0.1612873630855277", "mu_kinetic=0.1602475764819464", "audit=1"});
+  const std::vector<AuditSample> drawn = drawn_from(spec);
+  ASSERT_EQ(drawn.size(), 1u);
+  EXPECT_EQ(drawn[0].outcome.status, Status::stalled);
+  EXPECT_TRUE(std::isnan(drawn[0].outcome.slip_distance));
+  const AuditReport report = audit(spec, drawn, 1);
+  EXPECT_EQ(report.refereed, 1u);
+  EXPECT_FALSE(disagree(report));
+}
+
 TEST(Audit, DoesNotDependOnTheNumberOfThreads) {
   const Spec spec = grid("exact", "1e-5", "0.3");
   const AuditReport one = audit(spec, drawn_from(spec, 1), 1), four = audit(spec, drawn_from(spec, 4), 4);

@@ -147,7 +147,7 @@ TEST(Shards, AreNamedAndRead) {
     EXPECT_FALSE(shard_by_name(none)) << none;
 }
 
-TEST(Tiling, APartHasSomeOfTheTilesInTheirPlaces) {
+TEST(PartOfATiling, HasSomeOfTheTilesInTheirPlaces) {
   const Tiling whole({13, 9}, {4, 4});
   const Tiling some = whole.part({1, 5, 11});
   EXPECT_TRUE(some.is_part() && !whole.is_part());
