@@ -1,4 +1,4 @@
-# What else is installed, and the Debian package: cpack -G DEB --config build/release/CPackConfig.cmake
+# What else is installed, and the Debian package: cpack -G DEB --config build/package/CPackConfig.cmake, of the preset package
 if(EXISTS ${LEAPMAP_PYTHON})
   set(manual ${PROJECT_BINARY_DIR}/leapmap.1.gz ${PROJECT_BINARY_DIR}/leapmap.bash)
   add_custom_command(OUTPUT ${manual} DEPENDS leapmap-program src/cli/manual.py VERBATIM

@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what leapmap needs from Debian 12's packages, as root or with sudo; does nothing if all is there.
 #   install_packages.sh main    to build, to run and to draw
-#   install_packages.sh tests   for the tests and benchmarks as well
+#   install_packages.sh tests   for the tests as well
+#   install_packages.sh all     for both tiers of tests and the benchmarks
 set -eu
 packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev libcli11-dev libxsimd-dev
   libdeflate-dev zlib1g-dev libeigen3-dev libpagmo-dev libnlopt-cxx-dev libboost-dev emscripten
   pybind11-dev python3-dev python3 python3-numpy python3-h5py python3-matplotlib python3-xarray"
-if [ "${1:-main}" = tests ]; then
-  packages="$packages libgtest-dev libbenchmark-dev clang-format clang libclang-rt-14-dev libomp-dev hdf5-tools netcdf-bin
-    python3-scipy python3-openturns python3-pytest python3-netcdf4 python3-h5netcdf python3-selenium
-    chromium chromium-driver poppler-utils qemu-user slurm-wlm munge parallel"
+if [ "${1:-main}" != main ]; then
+  packages="$packages libgtest-dev clang-format hdf5-tools netcdf-bin python3-scipy python3-openturns python3-pytest python3-netcdf4
+    python3-h5netcdf python3-selenium chromium chromium-driver poppler-utils parallel"
+fi
+if [ "${1:-main}" = all ]; then
+  packages="$packages libbenchmark-dev clang libclang-rt-14-dev libomp-dev qemu-user slurm-wlm munge firefox-esr"
 fi
 missing=""
 for package in $packages; do

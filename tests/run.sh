@@ -1,19 +1,38 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The README's second command: installs what Debian provides, builds with ASan and UBSan, runs the C++ tests there,
-# fuzzes the readers for ten seconds, then builds for use and runs all tests: C++, the program from outside, the readers of its files, the charts.
+# The README's second command: installs what Debian provides, builds for use and runs the first tier of tests, all that find
+# faults quickly: C++, the program from outside, the Python module, the charts and the page.
+#   tests/run.sh --all    and the second tier: sanitizers, every instruction set, fuzzers, all planted errors, calls and
+#                         allocations that fail, large random runs, both browsers. A night on two cores.
 set -eu
 cd "$(dirname "$0")/.."
-sh sweeps/install_packages.sh tests
+case "${1:-}" in
+  "") tier=tests ;;
+  --all) tier=all ;;
+  *) echo "tests/run.sh: '$1' is unknown; allowed: --all" >&2; exit 2 ;;
+esac
+sh sweeps/install_packages.sh $tier
 
-git ls-files 'src/*.[ch]pp' 'tests/*.[ch]pp' | xargs -r clang-format --dry-run -Werror
+cmake --preset release
+cmake --build --preset release --target all tests
+ctest --preset release --no-tests=error -j 2 -LE slow --output-junit first_tier.xml
+[ $tier = all ] || exit 0
 
-cmake --preset dev -DLEAPMAP_TESTS=ON
-cmake --build --preset dev --target leapmap-tests
-ctest --preset dev --no-tests=error -j 2 -LE slow -E '^(cli|python|analysis|mutation)\.'
-
-sh tests/fuzz/run.sh 10
-
-cmake --preset release -DLEAPMAP_STRICT=ON -DLEAPMAP_TESTS=ON -DLEAPMAP_BENCHMARKS=ON
-cmake --build --preset release
-ctest --preset release --no-tests=error -j 2 -LE slow
+failed=""
+stage() {  # name, command...: all stages run, whichever fails
+  echo; echo "== $1"
+  name=$1; shift
+  "$@" || failed="$failed, $name"
+}
+instruction_sets() {
+  cmake --preset package && cmake --build --preset package --target all tests &&
+    ctest --preset package --no-tests=error -R '^cli\.test_(instruction_sets|install|determinism)$'
+}
+stage "sanitizers over all C++ tests" sh tests/sanitized.sh
+stage "every instruction set" instruction_sets
+stage "fuzzers" sh tests/fuzz/run.sh 600
+stage "all planted errors" env LEAPMAP_BUILD=build/release /usr/bin/python3 tests/mutation/mutate.py
+stage "large random runs and slow tests" ctest --preset release --no-tests=error -L slow --output-junit second_tier.xml
+stage "calls and allocations that fail" sh tests/faults/run.sh
+/usr/bin/python3 tests/tiers.py --write
+[ -z "$failed" ] || { echo "failed: ${failed#, }" >&2; exit 1; }

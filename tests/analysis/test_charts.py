@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib import image
 from matplotlib.colors import to_rgb
-from support.program import TOP, finished, leapmap, sweep
+from support.program import TOP, finished, leapmap, scripted, sweep
 
 CHART = """
 [design]
@@ -22,8 +22,7 @@ tolerance = 1e-6
 """
 
 
-def draw(script, *arguments):
-    return finished("/usr/bin/python3", TOP / "analysis" / script, *arguments)
+draw = scripted
 
 
 def texts(svg):
@@ -455,12 +454,14 @@ def test_a_front_has_its_gaps_its_cloud_and_three_designs_called_out(tmp_path, m
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "jump_hight" in refused.stderr
 
 
-def test_a_fit_of_events_is_a_bar_each(tmp_path):
-    assert leapmap("fit", TOP / "sweeps/paper_events.csv", "--csv", tmp_path / "fit.csv").returncode == 0
+@pytest.mark.parametrize("models", [["never slips"], pytest.param(["never slips", "slips"], marks=pytest.mark.slow)])
+def test_a_fit_of_events_is_a_bar_each(models, tmp_path):
+    flags = ["--model", "sticking"] if models == ["never slips"] else []
+    assert leapmap("fit", TOP / "sweeps/paper_events.csv", "--csv", tmp_path / "fit.csv", *flags).returncode == 0
     done = draw("fit_chart.py", tmp_path / "fit.csv", "-o", tmp_path / "fit")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "fit.svg")
-    for word in ("apex_time 0.129", "jump_height 1", "never slips", "slips"):
+    for word in ("apex_time 0.129", "jump_height 1", *models):
         assert word in words, word
     (tmp_path / "other.csv").write_text("a,b\n1,2\n")
     refused = draw("fit_chart.py", tmp_path / "other.csv", "-o", tmp_path / "x")

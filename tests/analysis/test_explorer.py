@@ -14,7 +14,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
 from support.browser import agrees, numbers, opened, told_by_leapmap
-from support.program import PROGRAM, TOP, finished, leapmap, sweep
+from support.program import PROGRAM, finished, leapmap, scripted, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
 ARTEFACTS = Path(os.environ["LEAPMAP_BUILD"]) / "artefacts"
@@ -28,7 +28,7 @@ offset_ratio = { values = [0.6, 1.0] }
 
 
 def explorer(*arguments):
-    return finished("/usr/bin/python3", TOP / "analysis/explorer", *arguments, "--module", MODULE)
+    return scripted("explorer", *arguments, "--module", MODULE)
 
 
 def made(path):
@@ -441,7 +441,7 @@ def test_pixels_beside_a_cliff_are_of_the_side_they_are_on(browser, tmp_path):
 @pytest.mark.parametrize("script,kind", [*KINDS, ("status_chart.py", "codes without a meaning")])
 def test_a_broken_map_is_refused_with_one_line_that_names_it(script, kind, map_file, tmp_path):
     path = broken(map_file, tmp_path, BROKEN[kind])
-    done = finished("/usr/bin/python3", TOP / "analysis" / script, path, "-o", tmp_path / "x.html")
+    done = scripted(script, path, "-o", tmp_path / "x.html")
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and str(path) in done.stderr, done.stderr
     assert not (tmp_path / "x.html").exists()
 
@@ -452,7 +452,7 @@ def test_files_that_are_no_grids_are_refused_with_one_line_that_says_what_to_do(
     for path, word in ((tmp_path / "words.h5", "HDF5"), (tmp_path / "nowhere.h5", "does not exist"), (one_axis, "two axes or more")):
         done = explorer(path, "-o", tmp_path / "x.html")
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
-    done = finished("/usr/bin/python3", TOP / "analysis/explorer", map_file, "-o", tmp_path / "x.html", "--module", tmp_path / "no.wasm")
+    done = scripted("explorer", map_file, "-o", tmp_path / "x.html", "--module", tmp_path / "no.wasm")
     assert done.returncode == 2 and "leapmap-wasm" in done.stderr, done.stderr
     only_status = sweep(tmp_path, SPEC + '[output]\nfields = ["status"]\n', name="status.h5")
     done = explorer(only_status, "-o", tmp_path / "x.html")

@@ -11,14 +11,14 @@ import pytest
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
 from support.browser import agrees, opened, settled, told_by_leapmap
-from support.program import TOP, finished, leapmap, sweep
+from support.program import leapmap, scripted, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
 TOLD = ("jump_height", "jump_time", "first_jump_height", "first_jump_time", "jump_angle", "jump_spin", "apex_time", "flight_time", "jump_distance", "candidates")
 
 
 def page_at(folder, *arguments):
-    done = finished("/usr/bin/python3", TOP / "analysis/explorer", *arguments, "--module", MODULE, "-o", folder / "live.html")
+    done = scripted("explorer", *arguments, "--module", MODULE, "-o", folder / "live.html")
     assert done.returncode == 0, done.stderr
     return folder / "live.html"
 
@@ -75,15 +75,19 @@ def compare(browser, random, count):
     return jumped
 
 
-def test_every_number_is_that_of_leapmap_hop_whatever_is_typed(live):
+TYPED = (("offset_ratio", "0.62"), ("release_angle", "155.5"), ("inertia_factor", "0.8"), ("hop_height", "0.02"), ("release_spin", "0.4"), ("radius", "0.2"), ("gravity", "1.62"), ("runway", "3"))
+
+
+@pytest.mark.parametrize("count", [5, pytest.param(20, marks=pytest.mark.slow)])
+def test_every_number_is_that_of_leapmap_hop_whatever_is_typed(count, live):
     random = np.random.default_rng(5)
-    jumped = compare(live, random, 40)
-    for name, text in (("offset_ratio", "0.62"), ("release_angle", "155.5"), ("inertia_factor", "0.8"), ("hop_height", "0.02"), ("release_spin", "0.4"), ("radius", "0.2"), ("gravity", "1.62"), ("runway", "3")):
+    jumped = compare(live, random, 2 * count)
+    for name, text in TYPED:
         type_in(live, name, text)
         settled(live)
         assert live.find_element("id", "message").text == ""
-        jumped += compare(live, random, 20)
-    assert jumped >= 60
+        jumped += compare(live, random, count)
+    assert jumped >= 3 * count
 
 
 def test_with_friction_too(live):
@@ -386,25 +390,26 @@ def test_a_file_s_map_tells_gaits_of_a_hoop_of_one_s_own_too_and_goes_live_as_it
     assert browser.execute_script("return window.explorer.map.settle") == 60
 
 
-def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(live, tmp_path):
+@pytest.mark.parametrize("jumps", [8, pytest.param(60, marks=pytest.mark.slow)])
+def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps, live, tmp_path):
     asked = "return window.explorer.map.asked.settle"
     live.get("about:blank")
-    live.get(page_at(tmp_path).as_uri() + "#live&x=slope:0.05:0.45&y=mass_ratio:0.3:20&offset_ratio=0.5&runway=20&settle=60&field=gait_height")
-    WebDriverWait(live, 20).until(lambda b: b.execute_script("return window.explorer?.map.asked.settle") == 60)
+    live.get(page_at(tmp_path).as_uri() + "#live&x=slope:0.05:0.45&y=mass_ratio:0.3:20&offset_ratio=0.5&runway=20&settle=%d&field=gait_height" % jumps)
+    WebDriverWait(live, 20).until(lambda b: b.execute_script("return window.explorer?.map.asked.settle") == jumps)
     settled(live)
     # A hoop of one's own is told the same, by the command that the page shows too.
     gait_of_a_hoop_of_ones_own(live)
     settle = live.find_element("id", "settle")
     assert settle.is_displayed()
-    live.execute_script("document.getElementById('map').dataset.whole = 'false'; arguments[0].value = 90; arguments[0].dispatchEvent(new Event('change'))", settle)
+    live.execute_script("document.getElementById('map').dataset.whole = 'false'; arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('change'))", settle, jumps + 4)
     settled(live)
-    assert live.execute_script(asked) == 90 and "settle=90" in live.execute_script("return location.hash")
+    assert live.execute_script(asked) == jumps + 4 and f"settle={jumps + 4}" in live.execute_script("return location.hash")
     live.execute_script("document.getElementById('map').dataset.whole = 'false'")
     live.find_element("id", "undo").click()
     settled(live)
-    assert live.execute_script(asked) == 60 and settle.get_attribute("value") == "60"
+    assert live.execute_script(asked) == jumps and settle.get_attribute("value") == str(jumps)
     show(live, "jump_height")
-    assert not settle.is_displayed() and live.execute_script(asked) == 60, "what is there stays"
+    assert not settle.is_displayed() and live.execute_script(asked) == jumps, "what is there stays"
     show(live, "gait_height")
     assert live.execute_script("return document.getElementById('map').dataset.whole") == "true", "and is not solved again"
     show(live, "jump_height")

@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from support.program import PROGRAM, SMALL, TOP, finished, leapmap, sweep
+from support.program import PROGRAM, SMALL, TOP, leapmap, scripted, sweep
 
 sys.path.insert(0, str(TOP / "analysis"))
 from read_map import NotAMap, read_map  # noqa: E402
@@ -111,7 +111,7 @@ def test_what_leads_out_of_the_file_is_refused_by_all_and_alters_nothing(kind, n
         assert "refused" in done.stderr + done.stdout, (words, done.stdout, done.stderr)
     with pytest.raises(NotAMap, match="refused|damaged"):
         read_map(path)
-    page = finished("/usr/bin/python3", TOP / "analysis/explorer", path)
+    page = scripted("explorer", path)
     assert page.returncode == 2 and page.stderr.count("\n") == 1
     assert (path.read_bytes(), victim.read_bytes()) == before
     assert sorted(p.name for p in tmp_path.iterdir()) == ["map.h5", "other.h5.part", "spec.toml", "victim"]
@@ -220,7 +220,7 @@ def test_the_explorer_spares_its_own_map_and_the_older_page(original, tmp_path):
     path, link = tmp_path / "map.h5", tmp_path / "link.html"
     shutil.copy(original, path)
     link.symlink_to(path)
-    refused = finished("/usr/bin/python3", TOP / "analysis/explorer", path, "-o", link)
+    refused = scripted("explorer", path, "-o", link)
     assert refused.returncode == 2 and path.read_bytes() == original.read_bytes()
     page = tmp_path / "page.html"
     page.write_text("the older page")
@@ -243,7 +243,7 @@ def test_a_strange_map_is_one_line_and_no_traceback(what, change, original, tmp_
         change(m)
     scripts = ["explorer"] if "runway" in what else ["explorer", "design_chart.py", "status_chart.py", "cut_chart.py"]
     for script in scripts:
-        done = finished("/usr/bin/python3", TOP / "analysis" / script, path, "-o", tmp_path / "out")
+        done = scripted(script, path, "-o", tmp_path / "out")
         assert done.returncode == 2 and done.stderr.count("\n") == 1, (script, done.stderr)
 
 
@@ -355,7 +355,7 @@ def test_other_files_are_neither_replaced_nor_emptied(kind, original, tmp_path):
         (tmp_path / place).unlink()
     if kind in ("text", "zeros", "bare"):
         (tmp_path / "page.html").write_bytes(content)
-        assert finished("/usr/bin/python3", TOP / "analysis/explorer", tmp_path / "map.h5", "-o", tmp_path / "page.html").returncode == 2
+        assert scripted("explorer", tmp_path / "map.h5", "-o", tmp_path / "page.html").returncode == 2
         assert (tmp_path / "page.html").read_bytes() == content
 
 

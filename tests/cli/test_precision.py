@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import xarray
-from support.program import TOP, finished, leapmap
+from support.program import leapmap, scripted
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def test_what_the_study_is_for_holds_in_it(table):
 
 
 def test_charts_show_every_method(table, tmp_path):
-    done = finished("/usr/bin/python3", TOP / "analysis" / "precision_chart.py", table[0], "-o", tmp_path / "chart")
+    done = scripted("precision_chart.py", table[0], "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     drawn = {kind: (tmp_path / f"chart_{kind}.svg").read_text() for kind in ("time", "work", "wrong", "order", "model")}
     for method in ("exact", "gsl-rk8pd", "gsl-bsimp", "velocity-verlet"):
@@ -52,5 +52,5 @@ def test_a_table_replaces_a_table_but_nothing_else(table, tmp_path):
     (tmp_path / "notes.h5").write_text("precious")
     done = leapmap("precision", "--quick", "--designs", 1, "-o", tmp_path / "notes.h5")
     assert done.returncode == 2 and (tmp_path / "notes.h5").read_text() == "precious"
-    other = finished("/usr/bin/python3", TOP / "analysis" / "design_chart.py", table[0], "-o", tmp_path / "chart")
+    other = scripted("design_chart.py", table[0], "-o", tmp_path / "chart")
     assert other.returncode == 2 and "leapmap map" in other.stderr

@@ -13,7 +13,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from support.program import PROGRAM, SMALL, TOP, finished, leapmap
+from support.program import PROGRAM, SMALL, TOP, finished, leapmap, scripted
 
 # About a second and a half on two cores, in some 800 tiles.
 SPEC = """
@@ -236,7 +236,7 @@ method = "gsl-rk8pd"
 audit = 0
 """)
     assert stopped(tmp_path, 500_000)[0] == 130
-    chart = finished("/usr/bin/python3", TOP / "analysis" / "design_chart.py", tmp_path / "map.h5.part", "-o", tmp_path / "chart")
+    chart = scripted("design_chart.py", tmp_path / "map.h5.part", "-o", tmp_path / "chart")
     assert chart.returncode == 0 and "INCOMPLETE" in chart.stderr and (tmp_path / "chart_jump_height.png").exists()
 
 

@@ -9,7 +9,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from support.program import PROGRAM, SMALL, TOP, finished, leapmap, sweep
+from support.program import PROGRAM, SMALL, TOP, finished, leapmap, scripted, sweep
 
 COULOMB = """
 [scene]
@@ -148,7 +148,7 @@ def test_a_virtual_map_is_not_changed_and_not_drawn(tmp_path):
     before = [path.read_bytes() for path in sorted(tmp_path.glob("*.h5"))]
     retried = leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--retry-failed")
     assert retried.returncode != 0 and "--virtual" in retried.stderr, retried
-    drawn = finished("/usr/bin/python3", TOP / "analysis/status_chart.py", joined, "-o", tmp_path / "x.png")
+    drawn = scripted("status_chart.py", joined, "-o", tmp_path / "x.png")
     assert drawn.returncode != 0 and "--virtual" in drawn.stderr, drawn
     assert [path.read_bytes() for path in sorted(tmp_path.glob("*.h5"))] == before
 

@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-from support.program import TOP, finished, leapmap
+from support.program import leapmap, scripted
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_every_method_has_a_verdict_in_every_case_and_no_default_is_wrong_withou
 
 
 def test_charts_of_all_cases_show_the_verdicts(table, tmp_path):
-    done = finished("/usr/bin/python3", TOP / "analysis" / "stability_chart.py", table[0], "-o", tmp_path / "chart")
+    done = scripted("stability_chart.py", table[0], "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     assert "wrong, silent" in (tmp_path / "chart.svg").read_text()
     for case in CASES:
@@ -44,7 +44,7 @@ def test_charts_of_all_cases_show_the_verdicts(table, tmp_path):
 
 
 def test_scipy_and_boost_solve_the_same_designs_and_stand_on_the_same_chart(tmp_path):
-    done = finished("/usr/bin/python3", TOP / "analysis" / "rivals.py", "--quick", "--designs", 4, "-o", tmp_path / "rivals")
+    done = scripted("rivals.py", "--quick", "--designs", 4, "-o", tmp_path / "rivals")
     assert done.returncode == 0, done.stderr
     with h5py.File(tmp_path / "rivals.h5") as t:
         method, setting = t["method"].asstr()[()], t["setting"][()]

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the program under test, and the commands of others that read its files."""
 import os
+import runpy
+import signal
 import subprocess
+import sys
+import tempfile
+import traceback
 from pathlib import Path
 
 PROGRAM = os.environ["LEAPMAP"]
@@ -20,6 +25,39 @@ audit = 0.05
 def finished(*command):
     """The finished process of any command; stdout and stderr as text."""
     return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+
+
+def scripted(script, *arguments):
+    """A script of analysis as finished() runs it, in a fork of this process: to import matplotlib anew takes a second."""
+    import h5py, matplotlib.pyplot  # noqa: E401, F401  once for all forks
+    words = [str(word) for word in (TOP / "analysis" / script, *arguments)]
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        process = os.fork()
+        if process == 0:
+            status = 1
+            try:
+                signal.alarm(300)
+                os.dup2(out.fileno(), 1), os.dup2(err.fileno(), 2)
+                sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)
+                sys.argv = words
+                sys.path[:0] = [str(TOP / "analysis"), *os.environ.get("PYTHONPATH", "").split(":")]
+                runpy.run_path(words[0], run_name="__main__")
+                status = 0
+            except SystemExit as end:
+                if isinstance(end.code, str):
+                    print(end.code, file=sys.stderr)
+                status = end.code if isinstance(end.code, int) else int(end.code is not None)
+            except BaseException:  # as the interpreter does
+                traceback.print_exc()
+            finally:
+                sys.stdout.flush(), sys.stderr.flush()
+                os._exit(status)
+        status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+        told = []
+        for file in (out, err):
+            file.seek(0)
+            told.append(file.read().decode())
+    return subprocess.CompletedProcess(words, status, *told)
 
 
 def leapmap(*arguments):
