@@ -138,8 +138,12 @@ def landing_chart(t):
     return figure
 
 
+def studies_of(t):
+    return [study for study in TITLES if (t.fields["study"] == study).any()]
+
+
 def overview(t):
-    studies = [s for s in TITLES if (t.fields["study"] == s).any()]
+    studies = studies_of(t)
     names, verdicts = [], {}
     for study in studies:
         for name, _, verdict in series(t, study):
@@ -173,9 +177,8 @@ def main():
     t = read_table(arguments.source, "leapmap stability")
     output = style.stem(arguments.output)
     style.save(overview(t), output)
-    for study in BESIDE:
-        style.save(case_chart(t, study), f"{output}_{study}")
-    style.save(landing_chart(t), f"{output}_landing")
+    for study in studies_of(t):
+        style.save(landing_chart(t) if study == "landing" else case_chart(t, study), f"{output}_{study}")
 
 
 if __name__ == "__main__":

@@ -95,6 +95,7 @@ def save(figure, output):
     for ending, metadata in (("png", None), ("svg", {"Date": None}), ("pdf", {"CreationDate": None})):
         drawn = io.BytesIO()
         figure.savefig(drawn, format=ending, metadata=metadata)
+        figure.set_layout_engine("none")  # laid out once: that takes as long as to draw
         replace_file(f"{output}.{ending}", drawn.getvalue())
         print(f"{output}.{ending}")
     plt.close(figure)

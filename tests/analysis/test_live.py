@@ -390,7 +390,7 @@ def test_a_file_s_map_tells_gaits_of_a_hoop_of_one_s_own_too_and_goes_live_as_it
     assert browser.execute_script("return window.explorer.map.settle") == 60
 
 
-@pytest.mark.parametrize("jumps", [8, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("jumps", [24, pytest.param(60, marks=pytest.mark.slow)])
 def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps, live, tmp_path):
     asked = "return window.explorer.map.asked.settle"
     live.get("about:blank")

@@ -95,7 +95,7 @@ def judged(name, folder, library):
             return f"BROKEN: \"{old}\" stands {text.count(old)} times in {file}.hpp"
         header.write_text(text.replace(old, new))
     objects = []
-    for source in SOURCES:
+    for source in SOURCES if name else SOURCES[-1:]:  # as it is the library has them
         at = folder / source if source.startswith("src") else ROOT / source
         objects.append(folder / (at.stem + ".o"))
         subprocess.run(["g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-isystem", "/usr/include/eigen3", "-DLEAPMAP_KERNELS=kernels", "-DLEAPMAP_SCALARS", "-I", include, "-c", at, "-o", objects[-1]], check=True)

@@ -75,12 +75,14 @@ def test_many_threads_and_forked_processes_may_ask_one_problem():
         assert np.array_equal(pool.apply_async(problem.costs, (places[0],)).get(timeout=60), alone[0])
 
 
-def test_a_fit_to_arrays_finds_the_release():
+@pytest.mark.parametrize("model", ["sticking", pytest.param(None, marks=pytest.mark.slow)])  # both take twenty seconds
+def test_a_fit_to_arrays_finds_the_release(model):
+    asked = {"model": model} if model else {}
     m = leapmap.trace(release_angle="185 deg", release_spin=0.2, interval=2e-3)
     t, first = np.unique(m.t, return_index=True)
-    wrong = leapmap.fit({"t": t, "phi": np.asarray(m.phi)[first]}, slope=0.35)
+    wrong = leapmap.fit({"t": t, "phi": np.asarray(m.phi)[first]}, slope=0.35, **asked)
     assert not any(one.explains for one in wrong) and wrong[0].misfit > 10, "another slope than the film's does not pass for an answer"
-    best = leapmap.fit({"t": t, "phi": np.asarray(m.phi)[first] + 1e-3 * np.random.default_rng(2).standard_normal(len(t))})[0]
+    best = leapmap.fit({"t": t, "phi": np.asarray(m.phi)[first] + 1e-3 * np.random.default_rng(2).standard_normal(len(t))}, **asked)[0]
     assert best.friction == "sticking" and best.found and best.explains and 0.5 < best.misfit < 1.5
     for name, truth in (("release_angle", np.radians(185)), ("release_spin", 0.2)):
         assert abs(best.parameters[name].value - truth) < 4 * best.parameters[name].error < 0.01
