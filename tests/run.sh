@@ -15,7 +15,7 @@ sh sweeps/install_packages.sh $tier
 
 cmake --preset release
 cmake --build --preset release --target all tests
-ctest --preset release --no-tests=error -j 2 -LE slow --output-junit first_tier.xml
+ctest --preset release --no-tests=error -j 3 -LE slow --output-junit first_tier.xml  # some wait: browsers, kills
 [ $tier = all ] || exit 0
 
 failed=""
