@@ -15,7 +15,7 @@ STAGES = {
     "all C++ tests with ASan and UBSan (`tests/sanitized.sh`)": "`.ci/run` does so for map, support, sweep, rolling and coulomb",
     "every instruction set, each solving the reference tables; old processors by qemu": "this machine's best set",
     "libFuzzer on specs and maps, ten minutes (`tests/fuzz/run.sh`)": "`cli.test_hostile_files`: flipped bits, cut and strange files",
-    "all planted errors (`tests/mutation/mutate.py`)": "`mutation.twin`: two of them",
+    "all planted errors (`tests/mutation/mutate.py`)": "`mutation.twin`: one of them, and the solvers as they are",
     "every call and allocation fails, of every command (`tests/faults/run.sh`)": "`cli.test_faults`: some of them",
 }
 

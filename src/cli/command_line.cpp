@@ -14,34 +14,35 @@
 namespace leapmap::cli {
 
 Check named_file() {
-  return
-      [](std::string& name) { return name.empty() ? std::string("is empty; allowed: a file's name") : ""; };
+  return {
+      [](std::string& name) { return name.empty() ? std::string("is empty; allowed: a file's name") : ""; }};
 }
 
 Check one_of(std::vector<std::string> words) {
-  return [member = CLI::IsMember(std::move(words))](std::string& word) { return member(word); };
+  const std::string shown = fmt::format("{{{}}}", fmt::join(words, ","));
+  return {[member = CLI::IsMember(std::move(words))](std::string& word) { return member(word); }, shown};
 }
 
 Check number(const Range& range) {
-  return [range](std::string& text) {
+  return {[range](std::string& text) {
     const auto value = number_in(text);
     if (!value || !range.holds(*value))
       return fmt::format("'{}' is {}; allowed: {}", text, value ? "out of range" : "not a number",
                          allowed_values(range, ""));
     text = fmt::format("{}", *value);
     return std::string();
-  };
+  }};
 }
 
 Check whole_number(double least, double most) {
-  return [range = Range{least, most}](std::string& text) {
+  return {[range = Range{least, most}](std::string& text) {
     const auto value = number_in(text);
     if (!value || *value != std::floor(*value) || !range.holds(*value))
       return fmt::format("'{}' is {}; allowed: {}", text, value ? "no such number" : "not a number",
                          allowed_values(range, "", "a whole number"));
     text = fmt::format("{}", static_cast<long long>(*value));
     return std::string();
-  };
+  }};
 }
 
 Flag& Flag::required() {
@@ -51,7 +52,7 @@ Flag& Flag::required() {
 
 /// CLI11's own conversion sees the value as the check wrote it.
 Flag& Flag::check(const Check& check) {
-  option_->transform(CLI::Validator(check, ""));
+  option_->transform(CLI::Validator(check.look, check.shown));
   return *this;
 }
 
@@ -66,7 +67,7 @@ Flag& Flag::excludes(const std::string& other) {
 }
 
 Flag& Flag::with_commas() {
-  option_->delimiter(',');
+  option_->expected(1, CLI::detail::expected_max_vector_size)->delimiter(',');
   return *this;
 }
 

@@ -17,9 +17,12 @@ class Option;
 
 namespace leapmap::cli {
 
-/// Looks at a value as it was written, which it may write in another way. Returns what is wrong with it, or
-/// nothing.
-using Check = std::function<std::string(std::string& text)>;
+struct Check {
+  /// Looks at a value as it was written, which it may write in another way. Returns what is wrong with it, or
+  /// nothing.
+  std::function<std::string(std::string& text)> look;
+  std::string shown{};  ///< by --help, behind the value
+};
 
 /// Refuses an empty file name.
 Check named_file();
@@ -40,7 +43,7 @@ class Flag {
   /// May stand beside that flag only, or not beside it.
   Flag& needs(const std::string& other);
   Flag& excludes(const std::string& other);
-  /// Takes values with commas between.
+  /// Takes several values, with commas between.
   Flag& with_commas();
   /// Takes effect before the line has been read to its end.
   Flag& at_once();

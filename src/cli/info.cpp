@@ -306,8 +306,7 @@ void add_info(CommandLine& line, int& status) {
   command
       .value("--at", arguments->at,
              "AXIS=VALUE,...: tell a design's outcome and gradient, and the nearest cliffs around it")
-      .check(
-          [](std::string& at) { return at.empty() ? std::string("is empty; allowed: AXIS=VALUE,...") : ""; })
+      .check({[](std::string& at) { return at.empty() ? "is empty; allowed: AXIS=VALUE,..." : ""; }})
       .excludes("--spec")
       .excludes("--failed");
   command.value("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
