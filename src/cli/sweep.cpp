@@ -189,7 +189,9 @@ void add_sweep(CommandLine& line, int& status) {
   command
       .value(
           "--points",
-          [arguments](const std::string& file) { arguments->overrides.push_back(fmt::format("design.points={}", file)); },
+          [arguments](const std::string& file) {
+            arguments->overrides.push_back(fmt::format("design.points={}", file));
+          },
           "solve the designs of this CSV file in place of axes, one a line, as leapmap design --csv writes "
           "them")
       .check(named_file());
