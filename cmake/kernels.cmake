@@ -1,5 +1,6 @@
 # Compiles the kernels (src/model/kernels.hpp) once for each of LEAPMAP_INSTRUCTION_SETS and adds them to the library.
 #
+# One set alone is for this kind of machine: on an older one the program may end before it can say so.
 # Of several sets, each is linked into one object in which every symbol but its entry is local and no section is shared
 # (COMDAT): otherwise the linker would keep any one copy of an inline function, perhaps one for a newer machine.
 
@@ -16,12 +17,17 @@ function(leapmap_kernel_objects target march entry)
 endfunction()
 
 include(CheckCXXSourceRuns)
-# The best of some sets that this machine has; none if it has none of them.
+# The best of some sets that this machine has, as src/model/model.cpp tells it at start; none if it has none of them.
+set(parts_of_x86-64 sse2)
+set(parts_of_x86-64-v3 avx2 fma bmi bmi2)
+set(parts_of_x86-64-v4 ${parts_of_x86-64-v3} avx512f avx512bw avx512cd avx512dq avx512vl)
 function(leapmap_best_set result)
   set(best "")
   foreach(set ${ARGN})
     string(MAKE_C_IDENTIFIER runs_${set} runs)
-    check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"${set}\") ? 0 : 1; }" ${runs})
+    list(TRANSFORM parts_of_${set} REPLACE "(.+)" "__builtin_cpu_supports(\"\\1\")" OUTPUT_VARIABLE parts)
+    list(JOIN parts " && " all)
+    check_cxx_source_runs("int main() { return ${all} ? 0 : 1; }" ${runs})
     if(${runs})
       set(best ${set})
     endif()
@@ -33,6 +39,7 @@ set(sets "${LEAPMAP_INSTRUCTION_SETS}")
 if(sets STREQUAL best)
   leapmap_best_set(sets x86-64 x86-64-v3 x86-64-v4)
 endif()
+message(STATUS "The solvers are compiled for: ${sets}")
 
 # What looks inside the kernels, tests and benchmarks, is compiled as they are.
 add_library(leapmap-inside INTERFACE)

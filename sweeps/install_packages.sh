@@ -5,6 +5,10 @@
 #   install_packages.sh tests   for the tests as well
 #   install_packages.sh all     for both tiers of tests and the benchmarks
 set -eu
+case "${1:-main}" in
+  main | tests | all) ;;
+  *) echo "install_packages.sh: '$1' is unknown; allowed: main, tests, all" >&2; exit 2 ;;
+esac
 packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev libcli11-dev libxsimd-dev
   libdeflate-dev zlib1g-dev libeigen3-dev libpagmo-dev libnlopt-cxx-dev libboost-dev emscripten
   pybind11-dev python3-dev python3 python3-numpy python3-h5py python3-matplotlib python3-xarray"

@@ -80,9 +80,14 @@ bool Flag::is_given() const { return option_->count() > 0; }
 
 template <class T>
 Flag Command::value(const std::string& names, T& target, const std::string& help) {
-  CLI::Option* option = app_->add_option(names, target, help);
-  if constexpr (std::is_same_v<T, std::vector<std::string>>) option->expected(1)->take_all();
-  return Flag(option);
+  if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+    const auto add = [&target](const T& values) {
+      target.insert(target.end(), values.begin(), values.end());
+    };
+    return Flag(app_->add_option_function<T>(names, add, help)->expected(1)->take_all());
+  } else {
+    return Flag(app_->add_option(names, target, help));
+  }
 }
 template Flag Command::value(const std::string&, std::string&, const std::string&);
 template Flag Command::value(const std::string&, double&, const std::string&);

@@ -59,7 +59,7 @@ class Command {
   explicit Command(CLI::App* app) : app_(app) {}
 
   /// A value, which `names` ("-o,--output") or its place ("SPEC") tell. T: std::string, double, int,
-  /// std::size_t, std::uint64_t or std::vector<std::string>, to which each is added.
+  /// std::size_t or std::vector<std::string>, to which each is added.
   template <class T>
   Flag value(const std::string& names, T& target, const std::string& help);
   Flag value(const std::string& names, std::function<void(const std::string&)> take, const std::string& help);

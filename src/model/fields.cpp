@@ -61,7 +61,7 @@ const std::array fields{
           "two bits a phase, the first lowest, up to 32: 1 rolling, 2 sliding, 3 flight; 0: none", 3,
           Friction::coulomb},
     Field{"slip_distance", Quantity{&Outcome::slip_distance}, "1",
-          "distance slid, either way, from release to the end, in R; NaN of a hoop that rocks to rest", 3,
+          "distance slid, either way, from release to the end, in R; NaN if the hoop rocks to rest", 3,
           Friction::coulomb},
     Field{"landing_spin", Quantity{&Outcome::landing_spin}, "1",
           "spin after the landing of the jump, in sqrt(g/R)", 3, Friction::coulomb},

@@ -63,7 +63,7 @@ const Built& in_use() {
   if (const Built* set = chosen()) return *set;
   throw std::runtime_error(
       fmt::format("was built for {}, which this machine does not have; build it with "
-                  "cmake -DLEAPMAP_INSTRUCTION_SETS=x86-64",
+                  "cmake --preset package",
                   built[0].name));
 }
 

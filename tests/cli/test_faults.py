@@ -16,7 +16,7 @@ import walk  # noqa: E402
                                            ("check", 109), ("list", 71), ("explorer", 211)])
 def test_whatever_call_fails_nothing_is_lost(command, every):
     runs, findings = walk.walk([command], ["EIO", "ENOSPC"], (False, True), every)
-    assert runs > 4 and findings == []
+    assert runs >= 4 and findings == []
 
 
 def test_interrupted_short_and_empty_transfers_are_made_again_or_told():

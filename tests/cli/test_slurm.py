@@ -28,6 +28,8 @@ mass_ratio = { from = 0.2, to = 12, count = 60, scale = "log" }
 audit = 0.15
 """
 
+pytestmark = pytest.mark.slow  # its twins are those of test_shards, one of which starts shards by GNU parallel
+
 
 def free_port():
     with socket.socket() as probe:
@@ -195,7 +197,6 @@ def has_committed(slurm, shard):
     return False
 
 
-@pytest.mark.slow  # its twins are those of test_shards, one of which starts shards by GNU parallel
 def test_an_array_of_eight_with_a_task_killed_and_one_cancelled_joins_to_the_map_of_one_sweep(slurm, tmp_path):
     (tmp_path / "spec.toml").write_text(SPEC)
     map_path = tmp_path / "maps" / "map.h5"

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What no compiler tells of the sources as a whole."""
+import json
+import os
 import re
+from pathlib import Path
 
-from support.program import TOP
+from support.program import TOP, finished
 
 TYPE = re.compile(r"^(?:class|struct|enum class|union) (\w+)(?: final)?(?: : .*)? \{")
 NAMESPACE = re.compile(r"^(?:inline )?namespace ?([\w:]*) ?\{")
@@ -28,3 +31,17 @@ def test_no_two_types_of_a_namespace_share_a_name():
             files.setdefault(name, []).append(str(path.relative_to(TOP)))
     assert len(files) > 100  # they are found
     assert {name: where for name, where in files.items() if len(where) > 1} == {}
+
+
+def test_ctest_runs_every_test_in_cpp_once():
+    build = Path(os.environ["LEAPMAP_BUILD"])
+    ours, suite = [], ""
+    for line in finished(build / "tests/leapmap-tests", "--gtest_list_tests").stdout.splitlines()[1:]:
+        if line.startswith("  "):
+            ours.append(suite + line.split("#")[0].strip())
+        else:
+            suite = line.split("#")[0].strip()
+    told = json.loads(finished("ctest", "--test-dir", build, "--show-only=json-v1").stdout)
+    theirs = [t["command"][1].removeprefix("--gtest_filter=") for t in told["tests"]
+              if t.get("command", [""])[0].endswith("leapmap-tests") and not t["name"].startswith("slow.")]
+    assert sorted(theirs) == sorted(ours)

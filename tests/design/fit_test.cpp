@@ -172,7 +172,7 @@ Measurements film_of(const Design& truth, const Scene& scene, double error, int 
   return measured;
 }
 
-TEST(Fits, FindTheTruthOfAFilmWithinThreeErrorsIn95Of100Seeds) {
+TEST(Fits, FindTheTruthOfAFilmWithinThreeErrorsIn95PercentOfSeeds) {
   const int seeds = films();
   const Design truth{.release_angle = degrees(190), .release_spin = 0.05, .mu_static = 0.4};
   const Scene scene = scene_of(Friction::coulomb);

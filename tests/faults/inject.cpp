@@ -13,8 +13,10 @@
 ///   FAULT_STICKY   set: every call after it fails as well
 ///   FAULT_COUNT    a file that the number of calls is written to at the end
 ///   FAULT_WAITS    set: nothing is counted before the program calls begin_faults()
+///   FAULT_TELLS    set: who asked for the memory that operator new did not get is written to standard error
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -45,7 +47,7 @@ enum class Fault { none, error, short_count, zero_count, kill };
 struct Plan {
   char under[4096] = "";
   size_t under_length = 0;
-  bool news = false, mallocs = false, sticky = false, ready = false;
+  bool news = false, mallocs = false, sticky = false, tells = false, ready = false;
   long number = -1;
   int error = EIO;
   Fault fault = Fault::error;
@@ -68,6 +70,7 @@ void copy(char (&to)[4096], const char* from) {
   plan.news = memory && strcmp(memory, "new") == 0;
   plan.mallocs = memory && !plan.news;
   plan.sticky = getenv("FAULT_STICKY") != nullptr;
+  plan.tells = getenv("FAULT_TELLS") != nullptr;
   if (const char* number = getenv("FAULT_NUMBER")) plan.number = strtol(number, nullptr, 10);
   if (const char* error = getenv("FAULT_ERROR")) {
     struct {
@@ -284,6 +287,10 @@ void* allocated(size_t size, size_t alignment = alignof(max_align_t)) {
 }
 
 void* or_throw(void* memory) {
+  if (!memory && plan.tells) {
+    void* callers[64];
+    backtrace_symbols_fd(callers, backtrace(callers, 64), STDERR_FILENO);
+  }
   if (!memory) throw std::bad_alloc();
   return memory;
 }

@@ -97,7 +97,7 @@ def run(words, folder, **fault):
     if fault:
         environment.update({"LD_PRELOAD": INJECTOR, **{"FAULT_" + k.upper(): str(v) for k, v in fault.items()}})
         if words.startswith("PYTHON") and "memory" in fault:
-            environment["FAULT_WAITS"] = "1"
+            environment.update({"FAULT_WAITS": "1", "FAULT_TELLS": "1"})
     return subprocess.run(argv(words, folder), env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=SECONDS)
 
 
@@ -143,7 +143,8 @@ class Walk:
         """What is wrong with a run; empty: nothing."""
         told = done.stderr.decode(errors="replace").strip()
         # toml++ ends whoever calls it where it may throw nothing, and an interpreter's end is not ours to change.
-        ended_by_toml = self.command.name == "python" and done.returncode == -6 and "std::bad_alloc" in told
+        last = told.rpartition("libleapmap-faults")[2]  # the last allocation that failed, by whom it was asked for
+        ended_by_toml = self.command.name == "python" and done.returncode == -6 and "std::bad_alloc" in told and "libtomlplusplus" in last
         if (done.returncode < 0 or done.returncode > 3) and not ended_by_toml:
             return f"ended by signal or status {done.returncode}: {told[-300:]}"
         result = folder / self.command.output

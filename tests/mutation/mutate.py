@@ -95,7 +95,7 @@ def judged(name, folder, library):
             return f"BROKEN: \"{old}\" stands {text.count(old)} times in {file}.hpp"
         header.write_text(text.replace(old, new))
     objects = []
-    for source in SOURCES if name else SOURCES[-1:]:  # as it is the library has them
+    for source in SOURCES:
         at = folder / source if source.startswith("src") else ROOT / source
         objects.append(folder / (at.stem + ".o"))
         subprocess.run(["g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-isystem", "/usr/include/eigen3", "-DLEAPMAP_KERNELS=kernels", "-DLEAPMAP_SCALARS", "-I", include, "-c", at, "-o", objects[-1]], check=True)
@@ -111,10 +111,10 @@ def judged(name, folder, library):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--twin", action="store_true", help="only one of the errors, beside the solver as it is: for every CI")
+    parser.add_argument("--twin", action="store_true", help="only one of the errors: for every CI, which has the solver as it is judged by itself")
     arguments = parser.parse_args()
     library = pathlib.Path(os.environ.get("LEAPMAP_BUILD", ROOT / "build/release")) / "libleapmap.a"
-    names = [None, *(TWIN if arguments.twin else MUTATIONS)]
+    names = TWIN if arguments.twin else [None, *MUTATIONS]
     if not stands_alone():
         sys.exit(1)
     missed = 0
@@ -124,7 +124,7 @@ def main():
             right = not words if name is None else words != "" and not words.startswith("BROKEN")
             missed += not right
             print(f"{'ok' if right else 'MISSED' if name else 'WRONG':7} {name or 'the solver as it is'}: {words or 'agrees'}", flush=True)
-    print(f"{len(names) - 1} errors planted, {missed} findings")
+    print(f"{len(names) - names.count(None)} errors planted, {missed} findings")
     sys.exit(missed > 0)
 
 

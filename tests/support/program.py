@@ -38,9 +38,9 @@ def scripted(script, *arguments):
             try:
                 signal.alarm(300)
                 os.dup2(out.fileno(), 1), os.dup2(err.fileno(), 2)
-                sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)
+                sys.stdout, sys.stderr = (open(n, "w", closefd=False, errors="backslashreplace") for n in (1, 2))
                 sys.argv = words
-                sys.path[:0] = [str(TOP / "analysis"), *os.environ.get("PYTHONPATH", "").split(":")]
+                sys.path[:0] = [str(TOP / "analysis"), *filter(None, os.environ.get("PYTHONPATH", "").split(":"))]
                 runpy.run_path(words[0], run_name="__main__")
                 status = 0
             except SystemExit as end:
@@ -50,8 +50,10 @@ def scripted(script, *arguments):
             except BaseException:  # as the interpreter does
                 traceback.print_exc()
             finally:
-                sys.stdout.flush(), sys.stderr.flush()
-                os._exit(status)
+                try:
+                    sys.stdout.flush(), sys.stderr.flush()
+                finally:
+                    os._exit(status)
         status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
         told = []
         for file in (out, err):

@@ -221,6 +221,16 @@ TEST(Audit, TellsNoSlipOfAHoopThatRocksToRest) {
   EXPECT_FALSE(disagree(report));
 }
 
+TEST(Audit, MissesNoSlipOfAHoopThatComesToRest) {
+  Outcome spoiled;
+  const AuditReport report =
+      report_on({"friction=coulomb", "slope=0.05", "mass_ratio=1", "mu_static=2", "release_angle=1.5"},
+                [&](Outcome& o) { o.slip_distance = std::nan(""), spoiled = o; });
+  ASSERT_EQ(spoiled.status, Status::stalled);
+  ASSERT_EQ(spoiled.phase_sequence >> 62, 0u) << "after few phases";
+  EXPECT_EQ(report.beyond_tolerance, 1u);
+}
+
 TEST(Audit, DoesNotDependOnTheNumberOfThreads) {
   const Spec spec = grid("exact", "1e-5", "0.3");
   const AuditReport one = audit(spec, drawn_from(spec, 1), 1), four = audit(spec, drawn_from(spec, 4), 4);
