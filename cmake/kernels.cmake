@@ -1,8 +1,7 @@
 # Compiles the kernels (src/model/kernels.hpp) once for each of LEAPMAP_INSTRUCTION_SETS and adds them to the library.
 #
-# One set alone is for this kind of machine: on an older one the program may end before it can say so.
-# Of several sets, each is linked into one object in which every symbol but its entry is local and no section is shared
-# (COMDAT): otherwise the linker would keep any one copy of an inline function, perhaps one for a newer machine.
+# Each set is linked into one object in which every symbol but its entry is local and no section is shared (COMDAT): otherwise
+# the linker would keep any one copy of an inline function, perhaps one for a newer machine, or a slower one with other roundings.
 
 function(leapmap_kernel_objects target march entry)
   add_library(${target} OBJECT ${LEAPMAP_KERNEL_SOURCES})
@@ -12,7 +11,6 @@ function(leapmap_kernel_objects target march entry)
     "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param max-inline-insns-auto=200>")
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:GSL::gsl,INTERFACE_INCLUDE_DIRECTORIES>)
-  target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <functional> <memory> <span> <vector> <fmt/format.h> <xsimd/xsimd.hpp>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:leapmap-options>)
 endfunction()
 
@@ -45,9 +43,8 @@ message(STATUS "The solvers are compiled for: ${sets}")
 add_library(leapmap-inside INTERFACE)
 set(march "")
 set(list "")
-list(LENGTH sets count)
-if(count LESS 2)
-  set(march "${sets}")
+if(LEAPMAP_SANITIZE OR NOT sets)  # sanitizers ask for symbols of their own
+  list(POP_BACK sets march)
   leapmap_kernel_objects(leapmap-kernels "${march}" leapmap_kernels)
   target_sources(leapmap PRIVATE $<TARGET_OBJECTS:leapmap-kernels>)
   set(list "KERNELS(leapmap_kernels, \"$<IF:$<STREQUAL:${march},>,baseline,${march}>\")\n")
@@ -56,8 +53,9 @@ else()
     string(MAKE_C_IDENTIFIER leapmap_kernels_${set} entry)
     leapmap_kernel_objects(leapmap-kernels-${set} ${set} ${entry})
     set(object ${PROJECT_BINARY_DIR}/kernels-${set}.o)
-    add_custom_command(OUTPUT ${object} DEPENDS $<TARGET_OBJECTS:leapmap-kernels-${set}> VERBATIM COMMAND_EXPAND_LISTS
-      COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object} $<TARGET_OBJECTS:leapmap-kernels-${set}>
+    set(objects $<TARGET_OBJECTS:leapmap-kernels-${set}>)
+    add_custom_command(OUTPUT ${object} DEPENDS ${objects} VERBATIM COMMAND_EXPAND_LISTS
+      COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object} ${objects}
       COMMAND ${CMAKE_OBJCOPY} --keep-global-symbol=${entry} ${object}
       COMMENT "The kernels for ${set} as one object")
     target_sources(leapmap PRIVATE ${object})
