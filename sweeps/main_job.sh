@@ -33,12 +33,14 @@ echo "== charts"
 /usr/bin/python3 analysis/trace_chart.py maps/paper_figures.h5 --paper -o maps/paper_figures
 echo
 echo "The design chart: $PWD/maps/design_chart_jump_height.png"
-echo "The same with friction:   $PWD/maps/design_chart_friction_jump_height.png"
+echo "The same with friction: $PWD/maps/design_chart_friction_jump_height.png"
 echo
 echo "== the page, with the solver in it, and the Python module"
 cmake --build --preset release
 /usr/bin/python3 analysis/explorer maps/slope_mass_ratio_offset.h5
 /usr/bin/python3 analysis/explorer -o maps/leapmap.html
 echo
+echo "The design chart: $PWD/maps/design_chart_jump_height.png"
+echo "The same with friction: $PWD/maps/design_chart_friction_jump_height.png"
 echo "The page to explore, for any browser: $PWD/maps/slope_mass_ratio_offset.html"
 echo "The page that computes, every parameter a slider: $PWD/maps/leapmap.html"
