@@ -1,13 +1,16 @@
-# Compiles the kernels (src/model/kernels.hpp) once for each of LEAPMAP_INSTRUCTION_SETS and adds them to the library.
+# Compiles the kernels (src/model/kernels.hpp) once for each of LEAPMAP_INSTRUCTION_SETS and adds them to the
+# library.
 #
-# Each set is linked into one object in which every symbol but its entry is local and no section is shared (COMDAT): otherwise
-# the linker would keep any one copy of an inline function, perhaps one for a newer machine, or a slower one with other roundings.
+# Each set is linked into one object in which every symbol but its entry is local and no section is shared
+# (COMDAT): otherwise the linker would keep any one copy of an inline function, perhaps one for a newer
+# machine, or a slower one with other roundings.
 
 function(leapmap_kernel_objects target march entry)
   add_library(${target} OBJECT ${LEAPMAP_KERNEL_SOURCES})
   target_compile_definitions(${target} PRIVATE LEAPMAP_KERNELS=${entry})
   target_compile_options(${target} PRIVATE $<$<NOT:$<STREQUAL:${march},>>:-march=${march}> -fno-gnu-unique -fno-lto
-    # What a loop over lanes calls is worth inlining up to some hundred instructions: a call passes its lanes by memory.
+    # What a loop over lanes calls is worth inlining up to some hundred instructions: a call passes its lanes
+    # by memory.
     "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param max-inline-insns-auto=200>")
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:GSL::gsl,INTERFACE_INCLUDE_DIRECTORIES>)
@@ -15,7 +18,8 @@ function(leapmap_kernel_objects target march entry)
 endfunction()
 
 include(CheckCXXSourceRuns)
-# The best of some sets that this machine has, as src/model/model.cpp tells it at start; none if it has none of them.
+# The best of some sets that this machine has, as src/model/model.cpp tells it at start; none if it has none
+# of them.
 set(parts_of_x86-64 sse2)
 set(parts_of_x86-64-v3 avx2 fma bmi bmi2)
 set(parts_of_x86-64-v4 ${parts_of_x86-64-v3} avx512f avx512bw avx512cd avx512dq avx512vl)

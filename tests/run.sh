@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The README's second command: installs what Debian provides, builds for use and runs the first tier of tests, all that find
-# faults quickly: C++, the program from outside, the Python module, the charts and the page.
+# The README's second command: installs what Debian provides, builds for use and runs the first tier of tests,
+# all that find faults quickly: C++, the program from outside, the Python module, the charts and the page.
 #   tests/run.sh --all    and the second tier: sanitizers, every instruction set, fuzzers, all planted errors, calls and
 #                         allocations that fail, large random runs, both browsers. A night on two cores.
 set -eu

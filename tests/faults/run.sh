@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Walks through every call of every command with every error, once and from there on, and through allocations: all of seven
-# commands, and every 997th of C++ in the others, which make hundreds of thousands. Some hours on two cores. Ends with an error if
-# there is a finding.
+# Walks through every call of every command with every error, once and from there on, and through allocations:
+# all of seven commands, and every 997th of C++ in the others, which make hundreds of thousands. Some hours on
+# two cores. Ends with an error if there is a finding.
 #   tests/faults/run.sh [EVERY]    every so-many-th of these only
 set -eu
 cd "$(dirname "$0")/../.."
