@@ -16,7 +16,7 @@ BEGIN, END = "<!-- tiers: made by sh tests/run.sh --all -->\n", "<!-- end of tie
 TWINS = {"cli.test_slurm": "`cli.test_shards`: by GNU parallel", "analysis.test_firefox": "`analysis.test_live`: in chromium"}
 # What the second tier has beside ctest's tests: what the first tier has of it.
 STAGES = {
-    "all C++ tests with ASan and UBSan (`tests/sanitized.sh`)": "`.ci/run` does so for map, support, sweep, rolling and coulomb",
+    "all C++ tests with ASan and UBSan (`tests/sanitized.sh`)": "`.ci/run` does so for map, support and referee",
     "every instruction set, each solving the reference tables; old processors by qemu": "this machine's best set",
     "libFuzzer on specs and maps, ten minutes (`tests/fuzz/run.sh`)": "`cli.test_hostile_files`: flipped bits, cut and strange files",
     "all planted errors (`tests/mutation/mutate.py`)": "`mutation.twin`: one of them, and `mutation.none`: the solvers as they are",
