@@ -83,10 +83,9 @@ struct Outcome {
   double first_jump_time = none;    ///< [s]
   // With Coulomb friction.
   std::uint64_t phase_sequence = 0;  ///< two bits a phase, the first lowest, up to 32; see Phase
-  double slip_distance =
-      none;  ///< slid, either way, from release to the end [R]; NaN if the hoop rocks to rest
-  double landing_spin = none;  ///< w after the landing of the jump [sqrt(g/R)]
-  double energy_lost = none;   ///< from release to the lift-off of the jump, over (m + m_p) g R
+  double slip_distance = none;       ///< slid, either way, until the end [R]; NaN if the hoop rocks to rest
+  double landing_spin = none;        ///< w after the landing of the jump [sqrt(g/R)]
+  double energy_lost = none;         ///< from release to the lift-off of the jump, over (m + m_p) g R
   // With Scene::jumps > 1, where it is asked for by name:
   double sequence_condition = none;  ///< what errors of one at the release and at every landing come to
   // With Scene::settle > 0: the gait that the hoop settles on.

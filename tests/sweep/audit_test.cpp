@@ -204,8 +204,8 @@ TEST(Audit, LooksAtEveryQuantity) {
   }
 }
 
-/// A hoop that slips a little less on every swing is seen to rock to rest long before it does: what it has
-/// slid until then is not what it slides to the end.
+/// The solver recognises a hoop that rocks to rest long before it rests. What the hoop has slid until then is
+/// not what it slides to the end.
 TEST(Audit, TellsNoSlipOfAHoopThatRocksToRest) {
   const Spec spec = read_spec(
       "", {"friction=coulomb", "runway=5", "slope=-0.12186865540293429", "mass_ratio=6.919339825756405",
