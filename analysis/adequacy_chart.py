@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the paper's model is enough: a map of hoops that never slip beside one of the same hoops with Coulomb friction.
+"""Draw the differences between two maps of the same hoops: one without slip, one with Coulomb friction.
 
-One panel for each friction coefficient, over slope and mass ratio: dark green where heights agree within 5 % (which may be chance),
-yellow where both jump but heights do not agree, orange where they disagree on whether it jumps, purple where sliding is
-indeterminate (Painleve); hatched where only one of them sees a spurious first lift-off. A star at the paper's hoop.
+One panel for each friction coefficient, over slope and mass ratio. Dark green: heights agree within 5 %, possibly by chance.
+Yellow: both models jump, but heights differ. Orange: only one of them jumps. Purple: Painlevé's paradox. Hatched: only one of them
+has a spurious first lift-off. A star marks the paper's hoop.
 """
 import numpy as np
 from matplotlib.colors import ListedColormap

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cliffs, as `leapmap boundaries` finds them, over a map's planes: as curves, and as edges that nothing is drawn across.
+"""Discontinuities that `leapmap boundaries` found, over a map's planes: as curves, and as edges that nothing is drawn across.
 
     leapmap boundaries MAP.h5 -o MAP.cliffs.h5    # charts of MAP.h5 then draw them
 """
@@ -16,14 +16,14 @@ from style import plt
 
 # In the order of their numbers. Kind: the line's dashes and colour, and the words of the legend.
 KINDS = {
-    "threshold": ("-", style.EDGE, "cliff: a lift-off passes the hop height"),
-    "fold": ((0, (4, 2)), style.EDGE, "cliff: a lift-off is born (fold)"),
-    "runway": (":", style.EDGE, "cliff: a lift-off passes the runway's end"),
-    "turn": ("-.", style.EDGE, "cliff: the hoop just turns round"),
-    "release": ((0, (1, 1)), "#7570b3", "cliff: airborne from the release"),
-    "phase": ((0, (3, 1, 1, 1)), style.EDGE, "cliff: a phase appears or vanishes"),
-    "painleve": ("-", "#7570b3", "cliff: sliding has no answer (Painleve)"),
-    "unresolved": (":", "#7570b3", "cliff: the method gives up"),
+    "threshold": ("-", style.EDGE, "discontinuity: a lift-off crosses the jump threshold"),
+    "fold": ((0, (4, 2)), style.EDGE, "discontinuity: a lift-off appears (fold)"),
+    "runway": (":", style.EDGE, "discontinuity: a lift-off crosses the rolling limit"),
+    "turn": ("-.", style.EDGE, "discontinuity: the hoop barely reverses"),
+    "release": ((0, (1, 1)), "#7570b3", "discontinuity: airborne from the release"),
+    "phase": ((0, (3, 1, 1, 1)), style.EDGE, "discontinuity: a phase appears or vanishes"),
+    "painleve": ("-", "#7570b3", "discontinuity: Painlevé's paradox"),
+    "unresolved": (":", "#7570b3", "discontinuity: the method fails"),
 }
 MOST_PIXELS = 900  # along a panel's side
 
@@ -55,7 +55,7 @@ def read_cliffs(m, asked):
     if asked == "none" or (not asked and not os.path.exists(path)):
         return None
     table = read_table(path, "leapmap cliffs")
-    of_other = f"{path}: is not of the same designs as {m.path}; make it anew: leapmap boundaries {m.path} -o {path}"
+    of_other = f"{path}: holds other designs than {m.path}; make it again: leapmap boundaries {m.path} -o {path}"
     if not isinstance(table.attributes.get("spec"), str) or _designs(table.attributes["spec"]) != _designs(m.attributes["spec"]):
         raise NotAMap(of_other)
     if "curve" not in table.fields:

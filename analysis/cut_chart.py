@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws cuts through a map: quantities along one axis, a line for each of some values of a second, the others fixed.
+"""Draw cuts through a map: quantities along one axis, one line for each of several values of a second axis.
 
-Solid where the first lift-off is the jump, dashed where it is spurious; gaps where nothing jumps, and at cliffs, where the jump
-passes to another lift-off. Axes that are neither drawn nor fixed by --at stay at the value nearest to the paper's hoop, or in the middle.
+Solid lines: the first lift-off is the jump. Dashed lines: it is spurious. Gaps: no jump, or a discontinuity. Axes that are neither
+drawn nor fixed by --at stay at the value nearest to the paper's hoop, or in the middle.
 """
 import numpy as np
 

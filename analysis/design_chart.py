@@ -1,12 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the design charts of a map: jump height, time and agility over two of its axes, a panel for each value of the others.
+"""Draw the design charts of a map: jump height, time and agility over two axes, one panel for each value of the others.
 
-With labelled isolines; hatched where the first lift-off is spurious; with cliffs, as leapmap boundaries finds them, as curves
-that nothing is drawn across, and without them a cell a design; other colours where there is no jump, by
-the reason; a star at the paper's hoop. Agility is the jump's height over the time from release to its apex; the colour bar
-marks published jumpers. Draws what the map holds: agility wants jump_height, jump_time and apex_time;
-spurious_first_jump, jump_angle (gaps at cliffs) and status are drawn if they are there.
+Isolines are labelled. Hatched: the first lift-off is spurious. Lines: discontinuities, if leapmap boundaries has found them; without
+them, one cell for each design. Other colours: no jump, by the reason. A star marks the paper's hoop.
+Agility is the jump's height over the time from release to its apex; the colour bar marks published jumpers.
+Agility needs jump_height, jump_time and apex_time. spurious_first_jump, jump_angle and status are drawn if the map has them.
 """
 import sys
 

@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The paper's hoop with Coulomb friction over release angle and friction: where does it do what was measured?
+"""Draw the paper's hoop with Coulomb friction over release angle and friction, and the region that agrees with the measurements.
 
-Left the jump's height with lines where apex time, flight time and height are the measured 0.129 s, 0.198 s and one diameter (if
-they are so anywhere; else the legend says how near); right the number of small hops on the way. Hatched: apex and flight within 2 % and height within 10 % of
-the measured.
+Left: the jump's height, with lines at the measured apex time (0.129 s), flight time (0.198 s) and height (one diameter). Right: the
+number of small hops before the jump. Hatched: apex and flight within 2 % and height within 10 % of the measurements.
 """
 import numpy as np
 

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws a fit, from what leapmap fit DATA.csv --csv FIT.csv writes: what was measured and what each model has in its place, over
-time, and below it the residuals over their errors. Of events a bar each.
+"""Draw a fit, from the table of leapmap fit DATA.csv --csv FIT.csv: measurements and models over time, and residuals.
+
+Residuals are over their errors. Events have one bar each.
 """
 import csv
 
@@ -12,7 +13,7 @@ from read_map import NotAMap
 from style import plt
 
 COLOURS = {"sticking": "#d95f02", "coulomb": "#1f4e79"}
-WORDS = {"sticking": "never slips", "coulomb": "slips"}
+WORDS = {"sticking": "no slip", "coulomb": "Coulomb friction"}
 SHOWN = {"phi": "φ [rad]", "x_P": "x of the mass [m]", "y_P": "y of the mass [m]", "x_O": "x of the centre [m]", "y_O": "y of the centre [m]"}
 
 

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the Pareto front of a question of two objectives, which leapmap design looks for: the front in colour, by what is of the design's
-lift-offs the jump; as a cloud some of the designs that it dominates; three designs called out, with the hoop in its jump. Where
-neighbours of the front are far apart in the box, or another lift-off is the jump, there is a gap. Needs the Python module leapmap.
+"""Draw the Pareto front of a design problem with two objectives, and a cloud of designs that it dominates.
+
+Colours show the number of the lift-off that jumps. Three designs are marked, each with the hoop in its jump. A gap: neighbours on the
+front are far apart within the bounds, or another lift-off jumps. Needs leapmap's Python module.
 """
 import textwrap
 
@@ -67,10 +68,10 @@ def chart(path, seed):
     leapmap = style.leapmap_module()
     problem = leapmap.DesignProblem(path)
     if len(problem.objectives) != 2:
-        raise NotAMap(f"{path}: has {len(problem.objectives)} objectives; a front is of two")
+        raise NotAMap(f"{path}: has {len(problem.objectives)} objectives; allowed: two")
     found = leapmap.design(path, seed=seed)
     if not found.reached:
-        raise NotAMap(f"{path}: no design of this box reaches the goals; leapmap design tells the nearest miss")
+        raise NotAMap(f"{path}: no design within the bounds reaches the goals; leapmap design shows the nearest miss")
     first, second = problem.objectives
     x, y = shown(second, found.objectives[second]), shown(first, found.objectives[first])
     low, high = np.array(problem.bounds).T
@@ -102,7 +103,7 @@ def chart(path, seed):
     axis.set_ylabel(label(first))
     axis.margins(0.04)
     axis.legend(loc="best")
-    axis.set_title(f"{len(found):,} designs, none of which is better than another in both; gaps are cliffs")
+    axis.set_title(f"{len(found):,} designs; improving one objective makes the other worse; gaps: discontinuities")
     return figure
 
 

@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a hoop goes on jumping: left its return map, from the angle of one lift-off to the next, with a cobweb of its first jumps and
-every gait; right the heights that its jumps come to, over the slope, as a density.
+"""Draw the return map of a hoop, from the angle of one lift-off to the next, and the heights of its jumps over the slope.
 
-Where the return map crosses the diagonal the hoop jumps the same way for ever: stably where the slope there, the multiplier, is
-below 1 in size. Needs leapmap's Python module.
+Left: the return map, with the first jumps as a cobweb, and every gait. It crosses the diagonal at gaits, which are stable if its slope
+there, the Floquet multiplier, is below 1 in size. Right: the heights after a transient, as a density. Needs leapmap's Python module.
 """
 import argparse
 
@@ -56,7 +55,7 @@ def draw_bifurcations(axis, leapmap, hoop, runway, slopes, jumps):
     axis.axvline(np.degrees(hoop["slope"]), color=style.MARK, lw=0.8, ls="--")
     axis.set_xlabel("slope [°]")
     axis.set_ylabel("jump height [hoop diameters]")
-    axis.set_title(f"{there.sum():,} jumps, those after the first {TRANSIENT} of each slope; dashed: the hoop on the left", fontsize=8)
+    axis.set_title(f"{there.sum():,} jumps after a transient of {TRANSIENT} at every slope; dashed: the hoop on the left", fontsize=8)
 
 
 def main():

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws a list of designs: quantities over a parameter, a dot for each design, filled where the first lift-off is the jump and
-hollow where it is spurious. Designs that do not jump stand at the bottom, by the reason. Wants a map of a spec with design.points.
+"""Draw a list of designs: quantities over a parameter, one dot for each design.
+
+Filled: the first lift-off is the jump. Hollow: it is spurious. Designs that do not jump are at the bottom, by the reason. Needs a map
+of a spec with design.points.
 """
 import numpy as np
 

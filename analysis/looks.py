@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a map's quantities and outcomes are called and how they look, on charts and on the explorer's page."""
+"""Names, units and colours of a map's quantities and outcomes, on charts and on the page."""
 import math
 from dataclasses import dataclass
 
@@ -22,8 +22,8 @@ PARAMETERS = {
 }
 # status -> colour and words where there is no jump to draw
 STATUSES = {
-    "no_jump": ("#d9d9d9", "no jump on the runway"),
-    "stalled": ("#a6a6a6", "stalled"),
+    "no_jump": ("#d9d9d9", "no jump within the rolling limit"),
+    "stalled": ("#a6a6a6", "trapped (stalled)"),
     "airborne_at_release": ("#c6b7d6", "airborne at release"),
     "indeterminate": ("#8c6bb1", "indeterminate (Painlevé)"),
     "failed": ("#f4a582", "failed"),
@@ -52,17 +52,17 @@ HEIGHTS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 LOOKS = {
     "jump_height": Look("jump height", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "jump_time": Look("time from release to the jump", "s", "cividis_r", ink="black"),
-    "yield": Look("yield: share of the hoops made that reach every goal", "", "cividis", levels=(0.5, 0.9, 0.99)),
-    "jump_height_q05": Look("5 % quantile of the jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
-    "jump_height_q50": Look("median of the jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
-    "jump_height_q95": Look("95 % quantile of the jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
-    "jump_height_mean": Look("mean jump height, as made", "hoop diameters", exponent=0.6, levels=HEIGHTS),
-    "jump_height_sd": Look("standard deviation of the jump height, as made", "hoop diameters", "magma"),
-    "jump_time_mean": Look("mean of the jump's time, as made", "s", "cividis_r", ink="black"),
-    "jump_time_sd": Look("standard deviation of the jump's time, as made", "s", "magma"),
-    "jump_time_q05": Look("5 % quantile of the jump's time, as made", "s", "cividis_r", ink="black"),
-    "jump_time_q50": Look("median of the jump's time, as made", "s", "cividis_r", ink="black"),
-    "jump_time_q95": Look("95 % quantile of the jump's time, as made", "s", "cividis_r", ink="black"),
+    "yield": Look("yield: fraction of manufactured hoops that reach every goal", "", "cividis", levels=(0.5, 0.9, 0.99)),
+    "jump_height_q05": Look("5 % quantile of the jump height, manufactured", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_height_q50": Look("median jump height, manufactured", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_height_q95": Look("95 % quantile of the jump height, manufactured", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_height_mean": Look("mean jump height, manufactured", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "jump_height_sd": Look("standard deviation of the jump height, manufactured", "hoop diameters", "magma"),
+    "jump_time_mean": Look("mean jump time, manufactured", "s", "cividis_r", ink="black"),
+    "jump_time_sd": Look("standard deviation of the jump time, manufactured", "s", "magma"),
+    "jump_time_q05": Look("5 % quantile of the jump time, manufactured", "s", "cividis_r", ink="black"),
+    "jump_time_q50": Look("median jump time, manufactured", "s", "cividis_r", ink="black"),
+    "jump_time_q95": Look("95 % quantile of the jump time, manufactured", "s", "cividis_r", ink="black"),
     "agility": Look("agility: height over time from release to apex", "m/s", "plasma", log=True, star="black",
                     levels=(0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0)),
     "first_jump_height": Look("height of the first lift-off", "hoop diameters", exponent=0.6, levels=()),  # it has cliffs of its own
@@ -71,19 +71,19 @@ LOOKS = {
     "jump_spin": Look("spin at the jump's lift-off", "√(g/R)"),
     "apex_time": Look("time from lift-off to apex", "s"),
     "flight_time": Look("time from lift-off to landing", "s"),
-    "dip": Look("dip of the flight into the plane", "hoop diameters", "viridis_r"),
-    "candidates": Look("lift-offs looked at", "", levels=()),
+    "dip": Look("penetration depth of the flight", "hoop diameters", "viridis_r"),
+    "candidates": Look("number of lift-offs", "", levels=()),
     "slip_distance": Look("distance slid", "R"),
     "landing_spin": Look("spin after landing", "√(g/R)"),
-    "jump_distance": Look("rolled until the jump's lift-off", "R"),
+    "jump_distance": Look("distance rolled until the jump", "R"),
     "energy_lost": Look("energy lost until the jump", "(m + mₚ) g R"),
-    "jumps": Look("jumps made", "", levels=()),
+    "jumps": Look("number of jumps", "", levels=()),
     "sequence_condition": Look("growth of errors up to the last landing", "", log=True),
-    "gait_period": Look("period of the gait, 0 where it comes to an end", "jumps", levels=()),
-    "gait_multiplier": Look("multiplier of the gait", "", levels=(-0.5, 0.0, 0.5)),
+    "gait_period": Look("period of the gait (0: the jumps end)", "jumps", levels=()),
+    "gait_multiplier": Look("Floquet multiplier of the gait", "", levels=(-0.5, 0.0, 0.5)),
     "gait_height": Look("mean height of the gait's jumps", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "gait_speed": Look("speed of the gait", "m/s"),
-    "gait_energy_lost": Look("energy that the gait loses a jump", "(m + mₚ) g R"),
+    "gait_energy_lost": Look("energy lost per jump of the gait", "(m + mₚ) g R"),
 }
 # Vertical jumping agility of published jumpers [m/s]: Haldane, Plecnik, Yim and Fearing, "Robotic vertical jumping agility via
 # series-elastic power modulation", Science Robotics 1 (2016) eaag2048.
@@ -162,7 +162,7 @@ def spread(name, law, width, percent):
 def made_words(m):
     """How hoops of a map are made and what they must do, in words; [] of a map without [scatter]."""
     scatter = [spread(name, *law) for name, law in m.scatter().items()]
-    return ["hoops as made: " + ", ".join(scatter), *(f"goal: {word}" for word in goal_words(m))] if scatter else []
+    return ["manufactured hoops: " + ", ".join(scatter), *(f"goal: {word}" for word in goal_words(m))] if scatter else []
 
 
 def goal_words(m):
@@ -181,7 +181,7 @@ def words_of(m, fixed):
     contact = ("mu_static", "mu_kinetic", "restitution")
     told = [k for k in PARAMETERS if k in fixed and (k not in contact or m.slips) and (k != "drive_torque" or fixed[k] != 0)]
     numbers = m.numbers()
-    return [*(titled(k, fixed[k]) for k in told), "slips by Coulomb's law" if m.slips else "never slips", f"runway {numbers['runway']:g} turns",
+    return [*(titled(k, fixed[k]) for k in told), "Coulomb friction" if m.slips else "no slip", f"rolling limit {numbers['runway']:g} revolutions",
             f"jump from {numbers['hop_height']:g} diameters", f"R = {1e3 * numbers['radius']:g} mm"]
 
 

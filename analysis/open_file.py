@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opens a file of leapmap's as h5py does, and refuses what no such file holds before any of it is read.
+"""Open leapmap's files as h5py does, and refuse anything that no such file holds before reading it.
 
-A file that somebody sent may refer to other files of the machine, or want more memory than it has bytes for. And a sweep that
-was killed may leave a journal at the end of its .part: writes that are still to be made, which HDF5 itself cannot see."""
+A file from another person may refer to other files of the machine, or demand more memory than it has bytes for. An interrupted sweep
+may leave a journal at the end of its .part: writes that HDF5 itself cannot see."""
 import contextlib
 import fcntl
 import io

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the gait that hoops settle on over two axes of a map of a sweep with [gait], a panel for each value of the others: after how
-many jumps they repeat themselves. Where there are few gaits in all, as of one hoop over its release, each has a colour: these are the
-basins of the gaits. Needs gait_period; for basins gait_height, too.
+"""Draw the period of the gait that follows each release, over two axes, one panel for each value of the others.
+
+If there are only a few gaits, as for one hoop over its release, each has a colour: the basins of attraction. Needs a map of a sweep
+with [gait]: gait_period, and for basins gait_height.
 """
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -12,8 +13,8 @@ import style
 from read_map import NotAMap
 
 NONE_FOUND = 255
-KINDS = [("#d9d9d9", "comes to an end"), ("#2166ac", "every jump alike"), ("#67a9cf", "period 2"), ("#1b7837", "period 3"),
-         ("#7fbf7b", "period 4"), ("#dfc27d", "period 5"), ("#f46d43", "a longer period"), ("#40004b", "goes on, none found")]
+KINDS = [("#d9d9d9", "the jumps end"), ("#2166ac", "period 1"), ("#67a9cf", "period 2"), ("#1b7837", "period 3"),
+         ("#7fbf7b", "period 4"), ("#dfc27d", "period 5"), ("#f46d43", "longer period"), ("#40004b", "no period found")]
 LONGER, LAST = 6, len(KINDS) - 1
 MOST_GAITS = 8  # that are told apart by their colours
 COLOURS = ("#2166ac", "#f46d43", "#1b7837", "#dfc27d", "#67a9cf", "#b2182b", "#7fbf7b", "#8073ac")

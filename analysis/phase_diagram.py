@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the phase diagram of a map: at which of its lift-offs a hoop jumps, over two axes, a panel for each value of the others.
+"""Draw the number of the lift-off that jumps, over two axes, one panel for each value of the others.
 
-Regions are labelled with the number of the lift-off that is the jump; grey where there is none. With cliffs (leapmap boundaries)
-their edges are curves, named in the legend. A star at the paper's hoop. Needs status and candidates.
+Grey: no jump. Lines: discontinuities, if leapmap boundaries has found them; the legend names them. A star marks the paper's hoop.
+Needs status and candidates.
 """
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A map cut into planes over two of its axes, a panel each."""
+"""A map as planes over two of its axes, one for each panel."""
 import math
 
 import numpy as np
@@ -71,7 +71,7 @@ class Planes:
     def __init__(self, m, x=None, y=None, at=()):
         self.map = m
         if "design" in m.dims or len(m.dims) < 2:
-            raise NotAMap(f"{m.path}: is not over two axes or more; such a chart wants a sweep over slope and mass_ratio, say")
+            raise NotAMap(f"{m.path}: has fewer than two axes; allowed: a map of a sweep over two axes, for example slope and mass_ratio")
         self.index = fixed_at(m, at)
         free = [n for n in m.dims if n not in self.index]
         rest = lambda taken, wish: wish if wish in free and wish != taken else next((n for n in free if n != taken), None)

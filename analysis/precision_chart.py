@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Speed against accuracy, from the table that leapmap precision writes: five charts.
+"""Draw speed against accuracy, from the table that leapmap precision writes: five charts.
 
-OUTPUT_time and OUTPUT_work: error of the jump's height against time and against work for one design, one line a method;
-better is down and left. Open rings mark settings at which some designs come out wrong without a word, crosses those at
-which some fail, saying so; the error is of the others. OUTPUT_wrong: the share of wrong designs against the tolerance.
-OUTPUT_order: error of the time against fixed step, with the order fitted to the three smallest steps above rounding beside
-the theoretical one. OUTPUT_model: what modelling more than rolling needs costs, and how far its constraints drift.
+OUTPUT_time, OUTPUT_work: error of the jump's height against time and work for one design, one line for each method; lower left is
+better. Rings: some designs are silently wrong at that setting. Crosses: some designs failed. The error is that of the others.
+OUTPUT_wrong: fraction of wrong designs against the tolerance.
+OUTPUT_order: error of the time against the fixed step, with the fitted and the theoretical order.
+OUTPUT_model: cost of models with more coordinates than rolling needs, and the drift of their constraints.
 """
 import textwrap
 
@@ -72,7 +72,7 @@ def methods_chart(t, across, label):
         handles, labels = axes[k, 0].get_legend_handles_labels()
         handles += [plt.Line2D([], [], marker="o", linestyle="", markersize=9, markerfacecolor="none", color=style.MARK),
                     plt.Line2D([], [], marker="x", linestyle="", markersize=8, color=style.MARK)]
-        axes[k, -1].legend(handles, labels + ["some designs wrong, without a word", "some designs failed, saying so"], loc="center left",
+        axes[k, -1].legend(handles, labels + ["some designs silently wrong", "some designs failed"], loc="center left",
                            bbox_to_anchor=(1.02, 0.5), frameon=False)
     figure.supxlabel(label, fontsize=9)
     figure.supylabel("largest error of the jump's height [hoop diameters]", fontsize=9)
@@ -88,7 +88,7 @@ def wrong_chart(t):
             nothing_wrong.append(method)
             continue
         colour = COLOURS.get(method, "#444444")
-        axis.plot(t.fields["setting"][rows], wrong, "-o", markersize=4, color=colour, label=f"{method}, wrong without a word")
+        axis.plot(t.fields["setting"][rows], wrong, "-o", markersize=4, color=colour, label=f"{method}, silently wrong")
         axis.plot(t.fields["setting"][rows], failed, ":x", markersize=5, color=colour, label=f"{method}, failed")
     axis.set_xscale("log")
     axis.set_xlabel("tolerance")

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads leapmap's files: maps of many designs and traces of one.
+"""Read leapmap's files: maps of many designs, and traces of one.
 
     from read_map import read_map
     m = read_map("maps/slope_mass_ratio.h5")
     m.dims["slope"]            # values of an axis
-    m.fields["jump_height"]    # an array along all axes, NaN where there is no jump
-    m.code("status", "jumped") # where a code has a meaning, as a boolean array
+    m.fields["jump_height"]    # an array along all axes; NaN: no jump
+    m.code("status", "jumped") # a boolean array: has this meaning
 """
 import math
 import re

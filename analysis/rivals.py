@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""leapmap beside programs that are not ours, on the same designs in the same run: scipy's DOP853 with events, and
-Boost.odeint's dopri5 with dense output (analysis/boost_rival.cpp, compiled here).
+"""Compare leapmap with other programs, on the same designs in the same run.
 
-OUTPUT.h5 is the table, OUTPUT_time the chart: error of the jump's height against time for one design on one thread. Truth is
-leapmap's exact at 1e-13, itself within 1e-14 of long double in leapmap precision's table. Needs Debian's python3-scipy,
-libboost-dev and g++.
+The others are scipy's DOP853 with events, and Boost.odeint's dopri5 with dense output (analysis/boost_rival.cpp, compiled here).
+OUTPUT.h5 is the table. OUTPUT_time is the chart: error of the jump's height against time for one design on one thread. The reference
+is leapmap's exact method at 1e-13. Needs Debian's python3-scipy, libboost-dev and g++.
 """
 import argparse
 import os
@@ -162,7 +161,7 @@ def write(rows, path, count, seed):
         table.create_dataset("method", data=texts, dtype=h5py.string_dtype())
         for column, (name, about) in enumerate({
                 "setting": "tolerance", "seconds": "for one design on one thread", "max_height_error": "of the jump's height, in hoop diameters",
-                "max_time_error": "of jump_time, relative", "wrong": "share of designs wrong without a word", "failed": "share that failed"}.items()):
+                "max_time_error": "of jump_time, relative", "wrong": "fraction of designs that are silently wrong", "failed": "fraction that failed"}.items()):
             table[name] = numbers[:, column]
             table[name].attrs["long_name"] = about
 
@@ -185,7 +184,7 @@ def chart(path):
     axis.grid(alpha=0.25)
     axis.set_xlabel("time for one design on one thread [µs]; better: left and down")
     axis.set_ylabel("largest error of the jump's height [hoop diameters]")
-    axis.set_title(f"{count} random designs, tolerances from 1e-3 on; rings: some designs wrong without a word, crosses: some failed")
+    axis.set_title(f"{count} random designs, tolerances from 1e-3 on; rings: some designs silently wrong, crosses: some failed")
     axis.legend(frameon=False)
     return figure
 

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws what becomes of one design as it is made, from what leapmap hop SPEC.toml --scatter --json prints (a file, or - for standard
-input): histograms of height and time of the hoops that jump, with goals and quantiles marked; and how much of the variance of the
-yield, of height and of time each tolerance brings: a bar of its total Sobol' index, the first order filled, whiskers of 95 %.
+"""Draw the distribution of one manufactured design, from the output of leapmap hop SPEC.toml --scatter --json.
+
+The argument is a file, or - for standard input. Above: histograms of height and time of the hoops that jump, with goals and quantiles.
+Below: the fraction of the variance of yield, height and time that is due to each tolerance. Bars: total Sobol' indices; filled: first
+order; whiskers: 95 % intervals.
 """
 import json
 import sys
@@ -76,7 +78,7 @@ def draw_tornado(axis, scatter, of, order):
             axis.errorbar(number(estimate, "value"), row, xerr=1.96 * number(estimate, "error"), fmt="none", ecolor=style.EDGE, capsize=2, elinewidth=0.8)
     axis.set_xlim(0, 1.15)
     axis.set_yticks(rows, [looks.parameter(k)[0].split(" [")[0] for k in order])
-    axis.set_xlabel("share of the variance")
+    axis.set_xlabel("fraction of the variance")
     axis.set_title(f"of {OF_WORDS[of]}" + (f"\n(among pairs that both jump: {100 * importance['pairs']:.0f} %)" if importance["pairs"] < 1 else ""))
     if not np.isfinite([number(e, "value") for e in totals]).any():
         axis.text(0.5, 0.5, "nothing varies", transform=axis.transAxes, ha="center", va="center")
@@ -94,8 +96,8 @@ def chart(told, design, scatter):
     for axis, name in zip(below.subplots(1, len(drawn), sharey=True), drawn):
         draw_tornado(axis, scatter, name, order)
     words = [looks.titled(k, v) for k, v in design.items() if k in ("slope", "mass_ratio", "offset_ratio", "mu_static") and v is not None]
-    words.append("slips by Coulomb's law" if told["scene"]["friction"] == "coulomb" else "never slips")
-    title = f"{scatter['samples']:,} hoops as made: " + (f"{share(scatter['yield'])} reach every goal, " if scatter["goals"] else "") + f"{share(scatter['jumps'])} jump (± 95 %)"
+    words.append("Coulomb friction" if told["scene"]["friction"] == "coulomb" else "no slip")
+    title = f"{scatter['samples']:,} manufactured hoops: " + (f"{share(scatter['yield'])} reach every goal, " if scatter["goals"] else "") + f"{share(scatter['jumps'])} jump (± 95 %)"
     above.suptitle(title + "\n" + ", ".join(words), fontsize=10)
     tolerances = [looks.spread(k, s["law"], s["width"], s["percent"]) + (f" (to {100 * s['shrink']:.0f} % of it for 99 %)" if s["shrink"] and s["shrink"] < 1 else "") for k, s in scatter["spreads"].items()]
     if scatter["shrink_all"] is not None and 0 < scatter["shrink_all"] < 1:

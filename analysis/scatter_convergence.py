@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws how the error of a yield falls with the number of hoops made: leapmap's Sobol' points in 16 replicates against pseudo-random
-numbers, both against a yield of 2^20 hoops, for the design and the scatter of a spec. The root mean square over seeds; slopes fitted on
-both scales; and the error that leapmap states.
+"""Draw the error of a yield against the number of manufactured hoops, for the design and the tolerances of a spec.
 
-Wants leapmap's Python module: PYTHONPATH=build/release/python.
+Compares leapmap's Sobol' points in 16 replicates with pseudo-random numbers, both against a yield of 2^20 hoops: root mean square over
+seeds, fitted slopes, and the error that leapmap reports. Needs leapmap's Python module: PYTHONPATH=build/release/python.
 """
 import numpy as np
 
@@ -24,8 +23,8 @@ def yields(leapmap, spec, goals, samples, seed):
 
 def main():
     p = style.parser(__doc__, "a spec of one design with [scatter] and [goal]", "_convergence")
-    p.add_argument("--seeds", type=int, default=32, help="of each number of hoops (default: %(default)s)")
-    p.add_argument("--at-least", type=float, metavar="HEIGHT", help="the goal of jump_height, in place of the spec's")
+    p.add_argument("--seeds", type=int, default=32, help="number of seeds for each number of hoops (default: %(default)s)")
+    p.add_argument("--at-least", type=float, metavar="HEIGHT", help="goal of jump_height, instead of the spec's")
     arguments = p.parse_args()
     goals = {} if arguments.at_least is None else {"goal.jump_height": {"at_least": arguments.at_least}}
     leapmap = style.leapmap_module()
@@ -51,8 +50,8 @@ def main():
         axis.loglog(COUNTS, errors, mark, color=colour, label=f"{words}: error falls as n$^{{{slope:.2f}}}$")
         axis.loglog(COUNTS, np.exp(np.polyval(np.polyfit(np.log(COUNTS), np.log(errors), 1), np.log(COUNTS))), color=colour, linewidth=0.8)
         print(f"{words}: slope {slope:.3f}, error {errors[5]:.2e} at {COUNTS[5]:,} hoops")
-    axis.loglog(COUNTS, stated, ":", color="#1f4e79", label="the error that leapmap states")
-    axis.set_xlabel("hoops made")
+    axis.loglog(COUNTS, stated, ":", color="#1f4e79", label="error that leapmap reports")
+    axis.set_xlabel("number of manufactured hoops")
     axis.set_ylabel("error of the yield")
     axis.set_title(f"yield {truth:.4f}, {len(made['cut_off'])} tolerances, {arguments.seeds} seeds each; one hoop spreads by {spread:.2f}")
     axis.legend(frameon=False)

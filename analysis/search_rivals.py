@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""leapmap design against brute force and against scipy, on the same questions: what is found, how many designs it takes, how long.
+"""Compare leapmap design with brute force and with scipy, on the same design problems.
 
-A grid goes through the same box with as many designs as --grid says (with friction as --slipping, of hoops as made --made); the goals are
-looked at with numpy. scipy's differential evolution and dual annealing ask one design at a time, through leapmap.DesignProblem. "short"
-is by how much each misses the best of all. Of two objectives the front is held against what nothing dominates among --random designs:
-the volume that each dominates, from the worst corner of both. Exit status 1: something found a better design or front.
+A grid over the same bounds has --grid designs (with friction --slipping, of manufactured hoops --made); numpy evaluates the goals.
+scipy's differential evolution and dual annealing solve one design at a time, through leapmap.DesignProblem. "short" is the difference
+to the best result of all. Two objectives: the volume that the front dominates, against that of --random designs.
+Exit status 1: another method found a better design or front.
 """
 import argparse
 import sys

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where methods fail, from the table that leapmap stability writes: a chart a case, and an overview.
+"""Draw the cases in which methods fail, from the table that leapmap stability writes: one chart for each case, and a summary.
 
-OUTPUT_CASE: left the error along the case's walk, one line a method with its verdict (the median where a place has many
-designs); rings are answers wrong without a word, crosses failures that say so, grey what an ulp of the inputs does to the
-answer. Right what the case is about besides: work, energy drift, or shares. OUTPUT: every method's verdict in every case.
+OUTPUT_CASE: left, the error along the case, one line for each method with its verdict; rings are silently wrong answers, crosses
+reported failures, grey the effect of an ulp of the inputs. Right: work, energy drift, condition or fraction of wrong designs.
+OUTPUT: the verdict of every method in every case.
 """
 import numpy as np
 
@@ -14,26 +14,26 @@ from read_map import NotAMap, read_table
 from style import plt
 
 TITLES = {
-    "needle": "a mass on the rim of an ever lighter hoop: the spin has a needle at φ = 0",
+    "needle": "a mass on the rim of an ever lighter hoop: a narrow spin peak at φ = 0",
     "release": "released ever closer to the unstable equilibrium",
-    "graze": "across the fold where a pair of lift-off and return is born",
+    "graze": "across the fold at which a pair of lift-off and return appears",
     "long": "ever longer runs to the jump",
     "step": "fixed steps, ever longer",
     "tolerance": "tolerances no double can reach",
-    "landing": "flights that start on the plane and dip below it",
+    "landing": "flights that start on the plane and enter it",
     "chaos": "jump after jump of a hoop that has no stable gait",
-    "painleve": "with friction: a slide that just misses Painlevé's edge",
+    "painleve": "with friction: a slide that barely misses Painlevé's paradox",
     "slow": "with friction: rolled off ever more slowly",
-    "dip": "with friction: n₀ of a slide just touches zero",
-    "stick": "with friction: friction just holds",
+    "dip": "with friction: n₀ of a slide barely touches zero",
+    "stick": "with friction: friction barely holds",
     "bounces": "with friction: ever more rebounds",
 }
 BESIDE = {"needle": "evaluations", "release": "condition", "graze": "condition", "long": "energy_drift", "step": "share", "tolerance": "evaluations", "chaos": "condition",
           "painleve": "evaluations", "slow": "evaluations", "dip": "condition", "stick": "condition", "bounces": "evaluations"}
-LABELS = {"evaluations": "right-hand sides of a design", "condition": "condition: relative change of the answer over that of the inputs",
+LABELS = {"evaluations": "right-hand sides per design", "condition": "condition: relative change of the answer over that of the inputs",
           "energy_drift": "energy drift at the jump, over 1 + kinetic energy", "share": "designs wrong (solid) or failed (dotted) [%]"}
 VERDICTS = {  # from best to worst
-    "fine": "#2ca02c", "loses digits": "#bcbd22", "gives up honestly": "#9ecae1", "breaks down": "#7f7f7f", "wrong without a word": "#d62728"}
+    "fine": "#2ca02c", "loses digits": "#bcbd22", "reports failure": "#9ecae1", "breaks down": "#7f7f7f", "silently wrong": "#d62728"}
 EPSILON = np.finfo(float).eps
 
 
@@ -113,7 +113,7 @@ def case_chart(t, study):
     right.set_yscale("linear" if beside == "share" else "log")
     left.set_ylim(top=2.0 * crosses)
     left.set_ylabel("error of height [diameters] or time [relative]")
-    left.set_title("red rings: wrong without a word (on top: flags wrong); crosses: failed, saying so, a row each method")
+    left.set_title("red rings: silently wrong (at the top: flags wrong); crosses: reported failures, one row for each method")
     right.set_ylabel(LABELS[beside])
     for axis in (left, right):
         scale(axis, t, everything)
@@ -156,7 +156,7 @@ def overview(t):
             verdict = verdicts.get((name, study))
             if verdict:
                 axis.barh(row, 0.96, left=column - 0.48, height=0.9, color=VERDICTS[verdict])
-                short = {"wrong without a word": "wrong, silent", "gives up honestly": "gives up"}.get(verdict, verdict)
+                short = {"silently wrong": "wrong, silent", "reports failure": "reports"}.get(verdict, verdict)
                 axis.text(column, row, short, ha="center", va="center", fontsize=7)
     axis.set_yticks(range(len(names)), names)
     axis.set_xticks(range(len(studies)), studies)

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws how designs end over two axes of a map, a panel for each value of the others: whether the first lift-off is the jump or a
-spurious one, and why there is no jump elsewhere. A star at the paper's hoop. Needs status.
+"""Draw how designs end, over two axes, one panel for each value of the others.
+
+Colours: a jump at the first lift-off, a jump after a spurious one, or the reason why there is no jump. A star marks the paper's hoop.
+Needs status.
 """
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -12,8 +14,8 @@ import style
 from read_map import NotAMap
 
 JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a spurious first lift-off"),
-         ("#5aae61", "jumps (the map does not tell at which lift-off)")]
-NONE_SPURIOUS = ("#dfc27d", "no jump: its lift-offs stay below the hop height")
+         ("#5aae61", "jumps (lift-off unknown)")]
+NONE_SPURIOUS = ("#dfc27d", "no jump: all lift-offs below the jump threshold")
 
 
 def chart(grid, curves):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One look for all charts: fonts, colours, and how a figure is saved."""
+"""Common style of all charts: fonts, colours, and how a figure is saved."""
 import argparse
 import contextlib
 import io
@@ -74,10 +74,14 @@ def replace_file(path, content):
     mode = os.stat(path).st_mode & 0o7777 if os.path.exists(path) else 0o666 & ~umask
     descriptor, unfinished = tempfile.mkstemp(dir=folder, prefix=os.path.basename(path)[:100] + ".", suffix=".part")
     try:
-        with open(descriptor, "wb") as file:
+        with open(descriptor, "wb", buffering=0) as file:
             os.fchmod(descriptor, mode)
-            file.write(content)
-            file.flush()
+            rest = memoryview(content)
+            while rest:
+                written = file.write(rest)
+                if not written:  # a buffered file would try again indefinitely
+                    raise OSError(f"{path}: nothing can be written")
+                rest = rest[written:]
             os.fsync(file.fileno())
         with open(unfinished, "rb") as file:
             if file.read() != content:

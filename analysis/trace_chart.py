@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Redraws the paper's Figs 4 to 6 from a trace: angle, spin, normal and friction force and height over time; and, where the hoop
-jumps, a second figure of its flight: how x, y and the angle change from the lift-off on.
+"""Draw the motion of a trace as in the paper's Figs 4 to 6: angle, spin, normal and friction force, height over time.
 
-Lift-off candidates are dashed lines, the jump a solid one; sliding and flight are shaded. Forces are in units of the weight,
-friction positive downhill; y is the height of the hoop's lowest point above the plane. --paper marks what the paper published.
+A second figure shows the flight of the jump. Dashed lines: lift-offs; solid line: the jump; shaded: sliding and flight. Forces are in
+units of the weight, friction positive downhill; y is the height of the hoop's lowest point. --paper adds the published values.
 """
 import sys
 

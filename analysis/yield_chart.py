@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws what becomes of hoops as made, over two axes of a map of a sweep with [scatter] and [goal]: the yield, with isolines at 50, 90
-and 99 % and with cliffs, as leapmap boundaries finds them of hoops as drawn; beside it the jump's height as drawn and the 5 % quantile
-of its height as made, in the same colours. A cross where a designer should sit: where the jump as drawn is highest
-among yields of 99 %, or else where the yield is best; a triangle where the jump as drawn is highest of all. Needs yield;
-draws jump_height and jump_height_q05 if they are there.
+"""Draw the yield of manufactured hoops over two axes of a map of a sweep with [scatter] and [goal].
+
+The yield has isolines at 50, 90 and 99 %, and the discontinuities of nominal hoops if leapmap boundaries has found them. Beside it:
+the nominal height, and the 5 % quantile of the height of manufactured hoops, in the same colours. A cross marks the highest nominal
+jump with a yield of 99 %, or else the best yield; a triangle the highest nominal jump of all. Needs yield; draws jump_height and
+jump_height_q05 if the map has them.
 """
 import numpy as np
 from matplotlib.colors import Normalize, PowerNorm
@@ -50,8 +51,8 @@ def chart(grid, curves):
     if "yield" not in m.fields:
         raise NotAMap(f"{m.path}: has no yield; allowed: a map of a sweep with [scatter] and [goal]")
     if len(grid.panels) > 1:
-        raise NotAMap(f"{m.path}: is over more than two axes; fix the others by --at {grid.others[0]}="
-                      f"{looks.shown(grid.others[0], m.dims[grid.others[0]][0])}, say")
+        raise NotAMap(f"{m.path}: has more than two axes; fix the others, for example by --at {grid.others[0]}="
+                      f"{looks.shown(grid.others[0], m.dims[grid.others[0]][0])}")
     shown = [name for name in HEIGHTS if name in m.fields]
     figure, axes = plt.subplots(1, 1 + len(shown), squeeze=False, sharex=True, sharey=True, layout="constrained",
                                 figsize=(4.0 * (1 + len(shown)) + 0.6, 4.9))
@@ -70,7 +71,7 @@ def chart(grid, curves):
         for axis, name in zip(axes[1:], shown):
             own = curves if name == "jump_height" else []
             drawn, _ = draw(axis, grid, planes_of[name], own, look.colours, norm, looks.levels_of(look, planes_of[name]), lambda v: f"{v:g}", curves)
-            axis.set_title("jump height as drawn" if name == "jump_height" else "5 % quantile of the jump height\nof the hoops made that jump")
+            axis.set_title("nominal jump height" if name == "jump_height" else "5 % quantile of the jump height\nof manufactured hoops that jump")
         figure.colorbar(drawn, ax=list(axes[1:]), label=look.title)
     marks = []
     # Two errors on the safe side.
@@ -78,15 +79,15 @@ def chart(grid, curves):
     if "jump_height" in shown and (surely >= YIELDS[-1]).any():
         safe = np.where(surely >= YIELDS[-1], planes_of["jump_height"], np.nan)
         place = best(grid, safe)
-        marks.append(("P", "#d62728", f"the highest as drawn with a yield of 99 %: {np.nanmax(safe):.3g} diameters {at(grid, place)}", place))
+        marks.append(("P", "#d62728", f"highest nominal jump with a yield of 99 %: {np.nanmax(safe):.3g} diameters {at(grid, place)}", place))
     else:
         place = best(grid, yields)
-        marks.append(("P", "#d62728", f"the best yield, {100 * np.nanmax(yields):.1f} % {at(grid, place)}", place))
+        marks.append(("P", "#d62728", f"best yield, {100 * np.nanmax(yields):.1f} % {at(grid, place)}", place))
     if "jump_height" in shown:
         highest = planes_of["jump_height"]
         place = best(grid, highest)
         share = yields[np.unravel_index(np.nanargmax(highest), highest.shape)]
-        marks.append(("^", "#ff7f0e", f"the highest as drawn: {np.nanmax(highest):.3g} diameters {at(grid, place)}, yield {100 * share:.0f} %", place))
+        marks.append(("^", "#ff7f0e", f"highest nominal jump: {np.nanmax(highest):.3g} diameters {at(grid, place)}, yield {100 * share:.0f} %", place))
     handles = []
     for symbol, colour, words, place in marks:
         for axis in axes:

@@ -11,6 +11,7 @@ if(EXISTS ${LEAPMAP_PYTHON})
 endif()
 install(DIRECTORY sweeps/ DESTINATION ${CMAKE_INSTALL_DATADIR}/leapmap/sweeps FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")
 install(FILES README.md CHANGELOG.md CITATION.cff cmake/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY build/docs/html DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)  # made by docs/build.sh
 configure_file(cmake/changelog.in changelog @ONLY)
 file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/changelog.gz PATHS ${PROJECT_BINARY_DIR}/changelog FORMAT raw COMPRESSION GZip)
 install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -19,7 +20,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME leapmap)
 set(CPACK_PACKAGE_CONTACT "The leapmap authors <leapmap@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "design-space explorer for passive jumping hoops")
-set(CPACK_PACKAGE_DESCRIPTION "A thin hoop with an off-centre mass rolls down a plane and jumps without a motor. leapmap tells which
+set(CPACK_PACKAGE_DESCRIPTION "A thin hoop with an off-centre mass rolls down a plane and jumps without a motor. leapmap shows which
 designs jump, how high and how soon: a program, a C++ library, a Python module, charts, and a page to explore maps with.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

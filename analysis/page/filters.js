@@ -37,15 +37,15 @@ function filtersPart(map, view, changed, best) {
 
   function tell() {
     for (const { show } of goals) show();
-    find.textContent = `show the ${isMultiplier() ? "most stable" : better(0, 1) ? "lowest" : "highest"} left`;
+    find.textContent = `show the ${isMultiplier() ? "most stable" : better(0, 1) ? "lowest" : "highest"} remaining design`;
     if (!map.keeps) { told.textContent = ""; return; }
     const n = map.fields[0].values.length;
     let left = 0;
     for (let k = 0; k < n; ++k) if (keeps(k)) ++left;
-    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field))) ? "; nothing is dimmed for goals that the yield counts" : "";
+    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field))) ? "; goals that the yield counts dim nothing" : "";
     const others = map.asked.made ? goals.filter(({ field }) => !field.made && !isOfHoop(field)).map(({ field }) => field.label.split(":")[0]) : [];
-    const without = others.length > 0 ? `; no goal of hoops as made: ${[...new Set(others)].join(", ")}` : "";
-    told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs are left${inYield}${without}`;
+    const without = others.length > 0 ? `; not a goal for manufactured hoops: ${[...new Set(others)].join(", ")}` : "";
+    told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs remain${inYield}${without}`;
   }
 
   function row(asked = {}) {

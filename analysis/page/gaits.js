@@ -100,7 +100,7 @@ function gaitsPart(map, solver, choose) {
       context.stroke();
     }
     const done = now.heights.filter((column) => column).length, lively = now.heights.filter((column) => column && !Number.isNaN(column[0])).length;
-    told.textContent = `${lively} of ${done} hoops go on jumping after ${SETTLE} jumps`;
+    told.textContent = `${lively} of ${done} hoops still jump after ${SETTLE} jumps`;
     Object.assign(canvas.dataset, { hoops: done, lively });
   }
 
@@ -127,7 +127,7 @@ function gaitsPart(map, solver, choose) {
     const [from, to] = bounds(), [least, most] = solver.ranges[over.value];
     const good = to > from && from >= least && to <= most;
     for (const input of Object.values(inputs)) input.setAttribute("aria-invalid", String(!good));
-    if (!good) { draw(); told.textContent = `from below to, between ${short(least * factor())} and ${short(most * factor())}`; return; }
+    if (!good) { draw(); told.textContent = `from must be below to, between ${short(least * factor())} and ${short(most * factor())}`; return; }
     now.heights = new Array(COLUMNS).fill(null);
     now.work = columnsInOrder();
     step();

@@ -47,7 +47,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   function draw() {
     if (!now.story || now.story.motion.t.length === 0) {
       for (const canvas of [scene, plots]) canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
-      clock.textContent = "it does not set out";
+      clock.textContent = "it does not move";
       return;
     }
     drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts, element("forces").checked);
@@ -190,7 +190,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     now.recording = false;
     film.disabled = false;
     film.textContent = "save as WebM";
-    if (blob) { film.dataset.bytes = blob.size; saveAs(blob, "hoop.webm"); } else notice("This browser records no films.");
+    if (blob) { film.dataset.bytes = blob.size; saveAs(blob, "hoop.webm"); } else notice("This browser cannot record films.");
   });
   scrub.addEventListener("input", () => stopAt(Number(scrub.value)));
   for (const id of ["follow", "forces"]) element(id).addEventListener("change", draw);
@@ -201,7 +201,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     const good = Number(input.value) > 0 && input.checkValidity();
     input.setAttribute("aria-invalid", String(!good));
     if (!document.querySelector('[aria-invalid="true"]')) notice("");
-    if (!good) notice(`The ${name} must be a number above 0, and not beyond all bounds.`);
+    if (!good) notice(`The ${name} must be a number above 0, and finite.`);
     if (!good) return;
     chosen[name] = Number(input.value) / 1000;
     if (now.story) then();
@@ -218,7 +218,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   jumps.addEventListener("change", () => {
     const good = jumps.value !== "" && jumps.checkValidity();
     jumps.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `How many jumps must be a whole number from ${jumps.min} to ${jumps.max}.`);
+    notice(good ? "" : `The number of jumps must be a whole number from ${jumps.min} to ${jumps.max}.`);
     if (!good) return;
     chosen.jumps = Number(jumps.value);
     followOn();
@@ -256,7 +256,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     noteAddress();
   };
   /** A hoop of numbers that were typed, of which only those that differ from the map's go into the address. */
-  const typed = (design, title = "One hoop: as typed") => begin(design, title, ["hoop", wordsOf(design, Object.keys(map.parameters).filter((name) => name in solver.defaults && name !== "radius" && (map.slips || !SLIPPING.includes(name))))]);
+  const typed = (design, title = "One hoop: edited") => begin(design, title, ["hoop", wordsOf(design, Object.keys(map.parameters).filter((name) => name in solver.defaults && name !== "radius" && (map.slips || !SLIPPING.includes(name))))]);
   const PAPERS = "One hoop: the paper's, from rest with its mass on top";
   // In a model that slips it is a hoop of numbers: the paper's has no friction to name.
   const paper = (goesOn = false) => (map.slips ? typed({ ...map.fixed, ...map.paper }, PAPERS) : begin({ ...map.fixed, ...map.paper }, PAPERS, ["paper", ""], goesOn));
@@ -297,7 +297,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
       const hoop = designOf(words.get("hoop"), solver.ranges);
       if (words.has("paper")) paper();
       else if (hoop) typed({ ...map.fixed, ...hoop });
-      else if (words.has("hoop")) notice("The address asks for a hoop of numbers that no hoop has.");
+      else if (words.has("hoop")) notice("The address describes a hoop that is not possible.");
     },
   });
   /** The model is another: a hoop that is none of the map's, and what is pinned, are solved anew; the map's own follow the map. */

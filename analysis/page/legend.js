@@ -17,9 +17,9 @@ function showLegend(map, view) {
   map.codes.status?.shown.forEach(({ colour, words }, k) => {
     const jumped = map.codes.status.meanings[k] === "jumped";
     if (!jumped && (bare ? bare.has(k) : map.codes.status.values.includes(k))) items.push(entry(words, colour));
-    if (jumped && bare && bare.has(k)) items.push(entry("not told: more than half of a tolerance lies where no hoop can be", "#ffffff"));
+    if (jumped && bare && bare.has(k)) items.push(entry("unknown: more than half of a tolerance is outside its domain", "#ffffff"));
   });
-  if (field.gait) items.push(entry(field.name === "gait_period" ? "no gait is found" : "no gait: none is found, or the hoop comes to an end", "#ffffff"));
+  if (field.gait) items.push(entry(field.name === "gait_period" ? "no gait found" : "no gait: none found, or the jumps end", "#ffffff"));
   const symbol = (words, sign, colour) => {
     const item = document.createElement("li"), mark = document.createElement("span");
     mark.textContent = sign;
@@ -29,7 +29,7 @@ function showLegend(map, view) {
   };
   if (showsSpurious && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
   if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
-  items.push(symbol("pointed at", "⊕", tones.ink), symbol("shown beside", "⊕", tones.mark));
+  items.push(symbol("selected", "⊕", tones.ink), symbol("shown on the right", "⊕", tones.mark));
   if (!field.gait) for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))
     items.push(symbol(map.cliff_words[kind], kind in DASHES ? "╌" : "—", tones.ink));
   element("legend").replaceChildren(...items);

@@ -26,7 +26,7 @@ function liveMap(given, solver, state) {
   }));
   const meanings = solver.codes.status, shown = meanings.map((word) => given.statuses[word] ?? { colour: "#ffffff", words: word });
   const map = {
-    ...given, live: true, name: "leapmap", title: "Jumps of passive hoops, computed as you look", designs: n, computed: 1, slips: state.slips, method: "exact", tolerance: 1e-10,
+    ...given, live: true, name: "leapmap", title: "Jumps of hoops, computed while you explore", designs: n, computed: 1, slips: state.slips, method: "exact", tolerance: 1e-10,
     axes: [state.x, state.y].map((axis) => liveAxis(given, axis)), fixed: { ...solver.defaults, ...state.fixed },
     fields, curves: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1, settle: 100, samples: 256, seed: 1, spreads: USUAL_SPREADS,
     solver, asked: { jumps: 1, settle: 0, growth: false, made: null }, wanted: () => [], hoopGoals: () => [],
@@ -172,7 +172,7 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     map.roughCurves = side > 1;
     if (side > 1) {
       now.rushing = false;
-      onPicture("rough cliffs");
+      onPicture("coarse discontinuities");
       if (now.again) begin(); else if (now.left.every((left) => left === 0)) goOn();
       return;
     }
@@ -194,7 +194,7 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     const job = worker.jobs.shift();
     feed(worker);
     if (data.error) {
-      notice(`The map cannot be solved on: ${data.error}`);
+      notice(`Solving the map has stopped: ${data.error}`);
       if (data.generation !== now.generation) return;
       Object.assign(now, { generation: now.generation + 1, queue: [], rushing: false });
       if (now.again) begin(); else onProgress(NaN, 0);

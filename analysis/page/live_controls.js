@@ -4,7 +4,7 @@
 function liveState(words, solver) {
   const state = { slips: words.get("friction") === "coulomb", fixed: {} };
   const numbers = (text) => (text ?? "").split(":").map((word, i) => (i === 0 ? word : Number(word)));
-  const refuse = (key) => notice(`The address asks for ${key}=${words.get(key)}, which cannot be, and is left out.`);
+  const refuse = (key) => notice(`The address asks for ${key}=${words.get(key)}, which is not possible and is ignored.`);
   const axis = (key, fallback, count) => {
     const [name, from, to] = numbers(words.get(key)), known = name in LIVE_RANGES && !NO_LIVE_AXIS.includes(name), [least, most] = known ? solver.ranges[name] : [NaN, NaN];
     const good = known && from >= least && to <= most && from < to;
@@ -169,11 +169,11 @@ function countPart(map, name, what, changed) {
     read(words) {
       input.value = words.get(name) ?? usual;
       input.setAttribute("aria-invalid", "false");
-      if (input.value === "" || !input.checkValidity()) { input.value = usual; notice(`The address asks for ${name}=${words.get(name)}, which cannot be, and is left out.`); }
+      if (input.value === "" || !input.checkValidity()) { input.value = usual; notice(`The address asks for ${name}=${words.get(name)}, which is not possible and is ignored.`); }
       map[name] = Number(input.value);
     },
   };
 }
 
 /** How many jumps a live map lets go by before it looks for gaits. */
-const settlePart = (map) => countPart(map, "settle", "How many jumps go by before a gait is looked for", () => map.refresh());
+const settlePart = (map) => countPart(map, "settle", "The transient before a gait is searched for", () => map.refresh());

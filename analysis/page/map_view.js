@@ -2,7 +2,7 @@
 
 /** What a scene is told by. */
 const SCENE_WORDS = {
-  radius: (v) => `R ${v} m`, gravity: (v) => `g ${v} m/s²`, runway: (v) => `runway of ${v} turns`, hop_height: (v) => `jumps from ${v} diameters on`, rest_speed: (v) => `rebounds from ${v} √(g R) on`,
+  radius: (v) => `R ${v} m`, gravity: (v) => `g ${v} m/s²`, runway: (v) => `rolling limit ${v} revolutions`, hop_height: (v) => `jump threshold ${v} diameters`, rest_speed: (v) => `rebounds above ${v} √(g R)`,
 };
 
 /** Of the lines of cliffs, by what happens there. */
@@ -242,7 +242,7 @@ function mapView(canvas, map, onPoint, onPick) {
     const told = Object.entries(map.parameters).filter(([name]) => !drawn.includes(name) && Number.isFinite(values[name]) && (map.slips || !SLIPPING.includes(name)) && !NO_LIVE_AXIS.includes(name))
       .map(([name, row]) => `${row.symbol} ${withUnit(short(inShownUnit(row, values[name])), row.unit)}`);
     const scene = Object.entries(SCENE_WORDS).filter(([name]) => name === "radius" || values[name] !== map.defaults[name]).filter(([name]) => map.slips || !SLIPPING.includes(name)).map(([name, tell]) => tell(short(values[name])));
-    const text = `${fieldLabel(view.field, map.fixed)}: ${[...told, ...scene, map.slips ? "may slip" : "never slips"].join(", ")}`, size = (part) => `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
+    const text = `${fieldLabel(view.field, map.fixed)}: ${[...told, ...scene, map.slips ? "Coulomb friction" : "no slip"].join(", ")}`, size = (part) => `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
     context.fillStyle = tones.ink;
     context.textAlign = "left";
     context.textBaseline = "alphabetic";

@@ -15,7 +15,7 @@ function numberRow(name, words, text, value) {
 function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
   const R = design.radius, second = Math.sqrt(R / design.gravity), measure = measuresOf(design, chosen.mass), jumped = outcome.status === "jumped", rows = [];
   const add = (name, words, text, value = outcome[name]) => rows.push(numberRow(name, words, text, value));
-  add("status", "ends as", outcome.status.replaceAll("_", " "));
+  add("status", "outcome", outcome.status.replaceAll("_", " "));
   if (jumped) {
     const metres = 2 * R * outcome.jump_height, agility = metres / (outcome.jump_time + outcome.apex_time);
     add("jump_height", "jump height", `${measure.length(metres)} = ${short(outcome.jump_height, 5)} diameters`);
@@ -25,16 +25,16 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
     add("jump_spin", "spin at lift-off", measure.spin(outcome.jump_spin / second));
     add("jump_angle", "angle at lift-off", `${short(outcome.jump_angle * 180 / Math.PI, 5)}°`);
     add("jump_distance", slips ? "travelled until lift-off" : "rolled until lift-off", measure.length(outcome.jump_distance * R));
-    if (!slips) add("dip", "flight first dips", measure.length(2 * R * outcome.dip, 3));
+    if (!slips) add("dip", "penetration depth", measure.length(2 * R * outcome.dip, 3));
   }
   if (jumped && chosen.jumps > 1)
-    add("jumps", "jumps made", `${outcome.jumps} of ${chosen.jumps}: ${[...liftOffs.height].filter((_, i) => liftOffs.is_jump[i] === 1).map((h) => measure.length(2 * R * h)).join(", ")}`);
+    add("jumps", "number of jumps", `${outcome.jumps} of ${chosen.jumps}: ${[...liftOffs.height].filter((_, i) => liftOffs.is_jump[i] === 1).map((h) => measure.length(2 * R * h)).join(", ")}`);
   if (outcome.candidates > 0) {
     const after = measure.time(outcome.first_jump_time);
     add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"
       : outcome.first_jump_height > 0 ? `spurious: ${measure.length(2 * R * outcome.first_jump_height, 3)} high, after ${after}`
-      : `spurious: sinks at once, after ${after}; rolling on without slip asks the plane to pull`);
-    add("candidates", "lift-offs looked at", String(outcome.candidates));
+      : `spurious: sinks at once, after ${after}; contact without slip would need a pull`);
+    add("candidates", "number of lift-offs", String(outcome.candidates));
   }
   if (slips) {
     add("phase_sequence", "phases", `${outcome.phase_sequence} (R rolls, S slides, F flies)`);

@@ -55,7 +55,7 @@ const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI
 const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
 const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name) && !(["jumps", "sequence_condition"].includes(name) && map.live && map.jumps === 1);
 
-const LIVE_SUBTITLE = "Turn anything: the map follows. Click a design to see it jump; the address keeps what you see.";
+const LIVE_SUBTITLE = "Change any parameter: the map follows. Click a design to see it jump. The address stores the view.";
 
 const NOTHING_YET = { coarse: "false", whole: "false", cliffs: "false" };
 
@@ -69,7 +69,7 @@ function startLive(given, module, solver) {
     if (what === "none" || what === "cleared") { Object.assign(dataset, NOTHING_YET); page?.begun(what === "cleared"); return; }
     dataset.coarse = "true";
     if (!page) page = start(map, solver, teller);  // which may begin anew, by what the address wants
-    if (what === "rough cliffs") page.view.overlayCliffs(); else page.repaint(what === "part");
+    if (what === "coarse discontinuities") page.view.overlayCliffs(); else page.repaint(what === "part");
     Object.assign(dataset, { whole: String(what === "whole" || what === "cliffs"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
@@ -106,7 +106,7 @@ function start(map, solver, teller) {
     (map.computed < 1 ? `, INCOMPLETE: ${(100 * map.computed).toFixed(0)} % of them computed` : "") +
     `; ${map.about.join(", ")}`;
   element("footer").textContent = (map.live ? "Every number is computed by leapmap in this page" : `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as shown`) +
-    (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop here by exact`) +
+    (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop by exact`) +
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
     (map.fields.some((f) => f.name === "agility") ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "") + ".";
 
@@ -129,7 +129,7 @@ function start(map, solver, teller) {
     const { outcome, title, design } = own, { field } = view.view, v = outcome[field.name];
     said = "";
     element("place").textContent = title;
-    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : v === undefined ? (map.asked.made ? "being solved" : "not told") : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ")}`;
+    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : v === undefined ? (map.asked.made ? "being solved" : "unknown") : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ")}`;
     tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name]) ? toldIn(outcome[f.name], f.unit, design) : ""));
     speak();
     Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });
@@ -153,10 +153,10 @@ function start(map, solver, teller) {
     const isSolving = (f) => map.live && costOf(f) && !number(f) && canvas.dataset.coarse !== "true";
     const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : isSolving(f) ? "being solved" : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
-    const notes = status === "no_jump" && spurious ? [`no jump: its lift-offs stay below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
+    const notes = status === "no_jump" && spurious ? [`no jump: all lift-offs below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
       : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
     element("place").textContent = placeText(map, index);
-    const notesSaid = notes.filter((w) => w && !isSolving(shown)).map((note) => (shown.made ? `as drawn: ${note}` : note));
+    const notesSaid = notes.filter((w) => w && !isSolving(shown)).map((note) => (shown.made ? `nominal: ${note}` : note));
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notesSaid].join("; ");
     tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));
     speak();
@@ -414,7 +414,7 @@ function addressed(map, words) {
     tonesPart();
     const toggle = element("live-toggle");
     toggle.hidden = Boolean(data.only_live);
-    toggle.textContent = live ? "back to the file's map" : "compute the map here: every parameter a slider";
+    toggle.textContent = live ? "back to the map in the file" : "compute the map here: every parameter a slider";
     toggle.addEventListener("click", () => { location.hash = live ? "" : liveFrom(data); location.reload(); });
     if (live) startLive(data.for_live, module, solver);
     else start(await readMap(), solver, madeTeller(module, element("worker").textContent));

@@ -4,7 +4,7 @@ const PIN_COLOURS = ["#0072b2", "#cc79a7", "#e69f00", "#009e73"];  // told apart
 const PIN_INKS = ["#ffffff", "#000000", "#000000", "#000000"];  // of numbers on them
 const MOST_PINS = PIN_COLOURS.length;
 const PINNED = [["jump_height", "jump height", "diameters"], ["jump_time", "lift-off after", "s"], ["apex_time", "apex after lift-off", "s"], ["flight_time", "landing after lift-off", "s"],
-                ["jump_spin", "spin at lift-off", "√(g/R)"], ["jump_distance", "rolled until lift-off", "R"], ["candidates", "lift-offs looked at", ""]];
+                ["jump_spin", "spin at lift-off", "√(g/R)"], ["jump_distance", "rolled until lift-off", "R"], ["candidates", "number of lift-offs", ""]];
 
 /** command(design): that tells it; changed(): what is pinned is another. Returns {pin(design), designs(), show(), write, read}. */
 function pinsPart(map, solver, command, changed) {
@@ -32,7 +32,7 @@ function pinsPart(map, solver, command, changed) {
     }));
     const row = (words, texts) => { const tr = document.createElement("tr"), th = cell("th", words); th.scope = "row"; tr.append(th, ...texts.map((text) => cell("td", text))); return tr; };
     const rows = keys.map((key) => row(map.parameters[key].label, pins.map(({ design }) => withUnit(short(inShownUnit(map.parameters[key], design[key])), map.parameters[key].unit))));
-    rows.push(row("ends as", pins.map(({ outcome }) => outcome.status.replaceAll("_", " "))));
+    rows.push(row("outcome", pins.map(({ outcome }) => outcome.status.replaceAll("_", " "))));
     for (const [key, words, unit] of PINNED)
       if (pins.some(({ outcome }) => Number.isFinite(outcome[key]))) rows.push(row(words, pins.map(({ design, outcome }) => (Number.isFinite(outcome[key]) ? toldIn(outcome[key], unit, design, 5) : ""))));
     table.replaceChildren(head, ...rows);

@@ -43,7 +43,7 @@ function madeTeller(module, workerText) {
   function tell(order, done) {
     drop();
     worker = new Worker(url);
-    const fail = (error) => { drop(); notice(`Hoops as made cannot be told: ${error.message ?? error}`); done(null); };
+    const fail = (error) => { drop(); notice(`Manufactured hoops cannot be solved: ${error.message ?? error}`); done(null); };
     worker.onmessage = ({ data }) => {
       if (data.ready) worker.postMessage(order);
       else if (data.error) fail(data.error);
@@ -64,7 +64,7 @@ function tolerancesPart(map, changed) {
   function take() {
     map.spreads = rows.map(({ spread }) => spread);
     const nothing = map.spreads.find(({ name, width, percent }) => percent && width > 0 && map.fixed[name] === 0 && !map.axes.some((axis) => axis.name === name));
-    notice(nothing ? `${map.parameters[nothing.name].label} is 0, of which ${short(nothing.width)} % is nothing: give its tolerance in its own unit.` : "");
+    notice(nothing ? `${map.parameters[nothing.name].label} is 0, and ${short(nothing.width)} % of it is 0: give the tolerance in its own unit.` : "");
     changed();
     noteAddress();
   }
@@ -80,9 +80,9 @@ function tolerancesPart(map, changed) {
       option(unit, "%", "%");
       option(unit, "own", own || "of its own");
       const words = map.parameters[spread.name].label.split(" [")[0];
-      name.setAttribute("aria-label", `tolerance of ${words}: of what`);
-      law.setAttribute("aria-label", `tolerance of ${words}: how it is spread`);
-      number.setAttribute("aria-label", `tolerance of ${words}: how much`);
+      name.setAttribute("aria-label", `tolerance of ${words}: parameter`);
+      law.setAttribute("aria-label", `tolerance of ${words}: distribution`);
+      number.setAttribute("aria-label", `tolerance of ${words}: width`);
       unit.setAttribute("aria-label", `tolerance of ${words}: unit`);
       away.setAttribute("aria-label", `remove the tolerance of ${words}`);
       name.value = spread.name;
@@ -148,7 +148,7 @@ function tolerancesPart(map, changed) {
     rows.at(-1).focus();
     take();
   });
-  const samples = countPart(map, "samples", "How many hoops are made of each design", changed);
+  const samples = countPart(map, "samples", "The number of manufactured hoops per design", changed);
   begin(map.spreads);
 
   const usual = USUAL_SPREADS.map(spreadWord).join();
@@ -161,7 +161,7 @@ function tolerancesPart(map, changed) {
     /** Another model: other parameters may scatter. */
     remodel() {
       const all = rows.map(({ spread }) => spread), dropped = all.filter(({ name }) => !designParameters(map).includes(name));
-      if (dropped.length > 0) notice(`A hoop that never slips has no tolerance of: ${dropped.map(({ name }) => map.parameters[name].label).join(", ")}`);
+      if (dropped.length > 0) notice(`Without slip there is no tolerance of: ${dropped.map(({ name }) => map.parameters[name].label).join(", ")}`);
       begin(all.filter((spread) => !dropped.includes(spread)));
       map.spreads = rows.map(({ spread }) => spread);
     },
@@ -176,14 +176,14 @@ function tolerancesPart(map, changed) {
       for (const word of asked.filter((each) => each !== "none")) {
         const spread = spreadOf(word);
         if (spread && !spreads.some(({ name }) => name === spread.name)) spreads.push(spread);
-        else notice(`The address asks for a tolerance that cannot be: ${word}`);
+        else notice(`The address asks for a tolerance that is not possible: ${word}`);
       }
       const sigma = Number(words.get("sigma"));  // as addresses had it before each tolerance had its own word
       begin(asked.length > 0 ? spreads : USUAL_SPREADS.map((spread) => (sigma > 0 ? { ...spread, width: sigma } : spread)));
       map.spreads = rows.map(({ spread }) => spread);
       samples.read(words);
       map.seed = /^\d{1,15}$/.test(words.get("seed") ?? "1") ? Number(words.get("seed") ?? 1) : 1;
-      if (words.has("seed") && String(map.seed) !== words.get("seed")) notice(`The address asks for seed=${words.get("seed")}, which cannot be, and is left out.`);
+      if (words.has("seed") && String(map.seed) !== words.get("seed")) notice(`The address asks for seed=${words.get("seed")}, which is not possible and is ignored.`);
       if (asked.length > 0) part.open = true;
     },
   };

@@ -72,11 +72,11 @@ std::vector<Table> tables_of(const Boundaries& found) {
     for (const std::vector<double>& place : places) values.push_back(place[k]);
     cliffs.push_back(axis_column(k, "", values));
   }
-  add_numbers(
-      "along",
-      fmt::format("axis along which it was bisected: its value is the last below; {}", numbered(axis_names)),
-      [](const Cliff& cliff) { return cliff.axis; });
-  add_numbers("kind", "what happens there: " + kinds_told(), [](const Cliff& cliff) { return cliff.kind; });
+  add_numbers("along",
+              fmt::format("axis along which it was bisected; its value is the largest one below; {}",
+                          numbered(axis_names)),
+              [](const Cliff& cliff) { return cliff.axis; });
+  add_numbers("kind", "cause: " + kinds_told(), [](const Cliff& cliff) { return cliff.kind; });
   for (const auto& [side, which] :
        {std::pair{std::string("below"), &Cliff::below}, {"above", &Cliff::above}}) {
     add_numbers(side + "_status", "status " + side + ", as in maps",
@@ -116,10 +116,10 @@ std::vector<Table> tables_of(const Boundaries& found) {
   }
   Table curves{numbered_rows(curve.size())};
   curves[0].name = "vertex";
-  curves.push_back({"curve", "1", "number of the curve, whose places stand one after the other", curve});
-  curves.push_back({"curve_kind", "1", "what happens along the curve: " + kinds_told(), kinds});
+  curves.push_back({"curve", "1", "number of the curve; its points are in order", curve});
+  curves.push_back({"curve_kind", "1", "cause: " + kinds_told(), kinds});
   curves.push_back({"curve_cliff", "1",
-                    "the cliff, by its row; -1: where outcomes meet, known only to a cell of the grid",
+                    "row of the discontinuity; -1: three outcomes meet, known only to a cell of the grid",
                     number});
   for (std::size_t k = 0; k < at.size(); ++k) curves.push_back(axis_column(k, "curve_", at[k]));
   return {cliffs, curves};
@@ -156,7 +156,7 @@ void print_counts(const Boundaries& found) {
         grouped(static_cast<std::uint64_t>(cliffs)),
         curves > 0 ? fmt::format(" on {} curves", grouped(static_cast<std::uint64_t>(curves))) : "");
   }
-  if (found.cliffs.empty()) say("no cliffs: all neighbours have the same outcome\n");
+  if (found.cliffs.empty()) say("no discontinuities: all neighbours have the same outcome\n");
 }
 
 Spec spec_of_input(const BoundariesArguments& arguments) {
@@ -164,19 +164,19 @@ Spec spec_of_input(const BoundariesArguments& arguments) {
     return read_given_spec(arguments.input, arguments.overrides);
   if (!arguments.overrides.empty())
     throw InputError(
-        "--set: has no use with a map; allowed: with a spec, or the map's own by leapmap info --spec");
+        "--set: has no effect with a map; allowed: with a spec, for example the map's: leapmap info --spec");
   return spec_of(MapReader(arguments.input, arguments.locking), arguments.input);
 }
 
 int run(const BoundariesArguments& arguments) {
   const Spec spec = spec_of_input(arguments);
-  refuse_scatter(arguments.overrides, "cliffs are of hoops as drawn");
+  refuse_scatter(arguments.overrides, "discontinuities are those of nominal hoops");
   const std::array inputs{NamedPath{"SPEC|MAP", arguments.input}, NamedPath{"design.points", spec.points}};
   const std::array outputs{NamedPath{"-o", arguments.output, true}, NamedPath{"--csv", arguments.csv}};
   refuse_same_files(inputs, outputs);
   if (arguments.options.phases && !model_of(spec.scene).slips)
     throw InputError(
-        "--phases: has no use where the contact never slips; allowed: with friction = \"coulomb\"");
+        "--phases: has no effect because the contact never slips; allowed: with friction = \"coulomb\"");
   if (!arguments.output.empty()) refuse_taken(arguments.output, cliffs_filetype, arguments.locking);
   note_signals();
   TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
@@ -199,7 +199,7 @@ int run(const BoundariesArguments& arguments) {
     found = find_boundaries(spec, options);
   } catch (const Stopped&) {
     progress.reset();
-    tell("interrupted; nothing is written");
+    tell("interrupted; nothing was written");
     return 128 + noted_signal();
   }
   progress.reset();
@@ -210,7 +210,7 @@ int run(const BoundariesArguments& arguments) {
   }
   if (!arguments.output.empty()) {
     std::vector<hdf5::Attribute> attributes =
-        provenance(spec, cliffs_filetype, "Where the outcomes of passive hoops jump");
+        provenance(spec, cliffs_filetype, "Discontinuities of the outcomes of passive hoops");
     attributes.emplace_back("phases", std::int64_t{options.phases});
     attributes.emplace_back("wall_time", seconds);
     if (!write_tables(behind_links(arguments.output), std::string(cliffs_filetype), tables_of(found),
@@ -226,41 +226,43 @@ int run(const BoundariesArguments& arguments) {
 
 void add_boundaries(CommandLine& line, int& status) {
   Command command =
-      line.command("boundaries", "find where outcomes jump between neighbours of a grid, to rounding");
+      line.command("boundaries", "find the discontinuities of a map's outcome, to machine precision");
+  command.examples(
+      {{"leapmap boundaries maps/slope_mass_ratio.h5 -o maps/slope_mass_ratio.cliffs.h5",
+        "charts and page of that map draw the curves"},
+       {"leapmap boundaries sweeps/slope_mass_ratio.toml --csv cliffs.csv", "without a map; a table"}});
   auto arguments = std::make_shared<BoundariesArguments>();
-  command.value("SPEC|MAP", arguments->input, "a sweep's spec, TOML, or the map that it made, HDF5")
+  command.value("SPEC|MAP", arguments->input, "a sweep's spec (TOML), or the map that it made (HDF5)")
       .required()
       .check(named_file());
-  command.value("-o,--output", arguments->output, "write cliffs and curves to this file, HDF5")
+  command.group("Output");
+  command.value("-o,--output", arguments->output, "write discontinuities and curves to this HDF5 file")
       .check(named_file());
-  command.value("--csv", arguments->csv, "write the cliffs, a line each, to this file, too")
+  command.value("--csv", arguments->csv, "write the discontinuities to this CSV file, one in a row")
       .check(named_file());
-  command.flag("--overwrite", arguments->overwrite, "let --csv replace whatever file has that name");
-  add_set(command, arguments->overrides, ", for example --set tolerance=1e-12");
-  command.flag("--phases", arguments->options.phases, "with friction: tell sequences of phases apart, too");
-  command.value("--threads", arguments->options.threads, "threads to use; default: all")
-      .check(whole_number(1, most_threads));
-  command.flag("--quiet", arguments->quiet, "print nothing but errors");
+  command.flag("--overwrite", arguments->overwrite, "allow --csv to replace any file");
+  command.flag("--quiet", arguments->quiet, "print errors only");
+  command.group("Options");
+  add_set(command, arguments->overrides, ", for example tolerance=1e-12; not with a map");
+  command.flag("--phases", arguments->options.phases, "with friction: phase sequences count as outcomes too");
+  add_threads(command, arguments->options.threads);
   add_no_lock(command, arguments->locking);
   command.footer(
-      "Each neighbouring pair of the grid whose status, flag or number of the lift-off that jumps differs is "
-      "bisected\n"
-      "until no number is left between. Where what lies beside a cliff is not what the two designs have, "
-      "there "
-      "are more\n"
-      "between them, and they are found too. Kinds: threshold (a lift-off's height passes hop_height), fold "
-      "(a "
-      "lift-off is\n"
-      "born), runway (one passes its end), turn (the hoop just turns round), release (the plane just has to "
-      "pull at the\n"
-      "release), phase and painleve (with friction), unresolved (on one side the method gave up). Two axes "
-      "give "
-      "curves,\n"
-      "more axes curves in each plane of the two with the most values.\n"
-      "Examples:\n"
-      "  leapmap boundaries sweeps/slope_mass_ratio.toml -o maps/slope_mass_ratio.cliffs.h5\n"
-      "  leapmap boundaries maps/slope_mass_ratio.h5 --csv cliffs.csv\n"
-      "A chart of MAP.h5 draws the cliffs of MAP.cliffs.h5 if that is beside it.");
+      "Neighbours of the grid with different outcomes (status, spurious flag, number of the lift-off that "
+      "jumps) have a discontinuity between them. It is bisected until no number is left between.\n"
+      "\n"
+      "Kinds of discontinuities:\n"
+      "  threshold    a lift-off's height crosses hop_height\n"
+      "  fold         a lift-off appears: the normal force touches zero\n"
+      "  runway       a lift-off crosses the rolling limit\n"
+      "  turn         the hoop barely reverses its direction\n"
+      "  release      the normal force at the release is zero\n"
+      "  phase        with friction: a phase appears\n"
+      "  painleve     with friction: Painleve's paradox\n"
+      "  unresolved   the method fails on one side\n"
+      "\n"
+      "Along the two axes with the most values the discontinuities are joined to curves, for every value of "
+      "the other axes.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

@@ -27,26 +27,26 @@ struct CheckArguments {
 bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
   for (const std::string& finding : report.findings) say("WRONG    {}\n", printable(finding));
   if (!report.findings.empty()) return false;
-  say("read     {} designs in {} tiles{}: every one is what was written\n", grouped(report.designs),
-      grouped(report.tiles), report.whole ? "" : ", all that the stopped sweep left");
+  say("read     {} designs in {} chunks{}: all intact\n", grouped(report.designs), grouped(report.tiles),
+      report.whole ? "" : ", all that the interrupted sweep left");
   if (report.sample)
-    say("sample   {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, motion within "
-        "{:.1e}{}\n",
+    say("sample   {} designs solved again by {}: height within {:.1e} diameters, time within {:.1e}, motion "
+        "within {:.1e}{}\n",
         grouped(report.sample->designs), report.sample->method, report.sample->max_abs_height_error,
         report.sample->max_rel_time_error, report.sample->max_rel_motion_error,
-        report.sample->undecided > 0 ? fmt::format("; {} nobody can decide", report.sample->undecided) : "");
+        report.sample->undecided > 0 ? fmt::format("; {} inconclusive", report.sample->undecided) : "");
   if (report.sample && report.sample->refereed > 0)
-    say("referee  {} designs from the paper's (7) to (9), in SI units: largest error {:.1e}{}\n",
+    say("referee  {} designs by the independent reference solver: largest error {:.1e}{}\n",
         grouped(report.sample->refereed), report.sample->referee_max_error,
         report.sample->referee_undecided > 0
-            ? fmt::format("; {} it cannot decide", report.sample->referee_undecided)
+            ? fmt::format("; {} inconclusive", report.sample->referee_undecided)
             : "");
   if (report.sample && report.sample->gradient_designs > 0)
-    say("gradient of {} designs by differences in long double: largest error {:.1e}\n",
+    say("gradient {} designs by differences in long double: largest error {:.1e}\n",
         grouped(report.sample->gradient_designs), report.sample->gradient_max_error);
   if (report.sample) say_sequences(*report.sample);
   if (report.whole && !report.sealed)
-    say("note     its format is older than 1.4: it has no checksum of all of it\n");
+    say("note     its format is older than 1.4, which had no checksum of the whole file\n");
   say("right    {}\n", printable(arguments.path));
   return true;
 }
@@ -72,17 +72,16 @@ void tell_damage(const CheckArguments& arguments) {
   }
   int status = 0;
   if (uninterrupted([&] { return ::waitpid(child, &status, 0); }) != child || !WIFEXITED(status))
-    say("WRONG    HDF5 cannot make sense of it\n");
+    say("WRONG    HDF5 cannot read it\n");
   else if (WEXITSTATUS(status) == nothing)
-    say("         none of them holds a value: every design is what was written; the disk or a copy may be at "
-        "fault\n");
+    say("         the changed bytes hold no value: every design is intact; check the disk or the copy\n");
 }
 
 int run(const CheckArguments& arguments) {
   note_signals();
   const auto holds = seal_holds(arguments.path, arguments.options.locking);
   if (holds == false) {
-    say("WRONG    the bytes of {} are not those that were written; where:\n", printable(arguments.path));
+    say("WRONG    the bytes of {} differ from what was written:\n", printable(arguments.path));
     tell_damage(arguments);
     return noted_signal() != 0 ? 128 + noted_signal() : 1;
   }
@@ -94,26 +93,25 @@ int run(const CheckArguments& arguments) {
 }  // namespace
 
 void add_check(CommandLine& line, int& status) {
-  Command command = line.command(
-      "check", "read all of a map and tell what is wrong in it, and where; exit status 1 if anything is");
+  Command command = line.command("check", "verify a map: damage, and a sample of its designs");
+  command.examples({{"leapmap check maps/slope_mass_ratio.h5", "every byte, and 200 designs"},
+                    {"leapmap check maps/slope_mass_ratio.h5 --sample 10000", "more designs"}});
   auto arguments = std::make_shared<CheckArguments>();
   CheckOptions& options = arguments->options;
   options.stop_requested = [] { return noted_signal() != 0; };
-  command.value("MAP", arguments->path, "the map, or the .part of one, HDF5").required().check(named_file());
+  command.value("MAP", arguments->path, "a map, or the .part of an unfinished one (HDF5)")
+      .required()
+      .check(named_file());
   command
       .value("--sample", options.sample,
-             "solve so many designs again by another method and compare; default: 200; 0: none")
+             "number of designs to solve again by another method; default: 200; 0: none")
       .check(whole_number(0, 1e15));
-  command.value("--threads", options.threads, "threads to use; default: all")
-      .check(whole_number(1, most_threads));
+  add_threads(command, options.threads);
   add_no_lock(command, options.locking);
   command.footer(
-      "Each chunk has a checksum, the tiles together have one, and so has the file. Quantities are compared "
-      "with "
-      "what\ntheir fields may hold, designs by status with their count, axes and texts with the spec.\n"
-      "Examples:\n"
-      "  leapmap check maps/slope_mass_ratio.h5\n"
-      "  leapmap check maps/slope_mass_ratio.h5 --sample 10000");
+      "Verifies the checksums of every chunk, of all chunks together and of the file; the range of every "
+      "quantity; the number of designs with each status; axes and texts against the spec.\n"
+      "Exit status 1: the map is wrong.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

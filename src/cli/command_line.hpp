@@ -21,7 +21,7 @@ struct Check {
   /// Looks at a value as it was written, which it may write in another way. Returns what is wrong with it, or
   /// nothing.
   std::function<std::string(std::string& text)> look;
-  std::string shown{};  ///< by --help, behind the value
+  std::string shown{};  ///< the value in --help, for example "FILE"
 };
 
 /// Refuses an empty file name.
@@ -47,16 +47,24 @@ class Flag {
   Flag& with_commas();
   /// Takes effect before the line has been read to its end.
   Flag& at_once();
+  /// The value's name in --help, for example "FILE".
+  Flag& shown_as(const std::string& name);
   bool is_given() const;
 
  private:
   CLI::Option* option_;
 };
 
+/// A command line with what it does, for --help.
+struct Example {
+  std::string line, meaning;
+};
+class Help;
+
 /// One command. What it refers to must outlive the command line.
 class Command {
  public:
-  explicit Command(CLI::App* app) : app_(app) {}
+  Command(CLI::App* app, Help* help) : app_(app), help_(help) {}
 
   /// A value, which `names` ("-o,--output") or its place ("SPEC") tell. T: std::string, double, int,
   /// std::size_t or std::vector<std::string>, to which each is added.
@@ -66,17 +74,24 @@ class Command {
   /// A flag without a value.
   Flag flag(const std::string& names, bool& target, const std::string& help);
   Flag flag(const std::string& names, std::function<void()> take, const std::string& help);
+  /// The heading in --help of the flags that are added from now on.
+  void group(const std::string& title);
+  /// Shown by --help before the flags.
+  void examples(std::vector<Example> examples);
+  /// Shown by --help below the flags, wrapped.
   void footer(const std::string& text);
   /// What the command does.
   void runs(std::function<void()> action);
 
  private:
   CLI::App* app_;
+  Help* help_;
+  std::string group_ = "Options";
 };
 
 class CommandLine {
  public:
-  CommandLine(const std::string& description, const std::string& footer, const std::string& version);
+  CommandLine(const std::string& description, const std::string& version);
   ~CommandLine();
 
   /// What all commands share: its flags may stand before and after a command's name.
@@ -87,6 +102,7 @@ class CommandLine {
   void run(int argc, char** argv);
 
  private:
+  std::shared_ptr<Help> help_;
   std::unique_ptr<CLI::App> app_;
 };
 

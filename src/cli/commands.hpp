@@ -36,7 +36,14 @@ Spec read_given_spec(const std::string& path, const std::vector<std::string>& ov
 /// Throws InputError if one of the overrides is of a spec's [scatter] or [goal]; why: what is to be told.
 void refuse_scatter(const std::vector<std::string>& overrides, const std::string& why);
 
-/// The flag of a spec's key, which adds KEY=VALUE to overrides.
-void add_flag_of(Command& command, const Option& option, std::vector<std::string>& overrides);
+/// Flags of a scene's keys, or of a hoop's too, which add KEY=VALUE to overrides; without: a key that has
+/// none.
+void add_flags_of_the_scene(Command& command, std::vector<std::string>& overrides,
+                            std::string_view without = {});
+void add_flags_of_a_hoop(Command& command, std::vector<std::string>& overrides,
+                         std::string_view without = {});
+
+/// --threads.
+void add_threads(Command& command, int& threads);
 
 }  // namespace leapmap::cli

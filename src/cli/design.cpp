@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// leapmap design: the designs of a box that reach their goals best.
+/// leapmap design: the designs within given bounds that reach their goals best.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -104,12 +104,12 @@ void print_design(const Question& question, const FoundDesign& found, std::size_
   say("\n{:>3}  {}\n     {}\n", number, told_parameters(question, found.design),
       told_fields(question, found));
   if (!std::isnan(found.yield.value))
-    say("     yield {:.4f} +- {:.4f}, of {} hoops made\n", found.yield.value, found.yield.error,
+    say("     yield {:.4f} +- {:.4f}, from {} manufactured hoops\n", found.yield.value, found.yield.error,
         question.one.scatter.samples);
-  if (!found.binds.empty()) say("     what binds: {}\n", fmt::join(found.binds, "; "));
+  if (!found.binds.empty()) say("     active constraints: {}\n", fmt::join(found.binds, "; "));
   if (!found.cliff.empty())
-    say("     nearest cliff: {:.2g} of the box away, {}; beyond: {}\n", found.cliff[0].distance,
-        name_of(found.cliff[0].kind), told(found.cliff[0].beyond));
+    say("     nearest discontinuity: at {:.2g} of the bounds' range, {}; beyond: {}\n",
+        found.cliff[0].distance, name_of(found.cliff[0].kind), told(found.cliff[0].beyond));
   print_gradients(question, found);
   say("     {}\n", command_of(question, found.design));
 }
@@ -133,10 +133,10 @@ std::vector<std::size_t> called_out(const FoundDesigns& found) {
 
 void print_found(const Question& question, const FoundDesigns& found) {
   say("{} designs solved in {}{}\n", grouped(found.evaluations), spoken_duration(found.seconds),
-      found.engines ? "" : "; this build is without pagmo and NLopt");
+      found.engines ? "" : "; this build lacks pagmo and NLopt");
   if (question.objectives.size() == 2 && found.reached) {
-    say("front: {} designs, none of which is better than another in both {} and {}",
-        grouped(found.designs.size()), question.objectives[0].name, question.objectives[1].name);
+    say("front: {} designs; improving {} or {} makes the other worse", grouped(found.designs.size()),
+        question.objectives[0].name, question.objectives[1].name);
     say("{}\n", std::isnan(found.hypervolume)
                     ? ""
                     : fmt::format("; it dominates {:.2f} % of the rectangle between its ends",
@@ -149,12 +149,13 @@ void print_found(const Question& question, const FoundDesigns& found) {
 
 /// The best that there is where no design does it.
 void print_miss(const Spec& spec, const Question& question, const FoundDesigns& found) {
-  say("No design of this box does it: none of {} looked at. The nearest miss:\n", grouped(found.evaluations));
+  say("No design within the bounds meets all goals; {} were evaluated. The nearest miss:\n",
+      grouped(found.evaluations));
   const FoundDesign& nearest = found.designs[0];
   say("     {}\n     {}\n", told_parameters(question, nearest.design), name_of(nearest.outcome.status));
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
     say("     {} {}: {}\n", spec.goals[k].field, text_of(spec.goals[k]),
-        std::isnan(found.missed[k]) ? "it has none" : fmt::format("{:.10g}", found.missed[k]));
+        std::isnan(found.missed[k]) ? "does not apply" : fmt::format("{:.10g}", found.missed[k]));
   say("     {}\n", command_of(question, nearest.design));
 }
 
@@ -238,8 +239,7 @@ int run(const DesignArguments& arguments) {
   const bool replaces = !map.empty() && std::filesystem::exists(map, ignored);
   if (replaces && !arguments.overwrite && !is_found_list(map, arguments.locking))
     throw InputError(fmt::format(
-        "{}: is there, and no list that leapmap design wrote; allowed: another name by -o, or --overwrite",
-        map));
+        "{}: exists and is not a list of leapmap design; allowed: another name by -o, or --overwrite", map));
   note_signals();
   if (!map.empty()) refuse_unwritable(map);
   TextOutput csv("--csv", arguments.csv, {}, arguments.overwrite);  // any list of designs begins like ours
@@ -255,7 +255,7 @@ int run(const DesignArguments& arguments) {
     found = find_designs(spec, options);
   } catch (const Stopped&) {
     progress.reset();
-    tell("interrupted; nothing is written");
+    tell("interrupted; nothing was written");
     return 128 + noted_signal();
   }
   progress.reset();
@@ -280,41 +280,44 @@ int run(const DesignArguments& arguments) {
 }  // namespace
 
 void add_design(CommandLine& line, int& status) {
-  Command command = line.command("design", "find the designs that reach their goals best, or a Pareto front");
+  Command command = line.command("design", "find the designs that reach given goals best, or a Pareto front");
+  command.examples(
+      {{"leapmap design sweeps/questions/highest.toml -o maps/best.h5", "the highest jump"},
+       {"leapmap design sweeps/questions/height_against_mass.toml -o maps/front.h5", "a Pareto front"}});
   auto arguments = std::make_shared<DesignArguments>();
-  command.value("SPEC", arguments->spec, "a spec, TOML, whose axes { from, to } are free")
+  command.value("SPEC", arguments->spec, "a spec (TOML) whose axes { from, to } are the free parameters")
       .required()
       .check(named_file());
+  command.group("Output");
   command
       .value("-o,--output", arguments->output,
-             "write the designs found to this map, a list, best first; default: output.file of the spec")
+             "write the designs to this map, best first; default: output.file of the spec")
       .check(named_file());
   command
       .value("--csv", arguments->csv,
-             "write them to this file, too, as leapmap sweep --points FILE reads it, with a spec that "
-             "has no axes")
+             "write the designs to this CSV file, as leapmap sweep --points reads it")
       .check(named_file());
-  add_set(command, arguments->overrides, ", for example --set 'goal.jump_height={at_least=0.8}'");
-  for (const Option* option : hop_options())
-    if (option->section == "scene") add_flag_of(command, *option, arguments->overrides);
-  command
-      .value("--seed", arguments->options.seed, "of all chance; the same seed, the same designs; default: 1")
+  command.flag("--json", arguments->json, "print JSON only");
+  command.flag("--overwrite", arguments->overwrite, "replace any file, not only an earlier search's list");
+  command.flag("--quiet", arguments->quiet, "print errors, and whether no design meets the goals");
+  command.group("Search");
+  command.value("--seed", arguments->options.seed, "seed of random numbers; default: 1")
       .check(whole_number(0, most_seed));
-  command.value("--most", arguments->options.most, "designs told, one a basin; default: 8, of a front 2,048")
+  command
+      .value("--most", arguments->options.most,
+             "largest number of designs to report; default: 8, or 2,048 for a front")
       .check(whole_number(1, 1e5));
   command
       .value("--sample", arguments->options.sample,
-             "designs of the first, dense sample; default: as many as take a second or two")
+             "designs in the initial sample; default: what takes a second or two")
       .check(whole_number(16, 1 << 27));
-  command.value("--threads", arguments->options.threads, "threads to use; default: all")
-      .check(whole_number(1, most_threads));
-  command.flag("--json", arguments->json, "print JSON and nothing else");
-  command.flag("--overwrite", arguments->overwrite,
-               "replace a file that is no list of an earlier search, too");
-  command.flag("--quiet", arguments->quiet, "print nothing but errors, or that no design does it");
+  add_threads(command, arguments->options.threads);
+  add_flags_of_the_scene(command, arguments->overrides);
+  command.group("Options");
+  add_set(command, arguments->overrides, ", for example 'goal.jump_height={at_least=0.8}'");
   add_no_lock(command, arguments->locking);
   command.footer(
-      "A spec for it:\n"
+      "A design problem:\n"
       "  [design]\n"
       "  slope = { from = \"2 deg\", to = \"20 deg\" }\n"
       "  mass_ratio = { from = 0.1, to = 20, scale = \"log\" }\n"
@@ -322,14 +325,9 @@ void add_design(CommandLine& line, int& status) {
       "  jump_height = { at_least = 1.0 }\n"
       "  spurious_first_jump = { is = 0 }\n"
       "  minimize = [\"mass_ratio\"]\n"
-      "Two objectives give a Pareto front. With [scatter] yield may be a goal or an objective: the share of "
-      "hoops "
-      "as made that\nreach all the other goals. Exit status 1: no design of the box does it; the nearest "
-      "miss is told, "
-      "and no file is written.\n"
-      "Examples:\n"
-      "  leapmap design sweeps/questions/highest.toml -o maps/best.h5\n"
-      "  leapmap design sweeps/questions/height_against_mass.toml -o maps/front.h5 --csv front.csv");
+      "Two objectives give a Pareto front. With [scatter], yield may be a goal or an objective: the fraction "
+      "of manufactured hoops that reach all the other goals.\n"
+      "Exit status 1: no design meets all goals; the nearest miss is reported and no file is written.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

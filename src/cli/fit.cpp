@@ -46,12 +46,12 @@ std::string told(const FittedParameter& parameter) {
   const double unit = angle ? 180.0 / std::numbers::pi : 1.0;
   const std::string_view name = angle ? " deg" : "";
   if (!parameter.identified)
-    return fmt::format("{:>12.6g} not told by the data: from {:.4g} to {:.4g}{} all fit as well",
+    return fmt::format("{:>12.6g} not identified: from {:.4g} to {:.4g}{} all fit equally well",
                        parameter.value * unit, parameter.low * unit, parameter.high * unit, name);
   const double error = parameter.error * unit;
   const int digits = error > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
   return fmt::format("{:>12.{}f} +- {:.{}f}{}{}", parameter.value * unit, digits, error, digits, name,
-                     parameter.at_bound ? "; at its bound: there may be better beyond" : "");
+                     parameter.at_bound ? "; at its bound: wider bounds may fit better" : "");
 }
 
 /// What was not free.
@@ -67,7 +67,7 @@ void print_held(const ModelFit& fit) {
                                fit.design.**member * (angle ? 180.0 / std::numbers::pi : 1.0),
                                angle ? " deg" : ""));
   }
-  say("  held: {}\n", fmt::join(held, ", "));
+  say("  fixed: {}\n", fmt::join(held, ", "));
 }
 
 void print_correlations(const ModelFit& fit) {
@@ -96,7 +96,7 @@ void print_events(const Measurements& measured, const ModelFit& fit) {
 void print_fit(const Measurements& measured, const ModelFit& fit) {
   say("\nfriction \"{}\": ", model_of(fit.scene).name);
   if (!fit.found) {
-    say("{}\n", fit.why.empty() ? "no hoop of the box does anything like it" : fit.why);
+    say("{}\n", fit.why.empty() ? "no design within the bounds shows all that was measured" : fit.why);
     return;
   }
   say("{} numbers, {} free parameters, {} starts, {} evaluations\n", fit.residuals.size(),
@@ -109,29 +109,29 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
   if (!film || !std::isnan(measured.film.error))
     say("  chi-square {:.4g} for {} degrees of freedom{}\n", fit.chi_square, fit.degrees,
         fit.degrees == 0
-            ? ": as many numbers as free parameters, so that a true model passes within their errors"
-            : fmt::format("; a true model has as much in {:.2g} of 100 cases", 100.0 * fit.probability));
+            ? ": each free parameter uses up one number, so a true model passes within their errors"
+            : fmt::format("; a true model exceeds it in {:.2g} of 100 cases", 100.0 * fit.probability));
   if (film)
     say("  residuals {:.3g} {} rms{}\n", fit.error, measured.film.phi.empty() ? "m" : "rad",
-        std::isnan(measured.film.error) ? ", from which the errors above are told" : "");
+        std::isnan(measured.film.error) ? "; the errors above follow from them" : "");
   if (film && fit.correlation > 1.0 && explains(fit))
-    say("  neighbouring residuals are alike over {:.3g} lines, as in a smoothed film: {:.3g} of {} lines are "
-        "independent, and errors allow for that\n",
+    say("  residuals are correlated over {:.3g} lines, as in a smoothed film: {:.3g} of {} lines are "
+        "independent, and the errors are widened to match\n",
         fit.correlation, fit.independent, grouped(measured.film.t.size()));
   if (!fit.judged)
-    say("  Too few lines to say whether this explains what was measured; allowed: more lines, or --error.\n");
+    say("  Too few lines to accept or reject this model; allowed: more lines, or --error.\n");
   else if (!explains(fit))
-    say("  This does not explain what was measured{}. Check slope, radius, masses, L/R{}; or free them.\n",
+    say("  This model does not explain the measurements{}. Check slope, radius, masses, L/R{}; or free "
+        "them.\n",
         !film || !std::isnan(fit.probability) ? ""
-        : runs(fit)
-            ? fmt::format(": residuals stay on one side for long, only {:.3g} of the lines are independent",
-                          fit.independent)
-            : fmt::format(": residuals are {:.3g} times the scatter from line to line", fit.misfit),
+        : runs(fit) ? fmt::format(": residuals keep their sign for long, only {:.3g} lines are independent",
+                                  fit.independent)
+                    : fmt::format(": residuals are {:.3g} times their scatter from line to line", fit.misfit),
         film && measured.film.phi.empty() ? ", --scale, --y-down and the sign of x" : "");
   print_events(measured, fit);
   if (fit.after_landing > 0)
-    say("  {} lines of the film are after the model's last landing, where it is not followed: leave them "
-        "out, or --set jumps=...{}\n",
+    say("  {} lines of the film are after the model's last landing and are not used: leave them out, or "
+        "--set jumps=...{}\n",
         grouped(fit.after_landing),
         fit.scene.jumps > 1 && fit.outcome.sequence_end != Status::jumped
             ? fmt::format("; the sequence ended early, {}, with runway = {}",
@@ -145,14 +145,14 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
 void print_preference(const FitReport& report) {
   if (report.models.size() < 2 || !report.models[1].found || !report.models[0].judged) return;
   if (!explains(report.models[0])) {
-    say("\nNeither model explains the data as they stand.\n");
+    say("\nNeither model explains the data.\n");
     return;
   }
   const double less = report.models[1].information - report.models[0].information;
-  say("\nThe data {} \"{}\": Akaike's information is {:.4g} less.\n",
+  say("\nThe data {} \"{}\": Akaike's criterion is {:.4g} less.\n",
       less > 10.0  ? "clearly prefer"
       : less > 2.0 ? "prefer"
-                   : "hardly tell the models apart, and have a little more for",
+                   : "hardly distinguish the models, and slightly prefer",
       model_of(report.models[0].scene).name, less);
 }
 
@@ -214,7 +214,7 @@ void tell_fitted_anew(const Spec& spec) {
   for (const char* name : {"release_angle", "release_spin", "mu_static"})
     if (const double given = spec.design.*member_of(name); given != Design{}.*member_of(name))
       tell(fmt::format(
-          "{} = {} is not used but fitted; allowed, to hold it: any free parameter, {{ from, to }}", name,
+          "{} = {} is not used but fitted; to fix it, choose the free parameters, each {{ from, to }}", name,
           given));
 }
 
@@ -224,7 +224,7 @@ int run(const FitArguments& arguments) {
   if (only != models().end()) {
     for (const std::string& set : overrides)
       if (set.starts_with("friction=") || set.starts_with("scene.friction="))
-        throw InputError(fmt::format("--model {} and --set {}: say the friction twice; allowed: one of them",
+        throw InputError(fmt::format("--model {} and --set {}: both set the friction; allowed: one of them",
                                      arguments.model, set));
     if (only->slips) overrides.insert(overrides.begin(), "scene.friction=" + arguments.model);
   }
@@ -243,7 +243,7 @@ int run(const FitArguments& arguments) {
   try {
     report = fit(measured, spec, options);
   } catch (const Stopped&) {
-    tell("interrupted; nothing is written");
+    tell("interrupted; nothing was written");
     return 128 + noted_signal();
   }
   if (arguments.json) {
@@ -263,57 +263,53 @@ int run(const FitArguments& arguments) {
 }  // namespace
 
 void add_fit(CommandLine& line, int& status) {
-  Command command =
-      line.command("fit", "find the release, friction and torque that explain a measured motion");
+  Command command = line.command("fit", "identify release, friction and torque from a measured motion");
+  command.examples({{"leapmap fit sweeps/paper_events.csv", "the four numbers that the paper published"},
+                    {"leapmap fit film.csv hoop.toml --set 'mass_ratio={from=1,to=4}' --csv fit.csv",
+                     "a film, with a free mass ratio; residuals as a table"}});
   auto arguments = std::make_shared<FitArguments>();
   command
       .value("DATA", arguments->data,
-             "measurements, CSV: columns t, phi; or t, x_P, y_P, x_O, y_O; or event, value, error")
+             "measurements (CSV); columns t, phi, or t, x_P, y_P, x_O, y_O, or event, value, error")
       .required()
       .check(named_file());
   command
       .value("SPEC", arguments->spec,
-             "a spec, TOML: the hoop, and free parameters { from, to }; default: the paper's hoop, "
-             "its release and friction free")
+             "a spec (TOML) with the hoop, and free parameters { from, to }; default: the paper's hoop")
       .check(named_file());
   std::vector<std::string> names{"both"};
   for (const Model& model : models()) names.emplace_back(model.name);
-  command
-      .value("--model", arguments->model,
-             "fit this model only; default: both, and tell which one the data prefer")
+  command.group("Model");
+  command.value("--model", arguments->model, "model to fit; default: both, and report which one is preferred")
       .check(one_of(names));
+  add_set(command, arguments->overrides, ", for example radius=0.05 or 'slope={from=0.3,to=0.5}'");
+  command.value("--seed", arguments->options.seed, "seed of the coarse map; default: 1")
+      .check(whole_number(0, most_seed));
+  add_threads(command, arguments->options.threads);
+  command.group("Film");
   command
       .value("--error", arguments->reading.error,
-             "standard error of a film's angles [rad] or positions [m]; default: told by the residuals")
+             "standard error of angles [rad] or positions [m]; default: from the residuals")
       .check(number({0.0, 1e300, false}));
-  command.value("--scale", arguments->reading.scale, "metres a unit of marker positions, for pixels")
+  command.value("--scale", arguments->reading.scale, "metres per unit of marker positions, for pixels")
       .check(number({0.0, 1e300, false}));
   command.flag("--y-down", arguments->reading.y_down,
-               "marker positions y count towards the plane, as rows of a picture do");
-  command.flag("--allow-gaps", arguments->reading.allow_gaps, "let films pass that have lines missing");
+               "marker positions y grow towards the plane, as rows of a picture do");
+  command.flag("--allow-gaps", arguments->reading.allow_gaps, "accept films with missing lines");
+  command.group("Output");
   command
       .value("--csv", arguments->csv,
-             "write measured numbers, models and residuals to this file, for fit_chart.py")
+             "write measurements, models and residuals to this CSV file, for fit_chart.py")
       .check(named_file());
-  command.flag("--overwrite", arguments->overwrite, "let --csv replace whatever file has that name");
-  add_set(command, arguments->overrides, ", for example --set radius=0.05 --set 'slope={from=0.3,to=0.5}'");
-  command.value("--seed", arguments->options.seed, "of the coarse map; default: 1")
-      .check(whole_number(0, most_seed));
-  command.value("--threads", arguments->options.threads, "threads to use; default: all")
-      .check(whole_number(1, most_threads));
-  command.flag("--json", arguments->json, "print JSON and nothing else");
+  command.flag("--overwrite", arguments->overwrite, "allow --csv to replace any file");
+  command.flag("--json", arguments->json, "print JSON only");
   command.footer(
-      "Without free parameters of a spec or --set release_angle, release_spin and, where the contact slips, "
-      "mu_static are free; with "
-      "any only those.\n"
-      "phi: 0 where the mass touches the plane, growing downhill; x along the plane downhill, y away from "
-      "it; P is the mass, O the "
-      "hoop's centre.\nEvents are quantities of a map: jump_time, apex_time, flight_time, jump_height (in "
-      "hoop diameters), ...\n"
-      "Examples:\n"
-      "  leapmap fit sweeps/paper_events.csv\n"
-      "  leapmap fit film.csv hoop.toml --set 'mass_ratio={from=1,to=4}' --csv fit.csv\n"
-      "Exit status 1: no hoop of the box does anything like it.");
+      "Free parameters are those of the spec and of --set. Without any these are release_angle, "
+      "release_spin and, with friction, mu_static.\n"
+      "The angle phi is 0 if the mass touches the plane, and grows downhill. x is along the plane, downhill; "
+      "y is away from it. P is the mass, O the hoop's centre.\n"
+      "Events are fields of a map, for example jump_time, apex_time, flight_time, jump_height.\n"
+      "Exit status 1: no design within the bounds shows all that was measured.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

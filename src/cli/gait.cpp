@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// leapmap gait: how one hoop goes on jumping for ever.
+/// leapmap gait: the periodic jumps of one hoop.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,16 +35,12 @@ double degrees_within_a_turn(double radians) {
 
 void print_gaits(const Gaits& found, int most_period) {
   if (found.gaits.empty()) {
-    say("No gait of up to {} jumps found: its return map, looked at in {} places, has no periodic orbit "
-        "there.\n",
+    say("No gait of up to {} jumps found: the return map, sampled at {} points, has no periodic orbit.\n",
         most_period, found.returns.size());
     return;
   }
-  say("Gaits found of up to {} jumps, by the return map in {} places and, of those that jump again at each "
-      "landing, from a grid of starts:\n\n{:>6} {:>9} {:>12} {:>12} "
-      "{:>11} "
-      "{:>12}  "
-      "{}\n",
+  say("Gaits of up to {} jumps, from {} points of the return map and a grid of starting points:\n\n"
+      "{:>6} {:>9} {:>12} {:>12} {:>11} {:>12}  {}\n",
       most_period, found.returns.size(), "period", "", "multiplier", "height [2R]", "speed [m/s]",
       "energy lost", "lift-offs [deg]: heights [2R]");
   for (const Gait& gait : found.gaits) {
@@ -57,11 +53,11 @@ void print_gaits(const Gaits& found, int most_period) {
   }
   say("\n");
   if (!found.is_whole)
-    say("Its return map has more folds than were looked at: longer gaits may be missing; try a smaller "
+    say("The return map has more folds than were sampled: gaits may be missing; try a smaller "
         "--most-period.\n\n");
 }
 
-/// found: none were looked for.
+/// found: nullptr if there was no search.
 std::string json_text(const Spec& spec, const Gaits* found, const Outcome& outcome) {
   std::vector<std::string> gaits, returns;
   for (const Gait& gait : found ? found->gaits : std::vector<Gait>{}) {
@@ -96,27 +92,26 @@ std::string json_text(const Spec& spec, const Gaits* found, const Outcome& outco
 int run(const GaitArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
-  refuse_scatter(overrides, "allowed: one design as drawn");
+  refuse_scatter(overrides, "allowed: one nominal design");
   Spec spec = read_given_spec(arguments.spec, overrides);
   if (!spec.axes.empty() || !spec.points.empty())
-    throw InputError(
-        fmt::format("{}: has many designs; allowed: one for leapmap gait, and leapmap sweep with [gait] "
-                    "for a map of gaits",
-                    origin_of(spec)));
+    throw InputError(fmt::format(
+        "{}: has several designs; allowed: one design, or leapmap sweep with [gait] for a map of gaits",
+        origin_of(spec)));
   const bool slips = model_of(spec.scene).slips;
   if (slips && arguments.most_period != 0)
     throw InputError(
-        "--most-period: has no use with friction, where only what the release settles on is told; allowed: "
-        "gait.most_period");
+        "--most-period: has no effect with friction, which reports only the gait that follows the release; "
+        "allowed: gait.most_period");
   const auto names = [&](const std::string& section, const std::string& key) {
     return std::ranges::any_of(overrides, [&](const std::string& text) {
       return text.starts_with(section + "." + key + "=") || text.starts_with(key + "=");
     });
   };
   if (names("scene", "jumps"))
-    throw InputError("scene.jumps: has no use here, where jumps go on for ever; allowed: gait.settle");
+    throw InputError("scene.jumps: has no effect here, because gaits never end; allowed: gait.settle");
   if (names("gait", "settle") && spec.scene.settle == 0)
-    throw InputError("gait.settle = 0: leaves nothing to tell; allowed: a number of jumps, 500 by default");
+    throw InputError("gait.settle = 0: switches the search off; allowed: a number of jumps, 500 by default");
   if (spec.scene.settle == 0) spec.scene.settle = 500;
   spec.scene.jumps = 1;
   spec.output = {};
@@ -141,24 +136,26 @@ int run(const GaitArguments& arguments) {
 
 void add_gait(CommandLine& line, int& status) {
   Command command =
-      line.command("gait", "how one hoop goes on jumping for ever: its periodic jumps, stable or not");
+      line.command("gait", "find the periodic sequences of jumps of one hoop, and their stability");
+  command.examples(
+      {{"leapmap gait --slope 12deg --mass-ratio 3 --offset-ratio 0.5", "all gaits of one hoop"},
+       {"leapmap gait --slope 12deg --friction coulomb --json", "with friction, for a program"}});
   auto arguments = std::make_shared<GaitArguments>();
-  command.value("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop")
+  command.value("SPEC", arguments->spec, "a spec without axes (TOML); default: the paper's hoop")
       .check(named_file());
-  for (const Option* option : hop_options())
-    if (option->key != "jumps") add_flag_of(command, *option, arguments->flags);
+  add_flags_of_a_hoop(command, arguments->flags, "jumps");
+  command.group("Options");
   add_set(command, arguments->overrides, ", for example gait.settle=2000");
-  command.value("--most-period", arguments->most_period, "longest gait looked for, in jumps; default 2")
+  command.value("--most-period", arguments->most_period, "longest period to search for, in jumps; default: 2")
       .check(whole_number(1, 16));
-  command.flag("--json", arguments->json, "print JSON, with the return map where it was looked at");
+  command.flag("--json", arguments->json, "print JSON, with the return map");
   command.footer(
-      "A gait is stable where its multiplier, by which small errors grow from one round to the next, is "
-      "below 1 in\n"
-      "size. Without slip N = 0 ties spin to angle at a lift-off, so that the map from one lift-off to the "
-      "next is a\n"
-      "curve: its periodic orbits are looked for, unstable ones too. With friction the gait is told that "
-      "the\n"
-      "release settles on. The runway counts from one landing to the next.");
+      "A gait is stable if its Floquet multiplier, the growth of a small deviation over one period, is below "
+      "1 in size.\n"
+      "Without slip the normal force N = 0 determines the spin at a lift-off, so that the map from one "
+      "lift-off to the next is a curve. All its periodic orbits are searched for, unstable ones too. With "
+      "friction only the gait that follows the release is reported.\n"
+      "The rolling limit counts from each landing.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

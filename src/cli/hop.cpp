@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// leapmap hop: one design, told in full.
+/// leapmap hop: one design in full.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,19 +55,19 @@ std::string verdict(const Motion& motion, const Scene& scene) {
     case Status::no_jump:
       return fmt::format("No jump within {} revolutions.", scene.runway);
     case Status::stalled:
-      return "It stalls: it rocks between two angles of rest for ever, or rests where nothing pulls.";
+      return "It is trapped: it rocks between two turning points indefinitely, or rests in an equilibrium.";
     case Status::airborne_at_release:
-      return "The plane would have to pull at release: it is airborne from the start.";
+      return "The normal force is negative at the release: it is airborne from the start.";
     case Status::indeterminate:
-      return "It comes to where the rigid-body equations have no answer or two: sliding (Painleve), or where "
-             "the motor alone lifts off what it does not carry in flight.";
+      return "The rigid-body equations have no solution or two: Painleve's paradox while sliding, or a motor "
+             "that alone would lift the hoop and idles in flight.";
     default:
       if (motion.outcome.failure && std::string_view(motion.outcome.failure) == endless_rebounds)
-        return fmt::format("The method gave up: {}.", endless_rebounds);
+        return fmt::format("The method failed: {}.", endless_rebounds);
       return fmt::format(
-          "The method gave up: {}. Try another tolerance, more max_steps, a shorter fixed_step or another "
+          "The method failed: {}. Try another tolerance, more max_steps, a shorter fixed_step or another "
           "method.",
-          motion.outcome.failure ? motion.outcome.failure : "for no reason it knows of");
+          motion.outcome.failure ? motion.outcome.failure : "for an unknown reason");
   }
 }
 
@@ -75,7 +75,7 @@ std::string verdict(const Motion& motion, const Scene& scene) {
 std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b) {
   const Outcome& a = motion.outcome;
   const std::string by = audit_method(spec.numerics) + " at 1e-12";
-  if (b.status == Status::failed) return fmt::format("Check: {} gave up on this design.", by);
+  if (b.status == Status::failed) return fmt::format("Check: {} failed on this design.", by);
   if (!same_flags(a, b))
     return fmt::format("Check: {} DISAGREES: {}, {} lift-offs.", by, name_of(b.status), b.candidates);
   if (a.status != Status::jumped) return fmt::format("Check: {} agrees.", by);
@@ -87,10 +87,10 @@ std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b)
                      disagrees ? "DISAGREES: height off by" : "agrees, height within",
                      std::abs(a.jump_height - b.jump_height), disagrees ? "by" : "within",
                      std::abs(a.jump_time / b.jump_time - 1.0),
-                     report.first_overruled     ? " The paper's (7) to (9) DISAGREE."
-                     : report.referee_undecided ? ""
-                                                : fmt::format(" The paper's (7) to (9): all within {:.1e}.",
-                                                              report.referee_max_error),
+                     report.first_overruled ? " The reference solver DISAGREES."
+                     : report.referee_undecided
+                         ? ""
+                         : fmt::format(" Reference solver: within {:.1e}.", report.referee_max_error),
                      later.empty() ? "" : "\n" + later);
 }
 
@@ -101,12 +101,12 @@ std::string sequence_line(const Spec& spec, const Outcome& outcome) {
     for (const Jump& jump : outcome.later_jumps) text += fmt::format(", {:.6f}", jump.height);
     return text;
   }();
-  const std::string_view end = outcome.sequence_end == Status::jumped    ? "all that were asked for"
-                               : outcome.sequence_end == Status::no_jump ? "then the runway ends"
-                               : outcome.sequence_end == Status::stalled ? "then it stalls"
+  const std::string_view end = outcome.sequence_end == Status::jumped    ? "the number requested"
+                               : outcome.sequence_end == Status::no_jump ? "then it reaches the rolling limit"
+                               : outcome.sequence_end == Status::stalled ? "then it is trapped"
                                : outcome.sequence_end == Status::indeterminate
-                                   ? "then the rigid-body equations have no answer or two"
-                                   : "then the method gave up";
+                                   ? "then the rigid-body equations have no solution or two"
+                                   : "then the method failed";
   return fmt::format("{} jumps of {}: {} diameters; {}.", outcome.jumps(), spec.scene.jumps, heights, end);
 }
 
@@ -115,7 +115,7 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
   if (jump.status == Status::jumped) {
     say("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off",
         jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time, jump.flight_time);
-    if (jump.dip < 0.0) say("; the flight first dips {:.4g} diameters", jump.dip);
+    if (jump.dip < 0.0) say("; penetration depth {:.4g} diameters", jump.dip);
     say(".\n");
     if (std::isfinite(jump.energy_lost)) {
       say("Slid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
@@ -138,7 +138,7 @@ void print_phases(const Motion& motion) {
     const Candidate& flown = motion.candidates[told++];
     say("{:<22} {} {:>12.6f} {:>12.6f}\n", what, begins(flown.t, flown.phi, flown.spin), flown.height,
         flown.t + flown.flight_time);
-    if (flown.height == 0.0) say("{:<22} it sinks at once: the plane would have to pull here\n", "");
+    if (flown.height == 0.0) say("{:<22} it sinks at once: the normal force is negative here\n", "");
   };
   // Without slip lift-offs that stay low are no phases: they come before the flight, if there is one.
   const auto print_low_ones = [&](double before) {
@@ -163,10 +163,10 @@ void print_phases(const Motion& motion) {
 }
 
 void print_motor(const Motor& motor, bool is_example) {
-  say("The motor, for hoop and weight of {:g} kg{}: {:.4g} N m, at most {:.4g} W and {:.4g} rpm, {:.4g} J in "
+  say("Motor, for a total mass of {:g} kg{}: {:.4g} N m, at most {:.4g} W and {:.4g} rpm, {:.4g} J in "
       "all{}.\n",
-      motor.mass, is_example ? " (another by --mass)" : "", motor.torque, motor.power, motor.spin, motor.work,
-      motor.power <= 0.0 ? "; it only brakes" : "");
+      motor.mass, is_example ? " (change it by --mass)" : "", motor.torque, motor.power, motor.spin,
+      motor.work, motor.power <= 0.0 ? "; it only brakes" : "");
 }
 
 void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
@@ -191,9 +191,9 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
   print_jump(spec, motion, checked);
   if (motor) print_motor(*motor, is_example);
   for (const Graze& graze : motion.grazes)
-    say("Graze: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n", graze.t,
-        graze.minimum ? "minimum" : "maximum", graze.normal_force,
-        graze.makes_lift_off() ? "making a " : "making no ");
+    say("Grazing contact: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",
+        graze.t, graze.minimum ? "minimum" : "maximum", graze.normal_force,
+        graze.makes_lift_off() ? "a " : "no ");
 }
 
 /// The outcome under the map's names and units, so that a script finds the same words in both.
@@ -263,16 +263,15 @@ int run(const HopArguments& arguments) {
   overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
   const Spec spec = read_given_spec(arguments.spec, overrides);
   if (!spec.axes.empty())
-    throw InputError(
-        fmt::format("{}: design.{} is an axis; allowed: one number for a hop, for example --set {}={}",
-                    origin_of(spec), spec.axes[0].key, spec.axes[0].key, spec.axes[0].values[0]));
+    throw InputError(fmt::format("{}: design.{} is an axis; allowed: one number, for example --set {}={}",
+                                 origin_of(spec), spec.axes[0].key, spec.axes[0].key,
+                                 spec.axes[0].values[0]));
   if (!spec.points.empty())
-    throw InputError(
-        fmt::format("{}: design.points is a list; allowed: one design for a hop", origin_of(spec)));
+    throw InputError(fmt::format("{}: design.points is a list; allowed: one design", origin_of(spec)));
 
   const bool driven = spec.design.drive_torque != 0.0, is_example = arguments.mass == 0.0;
   if (!driven && !is_example)
-    throw InputError("--mass: has no use without a motor; allowed: with --drive-torque");
+    throw InputError("--mass: has no effect without a motor; allowed: with --drive-torque");
   const std::array inputs{NamedPath{"SPEC", arguments.spec}};
   const std::array outputs{NamedPath{"--trace", arguments.trace, true}};
   refuse_same_files(inputs, outputs);
@@ -310,30 +309,36 @@ int run(const HopArguments& arguments) {
 }  // namespace
 
 void add_hop(CommandLine& line, int& status) {
-  Command command = line.command("hop", "solve one design and tell its phases, lift-offs and jump");
+  Command command = line.command("hop", "solve one design and report its phases, lift-offs and jump");
+  command.examples(
+      {{"leapmap hop", "the paper's hoop"},
+       {"leapmap hop --slope 30deg --friction coulomb --mu-static 0.4", "another slope, with friction"},
+       {"leapmap hop --trace hop.h5", "its motion over time, for trace_chart.py"},
+       {"leapmap hop --gradient --json", "derivatives too, for a program"}});
   auto arguments = std::make_shared<HopArguments>();
-  command.value("SPEC", arguments->spec, "a spec without axes; default: the paper's hoop")
+  command.value("SPEC", arguments->spec, "a spec without axes (TOML); default: the paper's hoop")
       .check(named_file());
-  for (const Option* option : hop_options()) add_flag_of(command, *option, arguments->flags);
-  add_set(command, arguments->overrides);
-  command.value("--trace", arguments->trace, "write the motion over time to this HDF5 file")
-      .check(named_file());
-  command.value("--trace-interval", arguments->trace_interval, "seconds between its samples; default 0.001")
-      .needs("--trace")
-      .check(number({1e-9, 1e9}));
+  add_flags_of_a_hoop(command, arguments->flags);
   command
       .value("--mass", arguments->mass,
-             "kilograms of hoop and weight together, for what --drive-torque asks of a motor; default "
-             "0.0282, the paper's hoop")
+             "total mass of hoop and weight [kg], for the motor's N m, W and J; default: 0.0282")
       .check(number({1e-9, 1e9}));
-  command.flag("--gradient", arguments->gradient,
-               "tell the derivatives of every quantity by every parameter, too");
-  command.flag("--scatter", arguments->scatter,
-               "tell what becomes of the design as it is made, by the spec's [scatter] and [goal]: yield, "
-               "quantiles, which tolerance matters");
-  command.flag("--json", arguments->json, "print JSON, under the map's names and units");
-  command.footer(options_help());
+  command.group("Report");
+  command.flag("--gradient", arguments->gradient, "report the derivatives of every quantity");
+  command.flag(
+      "--scatter", arguments->scatter,
+      "report yield, quantiles and the influence of each tolerance, by the spec's [scatter] and [goal]");
+  command.flag("--json", arguments->json, "print JSON, with the names and units of a map");
+  command.value("--trace", arguments->trace, "write the motion over time to this HDF5 file")
+      .check(named_file());
+  command.value("--trace-interval", arguments->trace_interval, "time between its samples [s]; default: 0.001")
+      .needs("--trace")
+      .check(number({1e-9, 1e9}));
+  command.group("Options");
+  add_set(command, arguments->overrides,
+          ", for example tolerance=1e-12 or 'scatter.slope={normal=\"1 deg\"}'");
   add_no_lock(command, arguments->locking);
+  command.footer("All keys of a spec: leapmap sweep --help.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

@@ -54,10 +54,10 @@ Table table_of(const Spec& original) {
 void print_gradient(const Spec& spec) {
   const Table table = table_of(spec);
   if (table.rows.empty()) {
-    say("\nNo derivatives: nothing lifts off.\n");
+    say("\nNo derivatives: the hoop does not lift off.\n");
     return;
   }
-  say("\nDerivatives, each of a quantity in its unit by a parameter in its own (angles in rad):\n{:<22}", "");
+  say("\nDerivatives, in the quantity's unit over the parameter's (angles in rad):\n{:<22}", "");
   for (const Option* parameter : table.parameters) say(" {:>14}", parameter->key);
   say("\n");
   bool infinite = false;
@@ -70,9 +70,8 @@ void print_gradient(const Spec& spec) {
     say("\n");
   }
   if (infinite)
-    say("nan: infinite, as on a fold, where a lift-off is born, or not known to six digits; by mu_kinetic: "
-        "it "
-        "follows\nmu_static, not being given or being equal, and the derivatives by that are of both.\n");
+    say("nan: infinite, as on a fold, at which a lift-off appears, or known to fewer than six digits; by\n"
+        "mu_kinetic: it is not given or equal to mu_static, whose derivative is of both.\n");
 }
 
 std::string gradient_json(const Spec& spec) {

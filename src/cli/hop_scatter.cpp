@@ -65,27 +65,27 @@ std::string law_of(const Spread& spread) {
 std::string goal_of(const Goal& goal) { return goal.field + " " + text_of(goal); }
 
 void print_spreads(const Spec& spec, const ScatterReport& report) {
-  say("{:<16} {:<18} {:>9}", "scatter", "law", "cut off");
-  say("{}\n", report.shrink.empty() ? "" : "   yield without it; for 99 % it has to shrink to");
+  say("{:<16} {:<18} {:>9}", "tolerance", "distribution", "truncated");
+  say("{}\n", report.shrink.empty() ? "" : "   yield without it; for a yield of 99 % it must shrink to");
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
     const Spread& spread = spec.scatter.spreads[k];
     say("{:<16} {:<18} {:>8.2g} %", spread.parameter, law_of(spread), 100.0 * report.cut_off[k]);
     if (!report.shrink.empty())
       say("   {:.4f}; {}", report.without[k],
-          report.shrink[k] >= 1.0   ? "good as it is"
+          report.shrink[k] >= 1.0   ? "good enough"
           : report.shrink[k] <= 0.0 ? "that is not enough"
                                     : fmt::format("{:.1f} % of its width", 100.0 * report.shrink[k]));
     say("\n");
   }
   if (!report.shrink.empty() && report.shrink_all < 1.0)
     say("{}\n", report.shrink_all > 0.0
-                    ? fmt::format("All together have to shrink to {:.1f} %.", 100.0 * report.shrink_all)
-                    : "No tolerance is tight enough: the drawing itself misses a goal.");
+                    ? fmt::format("All together must shrink to {:.1f} %.", 100.0 * report.shrink_all)
+                    : "No tolerance is tight enough: the nominal design misses a goal.");
 }
 
 void print_quantities(const ScatterReport& report) {
-  say("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "of those that jump", "mean", "deviation", "5 %",
-      "50 %", "95 %");
+  say("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "if it jumps", "mean", "deviation", "5 %", "50 %",
+      "95 %");
   for (const MadeQuantity& told : report.quantities) {
     const std::string_view unit = find_field(told.field)->unit;
     say("{:<20}", unit == "1" ? told.field : fmt::format("{} [{}]", told.field, unit));
@@ -142,7 +142,7 @@ void print_importance(const Spec& spec, const ScatterReport& report) {
   }
   for (const Importance& importance : report.importance)
     if (importance.pairs < 1.0 && importance.pairs > 0.0)
-      say("{}: among pairs of hoops that both jump, {:.1f} % of them.\n", importance.of,
+      say("{}: from the {:.1f} % of pairs in which both hoops jump.\n", importance.of,
           100.0 * importance.pairs);
 }
 
@@ -166,8 +166,8 @@ std::string json_of(const Histogram& histogram) {
 }  // namespace
 
 void print_scatter(const Spec& spec, const ScatterReport& report) {
-  say("\nAs made: {} hoops in {} replicates, seed {}. Errors are standard errors.\n", grouped(report.samples),
-      SobolPoints::replicates, spec.scatter.seed);
+  say("\nManufactured: {} hoops in {} replicates, seed {}. Errors are standard errors.\n",
+      grouped(report.samples), SobolPoints::replicates, spec.scatter.seed);
   print_spreads(spec, report);
   say("\n");
   if (!spec.goals.empty()) say("{:<34} {}\n", "yield: reaches every goal", told(report.yield));
@@ -175,8 +175,7 @@ void print_scatter(const Spec& spec, const ScatterReport& report) {
     say("  misses {:<25} {}\n", goal_of(spec.goals[k]), told(report.missed[k]));
   say("{:<34} {}\n", "jumps", told(report.jumps));
   if (report.unsolved > 0.0)
-    say("The method gave up on {:.3g} % of the hoops: nothing is known of them, which the errors say.\n",
-        100.0 * report.unsolved);
+    say("The method failed on {:.3g} % of the hoops, which the errors include.\n", 100.0 * report.unsolved);
   print_quantities(report);
   print_histogram(spec, report);
   print_importance(spec, report);

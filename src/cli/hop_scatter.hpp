@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// leapmap hop --scatter: what becomes of one design as it is made.
+/// leapmap hop --scatter: yield and distribution of one design as manufactured.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace leapmap::cli {
 
-/// Yield, goals, quantities, a histogram, what each tolerance brings and how far it has to shrink.
+/// Yield, goals, quantities, a histogram, and the influence of each tolerance.
 void print_scatter(const Spec& spec, const ScatterReport& report);
 
 /// The same as JSON, histograms of height and time with it.

@@ -149,7 +149,7 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
   if (failed > arguments.limit)
     say("# and {} more (--limit {})\n", grouped(failed - arguments.limit), failed);
   say("# {} failed designs{}\n", grouped(failed),
-      failed > 0 ? fmt::format("; solve them again by: leapmap info --spec {0} > spec.toml && leapmap sweep "
+      failed > 0 ? fmt::format("; solve them again: leapmap info --spec {0} > spec.toml && leapmap sweep "
                                "spec.toml -o {0} --retry-failed",
                                shell_quoted(arguments.path))
                  : "");
@@ -160,8 +160,7 @@ int list_failed(const MapReader& map, const InfoArguments& arguments) {
 void print_incomplete(const MapReader& map, const std::string& part) {
   const std::size_t designs = designs_of(map.shape()), done = designs_in(map.status_counts());
   const std::string name = part.ends_with(".part") ? part.substr(0, part.size() - 5) : part;
-  say("INCOMPLETE: {} of {} designs, {:.3g} %; the others are holes; go on by: leapmap sweep SPEC.toml -o {} "
-      "--resume\n",
+  say("INCOMPLETE: {} of {} designs, {:.3g} %; resume: leapmap sweep SPEC.toml -o {} --resume\n",
       grouped(done), grouped(designs), 100.0 * static_cast<double>(done) / static_cast<double>(designs),
       shell_quoted(name));
 }
@@ -195,31 +194,32 @@ void print_origin(const MapReader& map, const std::string& path) {
 void print_audit(const MapReader& map) {
   const Told told{map};
   if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
-    say("audit{}: {} designs again by {}: height within {} diameters, time within {} relative, motion within "
-        "{}, {} flags differ, {} errors beyond the tolerance, {} designs nobody can decide\n",
+    say("cross-check{}: {} designs by {}: height within {} diameters, time within {} relative, motion within "
+        "{}, {} flags differ, {} errors beyond the tolerance, {} inconclusive\n",
         told.has("retry_designs") ? " (before failed designs were retried)" : "", audited,
         told("audit_method"), told("audit_max_abs_height_error", "{:.1e}"),
         told("audit_max_rel_time_error", "{:.1e}"), told("audit_max_rel_motion_error", "{:.1e}"),
         told("audit_flag_mismatches"), told("audit_beyond_tolerance"), told("audit_undecided"));
   if (told.has("audit_referee_designs"))
-    say("referee: {} of them from the paper's (7) to (9): {} wrong, largest error {}, {} it cannot decide\n",
+    say("reference solver: {} of them: {} wrong, largest error {}, {} inconclusive\n",
         told("audit_referee_designs"), told("audit_overruled"), told("audit_referee_max_error", "{:.1e}"),
         told("audit_referee_undecided"));
   if (const std::string compared = map.attribute("audit_gradient_designs");
       !compared.empty() && compared != "0")
-    say("gradient: of {} designs by differences in long double: {} wrong, largest error {}, {} it cannot "
-        "decide\n",
+    say("derivatives: of {} designs by differences in long double: {} wrong, largest error {}, {} "
+        "inconclusive\n",
         compared, told("audit_gradients_wrong"), told("audit_gradient_max_error", "{:.1e}"),
         told("audit_gradient_undecided"));
   if (const std::string compared = map.attribute("audit_jumps_compared");
       !compared.empty() &&
       (compared != "0" || told("audit_jumps_beyond") != "0" || told("audit_sequences_wrong") != "0"))
-    say("later jumps: {} again, {} beyond what is known of them; {} designs wrong, largest error {}\n",
+    say("later jumps: {} compared, {} not, because errors grow too much; {} designs wrong, largest error "
+        "{}\n",
         compared, told("audit_jumps_beyond"), told("audit_sequences_wrong"),
         told("audit_jump_max_error", "{:.1e}"));
   if (const std::string gaits = map.attribute("audit_gaits"); !gaits.empty() && gaits != "0")
-    say("gaits: {} by integration: {} wrong, largest error {}, of a multiplier {}, {} it cannot decide\n",
-        gaits, told("audit_gaits_wrong"), told("audit_gait_max_error", "{:.1e}"),
+    say("gaits: {} by integration: {} wrong, largest error {}, of a multiplier {}, {} inconclusive\n", gaits,
+        told("audit_gaits_wrong"), told("audit_gait_max_error", "{:.1e}"),
         told("audit_multiplier_max_error", "{:.1e}"), told("audit_gaits_undecided"));
   if (told.has("retry_designs"))
     say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),
@@ -272,9 +272,9 @@ int run(const InfoArguments& arguments) {
   std::error_code ignored;
   if (const std::string part = part_of(arguments.path);
       !std::filesystem::exists(arguments.path, ignored) && std::filesystem::exists(part, ignored))
-    throw IoError(
-        fmt::format("{}: is not there yet, only {}: ask for that, or end it by leapmap sweep --resume",
-                    arguments.path, part));
+    throw IoError(fmt::format(
+        "{}: does not exist yet, only {}; allowed: that file, or leapmap sweep --resume to complete it",
+        arguments.path, part));
   const MapReader map(arguments.path, arguments.locking);
   if (arguments.only_spec) {
     write_out(readable_text(parse_map_spec(map.attribute("spec"), arguments.path)));
@@ -295,30 +295,29 @@ int run(const InfoArguments& arguments) {
 }  // namespace
 
 void add_info(CommandLine& line, int& status) {
-  Command command =
-      line.command("info", "tell what is in a map: axes, statuses, extremes and where they are");
+  Command command = line.command("info", "summarise a map: axes, statuses, extremes and their places");
+  command.examples({{"leapmap info m.h5", "axes, statuses, extremes"},
+                    {"leapmap info m.h5 --at slope=0.4,mass_ratio=2.4",
+                     "one design, and the distance to the nearest discontinuity"},
+                    {"leapmap info m.h5 --spec > again.toml", "the spec that makes it again"},
+                    {"leapmap info m.h5 --failed --limit 3", "commands that show what failed"}});
   auto arguments = std::make_shared<InfoArguments>();
-  command.value("MAP", arguments->path, "the map, or the .part of one, HDF5").required().check(named_file());
-  command.flag("--spec", arguments->only_spec, "print the resolved spec that made it, and nothing else");
-  command
-      .flag("--failed", arguments->failed, "list the failed designs, each as the command that reproduces it")
+  command.value("MAP", arguments->path, "a map, or the .part of an unfinished one (HDF5)")
+      .required()
+      .check(named_file());
+  command.flag("--spec", arguments->only_spec, "print only the resolved spec that made it");
+  command.flag("--failed", arguments->failed, "list failed designs, each with the command that reproduces it")
       .excludes("--spec");
   command
       .value("--at", arguments->at,
-             "AXIS=VALUE,...: tell a design's outcome and gradient, and the nearest cliffs around it")
-      .check({[](std::string& at) { return at.empty() ? "is empty; allowed: AXIS=VALUE,..." : ""; }})
+             "AXIS=VALUE,...: report one design: outcome, derivatives, nearest discontinuities")
+      .check({[](std::string& at) { return at.empty() ? "is empty; allowed: AXIS=VALUE,..." : ""; }, "PLACE"})
       .excludes("--spec")
       .excludes("--failed");
-  command.value("--limit", arguments->limit, "with --failed: list at most so many; default: 20")
+  command.value("--limit", arguments->limit, "longest list of failed designs; default: 20")
       .needs("--failed")
       .check(whole_number(0, 1e15));
   add_no_lock(command, arguments->locking);
-  command.footer(
-      "Examples:\n"
-      "  leapmap info m.h5                                       axes, statuses, extremes\n"
-      "  leapmap info m.h5 --spec > again.toml                   the spec that makes it again\n"
-      "  leapmap info m.h5 --at slope=0.4,mass_ratio=2.4         one design, and how far the next cliff is\n"
-      "  leapmap info m.h5 --failed --limit 3                    commands that show what failed");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

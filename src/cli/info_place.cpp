@@ -46,8 +46,7 @@ Design design_at(const Spec& spec, const std::string& at) {
   }
   for (const Axis& axis : spec.axes)
     if (std::ranges::find(given, axis.key) == given.end())
-      throw InputError(
-          fmt::format("--at {}: does not say the {}; allowed: a value of every axis", at, axis.key));
+      throw InputError(fmt::format("--at {}: lacks {}; allowed: a value of every axis", at, axis.key));
   return design;
 }
 
@@ -65,7 +64,7 @@ void print_outcome(const Outcome& outcome, const Scene& scene) {
 void print_made(const Spec& spec, const Design& design) {
   MadeColumns columns(scatter_fields_of(spec));
   scatter_solver_of(spec, points_of(spec.scatter)).solve({&design, 1}, columns);
-  say("as made, {} hoops\n", spec.scatter.samples);
+  say("manufactured, {} hoops\n", spec.scatter.samples);
   for (const Field* field : columns.fields())
     say("  {:<20} {:<14.8g} {}\n", field->name, columns.column(*field)[0],
         field->unit == "1" ? "" : field->unit);
@@ -94,7 +93,8 @@ std::string heights_beside(const Spec& spec, const Design& design, const NearCli
 std::string told(const Discrete& outcome) {
   std::string text(name_of(outcome.status));
   if (outcome.jumps_on > 0) text += fmt::format(" on {}", outcome.jumps_on);
-  if (outcome.status != Status::jumped && outcome.spurious_first_jump == 1) text += ", after a spurious one";
+  if (outcome.status != Status::jumped && outcome.spurious_first_jump == 1)
+    text += ", after a spurious lift-off";
   if (outcome.phase_sequence != 0) text += fmt::format(" {}", phase_letters(outcome.phase_sequence));
   return text;
 }
@@ -114,7 +114,8 @@ void print_place(const Spec& original, const std::string& at) {
   if (!original.scatter.spreads.empty()) print_made(original, one.design);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);
 
-  say("\nNearest cliffs within the map (a band narrower than a thousandth of an axis may be passed over)\n");
+  say("\nNearest discontinuities within the map (a band narrower than a thousandth of an axis may be "
+      "missed)\n");
   const auto place = [&](std::size_t k, double value) {
     const Option& option = *find_option("", original.axes[k].key);
     return fmt::format("{} {:.8g} ({:+.3g})", option.key, value, value - value_of(option, one.design));
@@ -130,7 +131,7 @@ void print_place(const Spec& original, const std::string& at) {
   if (cliffs.nearest.empty()) return;
   std::vector<std::string> places;
   for (std::size_t k = 0; k < original.axes.size(); ++k) places.push_back(place(k, cliffs.nearest[0].at[k]));
-  say("In all, as a share of the axes' ranges: {:.3g} away, at {}: {}\n", cliffs.nearest[0].distance,
+  say("Nearest over all directions: {:.3g} of the axes' ranges away, at {}: {}\n", cliffs.nearest[0].distance,
       fmt::join(places, ", "), name_of(cliffs.nearest[0].kind));
 }
 

@@ -36,12 +36,12 @@ int run(JoinArguments& arguments) {
   const std::optional<JoinReport> report = join(arguments.map, options);
   progress.reset();
   if (!report) {
-    tell("interrupted; nothing is kept, and the shards are as they were");
+    tell("interrupted; no map was written, and the shards are unchanged");
     return 128 + noted_signal();
   }
   if (!report->durable) tell_of_folder(arguments.map);
   if (!arguments.quiet)
-    say("joined   {} shards: {} designs in {} tiles\n", report->shards, grouped(report->designs),
+    say("joined   {} shards: {} designs in {} chunks\n", report->shards, grouped(report->designs),
         grouped(report->tiles));
   SweepArguments told;
   told.quiet = arguments.quiet;
@@ -56,29 +56,21 @@ int run(JoinArguments& arguments) {
 }  // namespace
 
 void add_join(CommandLine& line, int& status) {
-  Command command =
-      line.command("join", "make one map of the shards that sweeps with --shard I/N left beside it");
+  Command command = line.command("join", "join the shards of a map, made by sweep --shard");
+  command.examples(
+      {{"for i in 1 2 3; do leapmap sweep s.toml -o m.h5 --shard $i/3; done", "on one machine or several"},
+       {"leapmap join m.h5", "bit for bit the map of one sweep"}});
   auto arguments = std::make_shared<JoinArguments>();
-  command.value("MAP", arguments->map, "the map to make; its shards are MAP.1-of-N.h5 and so on, and stay")
+  command.value("MAP", arguments->map, "the map to make; its shards are MAP.1-of-N.h5 and so on, and remain")
       .required()
       .check(named_file());
-  command
-      .value("--shards", arguments->options.shards,
-             "how many shards it has; default: as many as their names say")
+  command.value("--shards", arguments->options.shards, "number of shards; default: from their file names")
       .check(whole_number(1, most_shards));
-  command.flag(
-      "--virtual", arguments->options.as_virtual,
-      "leave the values in the shards and look them up there: for a map too large to copy; it needs the "
-      "shards beside it");
+  command.flag("--virtual", arguments->options.as_virtual,
+               "leave the values in the shards, which must then stay beside the map");
   command.flag("--overwrite", arguments->options.overwrite, "replace an existing map");
+  command.flag("--quiet", arguments->quiet, "print errors only");
   add_no_lock(command, arguments->locking);
-  command.flag("--quiet", arguments->quiet, "print nothing but errors");
-  command.footer(
-      "Examples:\n"
-      "  for i in 1 2 3; do leapmap sweep s.toml -o m.h5 --shard $i/3; done     on one machine or many\n"
-      "  leapmap join m.h5                                                      the map of one sweep, bit "
-      "for bit\n"
-      "On a cluster: sweeps/cluster/README.md.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

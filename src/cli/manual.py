@@ -21,17 +21,17 @@ def main():
     program, folder = sys.argv[1], Path(sys.argv[2])
     top = told(program, "--help")
     version = told(program, "--version").split()[1]
-    section = top.split("Subcommands:\n")[1].split("\n\n")[0]
+    section = top.split("Commands:\n")[1].split("\n\n")[0]
     commands = re.findall(r"^  (\S+)\s{2,}(.*)$", section, re.M)
-    helps = {name: told(program, name, "--help").replace(program, "leapmap") for name, _ in commands}
-    summary = top.splitlines()[0].split(": ")[0].removeprefix("leapmap ").rstrip(".")
+    helps = {name: told(program, name, "--help") for name, _ in commands}
+    summary = " ".join(top.split("\n\n")[0].removeprefix("leapmap: ").split())
     lines = [f'.TH LEAPMAP 1 "" "leapmap {version}" "User Commands"', ".SH NAME", f"leapmap \\- {summary}", ".SH SYNOPSIS",
-             ".B leapmap", ".I COMMAND", "[options]", ".SH DESCRIPTION", ".nf", quoted(top.replace(program, "leapmap")), ".fi"]
+             ".B leapmap", ".I COMMAND", "[options]", ".SH DESCRIPTION", ".nf", quoted(top), ".fi"]
     for name, text in helps.items():
         lines += [f".SH LEAPMAP {name.upper()}", ".nf", quoted(text), ".fi"]
     (folder / "leapmap.1").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
-    flags = {name: sorted(set(re.findall(r"^  (?:-\w,)?(--[a-z][a-z-]*)", text, re.M))) for name, text in helps.items()}
+    flags = {name: sorted(set(re.findall(r"^  (?:-\w, )?(--[a-z][a-z-]*)", text, re.M))) for name, text in helps.items()}
     cases = "\n".join(f'    {name}) words="{" ".join(words)}" ;;' for name, words in flags.items())
     (folder / "leapmap.bash").write_text(f'''# bash completion of leapmap: commands, their options, files
 _leapmap() {{

@@ -66,31 +66,30 @@ Table table_of(const std::vector<PrecisionRow>& rows) {
                             double Measurement::*member) {
     numbers(name, unit, long_name, [member](const PrecisionRow& row) { return row.measurement.*member; });
   };
-  texts("designs", "which designs: random, the paper's hoop alone, or given as a list",
+  texts("designs", "which designs: random, the paper's hoop alone, or from a list",
         [](const auto& r) { return r.designs; });
-  texts("method", "exact, a stepper of GSL, or a step as game engines take it",
+  texts("method", "exact, a stepper of GSL, or a method of game engines",
         [](const auto& r) { return r.contestant.method; });
   texts("model", "energy integral (exact), one coordinate by (10), or three with multipliers by (7) to (9)",
         [](const auto& r) { return std::string(name_of(r.contestant.model)); });
-  texts("control", "what the setting is: tolerance or step",
+  texts("control", "kind of setting: tolerance or step",
         [](const auto& r) { return std::string(r.contestant.fixed_step ? "step" : "tolerance"); });
   numbers("setting", "1", "tolerance, or step in sqrt(R/g)",
           [](const auto& r) { return r.contestant.setting; });
   numbers("order", "1", "theoretical order of the error at fixed steps; 0: varies or does not apply",
           [](const auto& r) { return static_cast<double>(r.contestant.order); });
-  measured("seconds", "s", "for one design on one thread, least of some repeats", &Measurement::seconds);
+  measured("seconds", "s", "for one design on one thread, minimum of several runs", &Measurement::seconds);
   measured("evaluations", "1", "of the acceleration for one design; NaN: none", &Measurement::evaluations);
-  measured("max_height_error", "1", "of the jump's height, in hoop diameters, where flags are right",
+  measured("max_height_error", "1", "of the jump's height, in hoop diameters, if flags are right",
            &Measurement::max_height_error);
   measured("median_height_error", "1", "the same, median", &Measurement::median_height_error);
-  measured("max_time_error", "1", "of jump_time, relative, where flags are right",
-           &Measurement::max_time_error);
+  measured("max_time_error", "1", "of jump_time, relative, if flags are right", &Measurement::max_time_error);
   measured("median_time_error", "1", "the same, median", &Measurement::median_time_error);
-  measured("max_angle_error", "rad", "of jump_angle, where flags are right", &Measurement::max_angle_error);
+  measured("max_angle_error", "rad", "of jump_angle, if flags are right", &Measurement::max_angle_error);
   measured("median_angle_error", "rad", "the same, median", &Measurement::median_angle_error);
-  measured("wrong", "1", "share of designs whose status, flag or candidates are wrong without a word",
+  measured("wrong", "1", "fraction of designs whose status, flag or number of lift-offs is silently wrong",
            &Measurement::wrong);
-  measured("failed", "1", "share of designs the method gave up on, saying so", &Measurement::failed);
+  measured("failed", "1", "fraction of designs for which the method reports failure", &Measurement::failed);
   measured("drift", "1",
            "largest violation of a constraint, lengths in R, times in sqrt(R/g); NaN: none there",
            &Measurement::drift);
@@ -119,7 +118,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
   for (const std::string& method : options.methods)
     if (std::ranges::find(contestants, method, &Contestant::method) == contestants.end())
       throw InputError(fmt::format(
-          "--methods {}: knows no friction; allowed with --friction coulomb: exact, gsl-...", method));
+          "--methods {}: lacks friction; allowed with --friction coulomb: exact, gsl-...", method));
   refuse_taken(arguments.table, filetype, arguments.locking);  // not after minutes of work
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
@@ -127,7 +126,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
   const std::vector<PrecisionRow> rows =
       study_precision(options, scene, print_row, [] { return noted_signal() != 0; });
   if (noted_signal() != 0) {
-    tell(fmt::format("interrupted after {} of the table's rows; nothing is written", rows.size()));
+    tell(fmt::format("interrupted after {} of the table's rows; nothing was written", rows.size()));
     return 128 + noted_signal();
   }
   std::vector<hdf5::Attribute> attributes =
@@ -150,27 +149,31 @@ int run(PrecisionArguments arguments, bool designs_given) {
 }  // namespace
 
 void add_precision(CommandLine& line, int& status) {
-  Command command = line.command(
-      "precision",
-      "measure speed against accuracy: every method at every setting on the same designs, in one run");
+  Command command = line.command("precision", "measure speed against accuracy of every method, in one run");
+  command.examples({{"leapmap precision", "two minutes; then analysis/precision_chart.py maps/precision.h5"},
+                    {"leapmap precision --quick --methods exact,gsl-rk8pd", "a few seconds"}});
   auto arguments = std::make_shared<PrecisionArguments>();
-  command.value("-o,--output", arguments->table, "the table to write, HDF5; default: maps/precision.h5")
+  command.value("-o,--output", arguments->table, "the HDF5 table to write; default: maps/precision.h5")
       .check(named_file());
-  const Flag designs =
-      command.value("--designs", arguments->options.designs, "random designs; default: 200, 40 if quick")
-          .check(whole_number(1, 1e6));
-  command.value("--seed", arguments->options.seed, "of the random designs; default: 1")
+  const Flag designs = command
+                           .value("--designs", arguments->options.designs,
+                                  "number of random designs; default: 200, with --quick 40")
+                           .check(whole_number(1, 1e6));
+  command.value("--seed", arguments->options.seed, "seed of the random designs; default: 1")
       .check(whole_number(0, most_seed));
   command
       .value("--points", arguments->points,
-             "a CSV list of designs, as for sweeps, in place of random ones and the paper's hoop")
+             "a CSV list of designs, instead of random ones and the paper's hoop")
       .check(named_file())
       .excludes("--designs")
       .excludes("--seed");
   std::vector<std::string> methods;
   for (const Contestant& contestant : precision_contestants(true))
     if (std::ranges::find(methods, contestant.method) == methods.end()) methods.push_back(contestant.method);
-  command.value("--methods", arguments->options.methods, "only these, with commas between; default: all")
+  command
+      .value(
+          "--methods", arguments->options.methods,
+          fmt::format("methods to measure, separated by commas; default: all, {}", fmt::join(methods, ", ")))
       .with_commas()
       .check(one_of(methods));
   std::vector<std::string> frictions;
@@ -181,18 +184,15 @@ void add_precision(CommandLine& line, int& status) {
           [arguments](const std::string& word) {
             arguments->friction = std::ranges::find(models(), word, &Model::name)->friction;
           },
-          "sticking (never slips), or coulomb: then random designs have a random mu_static and mu_kinetic")
+          "contact model; coulomb: with random mu_static and mu_kinetic; default: sticking")
       .check(one_of(frictions));
-  command.flag("--quick", arguments->options.quick,
-               "fewer designs and settings, less time for each: within 30 s");
-  command.footer(
-      "Errors are the largest over the designs whose status, flag and number of lift-offs are right, against "
-      "exact in\n"
-      "long double where gsl-rk8pd at 1e-13 agrees with it, else against that; wrong: the share of the "
-      "others. rhs: how often a design asked for the acceleration. One "
-      "thread.\n"
-      "A method's settings that would take longer than a few seconds are left out.");
+  command.flag("--quick", arguments->options.quick, "fewer designs and settings: within 30 s");
   add_no_lock(command, arguments->locking);
+  command.footer(
+      "Errors are the largest over the designs with the right status, flag and number of lift-offs. The "
+      "reference is exact in long double if gsl-rk8pd at 1e-13 agrees with it, and gsl-rk8pd otherwise.\n"
+      "wrong: fraction of the other designs. rhs: evaluations of the acceleration per design.\n"
+      "One thread. Settings that take longer than a few seconds are left out.");
   command.runs([arguments, designs, &status] { status = run(*arguments, designs.is_given()); });
 }
 

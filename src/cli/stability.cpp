@@ -86,29 +86,27 @@ Table table_of(std::span<const StabilityRow> rows) {
     columns.push_back({name, unit, long_name, values});
   };
   texts("study", "the case", [](const auto& r) { return r.study; });
-  texts("abscissa", "what x is", [](const auto& r) { return r.abscissa; });
-  texts("method", "exact, a stepper, or how a landing event is armed",
+  texts("abscissa", "meaning of x", [](const auto& r) { return r.abscissa; });
+  texts("method", "exact, a stepper, or a rule for arming a landing event",
         [](const auto& r) { return r.method; });
-  texts("control", "what the setting is: tolerance, step, or rule for a landing event",
+  texts("control", "kind of setting: tolerance, step, or rule for a landing event",
         [](const auto& r) { return r.control; });
   numbers("setting", "1", "tolerance, or step in sqrt(R/g); NaN: a rule", &StabilityRow::setting);
-  numbers("x", "1", "how far the case has been walked along its abscissa", &StabilityRow::x);
-  numbers("error", "1",
-          "largest of the jump's height's error in hoop diameters and of the relative errors of both times; "
-          "NaN: none to "
-          "compare",
-          &StabilityRow::error);
+  numbers("x", "1", "position along the abscissa of the case", &StabilityRow::x);
+  numbers(
+      "error", "1",
+      "largest of the error of the jump's height in hoop diameters and the relative errors of both times; "
+      "NaN: none to compare",
+      &StabilityRow::error);
   numbers("energy_drift", "1", "at the jump, over 1 + its kinetic energy; NaN: no jump",
           &StabilityRow::energy_drift);
-  numbers("condition", "1", "times that a relative change of the inputs comes back in the answer",
-          &StabilityRow::condition);
+  numbers("condition", "1", "growth factor of a relative change of the inputs", &StabilityRow::condition);
   numbers("evaluations", "1", "of the acceleration; NaN: none", &StabilityRow::evaluations);
   numbers("seconds", "s", "for this one design on one thread, once", &StabilityRow::seconds);
-  texts("failure", "why the method says that it failed; empty: it does not",
-        [](const auto& r) { return r.failure; });
+  texts("failure", "reason of a reported failure; empty: none", [](const auto& r) { return r.failure; });
   texts("finding", "fine, undecided, lossy, failed or wrong",
         [](const auto& r) { return name_of(r.finding); });
-  texts("witness", "by what the right answer is known", [](const auto& r) { return name_of(r.witness); });
+  texts("witness", "method that gives the right answer", [](const auto& r) { return name_of(r.witness); });
   std::vector<std::string> verdicts;
   for (const Series& series : series_of(rows))
     verdicts.insert(verdicts.end(), series.rows.size(), std::string(series.verdict));
@@ -127,7 +125,7 @@ int run(const StabilityArguments& arguments) {
   for (const StabilityCase& stability_case : stability_cases(arguments.options)) {
     const std::vector<StabilityRow> more = run_case(stability_case, stop_requested);
     if (stop_requested()) {
-      tell(fmt::format("interrupted in the case \"{}\"; nothing is written", stability_case.name));
+      tell(fmt::format("interrupted in the case \"{}\"; nothing was written", stability_case.name));
       return 128 + noted_signal();
     }
     print_verdicts(more);
@@ -151,45 +149,44 @@ int run(const StabilityArguments& arguments) {
 }  // namespace
 
 void add_stability(CommandLine& line, int& status) {
-  Command command = line.command(
-      "stability", "find where methods fail: thirteen walks into trouble, every method's verdict in each");
+  Command command = line.command("stability", "find where methods fail: every method in thirteen cases");
+  command.examples({{"leapmap stability", "ten minutes; then analysis/stability_chart.py maps/stability.h5"},
+                    {"leapmap stability --quick", "a minute at most; fewer positions"}});
   auto arguments = std::make_shared<StabilityArguments>();
-  command.value("-o,--output", arguments->table, "the table to write, HDF5; default: maps/stability.h5")
+  command.value("-o,--output", arguments->table, "the HDF5 table to write; default: maps/stability.h5")
       .check(named_file());
-  command.flag("--quick", arguments->options.quick, "fewer places on each walk: within a minute");
-  command.footer(
-      "The cases: needle (a mass on the rim of an ever lighter hoop), release (ever closer to the unstable "
-      "equilibrium),\n"
-      "graze (across the fold where a pair of lift-offs is born), long (up to 10,000 turns to the jump), "
-      "step (fixed steps\n"
-      "ever longer), tolerance (down to 1e-30), landing (flights that dip below the plane, or start with a "
-      "triple root),\n"
-      "chaos (jump after jump of a hoop that has no stable gait).\n"
-      "With Coulomb friction: painleve (a slide that just misses the edge where rigid bodies have no "
-      "answer), "
-      "slow (released\n"
-      "ever more slowly), dip (n0 of a slide just touches zero), stick (friction just holds), bounces (ever "
-      "more rebounds).\n"
-      "\n"
-      "The truth is exact's in long double where gsl-rk8pd at 1e-13 agrees within its own error, and "
-      "gsl-rk8pd's "
-      "where it does\n"
-      "not; the column witness tells. An answer is fine if height and times are right to the tolerance asked "
-      "(1e-12 at best;\n"
-      "1e-6 of a fixed step, which asks for none), or to 100 roundings times the question's condition, which "
-      "is what four\n"
-      "ulps of the inputs do to it; lossy: to 5 %; failed: the method says so; wrong: anything else; "
-      "undecided:\n"
-      "four ulps of an input, a hundred with friction, change the flags, which is held "
-      "against nobody.\n"
-      "\n"
-      "A method's verdict in a case: wrong without a word, if any answer is wrong; breaks down, if all "
-      "failed; gives up\n"
-      "honestly, if some failed; loses digits, if some are lossy; fine. worst: the largest error; most rhs: "
-      "the most\n"
-      "right-hand sides that a design took. --quick leaves out places, and so may find a better verdict. One "
-      "thread.");
+  command.flag("--quick", arguments->options.quick, "fewer positions in each case: within a minute");
   add_no_lock(command, arguments->locking);
+  command.footer(
+      "Each case approaches a difficult design:\n"
+      "  needle       a mass on the rim of an ever lighter hoop\n"
+      "  release      ever closer to the unstable equilibrium\n"
+      "  graze        across the fold at which a pair of lift-offs appears\n"
+      "  long         up to 10,000 revolutions to the jump\n"
+      "  step         ever longer fixed steps\n"
+      "  tolerance    down to 1e-30\n"
+      "  landing      flights that enter the plane, or start with a triple root\n"
+      "  chaos        jump after jump of a hoop without a stable gait\n"
+      "and with friction:\n"
+      "  painleve     a slide that barely misses Painleve's paradox\n"
+      "  slow         ever slower releases\n"
+      "  dip          the normal force of a slide barely touches zero\n"
+      "  stick        friction barely holds\n"
+      "  bounces      ever more rebounds\n"
+      "\n"
+      "Findings:\n"
+      "  fine         error within the tolerance (at best 1e-12; fixed steps: 1e-6)\n"
+      "               or within what four ulps of the inputs change\n"
+      "  lossy        error up to 5 %\n"
+      "  failed       the method reports failure\n"
+      "  wrong        anything else\n"
+      "  undecided    four ulps of an input, with friction a hundred, change the flags;\n"
+      "               not counted against any method\n"
+      "\n"
+      "Verdict of a method in a case: silently wrong, if any answer is wrong; breaks down, if all failed; "
+      "reports failure, if some failed; loses digits, if some are lossy; otherwise fine.\n"
+      "The reference is exact in long double if gsl-rk8pd at 1e-13 agrees with it, and gsl-rk8pd otherwise; "
+      "the column witness names it. One thread.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

@@ -37,9 +37,9 @@ SweepOptions options_of(const SweepArguments& arguments) {
 }
 
 void tell_resumed(const std::string& map, std::size_t done, std::size_t total) {
-  say("resumed  {}\n", done > 0
-                           ? fmt::format("{} of {} designs were there already", grouped(done), grouped(total))
-                           : fmt::format("nothing to go on with in {}: begun anew", part_of(map)));
+  say("resumed  {}\n",
+      done > 0 ? fmt::format("{} of {} designs were complete", grouped(done), grouped(total))
+               : fmt::format("nothing to resume in {}: starting from the beginning", part_of(map)));
   flush_out();
 }
 
@@ -47,14 +47,14 @@ void tell_resumed(const std::string& map, std::size_t done, std::size_t total) {
 int tell_report(const SweepArguments& arguments, const Spec& spec, const std::string& map,
                 const std::string& file, const Report& report) {
   if (!report.whole) {
-    tell(fmt::format("interrupted after {} of {} designs, which {} keeps; go on by: {}", grouped(report.done),
+    tell(fmt::format("interrupted after {} of {} designs, which {} keeps; resume: {}", grouped(report.done),
                      grouped(report.designs), part_of(file), sweep_command(arguments, map, "--resume")));
     return 128 + noted_signal();
   }
   if (!report.durable) tell_of_folder(file);
-  if (report.was_whole && !arguments.quiet) say("map      {} is whole already\n", file);
+  if (report.was_whole && !arguments.quiet) say("map      {} is complete already\n", file);
   if (arguments.shard && report.designs == 0 && !arguments.quiet) {
-    say("solved   nothing: there are fewer tiles than shards, and shard {} has none\n",
+    say("solved   nothing: there are fewer chunks than shards, and shard {} has none\n",
         text_of(*arguments.shard));
   } else if (!report.was_whole && !arguments.quiet) {
     say("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(report.solved),
@@ -66,9 +66,9 @@ int tell_report(const SweepArguments& arguments, const Spec& spec, const std::st
   print_totals(report.statuses);
   if (const bool failed = report.statuses[static_cast<std::size_t>(Status::failed)] > 0;
       failed && arguments.shard)
-    say("failed   they are told, and solved again by --retry-failed, once the shards are joined\n");
+    say("failed   solve them again by --retry-failed after joining the shards\n");
   else if (failed)
-    say("failed   see them by: leapmap info {} --failed; solve them again by: {}\n", shell_quoted(map),
+    say("failed   list them: leapmap info {} --failed; solve them again: {}\n", shell_quoted(map),
         sweep_command(arguments, map, "--retry-failed"));
   say("map      {}\n", file);
   return status;
@@ -104,7 +104,7 @@ int run(const SweepArguments& arguments) {
     progress.reset();
     return tell_report(arguments, spec, map, file, report);
   } catch (const KeptError& error) {
-    throw IoError(fmt::format("{}; {} of {} designs are kept: once it can be written, go on by: {}",
+    throw IoError(fmt::format("{}; {} of {} designs are kept; when it can be written again, resume: {}",
                               error.what(), grouped(error.kept), grouped(error.designs),
                               sweep_command(arguments, map, "--resume")));
   }
@@ -135,28 +135,28 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
 
 int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditReport& report) {
   if (!arguments.quiet)
-    say("audit    {} designs again by {}: height within {:.1e} diameters, time within {:.1e}, motion within "
+    say("check    {} designs by {}: height within {:.1e} diameters, time within {:.1e}, motion within "
         "{:.1e}, {} flags differ{}{}\n",
         grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
         report.max_rel_motion_error, report.flag_mismatches,
-        report.undecided > 0 ? fmt::format("; {} nobody can decide", report.undecided) : "",
+        report.undecided > 0 ? fmt::format("; {} inconclusive", report.undecided) : "",
         report.failed > 0 ? fmt::format("; {} failed, not compared", report.failed) : "");
   if (!arguments.quiet && report.refereed > 0)
-    say("referee  {} of them from the paper's (7) to (9), in SI units: {} wrong, largest error {:.1e}{}\n",
+    say("referee  {} of them by the independent reference solver: {} wrong, largest error {:.1e}{}\n",
         grouped(report.refereed), report.overruled, report.referee_max_error,
-        report.referee_undecided > 0 ? fmt::format("; {} it cannot decide", report.referee_undecided) : "");
+        report.referee_undecided > 0 ? fmt::format("; {} inconclusive", report.referee_undecided) : "");
   if (!arguments.quiet && report.gradient_designs > 0)
     say("gradient {} of them by differences in long double: {} wrong, largest error {:.1e}{}\n",
         grouped(report.gradient_designs), report.gradients_wrong, report.gradient_max_error,
-        report.gradient_undecided > 0 ? fmt::format("; {} it cannot decide", report.gradient_undecided) : "");
+        report.gradient_undecided > 0 ? fmt::format("; {} inconclusive", report.gradient_undecided) : "");
   if (!arguments.quiet) say_sequences(report);
   const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
-      tell(fmt::format("audit: {} on design {}; see it by: {}", what, told_design(spec, *design),
+      tell(fmt::format("cross-check: {} on design {}; show it: {}", what, told_design(spec, *design),
                        hop_command(spec, DesignSpace(spec).at(*design))));
   };
   const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
-  complain(report.first_mismatch, both + " disagree on status, flag or candidates");
+  complain(report.first_mismatch, both + " disagree on status, spurious flag or number of lift-offs");
   complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
   complain(report.first_wrong_gradient,
            "a derivative differs by more than 1e-6 from differences in long double");
@@ -176,79 +176,68 @@ void print_totals(const StatusCounts& totals) {
 
 void add_sweep(CommandLine& line, int& status) {
   Command command = line.command("sweep", "solve the designs of a spec into a map (HDF5)");
+  command.examples({{"leapmap sweep s.toml -o m.h5 --dry-run", "predict time, memory and file size"},
+                    {"leapmap sweep s.toml -o m.h5", "solve; Ctrl-C stops and keeps m.h5.part"},
+                    {"leapmap sweep s.toml -o m.h5 --resume", "continue with m.h5.part"},
+                    {"leapmap sweep s.toml -o m.h5 --retry-failed", "solve failed designs again"},
+                    {"leapmap sweep s.toml -o n.h5 --set 'slope={from=0.1,to=0.8,count=99}'",
+                     "change a key of the spec"}});
   auto arguments = std::make_shared<SweepArguments>();
-  command
-      .value("SPEC", arguments->spec,
-             "the sweep's spec, TOML; default: every key at its default, the paper's hoop")
+  command.value("SPEC", arguments->spec, "a spec (TOML); default: every key at its default, the paper's hoop")
       .check(named_file());
-  command
-      .value("-o,--output", arguments->map,
-             "the map to write, in a folder made if need be; default: output.file of the spec")
+  command.group("Output");
+  command.value("-o,--output", arguments->map, "the map to write; default: output.file of the spec")
       .check(named_file());
-  add_set(command, arguments->overrides, ", for example --set tolerance=1e-12");
+  command.flag("--overwrite", arguments->overwrite,
+               "replace an existing map and, without --resume, its .part");
+  command.flag("--quiet", arguments->quiet, "print errors only");
+  command.group("Designs");
+  add_set(command, arguments->overrides, ", for example tolerance=1e-12");
   command
       .value(
           "--points",
           [arguments](const std::string& file) {
             arguments->overrides.push_back(fmt::format("design.points={}", file));
           },
-          "solve the designs of this CSV file in place of axes, one a line, as leapmap design --csv writes "
-          "them")
+          "solve the designs of this CSV file, one in a row, instead of axes")
       .check(named_file());
-
-  for (const Option* option : hop_options())
-    if (option->section == "scene") add_flag_of(command, *option, arguments->overrides);
-  command.value("--threads", arguments->threads, "threads to use; default: all")
-      .check(whole_number(1, most_threads));
+  add_flags_of_the_scene(command, arguments->overrides);
+  command.group("Work");
+  add_threads(command, arguments->threads);
   command.flag("--resume", arguments->resume,
-               "go on with the MAP.part that an interrupted sweep left, if there is one");
-  command.flag("--overwrite", arguments->overwrite,
-               "replace an existing map; without --resume its .part as well");
+               "continue the MAP.part that an interrupted sweep left, if there is one");
   command
       .flag("--retry-failed", arguments->retry_failed,
-            "solve the failed designs of an existing map again: by exact if it was made by a stepper, by "
-            "gsl-rk8pd if it was made by exact, at tolerance 1e-12; or as --set says, if that is another way "
-            "than "
-            "the map's (method, tolerance, max_steps, ...)")
+            "solve the failed designs of an existing map again, by the method that cross-checks its own, at "
+            "tolerance 1e-12; or by the method, tolerance or max_steps of --set")
       .excludes("--resume")
       .excludes("--overwrite");
   command
       .value("--commit-interval", arguments->commit_interval,
-             "seconds between commits: kill -9 or a power cut loses no more than that and the tiles in "
-             "hand; default: 1")
+             "time between commits [s]; kill -9 or a power failure loses at most that much work; default: 1")
       .check(number({0.0, 86400.0}));
+  add_no_lock(command, arguments->locking);
+  command.group("Planning and shards");
+  command.flag("--dry-run", arguments->dry_run, "predict number of designs, memory, file size and time only");
   command
       .value(
           "--shard", [arguments](const std::string& text) { arguments->shard = parse_shard(text); },
-          "I/N: solve part I of N of the map only, into a file of its own beside it, MAP.I-of-N.h5; leapmap "
-          "join "
-          "MAP makes one of all. Parts are whole tiles, each as much work as the others")
-      .excludes("--retry-failed");
-  add_no_lock(command, arguments->locking);
-  command.flag("--dry-run", arguments->dry_run,
-               "tell designs, memory, file size and time, and compute nothing else");
-  command.value("--shards", arguments->shards, "of --dry-run: how each of so many parts would fare")
+          "solve part I of N of the map into MAP.I-of-N.h5; leapmap join MAP joins them")
+      .excludes("--retry-failed")
+      .shown_as("I/N");
+  command.value("--shards", arguments->shards, "with --dry-run: predict this number of shards")
       .needs("--dry-run")
       .excludes("--shard")
       .excludes("--retry-failed")
       .check(whole_number(1, most_shards));
   command
       .value("--time-limit", arguments->time_limit,
-             "of --dry-run: hours that a job may take, which tells how many parts there must be")
+             "with --dry-run: hours that a job may take, which determines the number of shards")
       .needs("--dry-run")
       .excludes("--shard")
       .excludes("--retry-failed")
       .check(number({1e-3, 1e4}));
-  command.flag("--quiet", arguments->quiet, "print nothing but errors");
-  command.footer(
-      "Examples:\n"
-      "  leapmap sweep s.toml -o m.h5 --dry-run                  what it would take\n"
-      "  leapmap sweep s.toml -o m.h5                            Ctrl-C stops it and keeps m.h5.part\n"
-      "  leapmap sweep s.toml -o m.h5 --resume                   goes on with m.h5.part\n"
-      "  leapmap sweep s.toml -o m.h5 --retry-failed             solves failed designs again\n"
-      "  leapmap sweep s.toml -o n.h5 --set 'slope={from=0.1,to=0.8,count=99}' --set "
-      "output.precision=f4\n\n" +
-      options_help());
+  command.footer(options_help());
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

@@ -25,14 +25,14 @@ namespace {
 std::size_t print_existing(const SweepArguments& arguments, const std::string& map) {
   std::error_code ignored;
   if (std::filesystem::exists(map, ignored) && !arguments.overwrite)
-    say("there    {} exists already: it is refused, without --overwrite or if it is no map\n", map);
+    say("exists   {}: the sweep will refuse it without --overwrite, or if it is not a map\n", map);
   if (!has_part(map, arguments.locking)) return 0;
   const std::string part = part_of(map);
   const std::size_t designs = designs_in(MapReader(part, arguments.locking).status_counts());
-  say("there    {} holds {} designs: {}\n", part, grouped(designs),
-      arguments.resume      ? "it is gone on with"
-      : arguments.overwrite ? "they are overwritten"
-                            : "it is refused without --resume or --overwrite");
+  say("exists   {} holds {} designs: {}\n", part, grouped(designs),
+      arguments.resume      ? "the sweep will resume it"
+      : arguments.overwrite ? "the sweep will overwrite them"
+                            : "the sweep will refuse it without --resume or --overwrite");
   return arguments.resume ? designs : 0;
 }
 
@@ -56,7 +56,7 @@ std::string memory_line(const Spec& spec, const MapLayout& layout, const Tiling&
           : 0.0;
   const double sweep = made + program + held + structure + threads * tile +
                        std::min(file, static_cast<double>(most_waiting_bytes(threads)));
-  std::string line = fmt::format("at most {} for the sweep with its audit; {} for leapmap info",
+  std::string line = fmt::format("at most {} for the sweep with its cross-check; {} for leapmap info",
                                  spoken_bytes(sweep), spoken_bytes(program + held + structure));
   if (spec.axes.size() >= 2)
     line += tiling.designs() > most_on_page
@@ -100,19 +100,18 @@ void print_shards(const SweepArguments& arguments, const Spec& spec, const std::
     const double least = std::ceil(seconds / static_cast<double>(threads) / limit);
     std::size_t fits = std::clamp<std::size_t>(static_cast<std::size_t>(std::min(least, 1e9)), 1, most);
     while (fits < most && longest(fits) > limit) fits = std::min(most, fits + 1 + fits / 64);
-    say("limit    {} a job: {} shards{}\n", spoken_duration(3600.0 * arguments.time_limit), grouped(fits),
+    say("limit    {} per job: {} shards{}\n", spoken_duration(3600.0 * arguments.time_limit), grouped(fits),
         longest(fits) <= limit ? "" : ", and even then the longest takes more");
     if (shards == 0) shards = fits;
   }
   if (shards > tiling.size()) {
-    say("shards   {} are more than its {} tiles, which are not cut\n", grouped(shards),
+    say("shards   {} are more than its {} chunks, which cannot be divided\n", grouped(shards),
         grouped(tiling.size()));
     return;
   }
   const double even = 1.0 / static_cast<double>(shards);
   say("shards   {}: about {} designs each, the longest {} on {} threads, {:.2f} times the mean, and {} on "
-      "disk; "
-      "memory as above\n",
+      "disk; memory as above\n",
       grouped(shards),
       grouped(static_cast<std::size_t>(std::ceil(static_cast<double>(tiling.designs()) * even))),
       spoken_duration(longest(shards)), threads, std::ranges::max(sums_of(efforts, shards)) / (all * even),
@@ -127,7 +126,7 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
                 const Tiling& tiling) {
   const MapLayout layout = layout_of(spec);
   const int threads = thread_count(arguments.threads);
-  say("map      {}\n", map.empty() ? "(none: give -o or output.file)" : map);
+  say("map      {}\n", map.empty() ? "(none: use -o or output.file)" : map);
   if (arguments.retry_failed) {
     const StatusCounts counts = MapReader(map, arguments.locking).status_counts();
     say("retry    {} failed designs\n",
@@ -139,14 +138,14 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   for (const Axis& axis : spec.axes)
     say("axis     {} from {:.6g} to {:.6g}, {} values\n", axis.key, axis.values.front(), axis.values.back(),
         axis.values.size());
-  say("designs  {} in {} tiles of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
+  say("designs  {} in {} chunks of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
       fmt::join(tiling.tile_shape(), " x "));
   if (!spec.scatter.spreads.empty())
-    say("made     {} hoops after each design\n", grouped(static_cast<std::uint64_t>(spec.scatter.samples)));
+    say("samples  {} manufactured hoops per design\n", grouped(static_cast<std::uint64_t>(spec.scatter.samples)));
   say("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
   std::vector<std::string_view> fields;
   for (const Field* field : layout.fields) fields.push_back(field->name);
-  say("audit    {:g} of them, again by {}\n", spec.numerics.audit, audit_method(spec.numerics));
+  say("check    {:g} of them, by {}\n", spec.numerics.audit, audit_method(spec.numerics));
   say("fields   {} in {}\n", fmt::join(fields, ", "), spec.output.precision);
   say("memory   {}\n", memory_line(spec, layout, tiling, threads));
   say("file     about {}{}\n", spoken_bytes(map_file_bytes(layout, tiling)),

@@ -86,7 +86,7 @@ Explained::Explained(const Measurements& measured, const Spec& spec, Friction fr
   }
   if (free_.empty())
     throw InputError(fmt::format(
-        "{}: no parameter of the model \"{}\" is free; allowed: release_angle = {{ from, to }}, say",
+        "{}: no parameter of the model \"{}\" is free; allowed: for example release_angle = {{ from, to }}",
         origin_of(spec), model_of(friction).name));
   check_spec(spec_);
 

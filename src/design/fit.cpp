@@ -217,7 +217,7 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
 void refuse_what_has_no_use(const Spec& spec) {
   const auto refuse = [&](std::string_view what) {
     throw InputError(
-        fmt::format("{}: {} has no use in a fit; allowed: [scene], [design], and [numerics] as it is",
+        fmt::format("{}: {} has no effect in a fit; allowed: [scene], [design], and [numerics] as it is",
                     origin_of(spec), what));
   };
   if (!spec.goals.empty() || !spec.maximize.empty() || !spec.minimize.empty()) refuse("[goal]");
@@ -262,10 +262,10 @@ Fitted fit_model(const Measurements& measured, const Spec& spec, Friction fricti
   };
   const bool known = explained.errors_known();
   if (problem.residuals < problem.bounds.size() + (known ? 0 : 1))
-    throw InputError(fmt::format("{}: {} numbers for {} free parameters{}; allowed: {}", measured.origin,
-                                 problem.residuals, problem.bounds.size(),
-                                 known ? "" : ", and their error to be told",
-                                 known ? "as many numbers or more" : "more numbers, or --error"));
+    throw InputError(
+        fmt::format("{}: {} numbers for {} free parameters{}; allowed: {}", measured.origin,
+                    problem.residuals, problem.bounds.size(), known ? "" : " and an unknown error",
+                    known ? "at least one number for each free parameter" : "more numbers, or --error"));
   Fitted fitted{.told = {.scene = explained.scene()}, .errors_known = known};
   ModelFit& told = fitted.told;
   const auto starts = coarse_starts(explained, options);

@@ -13,6 +13,7 @@
 #include "physics/parameters.hpp"
 #include "physics/rolling.hpp"
 #include "physics/sliding.hpp"
+#include "support/closest.hpp"
 #include "support/csv.hpp"
 #include "support/number.hpp"
 #include "sweep/spacing.hpp"
@@ -29,8 +30,8 @@ constexpr std::array<std::string_view, 4> marker_names{"x_P", "y_P", "x_O", "y_O
 double to_number(const std::string& cell, const std::string& place, std::string_view column) {
   const auto value = number_in(cell);
   if (!value)
-    throw InputError(fmt::format("{}: {} = '{}' is no number; allowed: a finite number in every line", place,
-                                 column, cell));
+    throw InputError(fmt::format("{}: {} = '{}' is not a number; allowed: a finite number in every line",
+                                 place, column, cell));
   return *value;
 }
 
@@ -79,8 +80,8 @@ void check_event(const Measurements& measured, std::size_t row, const Spec& spec
     std::vector<std::string_view> names;
     for (const Field& each : map_fields())
       if (std::holds_alternative<Quantity>(each.source)) names.push_back(each.name);
-    throw InputError(fmt::format("{}: event '{}' is no quantity of a map; allowed: {}", place, name,
-                                 fmt::join(names, ", ")));
+    throw InputError(fmt::format("{}: event '{}' is not a quantity of a map{}; allowed: {}", place, name,
+                                 did_you_mean(name, names), fmt::join(names, ", ")));
   }
   if (!(error > 0.0 && std::isfinite(error)))
     throw InputError(
@@ -98,8 +99,8 @@ void check_event(const Measurements& measured, std::size_t row, const Spec& spec
   const double largest = std::max(std::abs(size.least), std::abs(size.most));
   if (!(error <= largest && error >= 1e-12 * largest))
     throw InputError(
-        fmt::format("{}: error = {} of {} is no size of an error; allowed: {}, from {:.4g} to {:.4g}", place,
-                    error, name, size.unit, 1e-12 * largest, largest));
+        fmt::format("{}: error = {} of {} is not a plausible error; allowed: {}, from {:.4g} to {:.4g}",
+                    place, error, name, size.unit, 1e-12 * largest, largest));
   constexpr double errors = 5.0;  // that a measured number may be beyond what there is
   if (!(value >= size.least - errors * error && value <= size.most + errors * error))
     throw InputError(fmt::format("{}: {} = {} looks like {}; allowed: {}, from {:.4g} to {:.4g}", place, name,
@@ -146,11 +147,11 @@ void check_angles(const Measurements& measured, double second) {
   for (std::size_t i = 1; i < film.t.size(); ++i)
     if (const double turned = film.phi[i] - film.phi[i - 1], passed = film.t[i] - film.t[i - 1];
         std::abs(turned) > std::max(fastest / second * passed, 0.5))
-      throw InputError(
-          fmt::format("{}: phi changes by {:.4g} in {:.4g} s, which no hoop does: it looks like degrees, or "
-                      "like an angle cut "
-                      "off at a turn; allowed: radians that go on over turns",
-                      place_of(measured, i), turned, passed));
+      throw InputError(fmt::format(
+          "{}: phi changes by {:.4g} in {:.4g} s, which is faster than any hoop; it may be in degrees, or "
+          "an angle cut "
+          "off at a turn; allowed: radians that continue over revolutions",
+          place_of(measured, i), turned, passed));
   constexpr double turns = 2.0 * std::numbers::pi;
   if (std::abs(film.phi.front()) > 2.0 * turns)
     throw InputError(
@@ -218,12 +219,12 @@ void check_film(const Measurements& measured, const Spec& spec) {
   for (const auto* column :
        {&film.t, &film.phi, &film.markers[0], &film.markers[1], &film.markers[2], &film.markers[3]}) {
     if (!column->empty() && column->size() != film.t.size())
-      throw InputError(fmt::format("{}: a column of {} numbers beside {} times; allowed: as many",
+      throw InputError(fmt::format("{}: a column of {} numbers beside {} times; allowed: equal numbers",
                                    measured.origin, column->size(), film.t.size()));
     for (std::size_t i = 0; i < column->size(); ++i)
       if (!std::isfinite((*column)[i]))
         throw InputError(
-            fmt::format("{}: {} is no number; allowed: finite ones", place_of(measured, i), (*column)[i]));
+            fmt::format("{}: {} is not a number; allowed: finite ones", place_of(measured, i), (*column)[i]));
   }
   const bool markers =
       std::ranges::none_of(film.markers, [](const std::vector<double>& column) { return column.empty(); });
@@ -288,9 +289,9 @@ Measurements read_measurements(const std::string& path, const MeasurementOptions
   if (events && (of_film || of_markers))
     throw InputError(
         path +
-        ": holds events; --error, --allow-gaps, --scale and --y-down have no use; allowed: with a film");
+        ": holds events; --error, --allow-gaps, --scale and --y-down have no effect; allowed: with a film");
   if (angle && of_markers)
-    throw InputError(path + ": holds angles; --scale and --y-down have no use; allowed: with markers");
+    throw InputError(path + ": holds angles; --scale and --y-down have no effect; allowed: with markers");
   std::vector<std::string> cells;
   while (file.next(cells)) {
     const std::string& place = file.place();

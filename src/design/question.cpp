@@ -33,10 +33,11 @@ Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free,
     refuse(spec, fmt::format("{}: {} {}", key, name, no_use(spec.scene)), with_model(*field->only_of));
   const auto* code = std::get_if<Code>(&field->source);
   if (std::holds_alternative<Word>(field->source) || (code && !code->names.empty()))
-    refuse(spec, fmt::format("{}: {} is a code, and neither more nor less than another", key, name),
+    refuse(spec, fmt::format("{}: {} is a code and has no order", key, name),
            "a quantity; a code may be a goal, { is = ... }");
   if (is_of_made(*field) && spec.scatter.spreads.empty())
-    refuse(spec, fmt::format("{}: {} is of hoops as made", key, name), "with a parameter in [scatter]");
+    refuse(spec, fmt::format("{}: {} describes manufactured hoops", key, name),
+           "with a parameter in [scatter]");
   return {name, maximize, field, nullptr};
 }
 
@@ -44,7 +45,7 @@ Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free,
 void refuse_without_derivatives(const Spec& spec, const std::string& key, const Field& field) {
   if (std::holds_alternative<Quantity>(field.source) && !can_be_differentiated(field))
     refuse(spec, fmt::format("{}: {} has no derivatives", key, field.name),
-           "a quantity of a jump, or a code as a goal, gait_period = { is = 1 } say");
+           "a quantity of a jump, or a code as a goal, for example gait_period = { is = 1 }");
 }
 
 bool is_of_jumps(const Field& field) {
@@ -134,7 +135,7 @@ Question question_of(const Spec& spec) {
     refuse(
         spec,
         spec.points.empty() && spec.list.columns.empty() ? "no parameter is free" : "design.points is a list",
-        "one or more, design.slope = { from = \"2 deg\", to = \"50 deg\" } say");
+        "one or more, for example design.slope = { from = \"2 deg\", to = \"50 deg\" }");
   Question question{.one = spec, .free = {}, .made_goals = {}, .objectives = {}};
   question.one.axes.clear(), question.one.maximize.clear(), question.one.minimize.clear();
   question.one.output = {};
@@ -142,7 +143,8 @@ Question question_of(const Spec& spec) {
     const Field* field = find_field(goal.field);
     if (!field || !is_of_made(*field)) return false;
     if (spec.scatter.spreads.empty())
-      refuse(spec, fmt::format("goal.{} is of hoops as made", goal.field), "with a parameter in [scatter]");
+      refuse(spec, fmt::format("goal.{} describes manufactured hoops", goal.field),
+             "with a parameter in [scatter]");
     question.made_goals.push_back(goal);
     return true;
   });
@@ -173,7 +175,7 @@ Question question_of(const Spec& spec) {
   }
   if (question.objectives.empty())
     refuse(spec, "nothing says what is best: maximize and minimize of [goal] are empty",
-           "maximize = [\"jump_height\"] say");
+           "for example maximize = [\"jump_height\"]");
   if (question.objectives.size() > 2)
     refuse(spec,
            fmt::format("goal.maximize and goal.minimize name {} quantities", question.objectives.size()),
@@ -181,7 +183,7 @@ Question question_of(const Spec& spec) {
   const auto of_yield = [&](const auto& asked) { return asked.field && asked.field->name == "yield"; };
   if ((std::ranges::any_of(question.objectives, of_yield) || !question.made_goals.empty()) &&
       question.one.goals.empty())
-    refuse(spec, "yield is the share of hoops that reach every goal, and there is none",
+    refuse(spec, "yield is the fraction of hoops that reach every goal, and there is not a goal",
            "with another field in [goal]");
   refuse_contradictions(spec, question.objectives);
   return question;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What a designer chooses.
+/// @file
+/// The parameters of one design.
 #pragma once
 
 #include <limits>
@@ -7,8 +8,7 @@
 
 namespace leapmap {
 
-/// One hoop and how it is released. The defaults are the paper's hoop, released from rest with its mass on
-/// top.
+/// One hoop and its release. The defaults are the paper's hoop, released from rest with its mass on top.
 struct Design {
   double slope = 0.40;                      ///< theta [rad], in (-pi/2, pi/2); below zero: uphill
   double mass_ratio = 20.0 / 8.2;           ///< beta = m_p / m, >= 0
@@ -16,10 +16,10 @@ struct Design {
   double inertia_factor = 1.0;              ///< kappa = I / (m R^2), >= 0: thin hoop 1, disc 1/2
   double release_angle = std::numbers::pi;  ///< phi at t = 0 [rad]; 0: mass on the plane, pi: mass on top
   double release_spin = 0.0;                ///< w at t = 0 [sqrt(g/R)], positive downhill
-  double drive_torque = 0.0;                ///< tau, of a motor, while in contact [(m + m_p) g R]
-  // Of the contact; no effect where it never slips.
-  double mu_static = 0.5;                                        ///< >= 0
-  double mu_kinetic = std::numeric_limits<double>::quiet_NaN();  ///< >= 0; NaN: as mu_static
+  double drive_torque = 0.0;                ///< tau, of a motor, in contact only [(m + m_p) g R]
+  // Contact; no effect with Friction::sticking.
+  double mu_static = 0.5;                                        ///< static friction coefficient, >= 0
+  double mu_kinetic = std::numeric_limits<double>::quiet_NaN();  ///< kinetic, >= 0; NaN: equal to mu_static
   double restitution = 0.0;                                      ///< Poisson's, in [0, 1]
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The errors a user can cause or cure, each with its exit status. One line each: file, key, value, what is
-/// allowed.
+/// @file
+/// Exceptions that a user can cause or cure. Each message is one line: place, key, value, what is allowed.
 #pragma once
 
 #include <stdexcept>
@@ -9,9 +9,9 @@
 
 namespace leapmap {
 
-/// What all of them are. A text may quote what came in; a byte 0 in it is spelled out, as what() would end
-/// there.
+/// Base of all of leapmap's exceptions.
 struct Error : std::runtime_error {
+  /// A byte 0 in the text is written as \\x00, because what() would end there.
   explicit Error(std::string text) : std::runtime_error(without_zeros(std::move(text))) {}
 
  private:
@@ -21,27 +21,27 @@ struct Error : std::runtime_error {
   }
 };
 
-/// Bad usage or input: exit status 2.
+/// Invalid usage or input; the program's exit status is 2.
 struct InputError : Error {
   using Error::Error;
 };
 
-/// Work ended early because its caller asked it to.
+/// The caller asked to stop, and the work ended early.
 struct Stopped : Error {
   using Error::Error;
 };
 
-/// A file that cannot be read or written: exit status 3.
+/// A file cannot be read or written; the program's exit status is 3.
 struct IoError : Error {
   using Error::Error;
 };
 
-/// A file that is not what it should be: an IoError that writing it anew would cure.
+/// A file is damaged. Writing it again would cure it.
 struct BrokenFile : IoError {
   using IoError::IoError;
 };
 
-/// A file that holds what no file of ours does: it is somebody else's, or made to deceive.
+/// A file holds what no file of leapmap does: it comes from another program.
 struct ForeignFile : BrokenFile {
   using BrokenFile::BrokenFile;
 };

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A number known with an error.
+/// @file
+/// A number with its standard error.
 #pragma once
 
 #include <limits>
 
 namespace leapmap {
 
+/// A statistical estimate.
 struct Estimate {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double error = std::numeric_limits<double>::quiet_NaN();  ///< a standard error; NaN: it cannot be told
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< the estimate; NaN: does not apply
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error; NaN: not determined
 };
 
 }  // namespace leapmap

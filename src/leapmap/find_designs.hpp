@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// From a question to designs: which hoop reaches its goals best?
+/// @file
+/// Search for the designs that reach given goals best.
 #pragma once
 
 #include <cstddef>
@@ -17,56 +18,60 @@
 
 namespace leapmap {
 
-/// The derivatives of a field by every parameter (leapmap/gradient.hpp).
+/// The derivatives of one field by every parameter; see leapmap/gradient.hpp.
 struct FieldGradient {
-  std::string of{};
-  Design by{};
+  std::string of{};  ///< name of the field
+  Design by{};       ///< each member holds the derivative by that parameter
 };
 
+/// One design that the search found.
 struct FoundDesign {
-  Design design{};
-  Outcome outcome{};
-  std::vector<double>
-      objectives{};  ///< in the order of the spec, those to maximize first, in their own units
-  Estimate yield{};  ///< with [scatter] and goals: share of the hoops made that reach them all
-  /// What keeps it from being better, in words: bounds of parameters, goals, the kind of cliff.
-  std::vector<std::string> binds{};
-  // Of one objective:
-  std::vector<NearCliff> cliff{};          ///< the nearest in the box, if there is one
-  std::vector<FieldGradient> gradients{};  ///< of the quantities that objectives and goals name
+  Design design{};                   ///< its parameters
+  Outcome outcome{};                 ///< its nominal outcome
+  std::vector<double> objectives{};  ///< in the spec's order, those to maximize first, in their own units
+  Estimate yield{};  ///< with [scatter] and goals: fraction of manufactured hoops that reach all goals
+  std::vector<std::string> binds{};  ///< active constraints in words: bounds, goals, discontinuities
+  // With one objective:
+  std::vector<NearCliff> cliff{};          ///< the nearest discontinuity within the bounds, if any
+  std::vector<FieldGradient> gradients{};  ///< of the fields that objectives and goals name
 };
 
+/// Result of find_designs.
 struct FoundDesigns {
-  /// Best first, each the best of a basin of its own; of two objectives the front, in order of the first.
+  /// With one objective: the best design of each separate region, best first. With two: the Pareto front, in
+  /// the order of the first objective.
   std::vector<FoundDesign> designs{};
-  bool reached = false;  ///< false: no design met reaches every goal, and designs holds the nearest miss
-  std::vector<double> missed{};  ///< of the nearest miss: each goal's field there, in the order of the goals
-  std::size_t evaluations = 0;   ///< designs solved
-  double seconds = 0.0;
-  /// Of two objectives: the share of the box spanned by the front's ends that the front is better than.
+  bool reached = false;  ///< false: no design reaches every goal, and `designs` holds the nearest miss
+  std::vector<double> missed{};  ///< values of the goals' fields at the nearest miss, in the order of goals
+  std::size_t evaluations = 0;   ///< number of designs solved
+  double seconds = 0.0;          ///< duration [s]
+  /// With two objectives: fraction of the rectangle between the front's ends that the front dominates.
   double hypervolume = std::numeric_limits<double>::quiet_NaN();
-  bool engines = false;  ///< whether pagmo and NLopt took part: a build may be without
+  bool engines = false;  ///< whether this build has pagmo and NLopt
 };
 
+/// Options of find_designs.
 struct FindOptions {
-  std::uint64_t seed = 1;  ///< the same seed, the same designs, whatever the number of threads
-  std::size_t most = 0;    ///< designs told; 0: 8, of a front 2,048
-  std::size_t sample = 0;  ///< designs of the first, dense sample; 0: as many as take about a second
-  int threads = 0;         ///< 0: as many as OpenMP offers
-  /// Told the steps done and their number, from the caller's thread.
+  std::uint64_t seed = 1;  ///< equal seeds give equal designs, for any number of threads
+  std::size_t most = 0;    ///< largest number of designs returned; 0: 8, or 2,048 for a front
+  std::size_t sample = 0;  ///< designs in the initial sample; 0: as large as one second allows
+  int threads = 0;         ///< number of threads; 0: all that OpenMP offers
+  /// Receives the number of steps done and their total, from the caller's thread.
   std::function<void(std::size_t done, std::size_t total)> progress{};
-  /// Asked now and then, from any thread; true: find_designs throws Stopped.
+  /// Polled from any thread; if it returns true, find_designs throws Stopped.
   std::function<bool()> stop_requested{};
 };
 
-/// Looks through the box of the spec's free axes: a dense Sobol' sample first, then from its best places by
-/// pagmo's CMA-ES (of two objectives NSGA-II), NLopt's SLSQP with exact derivatives, and steps along cliffs
-/// and goals that never pass them. Every design told reaches every goal, as the solver sees it alone. Throws
-/// InputError for a spec that has nothing to choose, nothing to be best at, or goals that contradict each
-/// other; and as check_spec does.
+/// Searches the bounds of the spec's free parameters for the designs that reach its goals best.
+///
+/// Starts with a dense Sobol' sample. From its best points it continues by pagmo's CMA-ES (for two objectives
+/// NSGA-II), by NLopt's SLSQP with exact derivatives, and by steps along discontinuities and goals that never
+/// cross them. Every design returned reaches every goal when it is solved alone.
+/// @throws InputError for a spec without a free parameter, without an objective or with goals that contradict
+///         each other, and as check_spec does; Stopped
 FoundDesigns find_designs(const Spec& spec, const FindOptions& options = {});
 
-/// The designs found as a list that sweep takes, in the question's scene.
+/// The designs found as a spec that sweep takes: a list, in the scene of the design problem.
 Spec list_of(const Spec& question, const FoundDesigns& found);
 
 }  // namespace leapmap

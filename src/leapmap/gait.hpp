@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Gaits: hoops that jump for ever, and their stability. Scene::settle has every solver tell the gait that a
-/// design settles on; here all of them are looked for, the unstable ones too.
+/// @file
+/// Gaits: periodic sequences of jumps, and their stability.
 #pragma once
 
 #include <vector>
@@ -14,43 +14,47 @@ namespace leapmap {
 
 /// A periodic sequence of jumps.
 struct Gait {
-  std::vector<Jump> jumps;   ///< once round; times and distances each from the landing before
-  double multiplier = 0.0;   ///< derivative of the return map round it: stable where below 1 in size
-  double height = 0.0;       ///< mean of the jumps [hoop diameters]
-  double speed = 0.0;        ///< down the plane [m/s]
-  double energy_lost = 0.0;  ///< a jump, over (m + m_p) g R
+  std::vector<Jump> jumps;   ///< one period; times and distances count from the landing before
+  double multiplier = 0.0;   ///< Floquet multiplier: growth of a small deviation over one period
+  double height = 0.0;       ///< mean height of the jumps [hoop diameters]
+  double speed = 0.0;        ///< mean speed down the plane [m/s]
+  double energy_lost = 0.0;  ///< per jump [(m + m_p) g R]
 
+  /// Whether small deviations decay.
   bool is_stable() const { return multiplier > -1.0 && multiplier < 1.0; }
 };
 
-/// Where the return map takes a lift-off: angles in [0, 2 pi) [rad].
+/// One point of the return map, which takes the angle at one lift-off to the angle at the next.
 struct ReturnPoint {
-  double angle;   ///< phi at a lift-off from rolling, where N = 0 tells the spin
-  double next;    ///< phi at the next one; NaN: the hoop does not jump again, or jumps again where it lands
+  double angle;   ///< phi at a lift-off from rolling, in [0, 2 pi) [rad]; N = 0 determines the spin
+  double next;    ///< phi at the next lift-off; NaN: there is none, or it coincides with the landing
   double slope;   ///< d next / d angle
-  double height;  ///< of the jump from `angle` [hoop diameters]; NaN: it stays below Scene::hop_height
-  bool uphill;    ///< it lifts off with spin uphill
+  double height;  ///< height of the jump from `angle` [hoop diameters]; NaN: below Scene::hop_height
+  bool uphill;    ///< whether the hoop rolls uphill at the lift-off
 };
 
+/// Options of find_gaits.
 struct GaitOptions {
-  int most_period = 1;       ///< of the gaits looked for [jumps], in [1, 16]
-  double tolerance = 1e-10;  ///< relative, of times
+  int most_period = 1;       ///< longest period to search for [jumps], in [1, 16]
+  double tolerance = 1e-10;  ///< relative error allowed in times
 };
 
+/// Result of find_gaits.
 struct Gaits {
-  std::vector<Gait> gaits;           ///< by period, then by height
-  std::vector<ReturnPoint> returns;  ///< the return map where it was looked at, by angle, downhill first
-  bool is_whole =
-      true;  ///< false: the map was looked at in as many places as are, and not as finely as it needs
+  std::vector<Gait> gaits;           ///< ordered by period, then by height
+  std::vector<ReturnPoint> returns;  ///< samples of the return map, ordered by angle, downhill first
+  bool is_whole = true;  ///< false: the map has more folds than were sampled, gaits may be missing
 };
 
-/// The periodic orbits of the return map of one hoop that never slips, as far as a scan can tell: the map is
-/// sampled every sixteenth of a degree and more densely between samples that lie on other branches, or where
-/// a cubic does not foretell what is between them. A branch between two samples that are alike may be missed.
-/// Orbits all of whose jumps begin where the one before lands are not on that curve: they are found by
-/// Newton's iteration from some thousand starts, so that one may be missed. The runway counts from each
-/// landing: with a longer one there are more gaits, of ever higher jumps. Throws InputError as solve does,
-/// and with friction, where the map has more dimensions.
+/// Finds the gaits of one hoop that never slips, stable and unstable ones.
+///
+/// Without slip, N = 0 determines the spin at a lift-off, so that the return map is a curve. It is sampled
+/// every sixteenth of a degree, and more densely if a cubic does not predict the points between. A branch
+/// between two similar samples may be missed. Orbits whose lift-offs coincide with landings are not on that
+/// curve. They are found by Newton's iteration from some thousand starting points; one may be missed.
+/// The rolling limit counts from each landing: a larger one admits more gaits, of higher jumps.
+/// (For walking machines: McGeer 1990; Garcia et al. 1998.)
+/// @throws InputError as solve does, and with Coulomb friction, where the return map has more dimensions
 Gaits find_gaits(const Design& design, const Scene& scene = {}, const GaitOptions& options = {});
 
 }  // namespace leapmap

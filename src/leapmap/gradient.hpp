@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Derivatives of outcomes by the parameters of a design, to rounding: by dual numbers, not by differences.
+/// @file
+/// Derivatives of outcomes by the parameters of a design, by dual numbers, to machine precision.
 #pragma once
 
 #include <span>
@@ -9,19 +10,23 @@
 
 namespace leapmap {
 
-/// The derivatives of one quantity of an outcome, &Outcome::jump_height say, by each parameter of the design,
-/// in the place where the design has that parameter: in the quantity's unit (hoop diameters, s, ...) over the
-/// parameter's (rad, ...). Of a parameter that is at the end of its range it is the one-sided derivative.
+/// Differentiates one quantity of an outcome by each parameter of the design.
 ///
-/// NaN where the quantity does not apply; where the derivative is infinite, as on a fold, where a lift-off
-/// appears, or so nearly that it is not known to six digits; by parameters that the scene's model has not;
-/// and by mu_kinetic where that is not given or equal to mu_static, which it then follows: the derivative by
-/// mu_static is of both. Method exact only.
-/// Throws as solve does.
+/// A derivative is NaN if the quantity does not apply; if it is infinite or known to fewer than six digits,
+/// as near a fold, at which a lift-off appears; and for parameters that the scene's model does not have. If
+/// mu_kinetic is not given or equal to mu_static, the derivative by mu_static is of both, and that by
+/// mu_kinetic is NaN. At the end of a parameter's range the derivative is one-sided.
+/// @param of  the quantity, for example &Outcome::jump_height
+/// @return  the derivative by each parameter, in the member of that parameter, in the quantity's unit over
+///          the parameter's unit (angles in rad)
+/// @throws InputError as solve does, and for any method but exact
+/// @note Thread-safe.
 Design gradient(const Design& design, const OutcomeNumber& of, const Scene& scene = {},
                 const SolveOptions& options = {});
 
-/// Those of many designs, on all cores, in their order.
+/// Differentiates for many designs on all cores.
+/// @return  one element for each design, in their order
+/// @throws InputError as for one design, with the design's number; Stopped
 std::vector<Design> gradient(std::span<const Design> designs, const OutcomeNumber& of,
                              const Scene& scene = {}, const SolveOptions& options = {});
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One map of all the shards that sweeps with SweepOptions::shard made of it.
+/// @file
+/// Joining the shards of a map, which SweepOptions::shard made.
 #pragma once
 
 #include <cstddef>
@@ -14,32 +15,37 @@
 
 namespace leapmap {
 
+/// Options of join.
 struct JoinOptions {
-  std::size_t shards = 0;  ///< of how many the map is; 0: of as many as those beside it say
+  std::size_t shards = 0;  ///< number of shards; 0: the number in their file names
   bool overwrite = false;  ///< replace an existing map
-  bool lock = true;        ///< false: do without locks where the file system has none
-  /// The values stay in the shards, and the map has HDF5's virtual datasets, which look them up there: for a
-  /// map too large to be copied. It is worth as much as the shards beside it.
+  bool lock = true;        ///< false: do not lock files on a file system without locks
+  /// Leave the values in the shards: the map then has HDF5's virtual datasets, which read them from there.
   bool as_virtual = false;
-  /// Told how many designs of how many are in the map, after each tile.
+  /// Receives the number of designs joined and their total, after each chunk.
   std::function<void(std::size_t done, std::size_t total)> progress{};
-  /// Asked after each tile; true: the joining ends and nothing is kept.
+  /// Polled after each chunk; if it returns true, join ends and removes what it wrote.
   std::function<bool()> stop_requested{};
 };
 
+/// Result of join.
 struct JoinReport {
-  std::size_t shards = 0, tiles = 0, designs = 0;
-  StatusCounts statuses{};
-  bool durable = true;                 ///< false: a power cut may undo the map's taking its place
-  std::optional<AuditReport> audit{};  ///< of the whole map; unset: it had none
-  Spec spec{};                         ///< of the map
+  std::size_t shards = 0;              ///< number of shards
+  std::size_t tiles = 0;               ///< number of chunks copied
+  std::size_t designs = 0;             ///< number of designs
+  StatusCounts statuses{};             ///< number of designs with each status
+  bool durable = true;                 ///< false: a power failure may still undo the map's renaming
+  std::optional<AuditReport> audit{};  ///< cross-check of the whole map; unset: the sweep had none
+  Spec spec{};                         ///< the map's spec
 };
 
-/// Joins the shards of the map `path`, which lie beside it: every chunk is copied as it is stored, so that
-/// the map's datasets are those of one sweep bit for bit. The shards stay. Returns nullopt if stopped. Throws
-/// InputError, which says which to make again, if a shard is missing, unfinished, doubled or of another spec
-/// or program, BrokenFile, which says so too, if some are not what was written, IoError. Nothing is left of
-/// the map then.
+/// Joins the shards that lie beside `path` into the map `path`.
+///
+/// Copies every chunk as it is stored, so that the datasets equal those of one sweep bit for bit. The shards
+/// remain.
+/// @return  nullopt if stopped
+/// @throws InputError, which names the shard to make again, if one is missing, unfinished, doubled or from
+///         another spec or program; BrokenFile if one is damaged; IoError. No map remains in these cases.
 std::optional<JoinReport> join(const std::string& path, const JoinOptions& options = {});
 
 }  // namespace leapmap

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// All of leapmap: passive jumping hoops, solved one by one, by the million, or into maps.
+/// @file
+/// All of leapmap: passive and driven jumping hoops, solved one by one, by the million, or into maps.
 #pragma once
 
 #include "leapmap/audit.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Reads a map: axes, fields, attributes.
+/// @file
+/// Reading a map: axes, fields, attributes.
 #pragma once
 
 #include <cstddef>
@@ -17,40 +18,52 @@ namespace leapmap {
 
 class MapReader;
 
+/// An open map. Not thread-safe: HDF5 has one state for the whole program, so no other thread may read or
+/// write maps at the same time.
 class Map {
  public:
-  /// Opens a map, or the .part of one. Throws IoError if it is no map, or holds what no map does; InputError
-  /// while a sweep is writing it. lock: as in SweepOptions. HDF5 is one for the whole program: not while
-  /// another of its threads reads or sweeps.
+  /// Opens a map, or the .part of an unfinished one.
+  /// @param lock  as in SweepOptions
+  /// @throws IoError if the file is not a map; InputError while a sweep is writing it
   explicit Map(const std::string& path, bool lock = true);
+  /// Closes the file.
   ~Map();
+  /// Moves.
   Map(Map&&) noexcept;
+  /// Moves.
   Map& operator=(Map&&) noexcept;
 
-  /// Axes in spec order; a list of designs has none.
+  /// Axes in the spec's order; empty for a list of designs.
   std::vector<Axis> axes() const;
-  /// The length of each dimension: of each axis, or of the list.
+  /// Length of each dimension: one for each axis, or one for a list.
   std::vector<std::size_t> shape() const;
-  /// Every dataset along all dimensions: the fields and, of a list, its parameters.
+  /// Names of the datasets along all dimensions: the fields and, for a list, its parameters.
   std::vector<std::string> fields() const;
+  /// Unit of a field, as UDUNITS reads it; "1": a pure number.
+  /// @throws InputError if the map has no such field
   std::string unit(const std::string& field) const;
-  /// The names of a list's designs; empty: it has none.
+  /// Labels of a list's designs; empty: there are none.
   std::vector<std::string> labels() const;
-  /// A whole field in C order, the last axis fastest; codes as numbers, and a phase_sequence
-  /// exactly up to 26 phases. Throws InputError if the map has no such field, IoError.
+  /// A whole field in C order, the last axis fastest. Codes are converted to numbers; a phase_sequence is
+  /// exact up to 26 phases.
+  /// @throws InputError if the map has no such field; IoError
   std::vector<double> read(const std::string& field) const;
-  /// The block of a field that starts at `start` and reaches `extent` far along each dimension.
+  /// A block of a field.
+  /// @param start   index of its first design along each dimension
+  /// @param extent  its length along each dimension
+  /// @throws InputError if the map has no such field or the block is outside; IoError
   std::vector<double> read(const std::string& field, const std::vector<std::size_t>& start,
                            const std::vector<std::size_t>& extent) const;
 
-  /// False for what a sweep left that was stopped: designs not computed are holes.
+  /// Whether all designs are computed. An interrupted sweep leaves an incomplete map.
   bool is_whole() const;
+  /// Number of designs with each status.
   StatusCounts status_counts() const;
-  /// The spec that made it.
+  /// The spec that the map was made from.
   Spec spec() const;
-  /// What its audit found; unset: it was not audited.
+  /// Result of the sweep's cross-check; unset: there was none.
   std::optional<AuditReport> audit() const;
-  /// A root attribute as text, numbers in their shortest form; empty if it is not there.
+  /// A root attribute as text, numbers in their shortest form; empty if it does not exist.
   std::string attribute(const std::string& name) const;
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One design's motion: its phases, every lift-off on the way, and samples over time. SI units.
+/// @file
+/// The motion of one design: phases, lift-offs, samples over time. All in SI units.
 #pragma once
 
 #include <vector>
@@ -8,61 +9,61 @@
 
 namespace leapmap {
 
-/// The motion at one time.
+/// The state at one time.
 struct MotionPoint {
   double t;             ///< since release [s]
   double phi;           ///< angle [rad]; 0: mass on the plane
   double spin;          ///< phi' [rad/s], positive downhill
   double x;             ///< travel of the hoop's centre along the plane since release [m]
   double y;             ///< height of the hoop's lowest point above the plane [m]; 0 in contact
-  double normal_force;  ///< (11), over the weight; negative: rolling on would need a plane that pulls
-  double friction;      ///< (12), over the weight, positive downhill
-  Phase phase;
+  double normal_force;  ///< N of the paper's (11), over the weight; negative: contact would need a pull
+  double friction;      ///< F of the paper's (12), over the weight, positive downhill
+  Phase phase;          ///< contact phase
 };
 
-/// A phase as it begins.
+/// The beginning of a phase.
 struct PhaseStart {
-  Phase phase;
-  int direction;  ///< of sliding: 1 forwards, -1 backwards; else 0
+  Phase phase;    ///< contact phase
+  int direction;  ///< of sliding: 1 forwards, -1 backwards; otherwise 0
   double t;       ///< since release [s]
-  double phi;     ///< [rad]
-  double spin;    ///< [rad/s]
+  double phi;     ///< angle [rad]
+  double spin;    ///< phi' [rad/s]
   double x;       ///< travel since release [m]
 };
 
-/// A lift-off that was looked at, and the flight it begins.
+/// A lift-off and its flight.
 struct Candidate {
-  double t;            ///< of the lift-off, since release [s]
-  double phi;          ///< [rad]
-  double spin;         ///< [rad/s]
-  double height;       ///< of the apex [hoop diameters]; 0: it sinks at once
-  double apex_time;    ///< from the lift-off [s]
+  double t;            ///< time of the lift-off since release [s]
+  double phi;          ///< angle at the lift-off [rad]
+  double spin;         ///< phi' at the lift-off [rad/s]
+  double height;       ///< apex above the plane [hoop diameters]; 0: the hoop sinks at once
+  double apex_time;    ///< from the lift-off to the apex [s]
   double flight_time;  ///< from the lift-off to the landing [s]
-  double dip;          ///< how far the flight first enters the plane [hoop diameters], <= 0
-  bool is_jump;        ///< it is as high as a jump has to be
+  double dip;          ///< penetration depth when the flight first enters the plane [hoop diameters], <= 0
+  bool is_jump;        ///< whether it reaches Scene::hop_height
 };
 
-/// A place where the normal force touches zero, or nearly so: a lift-off decided by a hair.
+/// A grazing contact: an extremum of the normal force at nearly zero, which decides on a lift-off.
 struct Graze {
   double t;             ///< since release [s]
-  double phi;           ///< [rad]
-  double normal_force;  ///< at its extremum, over the weight
-  bool minimum;         ///< a minimum or a maximum of the normal force
+  double phi;           ///< angle [rad]
+  double normal_force;  ///< its extremum, over the weight
+  bool minimum;         ///< true: a minimum; false: a maximum
 
-  /// Whether it was counted as making a lift-off: a minimum below zero, or a maximum above zero, after which
-  /// the normal force falls again.
+  /// Whether it counts as a lift-off: a minimum below zero, or a maximum above zero, after which the normal
+  /// force falls again.
   bool makes_lift_off() const { return minimum == (normal_force < 0.0); }
 };
 
-/// From release to the end: the last jump's landing, the stall or the runway's end. A motion towards a stall
-/// ends a hair before it, as the stall itself is approached for ever.
+/// The motion from release to the last jump's landing, the rolling limit or the trapping. The approach to an
+/// equilibrium takes infinitely long, so a motion towards one ends shortly before it.
 struct Motion {
-  Outcome outcome;
-  std::vector<PhaseStart> phases;     ///< in order; without slip: it rolls until a jump
-  std::vector<Candidate> candidates;  ///< in order, jumps among them
+  Outcome outcome;                    ///< as solve returns it
+  std::vector<PhaseStart> phases;     ///< in order
+  std::vector<Candidate> candidates;  ///< all lift-offs in order, jumps included
   std::vector<Graze> grazes;          ///< found by integration only
-  std::vector<MotionPoint> points;    ///< empty unless asked for
-  double end = 0.0;  ///< when the motion ends [s], if points were asked for; by integration, their last
+  std::vector<MotionPoint> points;    ///< samples; empty unless requested
+  double end = 0.0;                   ///< end of the motion [s], if samples were requested
 };
 
 }  // namespace leapmap

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One design's motion over time.
+/// @file
+/// The motion of one design over time.
 #pragma once
 
 #include <string>
@@ -11,15 +12,17 @@
 
 namespace leapmap {
 
+/// Options of trace.
 struct TraceOptions {
-  double interval = 1e-3;       ///< between samples [s]; 0: none, only phases and lift-offs
+  double interval = 1e-3;       ///< between samples [s], >= 0; 0: phases and lift-offs only
   std::string method = "auto";  ///< "auto", "exact" or a stepper's name, for example "gsl-rk8pd"
-  double tolerance = 1e-10;     ///< exact: relative error allowed in times; a stepper: per step
+  double tolerance = 1e-10;     ///< exact: relative error allowed in times; stepper: per step; in (0, 0.1]
   long max_steps = 1'000'000;   ///< of a stepper
 };
 
-/// Solves one design and samples its motion every interval, and at the jump's lift-off and landing. Throws
-/// InputError for what is no hoop, and if that would be more than 10^7 samples.
+/// Solves one design and samples its motion at every interval, and at the jump's lift-off and landing.
+/// @throws InputError as solve does, and for more than 10^7 samples
+/// @note Thread-safe.
 Motion trace(const Design& design, const Scene& scene = {}, const TraceOptions& options = {});
 
 }  // namespace leapmap

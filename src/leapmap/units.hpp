@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// @file
+/// Conversion of units.
 #pragma once
 
 #include <numbers>
 
 namespace leapmap {
 
-/// The angle in radians of one given in degrees.
+/// Converts degrees to radians.
 constexpr double degrees(double angle) { return angle * std::numbers::pi / 180.0; }
 
 }  // namespace leapmap

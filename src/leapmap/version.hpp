@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Which leapmap this is, and which of its instruction sets is in use.
+/// @file
+/// Version of leapmap, and the instruction set that its solvers use.
 #pragma once
 
 #include <string>
@@ -8,22 +9,25 @@
 
 namespace leapmap {
 
-std::string_view program_version();  ///< for example "0.1.0"
-std::string_view git_revision();     ///< of the sources when they were configured, or "unknown"
+/// Version number, for example "0.6.0".
+std::string_view program_version();
+/// Git revision of the sources when they were configured, or "unknown".
+std::string_view git_revision();
 
-/// The instruction set in use and how many doubles it works on at once, for example "x86-64-v3, 4 lanes".
-/// The last bits of numbers depend on it.
+/// Instruction set in use and its number of SIMD lanes, for example "x86-64-v3, 4 lanes". The last bits of
+/// results depend on it.
 std::string instruction_set();
 
-/// The names of those that leapmap was built with and this machine has, lowest first. The last one is used
-/// unless another is asked for.
+/// Instruction sets that were built in and that this machine supports, lowest first. The last one is the
+/// default.
 std::vector<std::string> instruction_sets();
 
-/// Whether that is the best there is.
+/// Whether the best of them is in use.
 bool uses_best_instruction_set();
 
-/// Uses that one from now on, so that machines of different age run the same instructions. Not while anything
-/// is being solved. Throws InputError if it was not built in or the machine has not got it.
+/// Selects an instruction set, so that different machines return equal bits. Not thread-safe: call it before
+/// anything is solved.
+/// @throws InputError if it was not built in or the machine does not support it
 void use_instruction_set(std::string_view name);
 
 }  // namespace leapmap

@@ -200,7 +200,7 @@ std::vector<std::string> read_texts(hid_t dataset, std::size_t most_bytes, const
       type = text_type(), space(H5Dget_space(dataset), H5Sclose, what),
       transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, what);
   const std::vector<hsize_t> shape = shape_of(dataset);
-  if (H5Tis_variable_str(there) <= 0 || shape.size() != 1) throw IoError(what + ": it is no row of texts");
+  if (H5Tis_variable_str(there) <= 0 || shape.size() != 1) throw IoError(what + ": it is not a row of texts");
   bytes_in_memory(dataset, what);
   refuse_inflation(dataset, {0}, {shape[0]}, what);
   TextMemory memory{most_bytes + 1};  // with the zero at its end
@@ -308,7 +308,7 @@ std::vector<std::int64_t> read_integers(hid_t object, const std::string& name, s
   if (count < 1 || static_cast<std::size_t>(count) > most)
     throw IoError(fmt::format("{}: it is not 1 to {} numbers", what, most));
   const Handle type(H5Aget_type(attribute), H5Tclose, what);
-  if (H5Tget_class(type) != H5T_INTEGER) throw IoError(what + ": it is no whole number");
+  if (H5Tget_class(type) != H5T_INTEGER) throw IoError(what + ": it is not a whole number");
   std::vector<std::int64_t> values(static_cast<std::size_t>(count));
   check(H5Aread(attribute, H5T_NATIVE_INT64, values.data()), what);
   return values;
@@ -363,18 +363,18 @@ void write_words(hid_t dataset, const std::vector<std::size_t>& start, const std
 }
 
 std::uint64_t file_bytes(hid_t object) {
-  const Handle file(H5Iget_file_id(object), H5Fclose, "looking at a file");
+  const Handle file(H5Iget_file_id(object), H5Fclose, "examining a file");
   hsize_t bytes = 0;
-  check(H5Fget_filesize(file, &bytes), "looking at a file");
+  check(H5Fget_filesize(file, &bytes), "examining a file");
   return bytes;
 }
 
 std::vector<hsize_t> chunk_of(hid_t dataset) {
-  const Handle plan(H5Dget_create_plist(dataset), H5Pclose, "looking at chunks");
+  const Handle plan(H5Dget_create_plist(dataset), H5Pclose, "examining chunks");
   if (H5Pget_layout(plan) != H5D_CHUNKED) return {};
   std::vector<hsize_t> chunk(H5S_MAX_RANK);
   const int rank = H5Pget_chunk(plan, H5S_MAX_RANK, chunk.data());
-  if (rank < 0) fail("looking at chunks");
+  if (rank < 0) fail("examining chunks");
   chunk.resize(static_cast<std::size_t>(rank));
   return chunk;
 }

@@ -319,7 +319,7 @@ void refuse_other_file(const std::string& path, std::string_view filetype, Locki
   }
   if (!same)
     throw InputError(
-        fmt::format("{}: exists and is no {}, or too damaged to say so; allowed: another name, or that of "
+        fmt::format("{}: exists and is not a {}, or is damaged; allowed: another name, or that of "
                     "an older one",
                     path, filetype));
 }

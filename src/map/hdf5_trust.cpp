@@ -48,7 +48,7 @@ bool has_our_filters(const Handle& creation) {
 
 /// What is wrong with a dataset; empty: nothing.
 std::string refusal_of_dataset(hid_t dataset, const std::string& name) {
-  const std::string what = "looking at a dataset";
+  const std::string what = "examining a dataset";
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose, what),
       type(H5Dget_type(dataset), H5Tclose, what);
   const H5D_layout_t layout = H5Pget_layout(creation);

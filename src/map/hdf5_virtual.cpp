@@ -11,7 +11,7 @@ namespace {
 /// A name of one of HDF5's functions that tell a text's length if they are given no place for it.
 template <class Get>
 std::string text_by(Get get, hid_t creation, std::size_t source) {
-  const std::string what = "looking at a virtual dataset";
+  const std::string what = "examining a virtual dataset";
   const ssize_t length = get(creation, source, nullptr, 0);
   if (length < 0) fail(what);
   std::string text(static_cast<std::size_t>(length), '\0');
@@ -21,7 +21,7 @@ std::string text_by(Get get, hid_t creation, std::size_t source) {
 
 std::size_t count_of(hid_t creation) {
   std::size_t count = 0;
-  check(H5Pget_virtual_count(creation, &count), "looking at a virtual dataset");
+  check(H5Pget_virtual_count(creation, &count), "examining a virtual dataset");
   return count;
 }
 
@@ -54,7 +54,7 @@ std::string path_beside(const std::string& map, const std::string& file) {
 }
 
 std::vector<std::string> sources_of(hid_t dataset) {
-  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "looking at a dataset");
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "examining a dataset");
   if (H5Pget_layout(creation) != H5D_VIRTUAL) return {};
   std::vector<std::string> files;
   for (std::size_t k = 0; k < count_of(creation); ++k)

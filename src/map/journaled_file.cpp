@@ -96,7 +96,7 @@ bool JournaledFile::is_named(const std::string& path) const {
   struct stat named {};
   if (::stat(path.c_str(), &named) != 0) {
     if (errno == ENOENT) return false;
-    fail_with_errno(path, "cannot be looked at");
+    fail_with_errno(path, "cannot be examined");
   }
   return opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }

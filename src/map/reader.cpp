@@ -73,7 +73,7 @@ void MapReader::survey(Accept accept) {
         fmt::format("{}: is not a leapmap map (its attribute filetype is not \"{}\")", path_, map_filetype));
   const std::vector<std::int64_t> version = hdf5::read_integers(file_, "version");
   if (version.size() != 2 || version[0] < 1 || version[1] < 0)
-    throw BrokenFile(path_ + ": its version is no pair of whole numbers");
+    throw BrokenFile(path_ + ": its version is not a pair of whole numbers");
   if (version[0] > format_major)
     throw IoError(fmt::format("{}: has format version {}; this program reads up to {}: use a newer leapmap",
                               path_, version[0], format_major));
@@ -125,7 +125,7 @@ void MapReader::survey(Accept accept) {
 
 /// HDF5 has fill values for what is not there, and would take what another sweep left under a shard's name.
 void MapReader::check_shards() const {
-  const std::string again = "allowed: the shards that it was made of, or leapmap join anew";
+  const std::string again = "allowed: the shards that it was made from, or a new leapmap join";
   if (!hdf5::has_attribute(file_, shard_checksums_attribute))
     throw BrokenFile(path_ + ": does not say what its shards hold");
   const std::vector<std::int64_t> told =
@@ -135,7 +135,7 @@ void MapReader::check_shards() const {
     const std::string path = hdf5::path_beside(path_, shards_[k]);
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
-      throw BrokenFile(fmt::format("{}: its shard {} is not there; {}", path_, path, again));
+      throw BrokenFile(fmt::format("{}: its shard {} does not exist; {}", path_, path, again));
     const MapReader shard(path, Locking::if_possible, Accept::shards_too);
     const auto named = shard_by_name(shards_[k]);
     // Tiles of one status may have the sum of others: the name, the spec and the fields count as well.

@@ -16,8 +16,9 @@ bool is_part(const Shard& shard) {
 }
 
 [[noreturn]] void refuse_shard(std::string_view text) {
-  throw InputError(fmt::format(
-      "--shard {}: is no part of a whole; allowed: I/N with I from 1 to N, N at most {}", text, most_shards));
+  throw InputError(
+      fmt::format("--shard {}: is not a part of a map; allowed: I/N with I from 1 to N, N at most {}", text,
+                  most_shards));
 }
 
 /// Two whole numbers I and N, 1 <= I <= N, with something between them.

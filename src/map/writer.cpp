@@ -89,8 +89,8 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
   hdf5::refuse_other_unfinished(writer.part_, filetype_of(tiling), locking);
   if (!overwrite && has_part(path, locking))
     throw InputError(fmt::format(
-        "{}: is what an interrupted sweep left; allowed: --resume to go on with it, another -o, or "
-        "--overwrite to start anew",
+        "{}: an interrupted sweep left it; allowed: --resume to continue it, another -o, or --overwrite to "
+        "start again",
         writer.part_));
   writer.file_ = hdf5::File::create(writer.part_, filetype_of(tiling), locking);
   writer.begun_ = true;

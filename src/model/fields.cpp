@@ -50,56 +50,56 @@ const std::array fields{
     Field{"first_jump_time", Quantity{&Outcome::first_jump_time, Measure::time}, "s",
           "time from release to the first lift-off"},
     Field{"dip", Quantity{&Outcome::dip, Measure::height}, "1",
-          "how far the flight of the jump first enters the plane, in hoop diameters, <= 0"},
+          "penetration depth when the flight of the jump first enters the plane, in hoop diameters, <= 0"},
     Field{"candidates",
           Code{[](const Outcome& o) { return o.candidates; },
                [](Outcome& o, std::uint8_t code) { o.candidates = code; },
                255,
                {}},
-          "1", "lift-offs looked at, the jump included; 254: that many or more"},
-    Field{"phase_sequence", Word{&Outcome::phase_sequence}, "1",
-          "two bits a phase, the first lowest, up to 32: 1 rolling, 2 sliding, 3 flight; 0: none", 3,
-          Friction::coulomb},
+          "1", "number of lift-offs up to the jump, the jump included; 254: at least 254"},
+    Field{
+        "phase_sequence", Word{&Outcome::phase_sequence}, "1",
+        "contact phases, two bits each, the first lowest, up to 32: 1 rolling, 2 sliding, 3 flight; 0: none",
+        3, Friction::coulomb},
     Field{"slip_distance", Quantity{&Outcome::slip_distance}, "1",
-          "distance slid, either way, from release to the end, in R; NaN if the hoop rocks to rest", 3,
+          "distance slid from release to the end, in R, >= 0; NaN if the hoop rocks to rest", 3,
           Friction::coulomb},
     Field{"landing_spin", Quantity{&Outcome::landing_spin}, "1",
           "spin after the landing of the jump, in sqrt(g/R)", 3, Friction::coulomb},
     Field{"energy_lost", Quantity{&Outcome::energy_lost}, "1",
-          "energy lost from release to the lift-off of the jump, over (m + m_p) g R", 3, Friction::coulomb},
+          "energy lost from release to the lift-off of the jump, in (m + m_p) g R", 3, Friction::coulomb},
     Field{"jumps",
           Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.jumps()); },
                [](Outcome& o, std::uint8_t code) { o.later_jumps.resize(code > 1 ? code - 1u : 0u); },
                255,
                {}},
-          "1", "jumps made, as many as the scene asks for or fewer", 9, std::nullopt, true},
+          "1", "number of jumps, at most scene.jumps", 9, std::nullopt, true},
     Field{"sequence_end",
           Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.sequence_end); },
                [](Outcome& o, std::uint8_t code) {
                  o.sequence_end = code < status_count ? static_cast<Status>(code) : Status::not_computed;
                },
                0, status_names},
-          "1", "how the sequence of jumps ended; jumped: it made all that the scene asks for", 9,
-          std::nullopt, true},
+          "1", "how the sequence of jumps ended; jumped: all scene.jumps were made", 9, std::nullopt, true},
     Field{"sequence_condition", Quantity{&Outcome::sequence_condition}, "1",
-          "times that errors at the release and at every landing have grown at the last landing", 10,
+          "growth factor, up to the last landing, of errors at the release and at every landing", 10,
           std::nullopt, true, false, true},
     Field{"gait_period",
           Code{[](const Outcome& o) { return o.gait_period; },
                [](Outcome& o, std::uint8_t code) { o.gait_period = code; },
                255,
                {}},
-          "1", "jumps after which the hoop repeats itself for ever; 0: it comes to an end; 255: none found",
-          9, std::nullopt, false, true},
-    Field{"gait_multiplier", Quantity{&Outcome::gait_multiplier}, "1",
-          "derivative of the return map round the gait: its largest eigenvalue", 9, std::nullopt, false,
+          "1", "period of the gait in jumps; 0: the jumps end; 255: no period found", 9, std::nullopt, false,
           true},
+    Field{"gait_multiplier", Quantity{&Outcome::gait_multiplier}, "1",
+          "Floquet multiplier: growth of a small deviation over one period of the gait", 9, std::nullopt,
+          false, true},
     Field{"gait_height", Quantity{&Outcome::gait_height, Measure::height}, "1",
-          "mean apex of the gait's jumps above the plane, in hoop diameters", 9, std::nullopt, false, true},
-    Field{"gait_speed", Quantity{&Outcome::gait_speed}, "m s-1", "speed of the gait down the plane", 9,
+          "mean height of the gait's jumps, in hoop diameters", 9, std::nullopt, false, true},
+    Field{"gait_speed", Quantity{&Outcome::gait_speed}, "m s-1", "mean speed of the gait down the plane", 9,
           std::nullopt, false, true},
     Field{"gait_energy_lost", Quantity{&Outcome::gait_energy_lost}, "1",
-          "energy that the gait loses a jump, over (m + m_p) g R", 9, std::nullopt, false, true},
+          "energy lost per jump of the gait, in (m + m_p) g R", 9, std::nullopt, false, true},
 };
 
 }  // namespace
@@ -242,7 +242,8 @@ struct ScatterTable {
            bool has_error) {
     const std::string full = (of ? std::string(of->name) + "_" : std::string()) + std::string(name);
     const std::string told =
-        std::string(meaning) + (of ? ", of the hoops made that jump: " + std::string(of->long_name) : "");
+        std::string(meaning) +
+        (of ? " over the manufactured hoops that jump: " + std::string(of->long_name) : "");
     const auto put = [&](const std::string& as, const std::string& long_name, bool error) {
       const RowTexts& text = texts.emplace_back(RowTexts{as, std::string(of ? of->unit : "1"), long_name});
       rows.push_back(Field{text.name,
@@ -255,10 +256,11 @@ struct ScatterTable {
   }
 
   ScatterTable() {
-    add(Statistic::yield, nullptr, "yield", "share of the hoops made that reach every goal", true);
-    add(Statistic::cut_off, nullptr, "cut_off", "share of the scatter that lies where no hoop can be", false);
-    add(Statistic::unsolved, nullptr, "unsolved", "share of the hoops made that the method gave up on",
-        false);
+    add(Statistic::yield, nullptr, "yield", "fraction of manufactured hoops that reach every goal", true);
+    add(Statistic::cut_off, nullptr, "cut_off",
+        "fraction of the tolerances' distribution outside the parameters' domains", false);
+    add(Statistic::unsolved, nullptr, "unsolved",
+        "fraction of manufactured hoops that the method could not solve", false);
     for (const Field& field : fields) {
       if (!std::holds_alternative<Quantity>(field.source)) continue;
       add(Statistic::mean, &field, "mean", "mean", true);

@@ -6,6 +6,7 @@
 
 #include "leapmap/errors.hpp"
 #include "leapmap/outcome.hpp"
+#include "leapmap/units.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 
@@ -32,7 +33,8 @@ std::string shown(double value, std::string_view unit) {
 }
 
 [[noreturn]] void refuse_range(std::string_view place, const Parameter& parameter, double value) {
-  refuse(place, parameter, value, "is out of range", allowed_values(parameter.range, parameter.unit));
+  refuse(place, parameter, value, "is out of range" + meant_degrees(parameter.range, parameter.unit, value),
+         allowed_values(parameter.range, parameter.unit));
 }
 
 /// Whether a design may have that value in the scene, used or not.
@@ -58,8 +60,13 @@ std::string allowed_values(const Range& range, std::string_view unit, std::strin
                      unit == "rad" ? ", in rad or as \"... deg\"" : "");
 }
 
+std::string meant_degrees(const Range& range, std::string_view unit, double value) {
+  const bool fits = unit == "rad" && !range.holds(value) && range.holds(degrees(value));
+  return fits ? fmt::format(" (did you mean {}deg?)", value) : "";
+}
+
 std::string no_use(const Scene& scene) {
-  return fmt::format("has no use where the contact {}", model_of(scene).meaning);
+  return fmt::format("has no effect because the contact {}", model_of(scene).meaning);
 }
 
 std::string with_model(Friction model) {

@@ -40,7 +40,10 @@ std::span<const Parameter> parameters();
 /// "a number in [0, 1]" and the like.
 std::string allowed_values(const Range& range, std::string_view unit, std::string_view what = "a number");
 
-/// What is wrong with giving something that the scene's model has no use for, and what is allowed instead.
+/// " (did you mean 30deg?)" if a value out of the range would be in it as degrees of an angle.
+std::string meant_degrees(const Range& range, std::string_view unit, double value);
+
+/// What is wrong with giving something that the scene's model has no effect for, and what is allowed instead.
 std::string no_use(const Scene& scene);
 std::string with_model(Friction model);
 
@@ -55,7 +58,7 @@ void check_scene(const Scene& scene);
 bool is_allowed(const Design& design, const Scene& scene);
 
 /// Throws InputError, with parameter, value and what is allowed, if a number of the design is out of its
-/// range or has no use in the scene: mu_static, say, where the contact never slips. place: in front of the
+/// range or has no effect in the scene: mu_static, say, where the contact never slips. place: in front of the
 /// message.
 void check_design(const Design& design, const Scene& scene, std::string_view place = {});
 

@@ -11,6 +11,7 @@
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "support/closest.hpp"
 #include "sweep/options.hpp"
 
 namespace py = pybind11;
@@ -38,7 +39,8 @@ const Parameter& parameter_of(const std::string& name) {
   std::vector<std::string_view> names{"friction"};
   for (const auto& [key, member] : whole_numbers) names.push_back(key);
   for (const Parameter& parameter : parameters()) names.push_back(parameter.name);
-  throw InputError(fmt::format("{}: is no parameter; allowed: {}", name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("{}: unknown parameter{}; allowed: {}", name, did_you_mean(name, names),
+                               fmt::join(names, ", ")));
 }
 
 }  // namespace
@@ -52,7 +54,7 @@ void Designs::take(const std::string& name, const py::handle& value) {
   for (const auto& [key, member] : whole_numbers) {
     if (name != key) continue;
     if (!py::isinstance<py::int_>(value))
-      throw InputError(fmt::format("{} = {} is no whole number; allowed: {}", name, shown(value),
+      throw InputError(fmt::format("{} = {} is not a whole number; allowed: {}", name, shown(value),
                                    allowed_values(*find_option("", key))));
     scene_.*member = py::cast<long>(value);
     return;
@@ -83,7 +85,7 @@ void Designs::take(const std::string& name, const py::handle& value) {
                                                          : py::reinterpret_steal<Numbers>(py::handle());
   if (!numbers) {
     PyErr_Clear();
-    throw InputError(fmt::format("{} = {} is no number and no array of numbers; allowed: {}", name,
+    throw InputError(fmt::format("{} = {} is not a number or an array of numbers; allowed: {}", name,
                                  shown(value), allowed_values(parameter.range, parameter.unit)));
   }
   if (numbers.ndim() == 0) return put(*numbers.data());

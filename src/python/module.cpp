@@ -34,7 +34,8 @@ Scene scene_of(const std::string& friction) {
     if (model.name == friction) return {.friction = model.friction};
     names.push_back(model.name);
   }
-  throw InputError(fmt::format("friction = '{}' is no model; allowed: {}", friction, fmt::join(names, ", ")));
+  throw InputError(
+      fmt::format("friction = '{}' is not a model; allowed: {}", friction, fmt::join(names, ", ")));
 }
 
 py::dict solve(const py::dict& given, const std::string& friction, const std::vector<std::string>& fields,
@@ -104,7 +105,7 @@ py::array_t<double> numbers(const std::vector<Item>& items, double Item::*member
 py::dict gaits(const py::dict& given, int most_period, double tolerance) {
   const Designs designs(given, scene_of("sticking"));
   if (designs.count() != 1 || !designs.shape().empty())
-    throw InputError("gaits tells those of one design; allowed: numbers, no arrays");
+    throw InputError("gaits takes one design; allowed: numbers, not arrays");
   Design design;
   designs.fill(0, {&design, 1});
   Gaits found;
@@ -139,7 +140,7 @@ py::dict trace(const py::dict& given, const std::string& friction, double interv
                double tolerance, long max_steps) {
   const Designs designs(given, scene_of(friction));
   if (designs.count() != 1 || !designs.shape().empty())
-    throw InputError("trace tells the motion of one design; allowed: numbers, no arrays");
+    throw InputError("trace takes one design; allowed: numbers, not arrays");
   Design design;
   designs.fill(0, {&design, 1});
   Motion motion;
@@ -191,6 +192,21 @@ bool sweep(const std::string& path_or_text, const std::optional<std::string>& or
   }
   interrupts.rethrow();
   return report.durable;
+}
+
+py::list spec_key_rows() {
+  py::list rows;
+  for (const Option& option : spec_options()) {
+    py::dict row;
+    row["section"] = std::string(option.section), row["key"] = std::string(option.key);
+    row["meaning"] = std::string(option.meaning), row["unit"] = std::string(option.unit);
+    row["axis"] = std::holds_alternative<ParameterSlot>(option.slot);
+    row["one_of_many"] =
+        std::holds_alternative<SpreadSlot>(option.slot) || std::holds_alternative<GoalSlot>(option.slot);
+    row["allowed"] = allowed_values(option), row["default"] = default_value(option);
+    rows.append(row);
+  }
+  return rows;
 }
 
 py::list parameter_rows() {
@@ -260,6 +276,7 @@ PYBIND11_MODULE(_core, module) {
   });
   module.def("parameters", &python::parameter_rows);
   module.def("fields", &python::field_rows);
+  module.def("spec_keys", &python::spec_key_rows);
   module.def("phase_letters", &phase_letters);
   module.def("program_version", &program_version);
   module.def("number", [](const std::string& name, const std::string& text) {

@@ -10,6 +10,7 @@
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "support/closest.hpp"
 
 namespace py = pybind11;
 
@@ -47,8 +48,8 @@ Columns::Columns(const std::vector<std::string>& fields, const Scene& scene,
   for (const Field* field : there) known.push_back(field->name);
   for (const std::string& name : fields)
     if (std::ranges::find(known, name) == known.end())
-      throw InputError(
-          fmt::format("fields = {}: is no field of this model; allowed: {}", name, fmt::join(known, ", ")));
+      throw InputError(fmt::format("fields = {}: is not a field of this model{}; allowed: {}", name,
+                                   did_you_mean(name, known), fmt::join(known, ", ")));
   for (const Field* field : there) {
     if (fields.empty() ? field->by_name : std::ranges::find(fields, field->name) == fields.end()) continue;
     py::array array(type_of(*field), shape);

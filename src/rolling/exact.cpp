@@ -19,7 +19,7 @@ void note_time(Outcome& outcome, double Outcome::*time, const S& told) {
   if (std::isfinite(told)) {
     outcome.*time = static_cast<double>(told);
   } else {
-    outcome = failed_outcome("a time could not be told: too near a stall");
+    outcome = failed_outcome("time integral did not converge: the hoop nearly stalls");
   }
 }
 

@@ -22,7 +22,7 @@ struct Measurement {
   double max_height_error = 0.0, median_height_error = 0.0;  ///< [hoop diameters]
   double max_time_error = 0.0, median_time_error = 0.0;      ///< of jump_time, relative
   double max_angle_error = 0.0, median_angle_error = 0.0;    ///< of jump_angle [rad]
-  double wrong = 0.0;   ///< share of designs whose status, flag or candidates are wrong, without a word
+  double wrong = 0.0;   ///< share of designs whose status, flag or candidates are silently wrong
   double failed = 0.0;  ///< share of designs the method gave up on, saying so
   double drift = 0.0;   ///< largest violation of the constraints; NaN where the model has none
 };

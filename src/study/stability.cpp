@@ -88,9 +88,9 @@ std::string_view name_of(Finding finding) {
 
 std::string_view verdict_of(std::span<const Finding> findings) {
   const auto any = [&](Finding finding) { return std::ranges::find(findings, finding) != findings.end(); };
-  if (any(Finding::wrong)) return "wrong without a word";
+  if (any(Finding::wrong)) return "silently wrong";
   if (any(Finding::failed))
-    return any(Finding::fine) || any(Finding::lossy) ? "gives up honestly" : "breaks down";
+    return any(Finding::fine) || any(Finding::lossy) ? "reports failure" : "breaks down";
   if (any(Finding::lossy)) return "loses digits";
   return any(Finding::fine) ? "fine" : "undecided";
 }

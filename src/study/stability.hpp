@@ -31,8 +31,8 @@ enum class Finding {
 };
 std::string_view name_of(Finding finding);
 
-/// What a method is worth in one case: "wrong without a word" if any answer is wrong; else "breaks down" if
-/// it failed wherever the answer is decided, "gives up honestly" if it failed somewhere; else "loses digits"
+/// What a method is worth in one case: "silently wrong" if any answer is wrong; else "breaks down" if
+/// it failed wherever the answer is decided, "reports failure" if it failed somewhere; else "loses digits"
 /// if any answer is lossy; else "fine", or "undecided" if nothing was decided.
 std::string_view verdict_of(std::span<const Finding> findings);
 

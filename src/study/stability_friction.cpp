@@ -35,8 +35,9 @@ StabilityCase painleve(bool quick) {
                       .offset_ratio = 0.6728761363187696,
                       .inertia_factor = 0.5,
                       .mu_static = 0.7295130111149761};
-  return across("painleve", "mu_kinetic beyond where a slide just misses Painleve's edge, relative", design,
-                &Design::mu_kinetic, 0.3557672168729612, quick);
+  return across("painleve",
+                "mu_kinetic beyond the value at which a slide barely misses Painleve's paradox, relative",
+                design, &Design::mu_kinetic, 0.3557672168729612, quick);
 }
 
 /// n0 of a sliding hoop dips ever less deep, or ever less misses zero.
@@ -46,7 +47,7 @@ StabilityCase dip(bool quick) {
                       .offset_ratio = 0.6229009119847162,
                       .mu_static = 0.11204872549173449,
                       .restitution = 0.33657276843146977};
-  return across("dip", "mu_kinetic beyond where a dip of n0 touches zero, relative", design,
+  return across("dip", "mu_kinetic beyond the value at which a dip of n0 touches zero, relative", design,
                 &Design::mu_kinetic, 0.080905860609304867, quick);
 }
 

@@ -41,7 +41,8 @@ std::vector<std::string> split(std::string_view line, const std::string& place) 
       line.remove_prefix(std::min(line.find(','), line.size()));
     }
     if (cells.size() == most_cells)
-      throw InputError(fmt::format("{}: more than {} values; allowed: up to so many", place, most_cells));
+      throw InputError(
+          fmt::format("{}: more than {} values; allowed: at most that number", place, most_cells));
     cells.push_back(std::move(cell));
     if (line.empty()) return cells;
     line.remove_prefix(1);
@@ -90,7 +91,7 @@ CsvFile::CsvFile(const std::string& path, const std::string& allowed)
   refuse_other_delimiter(allowed);
   for (const std::string& name : header_)
     if (std::ranges::count(header_, name) > 1)
-      throw InputError(fmt::format("{}: column '{}' is there twice; allowed: once", place_, name));
+      throw InputError(fmt::format("{}: column '{}' appears twice; allowed: once", place_, name));
 }
 
 bool CsvFile::next_cells(std::vector<std::string>& cells) {

@@ -152,7 +152,7 @@ TextOutput::TextOutput(std::string_view flag, const std::string& path, std::stri
   if (::stat(path_.c_str(), &replaced_) == 0) {
     if (is_stream(replaced_) || own_descriptor(replaced_) >= 0) return;  // opened when there is something
     if (!S_ISREG(replaced_.st_mode))
-      throw InputError(fmt::format("{} {}: is no file; allowed: a file's name", flag, path));
+      throw InputError(fmt::format("{} {}: is not a file; allowed: a file's name", flag, path));
     replaces_ = true;
     constexpr std::string_view hdf5 = "\x89HDF";
     const std::string there = first_bytes(path_, std::max(head.size(), hdf5.size()));
@@ -160,7 +160,7 @@ TextOutput::TextOutput(std::string_view flag, const std::string& path, std::stri
       throw InputError(fmt::format("{} {}: is an HDF5 file; allowed: another name", flag, path));
     if (!overwrite && replaced_.st_size > 0 && (head.empty() || !there.starts_with(head)))
       throw InputError(
-          fmt::format("{} {}: is there, and not what leapmap writes; allowed: another name, or "
+          fmt::format("{} {}: exists and was not written by leapmap; allowed: another name, or "
                       "--overwrite",
                       flag, path));
   }

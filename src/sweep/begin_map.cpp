@@ -25,7 +25,7 @@ bool exists(const std::string& path) {
 /// program, as far as numbers depend on it, the spec, and of a shard its tiles.
 void refuse_other_beginning(const MapReader& part, const std::string& name, const Spec& spec,
                             std::span<const hdf5::Attribute> now) {
-  constexpr std::string_view allowed = "another -o, or --overwrite without --resume to start anew";
+  constexpr std::string_view allowed = "another -o, or --overwrite without --resume to start again";
   const auto value_now = [&](std::string_view key) {
     const auto found = std::ranges::find(now, key, &hdf5::Attribute::first);
     return found == now.end() ? nullptr : &found->second;
@@ -46,18 +46,19 @@ void refuse_other_beginning(const MapReader& part, const std::string& name, cons
                                  shard_now.empty() ? "a whole map" : "shard " + shard_now, allowed));
   for (const std::string key : bits_depend_on)
     if (part.attribute(key) != text_now(key))
-      throw InputError(
-          fmt::format("{}: was begun by another leapmap: {} is {} there and {} here; allowed: that one{}, {}",
-                      name, key, part.attribute(key), text_now(key),
-                      key == "instruction_set" ? " by --instruction-set" : "", allowed));
+      throw InputError(fmt::format(
+          "{}: was started by another leapmap: {} is {} there and {} here; allowed: that one{}, {}", name,
+          key, part.attribute(key), text_now(key), key == "instruction_set" ? " by --instruction-set" : "",
+          allowed));
   if (const auto difference = first_difference(spec_of(part, name), spec))
     throw InputError(fmt::format(
-        "{}: was begun with another spec: {}; allowed: that spec{}, {}", name, *difference,
+        "{}: was started with another spec: {}; allowed: that spec{}, {}", name, *difference,
         shard.empty() ? fmt::format(" (leapmap info --spec {})", shell_quoted(name)) : "", allowed));
   if (const auto* tiles = value_now(shard_tiles_attribute)) {
     const auto& bits = std::get<std::vector<std::int64_t>>(*tiles);
     if (hdf5::read_integers(part.file(), shard_tiles_attribute, bits.size()) != bits)
-      throw InputError(fmt::format("{}: was begun with other tiles of the map; allowed: {}", name, allowed));
+      throw InputError(
+          fmt::format("{}: was started with other chunks of the map; allowed: {}", name, allowed));
   }
 }
 
@@ -76,8 +77,8 @@ MapWriter begin_map(const std::string& map, const Spec& spec, const MapLayout& l
   } catch (const ForeignFile&) {
     throw;
   } catch (const BrokenFile& error) {
-    throw IoError(
-        fmt::format("{}; it cannot be gone on with: --overwrite without --resume starts anew", error.what()));
+    throw IoError(fmt::format(
+        "{}; it cannot be resumed; allowed: --overwrite without --resume to start again", error.what()));
   }
 }
 

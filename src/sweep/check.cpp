@@ -99,9 +99,9 @@ void check_tiles(Check& check, const MapLayout& layout) {
   const bool counted = std::ranges::any_of(layout.fields, [](const Field* f) { return f->name == "status"; });
   if (check.stopped() || !check.report.findings.empty()) return;
   if (counted && check.statuses != check.map.status_counts())
-    check.find("status: there are not as many designs of each as the map says");
+    check.find("status: the number of designs with each status differs from the map's counts");
   if (!tiles_are_as_written(check.map.file(), layout, check.tiling, check.report.tiles, "tiles"))
-    check.find("the tiles are not those that were written: their checksum is another");
+    check.find("the chunks are not those that were written: their checksum differs");
 }
 
 /// A sample of the finished tiles against another method.

@@ -166,7 +166,7 @@ NearCliffs near_cliffs(const Spec& original, const Design& design) {
   spec.output.fields = {"status"};
   check_spec(spec);
   if (spec.axes.empty())
-    throw InputError(origin_of(spec) + ": is of no grid; allowed: axes, whose ranges are looked through");
+    throw InputError(origin_of(spec) + ": has no axes; allowed: axes, whose ranges are searched");
   const Box box(spec, design);
   const Looking looking(spec, box, design);
   NearCliffs cliffs;

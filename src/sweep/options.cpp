@@ -14,6 +14,7 @@
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "numerics/gsl_integrator.hpp"
+#include "support/closest.hpp"
 #include "support/number.hpp"
 
 namespace leapmap {
@@ -73,93 +74,94 @@ const std::array keys{
            "friction",
            FrictionSlot{},
            "",
-           "\"sticking\": never slips (the paper's model); \"coulomb\": slips, lands and hops on",
+           "contact model; sticking: never slips, as in the paper; coulomb: Coulomb friction",
            {},
            frictions},
     Option{"scene",
            "jumps",
            IntegerSlot{[](Spec& s) -> long& { return s.scene.jumps; }},
            "1",
-           "go on after a landing until that many jumps",
+           "number of jumps to follow",
            {1, static_cast<double>(most_jumps)}},
     Option{"design", "points", TextSlot{[](Spec& s) -> std::string& { return s.points; }}, "",
-           "CSV file with one design a line instead of axes; its header names parameters (angles in rad)"},
+           "CSV file with one design in a row instead of axes; its header names parameters"},
     Option{"numerics",
            "method",
            TextSlot{[](Spec& s) -> std::string& { return s.numerics.method; }},
            "",
-           "how rolling is solved; auto: exact, by conservation of energy",
+           "how motion is solved; auto: exact; gsl-: integration in time",
            {},
            methods},
     Option{"numerics",
            "tolerance",
            NumberSlot{[](Spec& s) -> double& { return s.numerics.tolerance; }},
            "1",
-           "relative error allowed in times (exact; with friction in every phase), or per step (gsl-)",
+           "relative error allowed in times (exact) or per step (gsl-)",
            {0.0, 0.1, false, true}},
     Option{"numerics",
            "absolute_tolerance",
            NumberSlot{[](Spec& s) -> double& { return s.numerics.absolute_tolerance; }},
            "1",
-           "gsl-: absolute error allowed per step, in rad and sqrt(g/R); 0: as tolerance",
+           "gsl-: absolute error allowed per step, in rad and sqrt(g/R); 0: equal to tolerance",
            {0.0, 0.1}},
     Option{"numerics",
            "fixed_step",
            NumberSlot{[](Spec& s) -> double& { return s.numerics.fixed_step; }},
            "sqrt(R/g)",
-           "gsl-: constant steps this long, errors unchecked; 0: adaptive steps",
+           "gsl-: length of constant steps without error control; 0: adaptive steps",
            {0.0, 100.0}},
     Option{"numerics",
            "max_steps",
            IntegerSlot{[](Spec& s) -> long& { return s.numerics.max_steps; }},
            "1",
-           "gsl-: a design that needs more steps has status failed",
+           "gsl-: a design that needs more steps gets status failed",
            {1, 1e12}},
     Option{"numerics",
            "audit",
            NumberSlot{[](Spec& s) -> double& { return s.numerics.audit; }},
            "1",
-           "share of designs solved again by an independent method",
+           "fraction of designs solved again by an independent method",
            {0.0, 1.0}},
     Option{"gait",
            "settle",
            IntegerSlot{[](Spec& s) -> long& { return s.scene.settle; }},
            "1",
-           "jumps before a gait is looked for; 0: none is; with any other key of this section 500",
+           "transient: jumps to skip before a gait is searched for; 0: no search; 500 if another key of this "
+           "section "
+           "is given",
            {0, 1'000'000}},
     Option{"gait",
            "most_period",
            IntegerSlot{[](Spec& s) -> long& { return s.scene.most_period; }},
            "1",
-           "longest gait looked for, in jumps",
+           "longest period to search for, in jumps",
            {1, 64}},
     Option{"gait",
            "tolerance",
            NumberSlot{[](Spec& s) -> double& { return s.scene.gait_tolerance; }},
            "1",
-           "how nearly a landing must come again, in rad and sqrt(g/R), before the gait is closed by Newton",
+           "distance of landings that count as equal, in rad and sqrt(g/R)",
            {0.0, 1.0, false, true}},
     Option{"output", "file", TextSlot{[](Spec& s) -> std::string& { return s.output.file; }}, "",
-           "the map to write; -o overrides it"},
-    Option{"output",
-           "fields",
-           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.fields; }},
-           "",
-           "datasets to store; default: all",
-           {},
-           field_names,
-           {},
-           [](std::string_view name) { return is_of_jump(name) || is_of_made(name); },
-           "with scene.jumps jump_height_2, jump_time_2 and so on; with [scatter] yield, yield_error, "
-           "cut_off, unsolved and jump_height_mean, _sd, _q05, _q50, _q95 "
-           "and the like "
-           "of any quantity, each also with _error"},
+           "the map to write; the option -o overrides it"},
+    Option{
+        "output",
+        "fields",
+        TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.fields; }},
+        "",
+        "datasets to store",
+        {},
+        field_names,
+        {},
+        [](std::string_view name) { return is_of_jump(name) || is_of_made(name); },
+        "with scene.jumps also jump_height_2, jump_time_2 and so on; with [scatter] also yield, cut_off, "
+        "unsolved, and for every quantity _mean, _sd, _q05, _q50, _q95, for example jump_height_mean, each "
+        "also with _error"},
     Option{"output",
            "gradients",
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients; }},
            "",
-           "quantities whose derivatives are stored too, as jump_height_by_slope and so on (exact only); "
-           "default: none",
+           "quantities to store with their derivatives, for example as jump_height_by_slope (exact only)",
            {},
            differentiable_names,
            {},
@@ -169,34 +171,33 @@ const std::array keys{
            "gradients_by",
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients_by; }},
            "",
-           "the parameters by which; default: all that the model has",
+           "parameters of these derivatives",
            {},
            design_parameter_names},
     Option{"output",
            "precision",
            TextSlot{[](Spec& s) -> std::string& { return s.output.precision; }},
            "",
-           "type of stored numbers: f8, or f4 with 7 digits and half the size",
+           "type of stored numbers; f4 has 7 digits and half the size",
            {},
            precisions},
     Option{"output",
            "compression",
            IntegerSlot{[](Spec& s) -> long& { return s.output.compression; }},
            "1",
-           "0: none; 1 (fast) to 9 (small): shuffle and deflate, read by every HDF5 program",
+           "level of shuffle and deflate, from 1 (fast) to 9 (small); 0: none",
            {0, 9}},
     Option{"scatter",
            "samples",
            IntegerSlot{[](Spec& s) -> long& { return s.scatter.samples; }},
            "1",
-           "hoops made after each design, in 16 replicates that tell the error: 16 times a whole number, at "
-           "best a power of two",
+           "manufactured hoops per design, a multiple of 16, best a power of two",
            {32, 1 << 20}},
     Option{"scatter",
            "seed",
            IntegerSlot{[](Spec& s) -> long& { return s.scatter.seed; }},
            "1",
-           "of the hoops made; the same seed, the same hoops",
+           "seed of the manufactured hoops",
            {0, 1e15}},
 };
 
@@ -224,7 +225,7 @@ Option objective(std::string_view key, TextsSlot slot, std::string_view meaning)
           field_names,
           {},
           [](std::string_view name) { return is_parameter(name) || is_of_made(name); },
-          "a free parameter; with [scatter] yield, jump_height_q05 and the like"};
+          "a free parameter; with [scatter] also yield, jump_height_q05 and so on"};
 }
 
 /// [goal] has one for each field.
@@ -252,8 +253,7 @@ Option option_of(const Parameter& parameter) {
 /// Section by section: what picks the model, the parameters, the other keys.
 std::vector<Option> all_options() {
   std::vector<Option> all;
-  for (const std::string_view section :
-       {"scene", "design", "numerics", "gait", "output", "scatter", "goal"}) {
+  for (const std::string_view section : spec_sections) {
     const auto add_keys = [&](bool pick_model) {
       std::ranges::copy_if(keys, std::back_inserter(all), [&](const Option& key) {
         return key.section == section && std::holds_alternative<FrictionSlot>(key.slot) == pick_model;
@@ -271,10 +271,10 @@ std::vector<Option> all_options() {
       all.push_back(goal_of(*find_field("yield")));
       all.push_back(objective(
           "maximize", [](Spec& s) -> std::vector<std::string>& { return s.maximize; },
-          "leapmap design: what is to be as large as can be; with minimize one or two in all"));
+          "leapmap design: objectives to maximize; with minimize one or two in all"));
       all.push_back(objective(
           "minimize", [](Spec& s) -> std::vector<std::string>& { return s.minimize; },
-          "leapmap design: what is to be as small as can be"));
+          "leapmap design: objectives to minimize"));
     }
     add_keys(false);
   }
@@ -344,6 +344,11 @@ std::string allowed_values(const Option& option) {
                         std::holds_alternative<IntegerSlot>(option.slot) ? "a whole number" : "a number");
 }
 
+std::string unknown_choice(const Option& option, std::string_view text) {
+  const std::vector<std::string_view> choices = option.choices();
+  return fmt::format("'{}' is unknown{}", text, did_you_mean(text, choices));
+}
+
 bool is_choice(const Option& option, std::string_view text) {
   const auto choices = option.choices();
   return std::ranges::find(choices, text) != choices.end() || (option.also && option.also(text));
@@ -369,7 +374,9 @@ double parse_number(const Option& option, std::string_view text) {
     throw InputError(fmt::format("'{}' is not a number; allowed: {}", text, allowed_values(option)));
   const double value = *number * unit;
   if (!in_range(option, value))
-    throw InputError(fmt::format("'{}' is not allowed; allowed: {}", text, allowed_values(option)));
+    throw InputError(fmt::format("'{}' is out of range{}; allowed: {}", text,
+                                 unit == 1.0 ? meant_degrees(option.range, option.unit, value) : "",
+                                 allowed_values(option)));
   return value;
 }
 

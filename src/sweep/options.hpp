@@ -2,6 +2,7 @@
 /// Every key of a spec, declared once: name, meaning, unit, range, and where its value goes.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -48,6 +49,10 @@ struct Option {
   std::string_view also_told{};                     ///< those in words
 };
 
+/// The sections of a spec, in the order of the documentation.
+inline constexpr std::array<std::string_view, 7> spec_sections{"scene",  "design",  "numerics", "gait",
+                                                               "output", "scatter", "goal"};
+
 /// All keys, in the order of the documentation.
 std::span<const Option> spec_options();
 
@@ -84,6 +89,9 @@ const Option* find_option(std::string_view section, std::string_view key);
 /// "slope must be in [0, 90 deg)" and the like: what values the option takes.
 std::string allowed_values(const Option& option);
 
+/// "'X' is unknown", with a suggestion if X resembles one of the option's choices.
+std::string unknown_choice(const Option& option, std::string_view text);
+
 /// Whether a text is one of the option's choices.
 bool is_choice(const Option& option, std::string_view text);
 
@@ -93,6 +101,9 @@ bool in_range(const Option& option, double value);
 /// "0.5", "30 deg", "-1.2e3 rad" as a number in the option's own unit; throws InputError saying what is
 /// wrong.
 double parse_number(const Option& option, std::string_view text);
+
+/// An option's default as a spec writes it, or what it follows: "180 deg", "all", "mu_static".
+std::string default_value(const Option& option);
 
 /// The table of keys for --help: name, default, meaning, what is allowed.
 std::string options_help();

@@ -98,7 +98,8 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
       map.blocks(std::string(layout.fields.front()->name));  // as whoever wrote it has cut it
   check_layout(file, layout, tiling, path);
   if (!tiles_are_as_written(file, layout, tiling, tiling.size(), path))
-    throw BrokenFile(path + ": is damaged: its tiles are not what was written; leapmap check tells where");
+    throw BrokenFile(path +
+                     ": is damaged: its chunks are not what was written; leapmap check shows the place");
   RetryReport report;
   std::vector<Failed> waiting;
   const auto settle = [&] {

@@ -49,9 +49,9 @@ void refuse_percent_of_nothing(const Spec& spec, const Spread& spread, std::span
 void check_spread(const Spec& spec, const Spread& spread) {
   const Option* option = find_option("scatter", spread.parameter);
   if (!option || !std::holds_alternative<SpreadSlot>(option->slot))
-    refuse(spec, "scatter", spread.parameter, "is no parameter of a design", "one of them");
+    refuse(spec, "scatter", spread.parameter, "is not a parameter of a design", "one of them");
   if (std::ranges::count(spec.scatter.spreads, spread.parameter, &Spread::parameter) > 1)
-    refuse(spec, "scatter", spread.parameter, "is there twice", "once");
+    refuse(spec, "scatter", spread.parameter, "appears twice", "once");
   if (!has(spec.scene.friction, option->only_of))
     refuse(spec, "scatter", spread.parameter, no_use(spec.scene), with_model(*option->only_of));
   if (!in_range(*option, spread.width))
@@ -66,7 +66,7 @@ void check_spread(const Spec& spec, const Spread& spread) {
     drawn.*member_of(parameter) = value;
     if (!hoops.can_make(drawn))
       refuse(spec, "scatter", spread.parameter,
-             fmt::format("leaves the domain around {}{}: {:.3g} % of it lies where no hoop can be", value,
+             fmt::format("exceeds the domain around {}{}: {:.3g} % of the distribution is outside", value,
                          option->unit == "rad" ? " rad" : "", 100.0 * (1.0 - hoops.law(0, drawn).left)),
              fmt::format("a smaller width; the parameter is {}", allowed_values(parameter)));
   }
@@ -74,11 +74,12 @@ void check_spread(const Spec& spec, const Spread& spread) {
 
 void check_goal(const Spec& spec, const Goal& goal) {
   const Option* option = find_option("goal", goal.field);
-  if (!option) refuse(spec, "goal", goal.field, "is no field of a map", "one of them");
+  if (!option) refuse(spec, "goal", goal.field, "is not a field of a map", "one of them");
   if (std::ranges::count(spec.goals, goal.field, &Goal::field) > 1)
-    refuse(spec, "goal", goal.field, "is there twice", "once");
+    refuse(spec, "goal", goal.field, "appears twice", "once");
   if (std::holds_alternative<OfMade>(find_field(goal.field)->source))
-    refuse(spec, "goal", goal.field, "is of many hoops made, no goal of one", "with leapmap design");
+    refuse(spec, "goal", goal.field, "describes manufactured hoops, and is not a goal for one",
+           "with leapmap design");
   if (!has(spec.scene.friction, option->only_of))
     refuse(spec, "goal", goal.field, no_use(spec.scene), with_model(*option->only_of));
   const bool some = std::isfinite(goal.at_least) || std::isfinite(goal.at_most);
@@ -96,7 +97,7 @@ void check_goal(const Spec& spec, const Goal& goal) {
            fmt::format("{{ is = ... }} with one of {}", fmt::join(code->names, ", ")));
   if (std::holds_alternative<Word>(field.source) &&
       !(exactly && goal.at_least >= 1.0 && goal.at_least < 9e15))
-    refuse(spec, "goal", goal.field, "is no sequence of phases",
+    refuse(spec, "goal", goal.field, "is not a sequence of phases",
            "{ is = \"RSF\" } and the like, up to 26 letters");
 }
 
@@ -131,7 +132,7 @@ void check_scatter(const Spec& spec) {
   for (const std::string& name : spec.output.fields)
     if (const Field* field = find_field(name); field && std::holds_alternative<OfMade>(field->source)) {
       if (scatter.spreads.empty())
-        refuse(spec, "output", "fields", fmt::format("names {}, which is of hoops as made", name),
+        refuse(spec, "output", "fields", fmt::format("names {}, which describes manufactured hoops", name),
                "with a parameter in [scatter]");
       if (std::get<OfMade>(field->source).statistic == Statistic::yield && spec.goals.empty())
         refuse(spec, "output", "fields", fmt::format("names {}", name), "with a field in [goal]");

@@ -75,7 +75,7 @@ void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, co
                 const SolveOptions& options) {
   if (designs.size() != outcomes.size())
     throw InputError(
-        fmt::format("{} outcomes for {} designs; allowed: as many", outcomes.size(), designs.size()));
+        fmt::format("{} outcomes for {} designs; allowed: equal numbers", outcomes.size(), designs.size()));
   const Spec spec = spec_of(scene, options);
   in_blocks("solve", designs.size(), designs_a_block(spec), options, [&] {
     return [&, solver = make_solver(spec)](std::size_t first, std::size_t size) {

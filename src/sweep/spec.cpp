@@ -13,6 +13,7 @@
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
 #include "model/model.hpp"
+#include "support/closest.hpp"
 #include "support/csv.hpp"
 #include "support/number.hpp"
 #include "support/posix.hpp"
@@ -61,7 +62,7 @@ struct Assign {
     for (const toml::node& node : *array) {
       const std::string name = text(node);
       if (std::ranges::find(slot(spec), name) != slot(spec).end())
-        refuse(entry, fmt::format("'{}' is there twice", name), "each once");
+        refuse(entry, fmt::format("'{}' appears twice", name), "each once");
       slot(spec).push_back(name);
     }
   }
@@ -74,7 +75,7 @@ struct Assign {
     if (!value) refuse(entry, "is not a string", allowed_values(*entry.option));
     if (entry.option->choices) {
       if (!is_choice(*entry.option, value->get()))
-        refuse(entry, fmt::format("'{}' is unknown", value->get()), allowed_values(*entry.option));
+        refuse(entry, unknown_choice(*entry.option, value->get()), allowed_values(*entry.option));
     }
     return value->get();
   }
@@ -89,8 +90,9 @@ struct Assign {
   for (const Option& option : spec_options())
     if ((section.empty() || option.section == section) && std::ranges::find(keys, option.key) == keys.end())
       keys.push_back(option.key);
-  throw InputError(fmt::format("{}: {}{}{}: unknown key; allowed: {}", place, section,
-                               section.empty() ? "" : ".", key, fmt::join(keys, ", ")));
+  throw InputError(fmt::format("{}: {}{}{}: unknown key{}; allowed: {}", place, section,
+                               section.empty() ? "" : ".", key, did_you_mean(key, keys),
+                               fmt::join(keys, ", ")));
 }
 
 /// Every key of a file's tables, in the order they were written.
@@ -105,17 +107,16 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
       throw InputError(fmt::format("{}: {}: a key stands below its section; allowed: [{}] above it", place,
                                    section.str(), option->section));
     if (!known || !table)
-      throw InputError(
-          fmt::format("{}: [{}]: unknown section; allowed: [scene], [design], [numerics], [gait], [output], "
-                      "[scatter], [goal]",
-                      place, section.str()));
+      throw InputError(fmt::format("{}: [{}]: unknown section{}; allowed: [{}]", place, section.str(),
+                                   did_you_mean(section.str(), spec_sections),
+                                   fmt::join(spec_sections, "], [")));
     for (const auto& [key, value] : *table) {
       const Option* option = find_option(section.str(), key.str());
       const auto position = value.source().begin;
       if (!option) refuse_key(fmt::format("{}:{}", origin, position.line), section.str(), key.str());
       const auto twice = std::ranges::find(entries, option, &Entry::option);
       if (twice != entries.end())
-        throw InputError(fmt::format("{}:{}: {} is there twice, also at {}; allowed: once", origin,
+        throw InputError(fmt::format("{}:{}: {} appears twice, also at {}; allowed: once", origin,
                                      position.line, key.str(), twice->place));
       entries.push_back({option, fmt::format("{}:{}", origin, position.line), position, &value});
     }
@@ -192,9 +193,9 @@ void read_points_of(Spec& spec) {
                                    no_use(spec.scene), with_model(*option.only_of)));
     if (const double given = value_of(option, spec.design);
         !is_usual(given, value_of(option, Design{})) && !std::isnan(given))
-      throw InputError(
-          fmt::format("{}: {} = {} has no use beside the column of that name in {}; allowed: one of the two",
-                      origin_of(spec), column.key, given, spec.points));
+      throw InputError(fmt::format(
+          "{}: {} = {} has no effect beside the column of that name in {}; allowed: one of the two",
+          origin_of(spec), column.key, given, spec.points));
   }
 }
 
@@ -218,7 +219,7 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
 
 namespace {
 
-/// lenient: what has no use is let pass.
+/// lenient: what has no effect is let pass.
 Spec parse(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
            bool lenient) {
   Spec spec;
@@ -265,8 +266,8 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
   for (const Entry& entry : entries) {
     const std::string_view key = entry.option->key;
     if (entry.option->section == "scatter" && spec.scatter.spreads.empty())
-      refuse(entry, "has no use where nothing scatters",
-             "with a parameter in [scatter], slope = { normal = \"1 deg\" } say");
+      refuse(entry, "has no effect without tolerances",
+             "with a parameter in [scatter], for example slope = { normal = \"1 deg\" }");
     const double set = key == "fixed_step"           ? spec.numerics.fixed_step
                        : key == "absolute_tolerance" ? spec.numerics.absolute_tolerance
                                                      : 0.0;

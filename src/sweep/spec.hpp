@@ -7,14 +7,15 @@
 
 namespace leapmap {
 
-/// A spec that a map tells. Those of older versions name what their model has no use for; that is let pass.
+/// A spec that a map tells. Those of older versions name what their model has no effect for; that is let
+/// pass.
 Spec parse_map_spec(std::string_view text, const std::string& origin);
 
 /// The spec's file, for messages; "command line" if there is none.
 std::string origin_of(const Spec& spec);
 
 /// Reads the list that spec.points names, if it names one: a path beside the spec's file, or from the working
-/// folder. Throws as read_points does, and InputError for a column that the scene has no use for.
+/// folder. Throws as read_points does, and InputError for a column that the scene has no effect for.
 void read_points_of(Spec& spec);
 
 /// As resolved_text, but for people: axes by their bounds where those give the same values here. Another

@@ -29,7 +29,7 @@ void check_number(const Spec& spec, const Option& option, double value) {
 void check_text(const Spec& spec, const Option& option, const std::string& text) {
   if (!option.choices) return;
   if (!is_choice(option, text))
-    refuse(spec, option.key, fmt::format("= '{}' is unknown", text), allowed_values(option));
+    refuse(spec, option.key, "= " + unknown_choice(option, text), allowed_values(option));
 }
 
 /// Axes, or the columns of a list.
@@ -37,8 +37,8 @@ void check_values(const Spec& spec, const std::vector<Axis>& axes) {
   for (const Axis& axis : axes) {
     const Option* option = find_option("design", axis.key);
     if (!option || !std::holds_alternative<ParameterSlot>(option->slot))
-      refuse(spec, axis.key, "is no parameter of a design", "an axis of one");
-    if (std::ranges::count(axes, axis.key, &Axis::key) > 1) refuse(spec, axis.key, "is there twice", "once");
+      refuse(spec, axis.key, "is not a parameter of a design", "an axis of one");
+    if (std::ranges::count(axes, axis.key, &Axis::key) > 1) refuse(spec, axis.key, "appears twice", "once");
     if (!has(spec.scene.friction, option->only_of))
       refuse(spec, axis.key, no_use(spec.scene), with_model(*option->only_of));
     if (axis.values.empty()) refuse(spec, axis.key, "has no values", "one or more");
@@ -55,10 +55,11 @@ void check_names(const Spec& spec) {
     const Field* field = find_field(name);
     if (!field || has(spec.scene, *field)) return;
     if (field->of_sequence)
-      refuse(spec, key, fmt::format("'{}' has no use with scene.jumps = {}", name, spec.scene.jumps),
-             "with as many scene.jumps");
+      refuse(spec, key, fmt::format("'{}' has no effect with scene.jumps = {}", name, spec.scene.jumps),
+             "with scene.jumps at least that number");
     if (field->of_gait)
-      refuse(spec, key, fmt::format("'{}' has no use without [gait]", name), "with gait.settle = 500, say");
+      refuse(spec, key, fmt::format("'{}' has no effect without [gait]", name),
+             "for example with gait.settle = 500");
   };
   for (const std::string& name : spec.output.gradients) look_at("gradients", name);
   for (const std::string& name : spec.output.fields) look_at("fields", name);
@@ -71,9 +72,10 @@ void check_names(const Spec& spec) {
 void check_gradients(const Spec& spec) {
   const Output& output = spec.output;
   if (output.gradients.empty() && !output.gradients_by.empty())
-    refuse(spec, "gradients_by", "has no use without gradients", "with gradients = [\"jump_height\"], say");
+    refuse(spec, "gradients_by", "has no effect without gradients",
+           "for example with gradients = [\"jump_height\"]");
   if (!output.gradients.empty() && resolved_method(spec.numerics) != "exact")
-    refuse(spec, "gradients", fmt::format("has no use with method \"{}\"", spec.numerics.method),
+    refuse(spec, "gradients", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
            "with method = \"exact\"");
   for (const std::string& name : output.gradients)
     if (const Field* field = find_field(name); field && !has(spec.scene.friction, field->only_of))
@@ -157,10 +159,9 @@ void check_spec(const Spec& spec) {
            "with method = \"gsl-...\"");
   for (const auto& [key, names] : {std::pair{"maximize", &spec.maximize}, {"minimize", &spec.minimize}})
     if (!names->empty() && spec.list.columns.empty())  // a list may tell what it was found for
-      refuse(spec, key, fmt::format("'{}' has no use here", names->front()),
-             "with leapmap design, which looks for the best");
+      refuse(spec, key, fmt::format("'{}' has no effect here", names->front()), "with leapmap design");
   if (spec.scene.settle > 0 && resolved_method(spec.numerics) != "exact")
-    refuse(spec, "settle", fmt::format("has no use with method \"{}\"", spec.numerics.method),
+    refuse(spec, "settle", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
            "with method = \"exact\"");
   check_names(spec);
   check_gradients(spec);

@@ -46,7 +46,9 @@ double to_number(const Entry& entry, const toml::node& node, std::string_view pa
   }
   const auto value = node.is_number() ? node.value<double>() : std::nullopt;
   if (!value) refuse(entry, where + "is not a number", allowed_values(option));
-  if (!in_range(option, *value)) refuse(entry, where + "is out of range", allowed_values(option));
+  if (!in_range(option, *value))
+    refuse(entry, where + "is out of range" + meant_degrees(option.range, option.unit, *value),
+           allowed_values(option));
   return *value;
 }
 
@@ -71,7 +73,7 @@ std::vector<double> to_list(const Entry& entry, const toml::table& table) {
            fmt::format("up to {}", most_axis_values));
   std::vector<double> values;
   for (const toml::node& node : *array) values.push_back(to_number(entry, node, "values"));
-  if (repeated(values)) refuse(entry, "a value is there twice", "each once");
+  if (repeated(values)) refuse(entry, "a value appears twice", "each once");
   return values;
 }
 

@@ -56,7 +56,7 @@ double to_bound(const Entry& entry, const Field& field, const toml::node& node, 
   if (std::holds_alternative<Word>(field.source)) {
     const auto phases = text ? to_phases(text->get()) : std::nullopt;
     if (!phases || part != "is")
-      refuse(entry, "is no sequence of phases", "{ is = \"RSF\" } and the like, up to 26 letters");
+      refuse(entry, "is not a sequence of phases", "{ is = \"RSF\" } and the like, up to 26 letters");
     return *phases;
   }
   return to_number(entry, node, part);
@@ -66,7 +66,7 @@ double to_bound(const Entry& entry, const Field& field, const toml::node& node, 
 
 Spread to_spread(const Entry& entry) {
   const toml::table* table = entry.node->as_table();
-  if (!table || table->size() != 1) refuse(entry, "is no scatter", spread_forms);
+  if (!table || table->size() != 1) refuse(entry, "is not a tolerance", spread_forms);
   const auto only = table->cbegin();
   const std::string_view law = only->first.str();
   const toml::node& node = only->second;
@@ -76,7 +76,7 @@ Spread to_spread(const Entry& entry) {
   const auto percent = to_percent(node);
   spread.percent = percent.has_value();
   if (!percent && node.is_string() && entry.option->unit != "rad")
-    refuse(entry, fmt::format("'{}' is no width", law),
+    refuse(entry, fmt::format("'{}' is not a width", law),
            fmt::format("{}, or as \"2 %\"", allowed_values(*entry.option)));
   spread.width = percent ? *percent : to_number(entry, node, law);
   if (!in_range(*entry.option, spread.width))
@@ -88,7 +88,7 @@ Spread to_spread(const Entry& entry) {
 Goal to_goal(const Entry& entry) {
   const Field& field = *find_field(entry.option->key);
   const toml::table* table = entry.node->as_table();
-  if (!table || table->empty()) refuse(entry, "is no goal", goal_forms);
+  if (!table || table->empty()) refuse(entry, "is not a goal", goal_forms);
   Goal goal{.field = std::string(field.name)};
   for (const auto& [part, node] : *table) {
     if (part != "at_least" && part != "at_most" && !(part == "is" && table->size() == 1))

@@ -166,7 +166,7 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
   check_spec(spec);
   if (!spec.goals.empty() && spec.scatter.spreads.empty())
     throw InputError(
-        fmt::format("{}: goal.{} has no use in a map of hoops as drawn; allowed: with a parameter in "
+        fmt::format("{}: goal.{} has no effect in a map of nominal hoops; allowed: with a parameter in "
                     "[scatter]",
                     origin_of(spec), spec.goals.front().field));
   if (asked.shard) check_shard(*asked.shard);
@@ -196,10 +196,8 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
   try {
     return fill(spec, layout, tiling, options, writer);
   } catch (const BrokenFile& error) {
-    throw IoError(
-        fmt::format("{}; the disk or its driver loses what it is given; begin anew by --overwrite, on "
-                    "another disk",
-                    error.what()));
+    throw IoError(fmt::format(
+        "{}; the disk or its driver loses data; start again by --overwrite, on another disk", error.what()));
   } catch (const IoError& error) {
     if (writer.committed() == 0) throw IoError(fmt::format("{}; nothing is kept", error.what()));
     throw KeptError(error.what(), writer.committed(), tiling.designs());

@@ -216,14 +216,14 @@ def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(
 
 @pytest.mark.parametrize("friction", [False, True])
 def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(friction, live):
-    option = "return [...document.getElementById('field').options].find((o) => o.textContent === 'jumps made').disabled"
+    option = "return [...document.getElementById('field').options].find((o) => o.textContent === 'number of jumps').disabled"
     assert live.execute_script(option)
     if friction:
         Select(live.find_element("id", "live-model")).select_by_value("coulomb")
     live.execute_script("document.getElementById('map').dataset.whole = 'false'; const j = document.getElementById('jumps'); j.value = 4; j.dispatchEvent(new Event('change'))")
     settled(live, 200)
     assert not live.execute_script(option)
-    Select(live.find_element("id", "field")).select_by_visible_text("jumps made")
+    Select(live.find_element("id", "field")).select_by_visible_text("number of jumps")
     WebDriverWait(live, 5).until(lambda b: "jumps=4" in b.execute_script("return location.hash") and "field=jumps" in b.execute_script("return location.hash"))
     made = []
     for cell in designs(live, [int(k) for k in np.random.default_rng(11).integers(0, 30000, 30)]):

@@ -187,7 +187,7 @@ def test_a_link_is_all_that_was_found(page, html):
 
 
 @pytest.mark.parametrize(("address", "words"), [("#goal=nonsense:least:1", "nonsense"), ("#goal=jump_height:least:", "jump_height"), ("#field=nonsense", "nonsense"),
-                                                ("#hoop=slope:99", "no hoop has"), ("#hoop=<img src=x onerror=alert(1)>:1", "no hoop has"), ("#design=1,2,3", "not on this map")])
+                                                ("#hoop=slope:99", "not possible"), ("#hoop=<img src=x onerror=alert(1)>:1", "not possible"), ("#design=1,2,3", "not on this map")])
 def test_an_address_that_asks_for_what_cannot_be_says_so(address, words, browser, html):
     at(browser, html, address)
     assert words in browser.find_element("id", "message").text

@@ -47,7 +47,7 @@ def test_friction_and_restitution_take_axes_and_mu_kinetic_follows_mu_static(tmp
     told = leapmap("info", tmp_path / "map.h5").stdout
     assert "RSRSRSSF" in told
     plan = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--resume")
-    assert plan.returncode == 0 and "whole already" in plan.stdout, plan.stderr
+    assert plan.returncode == 0 and "complete already" in plan.stdout, plan.stderr
 
 
 @pytest.mark.parametrize("method", ["exact", "gsl-rk8pd", "gsl-msbdf", "gsl-bsimp"])

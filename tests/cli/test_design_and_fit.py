@@ -67,7 +67,7 @@ def test_a_fit_says_which_given_values_it_fits_anew():
 def test_people_are_told_what_binds_how_far_the_cliff_is_and_what_to_type(tmp_path):
     done = asked(tmp_path, BOX)
     assert done.returncode == 0
-    for words in ("what binds: jump_height at least 0.9", "nearest cliff:", "a degree of slope", "leapmap hop --slope", "designs solved in"):
+    for words in ("active constraints: jump_height at least 0.9", "nearest discontinuity:", "a degree of slope", "leapmap hop --slope", "designs solved in"):
         assert words in done.stdout, done.stdout
 
 
@@ -103,7 +103,7 @@ def test_what_no_search_wrote_is_not_replaced_and_that_is_said_before_anything_i
 def test_no_design_that_does_it_is_an_answer_with_the_nearest_miss(tmp_path):
     done = asked(tmp_path, BOX.replace("0.9", "2.5"), "-o", tmp_path / "none.h5")
     assert done.returncode == 1 and not (tmp_path / "none.h5").exists()
-    assert "No design of this box does it" in done.stdout and "nearest miss" in done.stdout and "leapmap hop" in done.stdout
+    assert "No design within the bounds meets all goals" in done.stdout and "nearest miss" in done.stdout and "leapmap hop" in done.stdout
     told = json.loads(asked(tmp_path, BOX.replace("0.9", "2.5"), "--json").stdout)
     assert not told["reached"] and len(told["designs"]) == 1 and 0.9 < told["missed"]["jump_height"] < 2.5
     made = BOX.replace("[goal]", "[scatter]\nslope = { normal = \"3 deg\" }\nsamples = 64\n[goal]\nyield = { at_least = 0.9999 }")
@@ -149,7 +149,7 @@ def test_a_yield_that_is_a_goal_is_told_with_its_error_and_binds(tmp_path):
     assert design["yield"]["value"] >= 0.9 and design["yield"]["error"] > 0
     assert any(bind.startswith("yield at least") for bind in design["binds"])
     told = asked(tmp_path, made).stdout
-    assert "of 64 hoops made" in told
+    assert "from 64 manufactured hoops" in told
     command = next(line.strip() for line in told.splitlines() if line.strip().startswith("leapmap hop"))
     hop = subprocess.run(f"{PROGRAM} {command.removeprefix('leapmap ')} --json", shell=True, capture_output=True, text=True)
     assert json.loads(hop.stdout)["scatter"]["yield"]["value"] == design["yield"]["value"], "the command tells the same, hoop by hoop"
@@ -202,7 +202,7 @@ MODELS = pytest.mark.parametrize("flags", [["--model", "sticking"], pytest.param
 def test_people_are_told_estimates_errors_correlations_and_which_model_the_data_prefer(flags, tmp_path):
     done = leapmap("fit", film(tmp_path / "film.csv", 1e-3), *flags)
     assert done.returncode == 0
-    for words in ("release_angle", "+-", "held: slope 22.9183 deg", "correlations", "residuals", "leapmap hop --slope"):
+    for words in ("release_angle", "+-", "fixed: slope 22.9183 deg", "correlations", "residuals", "leapmap hop --slope"):
         assert words in done.stdout, done.stdout
     assert ('clearly prefer "sticking"' in done.stdout) == (not flags)
 

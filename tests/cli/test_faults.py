@@ -112,4 +112,4 @@ def test_an_audit_that_failed_fails_again_when_resumed(tmp_path):
     first = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5")
     again = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--resume")
     assert first.returncode == 1 and "disagree" in first.stderr
-    assert again.returncode == 1 and again.stderr == first.stderr and "whole already" in again.stdout
+    assert again.returncode == 1 and again.stderr == first.stderr and "complete already" in again.stdout

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""src/map/FORMAT.md names every dataset and attribute of a map with its type and unit, and nothing else."""
+"""docs/reference/file_format.md names every dataset and attribute of a map with its type and unit, and nothing else."""
 import re
 
 import h5py
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.program import TOP, leapmap, sweep
 
-PAGE = (TOP / "src" / "map" / "FORMAT.md").read_text()
+PAGE = (TOP / "docs" / "reference" / "file_format.md").read_text()
 
 
 def section(title):

@@ -133,7 +133,7 @@ def test_info_tells_a_place_of_the_map_and_how_far_its_cliffs_are(tmp_path):
     assert "jumped on 2" in told and "jump_height" in told and "Derivatives" in told
     line = next(line for line in told.splitlines() if line.strip().startswith("slope 0.45"))
     assert "threshold" in line and "jumped on 1" in line
-    assert "In all" in told
+    assert "over all directions" in told
     for at, words in (("slope=0.4", "mass_ratio"), ("slope=0.4,mass_ratio=50", "outside"), ("slope=x,mass_ratio=2", "x"),
                       ("spin=1,mass_ratio=2", "spin"), ("slope=0.4,slope=0.4", "slope")):
         answer = leapmap("info", path, "--at", at)

@@ -46,7 +46,7 @@ def test_a_driven_hoop_is_told_with_what_its_motor_must_have():
     assert motor["rpm"] >= 0.999 * fastest * 30 / math.pi and motor["power"] == pytest.approx(motor["torque"] * motor["rpm"] * math.pi / 30)
     twice = json.loads(leapmap(*driven, "--mass", "0.2", "--json").stdout)["motor"]
     assert twice["torque"] == pytest.approx(2 * motor["torque"]) and twice["rpm"] == motor["rpm"]
-    assert "The motor, for hoop and weight of 0.0282 kg (another by --mass)" in leapmap(*driven).stdout
+    assert "Motor, for a total mass of 0.0282 kg (change it by --mass)" in leapmap(*driven).stdout
     idle = leapmap("hop", "--mass", "0.1")
     assert idle.returncode == 2 and "--drive-torque" in idle.stderr and idle.stderr.count("\n") == 1
     assert "motor" not in json.loads(leapmap("hop", "--json").stdout)
@@ -91,7 +91,7 @@ def test_info_counts_statuses_and_places_extremes(tmp_path):
         place = f"at slope {m['slope'][i]:.6g}, mass_ratio {m['mass_ratio'][j]:.6g}, offset_ratio {m['offset_ratio'][k]:.6g}"
         assert f"most  {height[i, j, k]:.8g}" in text and place in text
         assert f"none  in {np.isnan(height).sum()} designs" in text
-    assert "audit: 14 designs" in text  # 5 % of 264, rounded up
+    assert "cross-check: 14 designs" in text  # 5 % of 264, rounded up
     assert leapmap("info", path, "--spec").stdout.startswith("[scene]")  # a TOML and nothing else
 
 
@@ -134,7 +134,7 @@ def test_dry_run_plans_and_writes_nothing(tmp_path):
                                         'offset_ratio={from=0.3,to=1,count=1000}\n[output]\nfields=["jump_height","spurious_first_jump"]\n')
     done = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--dry-run")
     assert done.returncode == 0
-    for words in ("1,000,000,000", "memory   at most", "file     about 9 GB", "time     about", "tiles"):
+    for words in ("1,000,000,000", "memory   at most", "file     about 9 GB", "time     about", "chunks"):
         assert words in done.stdout
     assert not list(tmp_path.glob("map.h5*"))
 
@@ -159,7 +159,7 @@ def test_an_audit_that_disagrees_ends_with_status_1_and_the_command_that_shows_i
                                         '[numerics]\nmethod="gsl-rk8pd"\ntolerance=3e-3\naudit=1\n')
     done = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--quiet")
     assert done.returncode == 1 and done.stderr.count("\n") == 1
-    command = done.stderr.split("see it by: leapmap ")[1].split()
+    command = done.stderr.split("show it: leapmap ")[1].split()
     ours = json.loads(leapmap(*command, "--json").stdout)
     truth = json.loads(leapmap(*command, "--json", "--set", "tolerance=1e-12").stdout)
     assert any(ours[k] != truth[k] for k in ("status", "spurious_first_jump", "candidates"))

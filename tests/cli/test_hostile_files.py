@@ -288,7 +288,7 @@ def test_every_flipped_bit_of_a_finished_map_is_found_and_told(original, tmp_pat
 
 def test_check_finds_wrong_numbers_whose_checksums_are_right(original, tmp_path):
     path = tmp_path / "map.h5"
-    for name, value, told in (("jump_height", 0.7, "differs by more"), ("status", 2, "not as many designs"), ("candidates", 9, "another status, flag"),
+    for name, value, told in (("jump_height", 0.7, "differs by more"), ("status", 2, "the number of designs with each status differs"), ("candidates", 9, "another status, flag"),
                               ("jump_height", 2e303, "2e+303"), ("status", 77, "holds 77")):
         shutil.copy(original, path)
         with h5py.File(path, "r+") as m:
@@ -309,8 +309,8 @@ def test_memory_stays_within_what_the_dry_run_promises(tmp_path):
             for promise in line.removeprefix("memory").split(";"):
                 number, unit = promise.strip().removeprefix("at most ").split(" ")[:2]
                 promised[promise.split("for ")[1].strip()] = float(number) * {"MB": 1e6, "GB": 1e9}[unit]
-    assert set(promised) == {"the sweep with its audit", "leapmap info", "the explorer"}, plan
-    for name, words in (("the sweep with its audit", [PROGRAM, "sweep", spec, "-o", tmp_path / "map.h5", "--quiet"]),
+    assert set(promised) == {"the sweep with its cross-check", "leapmap info", "the explorer"}, plan
+    for name, words in (("the sweep with its cross-check", [PROGRAM, "sweep", spec, "-o", tmp_path / "map.h5", "--quiet"]),
                         ("leapmap info", [PROGRAM, "info", tmp_path / "map.h5"]),
                         ("the explorer", ["/usr/bin/python3", TOP / "analysis/explorer", tmp_path / "map.h5"])):
         process = subprocess.Popen([str(w) for w in words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -410,7 +410,7 @@ def test_filters_twice_texts_without_end_and_holes_without_end_are_refused(origi
 def test_labels_of_others_are_escaped_and_none_is_longer_than_ours(tmp_path):
     (tmp_path / "designs.csv").write_text("label,slope\none,0.4\ntwo,0.5\n")
     path = sweep(tmp_path, '[design]\npoints = "designs.csv"\n')
-    for labels, told in ((["\x1b[2J", "two"], "\\x1b[2J"), (["x" * 10**6] * 2, "labels"), (["one"], "label"), ([1.0, 2.0], "no row of texts")):
+    for labels, told in ((["\x1b[2J", "two"], "\\x1b[2J"), (["x" * 10**6] * 2, "labels"), (["one"], "label"), ([1.0, 2.0], "not a row of texts")):
         with h5py.File(path, "r+") as m:
             del m["label"]
             kind = np.float64 if isinstance(labels[0], float) else h5py.string_dtype()
@@ -439,7 +439,7 @@ def test_check_says_where_or_that_no_value_is_touched(original, tmp_path):
     damaged[-1] ^= 1  # of the seal itself
     (tmp_path / "map.h5").write_bytes(damaged)
     done = leapmap("check", tmp_path / "map.h5")
-    assert done.returncode == 1 and "holds a value" in done.stdout and "right    " not in done.stdout, done.stdout
+    assert done.returncode == 1 and "hold no value" in done.stdout and "right    " not in done.stdout, done.stdout
     with h5py.File(tmp_path / "bare.h5", "w") as file:
         file.attrs["filetype"] = "leapmap map"
     done = leapmap("check", tmp_path / "bare.h5")

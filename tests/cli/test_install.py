@@ -51,7 +51,7 @@ def test_the_python_module_the_charts_and_the_page_are_installed(prefix, tmp_pat
     if list(packages[0].glob("leapmap/leapmap.wasm")):
         run(sys.executable, "-m", "leapmap.charts", "explorer", "m.h5", cwd=tmp_path, env=environment)
         assert (tmp_path / "m.html").exists()
-    assert "is no chart" in subprocess.run([sys.executable, "-m", "leapmap.charts", "pie"], env=environment, capture_output=True, text=True).stderr
+    assert "is not a chart" in subprocess.run([sys.executable, "-m", "leapmap.charts", "pie"], env=environment, capture_output=True, text=True).stderr
 
 
 def test_the_man_page_and_completion_know_every_command(prefix, tmp_path):

@@ -17,7 +17,7 @@ OLD = {"x86-64": "Nehalem", "x86-64-v3": "Haswell"}  # processors that have that
 
 
 def available():
-    return re.search(r"--instruction-set TEXT.*?one of ([\w, -]+)", " ".join(leapmap("--help").stdout.split()))[1].rstrip(" ,").split(", ")
+    return re.search(r"--instruction-set NAME.*?one of ([\w, -]+)", " ".join(leapmap("--help").stdout.split()))[1].rstrip(" ,").split(", ")
 
 
 SETS = [s.split()[0] for s in available()]

@@ -116,8 +116,8 @@ def test_friction_scatters_too_and_mu_kinetic_follows(tmp_path):
 
 
 BAD = {
-    "a scatter that leaves the domain": ('[scatter]\nslope = { normal = "500 deg" }', ["scatter.slope", "leaves the domain"]),
-    "a share of 0 to 1 twice as wide": ("[scatter]\noffset_ratio = { uniform = 4 }", ["scatter.offset_ratio", "leaves the domain", "[0, 1]"]),
+    "a scatter that exceeds the domain": ('[scatter]\nslope = { normal = "500 deg" }', ["scatter.slope", "exceeds the domain"]),
+    "a share of 0 to 1 twice as wide": ("[scatter]\noffset_ratio = { uniform = 4 }", ["scatter.offset_ratio", "exceeds the domain", "[0, 1]"]),
     "a negative deviation": ("[scatter]\nslope = { normal = -0.1 }", ["scatter.slope", "out of range", "[0, inf)"]),
     "a negative percentage": ('[scatter]\nslope = { normal = "-1 %" }', ["scatter.slope", "out of range"]),
     "no number": ('[scatter]\nslope = { normal = "much" }', ["scatter.slope", "much"]),
@@ -134,9 +134,9 @@ BAD = {
     "a bare number": ("[scatter]\nslope = 0.1", ["scatter.slope", "normal"]),
     "what does not scatter": ("[scatter]\nrunway = { normal = 1 }", ["runway", "unknown key", "mass_ratio"]),
     "samples of no sixteenth": ("[scatter]\nslope = { normal = 0.1 }\nsamples = 1000", ["samples", "1000", "16"]),
-    "samples of nothing": ("[scatter]\nsamples = 1024", ["scatter.samples", "no use"]),
+    "samples of nothing": ("[scatter]\nsamples = 1024", ["scatter.samples", "no effect"]),
     "a goal on an unknown field": ("[goal]\nheight = { at_least = 1 }", ["goal.height", "unknown key", "jump_height"]),
-    "a goal without scatter": ("[goal]\njump_height = { at_least = 1 }", ["goal.jump_height", "no use", "[scatter]"]),
+    "a goal without scatter": ("[goal]\njump_height = { at_least = 1 }", ["goal.jump_height", "no effect", "[scatter]"]),
     "a goal that contradicts itself": ("[scatter]\nslope = { normal = 0.1 }\n[goal]\njump_height = { at_least = 1, at_most = 0.5 }", ["goal.jump_height", "contradicts"]),
     "a goal of nothing": ("[scatter]\nslope = { normal = 0.1 }\n[goal]\njump_height = {}", ["goal.jump_height", "at_least"]),
     "is beside at_least": ("[scatter]\nslope = { normal = 0.1 }\n[goal]\njump_height = { is = 1, at_least = 0.5 }", ["goal.jump_height", "is"]),
@@ -165,7 +165,7 @@ def test_a_bad_scatter_or_goal_ends_with_status_2_and_one_line(kind, tmp_path):
                                        ["boundaries", str(TOP / "sweeps/smoke.toml"), "--set", "scatter.slope={normal=0.1}"]])
 def test_what_has_no_use_is_refused(arguments):
     done = leapmap(*arguments)
-    assert done.returncode == 2 and "has no use here" in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert done.returncode == 2 and "has no effect here" in done.stderr and done.stderr.count("\n") == 1, done.stderr
 
 
 @pytest.mark.parametrize("spec, word", [("", "[scatter]"), (MADE, "axis")])
@@ -190,6 +190,6 @@ def test_cliffs_and_info_of_such_a_map_are_of_hoops_as_drawn(tmp_path):
 
 def test_shipped_specs_say_what_they_say(tmp_path):
     plan = leapmap("sweep", TOP / "sweeps" / "made_hoops.toml", "--dry-run")
-    assert plan.returncode == 0 and "yield" in plan.stdout and "1,024 hoops" in plan.stdout
+    assert plan.returncode == 0 and "yield" in plan.stdout and "1,024 manufactured hoops" in plan.stdout
     told = json.loads(leapmap("hop", TOP / "sweeps" / "paper_as_made.toml", "--scatter", "--json").stdout)["scatter"]
     assert 0.9 < told["yield"]["value"] < 1 and not math.isnan(told["yield"]["error"])

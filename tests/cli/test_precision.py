@@ -44,7 +44,7 @@ def test_charts_show_every_method(table, tmp_path):
         assert method in drawn["time"], method
     assert "two multipliers" in drawn["model"] and "projected" in drawn["model"]
     for kind in ("time", "work"):
-        assert "better" in drawn[kind] and "wrong, without a word" in drawn[kind]
+        assert "better" in drawn[kind] and "silently wrong" in drawn[kind]
     assert "in theory 8" in drawn["order"] and re.search(r"tolerance", drawn["wrong"])
 
 

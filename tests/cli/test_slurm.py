@@ -227,7 +227,7 @@ def test_an_array_of_eight_with_a_task_killed_and_one_cancelled_joins_to_the_map
     slurm.wait(lambda: slurm.states(array).get(1) in {"COMPLETED", "FAILED"} and set(slurm.states(second).values()) == {"COMPLETED"}, 300)
     assert slurm.states(array)[1] == "COMPLETED"
     for job, shard in ((array, 1), (second, 2), (second, 3)):
-        assert "designs were there already" in (tmp_path / f"slurm-{job}_{shard}.out").read_text()
+        assert "designs were complete" in (tmp_path / f"slurm-{job}_{shard}.out").read_text()
     if not map_path.exists():  # the second joining may have come before the requeued task
         done = leapmap("join", map_path)
         assert done.returncode == 0, done.stderr

@@ -116,7 +116,7 @@ void refuses() {
   expect(has(refusal([&] { lm::solve(some); }), "design 1: mass_ratio = -1"), "which of many");
   lm::Spec spec;
   spec.axes = {{"mu_static", {0.1, 0.2}}};
-  expect(has(refusal([&] { lm::sweep(spec, "none.h5"); }), "mu_static"), "an axis that has no use");
+  expect(has(refusal([&] { lm::sweep(spec, "none.h5"); }), "mu_static"), "an axis that has no effect");
   spec.scene.friction = lm::Friction::coulomb;
   expect(has(lm::resolved_text(spec), "friction = 'coulomb'"), "one truth for friction");
   spec = {};
@@ -128,7 +128,7 @@ void refuses() {
   expect(has(refusal([] { lm::retry_failed("map.h5", {.how = lm::Numerics{.method = "rk45"}}); }), "rk45"),
          "an unknown method to retry by");
   std::vector<lm::Outcome> few(1);
-  expect(has(refusal([&] { lm::solve_into(few, std::vector<lm::Design>(2)); }), "as many"),
+  expect(has(refusal([&] { lm::solve_into(few, std::vector<lm::Design>(2)); }), "equal numbers"),
          "too few outcomes");
   expect(!std::filesystem::exists("none.h5") && !std::filesystem::exists("none.h5.part"),
          "and nothing written");

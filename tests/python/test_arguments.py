@@ -142,3 +142,10 @@ def test_another_python_is_told_which_one_to_use(tmp_path):
         text=True,
     )
     assert "cpython-399" in done.stderr and "allowed" in done.stderr and "circular" not in done.stderr
+
+
+def test_what_is_misspelled_gets_a_suggestion():
+    for call, meant in ((lambda: leapmap.solve(slop=0.4), "slope"), (lambda: leapmap.solve(fields=["jump_hight"]), "jump_height"),
+                        (lambda: leapmap.design(slope={"from": 0.1, "to": 0.5}, goal={"jump_tme": {"at_most": 1}}, maximize="jump_height"), "jump_time")):
+        with pytest.raises(ValueError, match=rf"did you mean {meant}\?"):
+            call()

@@ -99,11 +99,11 @@ def test_a_fit_to_events_has_their_chi_square():
 
 def test_bad_measurements_raise_value_errors():
     for data, word in (({"t": [0, 1], "phi": [3, 3]}, "three"), ({"t": [0, 2, 1], "phi": [3, 3, 3]}, "ascend"), ({"t": [0, 1, 2]}, "neither"), ({"jump": (1, 0.1)}, "jump"),
-                       ({"jump_time": (0.3, 0.01), "jump_height": 1.0}, "jump_height = 1.0 is no event"), ({"jump_time": (0.3, 0.01, 1.0)}, "no event"), ({"jump_time": "12"}, "no event"), ({"jump_time": {0.3, 0.1}}, "no event")):
+                       ({"jump_time": (0.3, 0.01), "jump_height": 1.0}, "jump_height = 1.0 is not an event"), ({"jump_time": (0.3, 0.01, 1.0)}, "not an event"), ({"jump_time": "12"}, "not an event"), ({"jump_time": {0.3, 0.1}}, "not an event")):
         with pytest.raises(ValueError, match=word):
             leapmap.fit(data)
     with pytest.raises(ValueError, match="model"):
         leapmap.fit({"jump_time": (0.5, 0.1)}, model="sliding")
     for given in ({"error": 0.1}, {"allow_gaps": True}):
-        with pytest.raises(ValueError, match="no use with events"):
+        with pytest.raises(ValueError, match="no effect with events"):
             leapmap.fit({"jump_time": (0.5, 0.1)}, **given)

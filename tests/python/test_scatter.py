@@ -45,7 +45,7 @@ def test_indices_say_what_varies_and_nothing_is_dropped_without_a_word():
 @pytest.mark.parametrize("arguments, words", [
     ({}, "[scatter]"), ({"scatter": {"slope": {"normal": -1}}}, "scatter.slope"), ({"scatter": {"slop": {"normal": 1}}}, "slop"),
     ({"scatter": TOLERANCES, "goal": {"height": {"is": 1}}}, "height"), ({"scatter": TOLERANCES, "slope": [0.1, 0.2]}, "one design"),
-    ({"scatter": {"offset_ratio": {"uniform": 5}}}, "leaves the domain"), ({"scatter": TOLERANCES, "slop": 1}, "slop")])
+    ({"scatter": {"offset_ratio": {"uniform": 5}}}, "exceeds the domain"), ({"scatter": TOLERANCES, "slop": 1}, "slop")])
 def test_bad_arguments_are_refused_by_name(arguments, words):
     with pytest.raises(ValueError, match=words.replace("[", r"\[")):
         leapmap.scatter(**arguments)

@@ -64,10 +64,10 @@ def test_a_specs_file_is_written_read_refused_overwritten_and_resumed(tmp_path):
 @pytest.mark.parametrize("spec, says", [
     ({"design": {"slope": "steep"}}, "slope"),
     ({"design": {"slop": 1.0}}, "slop"),
-    ({"design": 1.0}, "design = 1.0 is no section"),
-    ({"design": {"slope": np.zeros((2, 2))}}, "is no value of a spec"),
-    ({"design": {"slope": ["10 deg", 0.2]}}, "slope = .* is no value of a spec"),
-    ({"design": {"slope": None}}, "slope = None is no value of a spec"),
+    ({"design": 1.0}, "design = 1.0 is not a section"),
+    ({"design": {"slope": np.zeros((2, 2))}}, "is not a value of a spec"),
+    ({"design": {"slope": ["10 deg", 0.2]}}, "slope = .* is not a value of a spec"),
+    ({"design": {"slope": None}}, "slope = None is not a value of a spec"),
     ({"design": {"bad key\n": 1.0}}, "bad key"),
     ({"output": {"file": "a\rb\x7f.h5", "precision": "f2"}}, "f2"),
 ])
@@ -78,7 +78,7 @@ def test_refuses_what_is_no_spec(spec, says):
 
 def test_resume_and_overwrite_have_no_use_in_memory():
     for given in ({"resume": True}, {"overwrite": True}):
-        with pytest.raises(ValueError, match="no use in memory"):
+        with pytest.raises(ValueError, match="no effect in memory"):
             leapmap.sweep(GRID, **given)
 
 
@@ -118,7 +118,7 @@ def test_ctrl_c_keeps_what_is_done_and_resume_ends_with_the_same_bits(tmp_path):
             f"try:\n    leapmap.sweep({spec!r}, progress=at)\nexcept KeyboardInterrupt as error:\n    print('interrupted:', error)\n")
     path = "import os, sys; sys.path.insert(0, os.environ['LEAPMAP_BUILD'] + '/python')\n"
     done = subprocess.run([sys.executable, "-c", path + code], capture_output=True, text=True, timeout=120)
-    assert "map.h5.part keeps what is done; resume=True goes on" in done.stdout, done.stderr
+    assert "map.h5.part keeps what is done; resume=True continues it" in done.stdout, done.stderr
     assert (tmp_path / "map.h5.part").exists()
     resumed = leapmap.sweep(spec, resume=True)
     whole = leapmap.sweep(spec, tmp_path / "whole.h5")

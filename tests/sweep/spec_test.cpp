@@ -188,7 +188,7 @@ TEST(Spec, AValueBesideAColumnOfItsNameIsRefused) {
     read_spec(path, {});
     FAIL() << "the column would win without a word";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("slope = 0.3 has no use beside the column"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("slope = 0.3 has no effect beside the column"), std::string::npos)
         << error.what();
   }
 }
@@ -237,7 +237,7 @@ TEST(Spec, AnAxisIsShownByItsBoundsWhereTheyGiveTheSameBits) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(again.axes[i].values, spec.axes[i].values);
 }
 
-TEST(Options, EveryKeyIsDeclaredOnceAndTold) {
+TEST(Options, EveryKeyIsDeclaredOnceAndInTheHelp) {
   const std::string help = options_help();
   for (const Option& option : spec_options()) {
     EXPECT_EQ(find_option(option.section, option.key), &option) << option.key << ": once in a section";

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""leapmap: when and how high does a passive hoop jump? Designs as numbers or numpy arrays, solved on all cores.
+"""Jumps of hoops with an off-centre mass: which designs jump, how high, how far, how soon.
 
-    import leapmap, numpy as np
-    o = leapmap.solve(slope="23 deg", mass_ratio=np.geomspace(0.1, 20, 256)[:, None], offset_ratio=[0.8, 1.0])
-    o.jump_height, o.status          # arrays of shape (256, 2)
-    o.to_xarray()                    # an xarray.Dataset
+Designs are numbers or numpy arrays, and are solved on all cores.
 
-`solve` and `trace` say which parameters there are and what they mean: help(leapmap.solve).
+Examples
+--------
+>>> import leapmap, numpy as np
+>>> o = leapmap.solve(slope="23 deg", mass_ratio=np.geomspace(0.1, 20, 256)[:, None], offset_ratio=[0.8, 1.0])
+>>> o.jump_height.shape
+(256, 2)
 """
 try:
     import leapmap._core as _core
@@ -20,7 +22,7 @@ except ModuleNotFoundError as error:
     _here = os.path.dirname(os.path.abspath(__file__))
     _cores = ", ".join(os.path.basename(path) for path in glob.glob(os.path.join(glob.escape(_here), "_core.*"))) or "no compiled core"
     raise ImportError(f"{_here}: has {_cores}, and this is {sys.executable}, Python {sys.version.split()[0]}; allowed: the Python that it was "
-                      "built for, as a rule /usr/bin/python3, or a build with cmake -DLEAPMAP_PYTHON=...") from None
+                      "built for, usually /usr/bin/python3, or a build with cmake -DLEAPMAP_PYTHON=...") from None
 from leapmap._design import DesignProblem, Found, design
 from leapmap._fit import Fit, FittedParameter, fit
 from leapmap._results import Motion, Outcomes, Status
@@ -35,20 +37,59 @@ __version__ = _core.program_version()
 
 
 def phase_letters(sequence):
-    """A phase_sequence as letters, for example "RSRSF": rolling, sliding, flight; "..." where there are 32 or more."""
+    """Convert a phase_sequence to letters.
+
+    Parameters
+    ----------
+    sequence : int
+        A phase_sequence as maps store it.
+
+    Returns
+    -------
+    str
+        R rolling, S sliding, F flight; "..." at the end: 32 phases or more.
+
+    Examples
+    --------
+    >>> leapmap.phase_letters(0b111001)
+    'RSF'
+    """
     return _core.phase_letters(int(sequence))
 
 
 def instruction_set():
-    """The instruction set in use and how many designs it works on at once. The last bits of numbers depend on it."""
+    """Return the instruction set in use and its number of SIMD lanes. The last bits of results depend on it.
+
+    Returns
+    -------
+    str
+        For example "x86-64-v3, 4 lanes".
+    """
     return _core.instruction_set()
 
 
 def instruction_sets():
-    """Those that this build has and this machine can run, lowest first."""
+    """Return the instruction sets that were built in and that this machine supports, lowest first.
+
+    Returns
+    -------
+    list of str
+        For example ["x86-64", "x86-64-v3"].
+    """
     return _core.instruction_sets()
 
 
 def use_instruction_set(name):
-    """Uses that one from now on. Not while anything is being solved."""
+    """Select an instruction set, so that different machines return equal bits. Call it before anything is solved.
+
+    Parameters
+    ----------
+    name : str
+        One of instruction_sets().
+
+    Raises
+    ------
+    ValueError
+        If it was not built in or the machine does not support it.
+    """
     _core.use_instruction_set(name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder analysis/ beside this file: scripts that run by themselves, and the reader they share."""
+"""The folder analysis/ beside this file: chart scripts, and the reader of maps that they share."""
 import importlib
 import os
 import sys
@@ -11,8 +11,11 @@ _lock, _loaded = threading.Lock(), {}
 
 
 def reader():
-    """analysis/read_map.py. It finds its neighbour open_file on the path, as scripts do; neither name is left in sys.modules, where
-    a user's own modules of those names may be."""
+    """Import analysis/read_map.py.
+
+    It finds its neighbour open_file on the path, as scripts do. Neither name stays in sys.modules, which may hold a user's
+    own modules of those names.
+    """
     with _lock:
         if not _loaded:
             others = {name: sys.modules.pop(name) for name in _NEIGHBOURS if name in sys.modules}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What callers give, checked once at the entry: a wrong type or value is a ValueError that names the parameter."""
+"""Checks of arguments: a wrong type or value is a ValueError that names the parameter."""
 import math
 import numbers
 import os
@@ -18,10 +18,10 @@ def shown(value):
 
 
 def array(name, value, ndim=None):
-    """An array of numbers as floats. A masked array is taken if nothing of it is masked. ndim: how many dimensions; None: any."""
+    """An array of numbers as floats; masked arrays if nothing is masked. ndim: number of dimensions; None: any."""
     if np.ma.is_masked(value):
         raise ValueError(
-            f"{name} = {shown(value)} has masked values; allowed: numbers, without those that are masked"
+            f"{name} = {shown(value)} has masked values; allowed: numbers without a mask"
         )
     try:
         found = np.asarray(value)
@@ -29,12 +29,12 @@ def array(name, value, ndim=None):
         found = np.asarray(None)
     if found.dtype.kind not in "fiu" or ndim is not None and found.ndim != ndim:
         allowed = {0: "a number", 1: "a list of numbers"}.get(ndim, "an array of numbers")
-        raise ValueError(f"{name} = {shown(value)} is no such value; allowed: {allowed}")
+        raise ValueError(f"{name} = {shown(value)} is not a valid value; allowed: {allowed}")
     return np.asarray(found, float)
 
 
 def real(name, value):
-    """A number; NaN and infinity are left to whoever knows the range."""
+    """A number, NaN and infinity included."""
     return float(array(name, value, 0))
 
 
@@ -51,15 +51,15 @@ def whole(name, value, least, most=10**15):
 
 
 def count(name, value, least):
-    """How many, an integer and nothing that only equals one."""
+    """A number of things: an integer, not a float that equals one."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Integral):
-        raise ValueError(f"{name} = {shown(value)} is no whole number; allowed: a whole number from {least}")
+        raise ValueError(f"{name} = {shown(value)} is not a whole number; allowed: a whole number from {least}")
     return whole(name, value, least)
 
 
 def text(name, value):
     if not isinstance(value, str):
-        raise ValueError(f"{name} = {shown(value)} is no text; allowed: a name")
+        raise ValueError(f"{name} = {shown(value)} is not a text; allowed: a name")
     return value
 
 
@@ -68,7 +68,7 @@ def mapping(name, value):
     if value is None:
         return {}
     if not isinstance(value, Mapping):
-        raise ValueError(f"{name} = {shown(value)} is no dictionary; allowed: {{key: value}}")
+        raise ValueError(f"{name} = {shown(value)} is not a dictionary; allowed: {{key: value}}")
     return value
 
 
@@ -81,7 +81,7 @@ def names(name, value):
     except TypeError:
         found = [None]
     if not all(isinstance(one, str) for one in found):
-        raise ValueError(f"{name} = {shown(value)} are no names; allowed: a name, or a list of names")
+        raise ValueError(f"{name} = {shown(value)} are not names; allowed: a name, or a list of names")
     return found
 
 

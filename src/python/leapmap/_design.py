@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a question to designs: what leapmap design does, and the same question for optimizers of others."""
+"""Search for designs: leapmap design, and the same problem for other optimizers."""
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -13,15 +13,35 @@ from leapmap._sweep import _keyed, _toml
 
 @dataclass(frozen=True)
 class Found:
-    """What design found, best first, each design the best of a basin of its own; of two objectives the front, along the first.
+    """Designs that a search found, best first; with two objectives the Pareto front, along the first.
 
-    reached: False: no design met reaches every goal, and what is here is the nearest miss; missed tells each goal's field there.
-    parameters, objectives: {name: array}. outcomes: Outcomes of them as drawn.
-    gradients: {field: {free parameter: array}}, of the quantities that objectives and goals name; empty of a front.
-    binds: of each design, in words, what keeps it from being better. cliff_distance: of the nearest cliff, in shares of the box.
-    yield_: with scatter, the share of the hoops made that reach every goal; else NaN.
-    hypervolume: of a front, the share of the rectangle between its ends that it dominates; else NaN.
-    evaluations: designs solved. engines: whether pagmo and NLopt took part."""
+    Attributes
+    ----------
+    reached : bool
+        False: no design reaches every goal, and the only one is the nearest miss.
+    parameters, objectives : dict of ndarray
+        By name, one element for each design.
+    outcomes : Outcomes
+        Outcomes of the nominal designs.
+    gradients : dict
+        {field: {free parameter: ndarray}} of the fields that objectives and goals name; empty for a front.
+    binds : list of list of str
+        Active constraints of each design, in words.
+    cliff_distance : ndarray
+        Distance to the nearest discontinuity, as a fraction of the bounds.
+    yield_ : ndarray
+        With tolerances, the fraction of manufactured hoops that reach every goal; otherwise NaN.
+    missed : dict
+        {field of a goal: its value at the nearest miss}.
+    hypervolume : float
+        Fraction of the rectangle between a front's ends that it dominates; otherwise NaN.
+    evaluations : int
+        Number of designs solved.
+    seconds : float
+        Duration [s].
+    engines : bool
+        Whether this build has pagmo and NLopt.
+    """
     reached: bool
     parameters: dict
     objectives: dict
@@ -41,33 +61,78 @@ class Found:
 
 
 def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed=1, most=0, sample=0, threads=0, **overrides):
-    """The designs of a box that reach their goals best; a Pareto front of two objectives. As `leapmap design`.
+    """Find the designs within given bounds that reach given goals best, or a Pareto front of two objectives.
 
-        leapmap.design(slope={"from": "2 deg", "to": "20 deg"}, mass_ratio={"from": 0.1, "to": 50, "scale": "log"},
-                       friction="coulomb", goal={"jump_height": {"at_least": 0.8}}, minimize=["mass_ratio"])
+    Parameters
+    ----------
+    spec : path or mapping, optional
+        A TOML file, or {section: {key: value}}; parameters with "from" and "to" are free.
+    goal : mapping, optional
+        {field: {"at_least": ...}, {"at_most": ...}, both, or {"is": ...}}.
+    maximize, minimize : str or sequence of str
+        One or two fields or free parameters in all.
+    scatter : mapping, optional
+        Tolerances, as in leapmap.scatter; then yield may be a goal or an objective.
+    seed : int, default 1
+        Equal seeds give equal designs.
+    most : int, default 0
+        Largest number of designs returned; 0: 8, or 2,048 for a front.
+    sample : int, default 0
+        Number of designs in the initial sample; 0: what takes a second or two.
+    threads : int, default 0
+        Number of threads; 0: all cores.
+    **overrides
+        Keys of the spec.
 
-    spec: a TOML file's path, or a dictionary {section: {key: value}}; parameters with "from" and "to" are free.
-    goal: {field: {"at_least": ...}, {"at_most": ...}, both, or {"is": ...}}. maximize, minimize: one or two fields or free
-        parameters in all. scatter: as leapmap.scatter has it; then yield may be a goal or an objective.
-    seed: the same seed, the same designs. most: designs told; 0: 8, of a front 2,048. sample: designs of the first, dense sample; 0: a second or two.
-    threads: 0 for all cores. overrides: keys of the spec.
+    Returns
+    -------
+    Found
+        Designs, best first.
 
-    Returns Found. Raises ValueError, naming the key, its value and what is allowed. Ctrl-C ends it."""
+    Raises
+    ------
+    ValueError
+        With key, value and what is allowed.
+
+    Examples
+    --------
+    >>> best = leapmap.design(slope={"from": "2 deg", "to": "20 deg"}, maximize="jump_height", sample=4096)
+    >>> round(float(best.objectives["jump_height"][0]), 3)
+    0.853
+    """
     told = _core.design(*_question(spec, goal, maximize, minimize, scatter, overrides), whole("seed", seed, 0), whole("most", most, 0, 10**5),
                         whole("sample", sample, 0, 2**27), whole("threads", threads, 0, 4096))
     return Found(**told | {"outcomes": Outcomes(told["outcomes"], {"friction": "any"})})
 
 
 class DesignProblem:
-    """The same question for optimizers of others: a problem as pygmo takes it, and a function as scipy does.
+    """The design problem of leapmap.design, for optimizers of scipy and pygmo.
 
-        problem = leapmap.DesignProblem(slope={"from": 0.1, "to": 0.5}, mass_ratio={"from": 0.1, "to": 20}, maximize=["jump_height"])
-        scipy.optimize.differential_evolution(problem.cost, problem.bounds)
-        pygmo.problem(problem)
+    Decision vectors hold the free parameters, in their own units, in the order of `names`. Costs are the objectives, with
+    the sign of those to maximize turned. A design that misses a goal costs at least 1e30, and more the farther it misses.
 
-    Decision vectors hold the free parameters, in their own units, in the order of names; fixed holds the others, as solve takes
-    them. Costs are the objectives, less is better (those to maximize with their sign turned); of a design that misses a goal 1e30
-    and more, the more it misses."""
+    Parameters
+    ----------
+    spec, goal, maximize, minimize, scatter, threads, **overrides
+        As in leapmap.design.
+
+    Attributes
+    ----------
+    names : list of str
+        Free parameters.
+    bounds : list of tuple
+        Lower and upper bound of each.
+    objectives : list of str
+        Objectives.
+    fixed : dict
+        The other parameters, as solve takes them.
+
+    Examples
+    --------
+    >>> problem = leapmap.DesignProblem(slope={"from": 0.1, "to": 0.5}, maximize=["jump_height"])
+    >>> round(problem.cost([0.4]), 3)
+    -0.983
+    """
 
     def __init__(self, spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, threads=0, **overrides):
         self._asked = (*_question(spec, goal, maximize, minimize, scatter, overrides), whole("threads", threads, 0, 4096))
@@ -89,42 +154,59 @@ class DesignProblem:
 
     @property
     def evaluations(self):
-        """Designs judged so far."""
+        """Number of designs evaluated so far."""
         return self._core.evaluations()
 
     def judge(self, places):
-        """Of an array of designs, a row each: costs, an array of as many rows, and violations, 0 where every goal is reached."""
+        """Evaluate designs.
+
+        Parameters
+        ----------
+        places : array_like
+            One design in a row.
+
+        Returns
+        -------
+        costs, violations : ndarray
+            One row of costs and one number for each design; a violation is 0 if every goal is reached.
+        """
         rows = np.atleast_2d(array("places", places) if np.size(places) else np.empty((0, len(self.names))))
         return self._core.judge(rows)
 
     def costs(self, places):
-        """Of an array of designs, a row each: an array of costs, a row each."""
+        """Evaluate designs, one in a row, and return an array with one row of costs for each."""
         costs, violations = self.judge(places)
         return np.where(violations[:, None] > 0, 1e30 * (1 + violations[:, None]), costs)
 
     def cost(self, place):
-        """Of one design, the first objective."""
+        """Evaluate one design and return the cost of the first objective."""
         if np.ndim(place) != 1:
-            raise ValueError("cost is of one design; allowed: a vector. costs takes a row each")
+            raise ValueError("cost takes one design; allowed: a vector, or costs for several designs")
         return float(self.costs(place)[0, 0])
 
     def fitness(self, place):
+        """Costs of one design, for pygmo."""
         return self.costs(place)[0]
 
     def batch_fitness(self, places):
+        """Costs of several designs in one vector, for pygmo."""
         return self.costs(array("places", places).reshape(-1, len(self.names))).ravel()
 
     def has_batch_fitness(self):
+        """True, for pygmo."""
         return True
 
     def get_nobj(self):
+        """Number of objectives, for pygmo."""
         return len(self.objectives)
 
     def get_bounds(self):
+        """Lower and upper bounds, for pygmo."""
         low, high = zip(*self.bounds)
         return list(low), list(high)
 
     def get_name(self):
+        """Name of the problem, for pygmo."""
         return "leapmap design"
 
 

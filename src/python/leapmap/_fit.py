@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From measurements to a hoop: what leapmap fit does."""
+"""Identification from measurements: leapmap fit."""
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -12,8 +12,19 @@ from leapmap._design import _question
 
 @dataclass(frozen=True)
 class FittedParameter:
-    """value, and its standard error. identified: False: the data do not tell it, and the error is NaN. low, high: where chi-square stays
-    within one of its least, the others refitted. at_bound: whether it is at the end of its range."""
+    """One fitted parameter.
+
+    Attributes
+    ----------
+    value, error : float
+        Best fit and its standard error; error NaN: not identified.
+    low, high : float
+        Interval in which chi-square rises by less than 1, the other parameters refitted.
+    identified : bool
+        False: the data do not determine it.
+    at_bound : bool
+        Whether the value is at one of its bounds.
+    """
     value: float
     error: float
     low: float
@@ -24,16 +35,34 @@ class FittedParameter:
 
 @dataclass(frozen=True)
 class Fit:
-    """One model, fitted. friction: its name. found: False: no hoop of the box does anything like it, or why tells the reason.
-    judged: False: a film of too few lines to say whether it explains them. explains: whether it explains the data: of events, or a film with a known error, probability is that of such a chi-square, or
-    more, if the model is true; misfit: of a film, residuals over the scatter from line to line.
-    correlation: of a film, lines that count as one, as neighbouring residuals are alike in smoothed films; errors allow for it.
-    independent: lines of a film in such units.
-    after_landing: lines of a film after the model's landing, where it is not followed.
+    """One fitted model.
 
-    parameters: {name: FittedParameter}, correlations: array, in their order. chi_square over degrees of freedom. error: of a film the rms
-    of its residuals. information: Akaike's; less is better. model, residuals: of every number measured, in the order of the data (of
-    markers line by line), residuals over their errors."""
+    Attributes
+    ----------
+    friction : str
+        Name of the model.
+    found : bool
+        False: no design within the bounds shows all that was measured; `why` gives the reason.
+    explains, judged : bool
+        Whether the model explains the data; judged False: too few lines to decide.
+    parameters : dict
+        {name: FittedParameter}.
+    correlations : ndarray
+        Correlation matrix, in their order.
+    chi_square, degrees, probability : float, int, float
+        Sum of squares of residuals over errors, degrees of freedom, and the probability of a larger sum if the model is
+        true; NaN if errors are unknown.
+    error, misfit : float
+        Film: rms of the residuals, and its ratio to their scatter from line to line.
+    correlation, independent : float
+        Film: number of neighbouring lines that count as one, and the number of independent lines.
+    after_landing : int
+        Film: number of lines after the model's landing, which are not used.
+    information : float
+        Akaike's criterion; less is better.
+    model, residuals : ndarray
+        For every number measured, in the order of the data: the model's value, and the residual over its error.
+    """
     friction: str
     found: bool
     why: str
@@ -57,28 +86,52 @@ class Fit:
 def _event(name, value):
     is_pair = isinstance(value, (tuple, list, np.ndarray)) and len(value) == 2 and not any(isinstance(one, (str, tuple, list)) for one in value)
     if not is_pair:
-        raise ValueError(f"{name} = {shown(value)} is no event; allowed: (value, standard error), or a film with 't'")
+        raise ValueError(f"{name} = {shown(value)} is not an event; allowed: (value, standard error), or a film with 't'")
     pair = array(name, value, 1)
     return float(pair[0]), float(pair[1])
 
 
 def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, threads=0, **overrides):
-    """The release, friction and torque that explain a measured motion, by least squares. As `leapmap fit`.
+    """Identify release, friction and torque from a measured motion, by least squares.
 
-        leapmap.fit("film.csv")
-        leapmap.fit({"t": t, "phi": phi}, mass_ratio=3.0, error=2e-3)
-        leapmap.fit({"apex_time": (0.129, 0.001), "flight_time": (0.198, 0.001), "jump_height": (1.0, 0.05)},
-                    release_angle={"from": "150 deg", "to": "330 deg"})
+    Parameters
+    ----------
+    data : path or mapping
+        A CSV file; or arrays {"t", "phi"} or {"t", "x_P", "y_P", "x_O", "y_O"} in s, rad and m; or events {field: (value,
+        standard error)}. The angle phi is 0 if the mass touches the plane. x is along the plane, downhill; y is away from it.
+        P is the mass, O the hoop's centre.
+    spec : path or mapping, optional
+        The hoop, and free parameters {"from", "to"}. Without any these are release_angle, release_spin and mu_static.
+    model : str, default "both"
+        "sticking", "coulomb" or "both".
+    error : float, optional
+        Standard error of a film's numbers; default: from the residuals.
+    allow_gaps : bool, default False
+        Accept films with missing lines.
+    seed : int, default 1
+        Seed of the coarse map.
+    threads : int, default 0
+        Number of threads; 0: all cores.
+    **overrides
+        Keys of the spec.
 
-    data: a CSV file's path, or {"t": ..., "phi": ...}, {"t", "x_P", "y_P", "x_O", "y_O"}: arrays, in s, rad and m; or
-        {field: (value, standard error)} of events. phi: 0 where the mass touches the plane; x along the plane, downhill, y away from
-        it; P is the mass, O the hoop's centre.
-    spec: a TOML file's path or a dictionary: the hoop, and free parameters {"from", "to"}. Without one release_angle, release_spin
-        and mu_static are free, whatever is given for them; with any only those.
-    model: "sticking", "coulomb" or both. error: of a film's numbers; default: told by the residuals.
-    seed: of the coarse map. threads: 0 for all cores. overrides: keys of the spec.
+    Returns
+    -------
+    list of Fit
+        The preferred model first.
 
-    Returns a list of Fit, the model that the data prefer first. Raises ValueError, naming line, number and what is allowed."""
+    Raises
+    ------
+    ValueError
+        With line, number and what is allowed.
+
+    Examples
+    --------
+    >>> fits = leapmap.fit({"apex_time": (0.129, 0.001), "flight_time": (0.198, 0.001)}, model="sticking",
+    ...                    release_angle={"from": "150 deg", "to": "270 deg"})
+    >>> fits[0].friction, sorted(fits[0].parameters)
+    ('sticking', ['release_angle'])
+    """
     models = ["sticking", "coulomb"] if text("model", model) == "both" else [model]
     if isinstance(data, Mapping):
         for name in data:
@@ -88,7 +141,7 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
     elif isinstance(data, Mapping):
         for name, given in (("error", error is not None), ("allow_gaps", allow_gaps)):
             if given:
-                raise ValueError(f"{name}: has no use with events, each of which has an error of its own; allowed: with a film")
+                raise ValueError(f"{name}: has no effect with events, which have errors of their own; allowed: with a film")
         data = {key: _event(key, value) for key, value in data.items()}
     else:
         data = path("data", data)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What solve and trace return."""
+"""Results of solve and trace."""
 from enum import IntEnum
 
 import numpy as np
@@ -9,12 +9,12 @@ from leapmap import _core
 _FIELDS = {row["name"]: row for row in _core.fields()}
 _PARAMETERS = {row["name"]: row for row in _core.parameters()}
 Status = IntEnum("Status", {name: code for code, name in enumerate(_FIELDS["status"]["codes"])})
-Status.__doc__ = "How a design ended, as maps store it: numbers are never reused or changed."
+Status.__doc__ = "How a design ended. Maps store these numbers, so they never change."
 _PHASES = {1: "rolling", 2: "sliding", 3: "flight"}
 _POINTS = {"t": ("s", "since release"), "phi": ("rad", "angle; 0: mass on the plane"), "spin": ("rad s-1", "positive downhill"),
            "x": ("m", "travel of the hoop's centre along the plane since release"),
            "y": ("m", "height of the hoop's lowest point above the plane"),
-           "normal_force": ("1", "over the weight; negative: rolling on would need a plane that pulls"),
+           "normal_force": ("1", "over the weight; negative: contact would need a pull"),
            "friction": ("1", "over the weight, positive downhill"), "phase": ("1", "1 rolling, 2 sliding, 3 flight")}
 
 
@@ -27,9 +27,16 @@ def _described(name):
 
 
 class Outcomes:
-    """Outcomes of many designs: an array for each field, in the shape the parameters broadcast to; of one design, numbers.
+    """Outcomes of designs: one attribute for each field, an array or, for one design, a number.
 
-    Quantities are float64, NaN where they do not apply; `status` and the other codes are uint8."""
+    Quantities are float64, NaN if they do not apply; `status` and the other codes are uint8.
+
+    Examples
+    --------
+    >>> o = leapmap.solve(slope=[0.2, 0.4])
+    >>> [leapmap.Status(code).name for code in o.status]
+    ['jumped', 'jumped']
+    """
 
     def __init__(self, fields, given):
         self.__dict__.update(fields)
@@ -55,8 +62,16 @@ class Outcomes:
         return f"<outcomes of {' x '.join(map(str, shape))} designs{counts}; fields {', '.join(self._fields)}>"
 
     def to_xarray(self):
-        """An xarray.Dataset. A dimension along which one parameter alone varies takes its name and its values; another is
-        called dim_0, dim_1, ... and the parameters along it are coordinates."""
+        """Convert to an xarray.Dataset.
+
+        A dimension along which only one parameter varies takes its name and values. Another one is called dim_0,
+        dim_1, and so on, and the parameters along it are coordinates.
+
+        Returns
+        -------
+        xarray.Dataset
+            With units, long names and the meanings of codes.
+        """
         import xarray
 
         shape = np.shape(next(iter(self._fields.values())))
@@ -80,12 +95,26 @@ class Outcomes:
 
 
 class Motion:
-    """One design's motion.
+    """The motion of one design.
 
-    Arrays, a sample each interval, and at the jump's lift-off and landing: t [s], phi [rad], spin [rad/s], x and y [m],
-    normal_force and friction [weights], phase (1 rolling, 2 sliding, 3 flight).
-    phases: where each begins; candidates: every lift-off looked at, height and dip in hoop diameters. Both lists of dictionaries.
-    outcome: as solve's, of one design."""
+    Attributes
+    ----------
+    t, phi, spin, x, y : ndarray
+        Time since release [s], angle [rad], angular velocity [rad/s], travel of the centre along the plane and height
+        of the lowest point [m]: one sample at every interval, and at the jump's lift-off and landing.
+    normal_force, friction : ndarray
+        Contact forces over the weight.
+    phase : ndarray
+        1 rolling, 2 sliding, 3 flight.
+    phases : list of dict
+        The beginning of each phase.
+    candidates : list of dict
+        Every lift-off; height and dip in hoop diameters.
+    outcome : Outcomes
+        As solve returns it.
+    failure : str or None
+        Reason of status failed.
+    """
 
     def __init__(self, told, given):
         self.__dict__.update(told["points"])
@@ -99,7 +128,13 @@ class Motion:
                 f"{len(self.candidates)} lift-offs>")
 
     def to_xarray(self):
-        """An xarray.Dataset of the samples along t."""
+        """Convert the samples to an xarray.Dataset along t.
+
+        Returns
+        -------
+        xarray.Dataset
+            With units and long names.
+        """
         import xarray
 
         columns = {name: ("t", getattr(self, name), {"units": unit, "long_name": meaning})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One design as it is made, many times over."""
+"""One design as manufactured: yield, distribution of its outcomes, influence of each tolerance."""
 from typing import NamedTuple
 
 from leapmap import _core
@@ -9,36 +9,55 @@ from leapmap._results import Outcomes
 
 
 class Estimate(NamedTuple):
-    """A number and its standard error; NaN: it cannot be told."""
+    """A number with its standard error; NaN: not determined."""
     value: float
     error: float
 
 
 def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
-    """Hoops made after one design: how likely they do what they must, how high they jump, and which tolerance matters.
+    """Sample manufactured hoops around one design: yield, distribution of its jumps, influence of each tolerance.
 
-        leapmap.scatter(slope=0.4, scatter={"slope": {"normal": "1 deg"}, "mass_ratio": {"uniform": "5 %"}},
-                        goal={"jump_height": {"at_least": 0.8}})
+    Parameters
+    ----------
+    spec : path or mapping, optional
+        A TOML file, or {section: {key: value}}, with [scatter] and [goal]; default: the paper's hoop.
+    scatter : mapping, optional
+        Tolerances, {parameter: {"normal": standard deviation} or {"uniform": half width}}: numbers in the parameter's
+        unit, angles like "1 deg", or "2 %" of the value. Also "samples" (default 1024, a multiple of 16) and "seed".
+    goal : mapping, optional
+        {field: {"at_least": ...}, {"at_most": ...}, both, or {"is": ...}}.
+    threads : int, default 0
+        Number of threads; 0: all cores.
+    **overrides
+        Keys of the spec, for example slope=0.4 or friction="coulomb".
 
-    spec: a TOML file's path, or a dictionary {section: {key: value}}, with [scatter] and [goal]; default: the paper's hoop.
-    scatter: {parameter: {"normal": standard deviation} or {"uniform": half width}}, a number in the parameter's unit, an angle
-        like "1 deg", or "2 %" of its value; cut off where the parameter may not be. Also "samples" (1024), 16 times a whole
-        number, and "seed" (1).
-    goal: {field: {"at_least": ...}, {"at_most": ...}, both, or {"is": ...}}.
-    threads: 0 for all cores. overrides: keys of the spec, slope=0.4 or friction="coulomb".
+    Returns
+    -------
+    dict
+        yield, jumps: fractions that reach every goal, and that jump (Estimate).
+        missed: {field of a goal: fraction that misses it}.
+        jump_height, jump_time, or the quantities in fields: {"mean", "sd", "q05", "q50", "q95"} of the hoops that jump.
+        first, total: Sobol' indices, {quantity: {parameter: Estimate}}; NaN if nothing varies. Those of height and time
+        describe the fraction `pairs` of pairs in which both hoops jump.
+        cut_off: {parameter: fraction of its distribution outside its domain}.
+        unsolved: fraction that the method could not solve; the errors include it.
+        shrink: {parameter: factor by which its tolerance must shrink for a yield of 99 %, the others unchanged}; 0: even
+        without it the yield is lower. shrink_all: the factor for all together.
+        without: {parameter: yield if its tolerance were zero}.
+        made: {parameter: array} and outcomes: Outcomes, of the manufactured hoops.
 
-    Returns a dict; an Estimate has a value and its standard error, told by 16 replicates of Sobol' points:
-    yield, jumps: shares that reach every goal, and that jump. missed: {field of a goal: share that misses it}.
-    jump_height, jump_time, or those that fields= names: {"mean", "sd", "q05", "q50", "q95"} of those that jump.
-    first, total: Sobol' indices, {"yield", "jumps", "jump_height" or "jump_time": {parameter: Estimate}}; NaN where nothing
-        varies. Those of height and time are of the variance among pairs of hoops that both jump, pairs[...] of all.
-    cut_off: {parameter: share of its law that no hoop can have}.
-    unsolved: share that the method gave up on, of which nothing is known; errors tell it.
-    shrink: {parameter: to what share of its width it has to shrink, the others staying, for 99 % yield}; 0: not even without
-        it. without: {parameter: the yield if it did not scatter}. shrink_all: as shrink, of all together.
-    made: {parameter: array}, outcomes: Outcomes, of the hoops made.
+    Raises
+    ------
+    ValueError
+        With key, value and what is allowed.
 
-    Raises ValueError, naming the key, its value and what is allowed. Ctrl-C ends it."""
+    Examples
+    --------
+    >>> r = leapmap.scatter(slope=0.4, scatter={"slope": {"normal": "1 deg"}, "mass_ratio": {"uniform": "5 %"}},
+    ...                     goal={"jump_height": {"at_least": 0.95}})
+    >>> round(r["yield"].value, 2)
+    0.75
+    """
     text, origin, changes = _question(spec, goal, (), (), scatter, overrides)
     told = _core.scatter(text, origin, changes, whole("threads", threads, 0, 4096))
     outcomes = Outcomes(told.pop("outcomes"), {"friction": "any"})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""solve and trace, with what they take written into their docstrings and signatures from leapmap's own tables."""
+"""solve, gradient, trace and gaits. Their docstrings and signatures list the parameters and fields of leapmap's own tables."""
 import inspect
 import os
 
@@ -12,23 +12,50 @@ from leapmap._results import Motion, Outcomes
 
 def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None, method="auto", tolerance=1e-10, max_steps=1_000_000, threads=0,
           **parameters):
-    """Solves designs: when and how high does each of them jump?
+    """Solve designs: when, how high and how far each of them jumps.
 
-    Every parameter of a design is a number, an angle like "30 deg", or an array; arrays broadcast as numpy's do. Those of the
-    scene are one number for the call. What is not given is the paper's hoop.
+    Arrays broadcast as numpy's do. Parameters that are not given are those of the paper's hoop.
+
+    Parameters
+    ----------
     {parameters}
-    friction: "sticking", the contact never slips, or "coulomb".
-    jumps: goes on after a landing until that many jumps, 1 to 250; their fields are jump_height_2, jump_time_2 and so on.
-    settle: jumps before the gait that the hoop settles on is looked at, of up to most_period jumps; 0: none is looked for.
-    fields: names of those wanted; what only others need is not computed. Default: all.
-    method: "auto", "exact", or a stepper like "gsl-rk8pd"; tolerance: relative error of times, a stepper's per step.
-    max_steps: of a stepper; a design that needs more has status failed. threads: 0 for all cores; one in a
-    forked process.
+    friction : str, default "sticking"
+        Contact model. "sticking": never slips, as in the paper; "coulomb": Coulomb friction.
+    jumps : int, default 1
+        Number of jumps to follow, 1 to 250; the fields of later ones are jump_height_2, jump_time_2 and so on.
+    settle : int, default 0
+        Transient: number of jumps to skip before a gait is searched for; 0: no search.
+    most_period : int, default 16
+        Longest period of a gait to search for, in jumps.
+    fields : sequence of str, optional
+        Names of the fields to compute; default: all.
+    method : str, default "auto"
+        "auto", "exact", or a stepper, for example "gsl-rk8pd".
+    tolerance : float, default 1e-10
+        Relative error allowed in times; of a stepper, per step.
+    max_steps : int, default 1000000
+        Of a stepper; a design that needs more gets status failed.
+    threads : int, default 0
+        Number of threads; 0: all cores. A forked process uses one.
 
-    Returns Outcomes, arrays in the shape all parameters broadcast to:
-    {fields}
+    Returns
+    -------
+    Outcomes
+        An array for each field, in the shape to which all parameters broadcast:
 
-    Raises ValueError, naming the parameter, its value and what is allowed. Ctrl-C ends it."""
+        {fields}
+
+    Raises
+    ------
+    ValueError
+        With parameter, value and what is allowed.
+
+    Examples
+    --------
+    >>> o = leapmap.solve(slope="23 deg", mass_ratio=[1.0, 2.0, 3.0])
+    >>> o.jump_height.round(3)
+    array([0.362, 0.847, 1.121])
+    """
     counts = (("jumps", jumps, 1, 1), ("settle", settle, 0, 0), ("most_period", most_period, 1, 16))
     parameters |= {name: number for name, value, least, usual in counts if (number := count(name, value, least)) != usual}
     columns = _core.solve(parameters, text("friction", friction), _names(fields), text("method", method), real("tolerance", tolerance),
@@ -38,54 +65,120 @@ def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None
 
 
 def gradient(*, of="jump_height", friction="sticking", tolerance=1e-10, threads=0, **parameters):
-    """The derivatives of a quantity by every parameter of the designs, to rounding: by dual numbers, not by differences.
+    """Differentiate one quantity by every parameter of the designs, by dual numbers, to machine precision.
 
-    Parameters as in solve:
+    Parameters
+    ----------
+    of : str, default "jump_height"
+        Name of the quantity.
+    friction : str, default "sticking"
+        Contact model, as in solve.
+    tolerance : float, default 1e-10
+        Relative error allowed in times.
+    threads : int, default 0
+        Number of threads; 0: all cores.
     {parameters}
-    of: the quantity, a field that is a number: "jump_height", "jump_time", ...
-    friction, threads: as in solve. tolerance: relative error of times.
 
-    Returns a dict: for each parameter of the model's designs an array in the shape all parameters broadcast to, in the quantity's
-    unit over the parameter's (angles in rad). NaN where the quantity does not apply, where the derivative is infinite, as on a
-    fold, or not known to six digits, and by mu_kinetic where that follows mu_static.
+    Returns
+    -------
+    dict
+        For each parameter an array in the shape to which all parameters broadcast, in the quantity's unit over the
+        parameter's (angles in rad). NaN: the quantity does not apply; the derivative is infinite, as on a fold, or
+        known to fewer than six digits; or mu_kinetic follows mu_static.
 
-    Raises ValueError, naming the parameter, its value and what is allowed. Ctrl-C ends it."""
+    Raises
+    ------
+    ValueError
+        With parameter, value and what is allowed.
+
+    Examples
+    --------
+    >>> g = leapmap.gradient(slope=0.4, of="jump_height")
+    >>> round(float(g["slope"]), 3)
+    2.296
+    """
     columns = _core.gradient(_whole_counts(parameters), text("friction", friction), text("of", of), real("tolerance", tolerance),
                              whole("threads", threads, 0, 4096))
     return {name: column[()] for name, column in columns.items()}
 
 
 def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10, max_steps=1_000_000, **parameters):
-    """One design's motion over time, sampled every interval [s]; 0: phases and lift-offs only.
+    """Solve one design and sample its motion over time.
 
-    Parameters are numbers, or angles like "30 deg"; what is not given is the paper's hoop.
+    Parameters
+    ----------
+    interval : float, default 0.001
+        Time between samples [s]; 0: phases and lift-offs only.
+    friction : str, default "sticking"
+        Contact model, as in solve.
+    method : str, default "auto"
+        As in solve.
+    tolerance : float, default 1e-10
+        As in solve.
+    max_steps : int, default 1000000
+        As in solve.
     {parameters}
-    friction, method, tolerance, max_steps: as in solve.
 
-    Returns a Motion. Raises ValueError, naming the parameter, its value and what is allowed."""
+    Returns
+    -------
+    Motion
+        Samples, phases, lift-offs and outcome, in SI units.
+
+    Raises
+    ------
+    ValueError
+        With parameter, value and what is allowed.
+
+    Examples
+    --------
+    >>> m = leapmap.trace(slope=0.4, interval=0.01)
+    >>> [phase["phase"] for phase in m.phases]
+    ['rolling', 'flight']
+    """
     told = _core.trace(_whole_counts(parameters), text("friction", friction), real("interval", interval), text("method", method),
                        real("tolerance", tolerance), whole("max_steps", max_steps, 1))
     return Motion(told, parameters | {"friction": friction})
 
 
 def gaits(*, most_period=1, tolerance=1e-10, **parameters):
-    """The gaits of one hoop that never slips: the periodic orbits of its map from lift-off to lift-off, stable or not. Those that
-    jump again at each landing are searched from a grid of starts, so that one may be missed.
+    """Find the gaits of one hoop that never slips: periodic sequences of jumps, stable and unstable ones.
+
+    Gaits whose lift-offs coincide with landings are searched from a grid of starting points; one may be missed.
 
     Parameters
     ----------
+    most_period : int, default 1
+        Longest period to search for, in jumps, 1 to 16.
+    tolerance : float, default 1e-10
+        Relative error allowed in times.
     {parameters}
-    most_period: longest gait looked for, in jumps, 1 to 16.
-    tolerance: relative, of times.
 
-    Returns a dict: gaits, each a dict of period, multiplier (stable where below 1 in size), height [hoop diameters], speed [m/s],
-    energy_lost [(m + m_p) g R, a jump] and jumps, arrays of angle, spin, height, time and distance once round; and returns, arrays
-    of angle, next, slope, height and uphill of the return map where it was looked at; and is_whole, False if the map has more folds
-    than were looked at, so that gaits may be missing.
+    Returns
+    -------
+    dict
+        gaits: a list of dicts with period, multiplier (stable if below 1 in size), height [hoop diameters], speed [m/s],
+        energy_lost [(m + m_p) g R per jump], and jumps.
+
+        jumps: arrays of angle, spin, height, time, distance over one period.
+
+        returns: samples of the return map, arrays of angle, next, slope, height, uphill.
+
+        is_whole: False if the map has more folds than were sampled, so that gaits may be missing.
+
+    Raises
+    ------
+    ValueError
+        With parameter, value and what is allowed.
+
+    Examples
+    --------
+    >>> found = leapmap.gaits(slope="12 deg", mass_ratio=3, offset_ratio=0.5, runway=20)
+    >>> [(gait["period"], round(gait["height"], 3)) for gait in found["gaits"] if abs(gait["multiplier"]) < 1]
+    [(1, 0.17)]
     """
     for name in ("friction", "mu_static", "mu_kinetic", "restitution", "jumps", "settle"):
         if name in parameters:
-            raise ValueError(f"{name}: has no use here, where every gait of a hoop that never slips is looked for; allowed: solve(..., settle=500)")
+            raise ValueError(f"{name}: has no effect here; allowed: solve(..., settle=500)")
     return _core.gaits(parameters, whole("most_period", most_period, 1, 16), real("tolerance", tolerance))
 
 
@@ -94,7 +187,7 @@ def _names(fields):
         return []
     found = names("fields", fields)
     if not found:
-        raise ValueError("fields = [] names none; allowed: names of fields, or None for all")
+        raise ValueError("fields = [] is empty; allowed: names of fields, or None for all")
     return found
 
 
@@ -105,22 +198,24 @@ def _whole_counts(parameters):
 
 def _parameter_line(row):
     only = f"; {row['friction']} only" if row["friction"] and not row["meaning"].startswith(row["friction"]) else ""
-    return f"{row['name']}: {row['meaning']}{only}. {row['allowed'][0].upper() + row['allowed'][1:]}; default {_default(row)}" + (
-        "." if row["array"] else ", one for all designs.")
+    kinds = "float, str or array_like" if row["array"] else "float or str"
+    unit = f" [{row['unit']}]" if row["unit"] not in ("", "1") else ""
+    meaning = row["meaning"][0].upper() + row["meaning"][1:]
+    return f"{row['name']} : {kinds}, default {_default(row)}\n        {meaning}{unit}{only}; {row['allowed']}."
 
 
 def _default(row):
-    return "mu_static's" if np.isnan(row["default"]) else f"{row['default']:.6g}"
+    return "mu_static" if np.isnan(row["default"]) else f"{row['default']:.6g}"
 
 
 def _field_line(row):
-    return f"{row['name']} [{row['unit']}]: {row['meaning']}" + (f"; {row['friction']} only" if row["friction"] else "") + (
+    return f"* {row['name']} [{row['unit']}]: {row['meaning']}" + (f"; {row['friction']} only" if row["friction"] else "") + (
         "; " + ", ".join(f"{code} {name}" for code, name in enumerate(row["codes"])) if row["codes"] else "")
 
 
 def _document(function):
     rows = _core.parameters()
-    lines = {"parameters": "\n    ".join(map(_parameter_line, rows)), "fields": "\n    ".join(map(_field_line, _core.fields()))}
+    lines = {"parameters": "\n    ".join(map(_parameter_line, rows)), "fields": "\n        ".join(map(_field_line, _core.fields()))}
     for name, text in lines.items():
         function.__doc__ = function.__doc__.replace("{" + name + "}", text)
     signature = inspect.signature(function)

@@ -26,27 +26,54 @@ except ImportError:
 
 
 def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, threads=0, progress=None, **overrides):
-    """Solves the designs of a spec, as `leapmap sweep` does, and returns them as an xarray.Dataset.
+    """Solve the designs of a spec into a map, as `leapmap sweep` does.
 
-    spec: a TOML file's path, or a dictionary {section: {key: value}} where an array is an axis:
-        leapmap.sweep({"design": {"slope": np.linspace(0.1, 0.8, 50), "mass_ratio": [1, 2, 3]}})
-    file: the map to write; default: the spec's output.file. Without one, or with in_memory=True, the map is a temporary file, and
-        nothing is kept on disk.
-    resume: go on with what a stopped sweep left, or take the map if it is whole. overwrite: replace an existing map.
-    threads: 0 for all cores; one in a forked process.
-    progress: called with (designs done, designs in all) now and then, from a thread of its own, and at the end. Whatever of it
-        touches h5py waits until the sweep is done, as h5py does in all other threads.
-    overrides: keys of the spec, for example tolerance=1e-12.
+    Parameters
+    ----------
+    spec : path or mapping
+        A TOML file, or {section: {key: value}} in which an array is an axis.
+    file : path, optional
+        The map to write; default: output.file of the spec. Without one, nothing is kept on disk.
+    in_memory : bool, default False
+        Keep nothing on disk.
+    resume : bool, default False
+        Continue what an interrupted sweep left, or read the map if it is complete.
+    overwrite : bool, default False
+        Replace an existing map.
+    threads : int, default 0
+        Number of threads; 0: all cores. A forked process uses one.
+    progress : callable, optional
+        Called with (designs done, number of designs), from a thread of its own. h5py is locked during a sweep.
+    **overrides
+        Keys of the spec, for example tolerance=1e-12.
 
-    Raises ValueError for a spec that is not allowed, OSError for a file that cannot be written. Ctrl-C ends it, and MAP.part
-    keeps what is done for resume."""
+    Returns
+    -------
+    xarray.Dataset
+        The map.
+
+    Raises
+    ------
+    ValueError
+        With key, value and what is allowed.
+    OSError
+        If the file cannot be written.
+    KeyboardInterrupt
+        After Ctrl-C; FILE.part keeps what is done.
+
+    Examples
+    --------
+    >>> ds = leapmap.sweep({"design": {"slope": np.linspace(0.1, 0.8, 50), "mass_ratio": [1, 2, 3]}})
+    >>> dict(ds.sizes)
+    {'slope': 50, 'mass_ratio': 3}
+    """
     text, origin = (_toml(spec), "<dict>") if isinstance(spec, Mapping) else (path("spec", spec), None)
     changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
     if in_memory and file is not None:
-        raise ValueError(f"file = {file!r} has no use with in_memory=True; allowed: one of the two")
+        raise ValueError(f"file = {file!r} has no effect with in_memory=True; allowed: one of the two")
     target = None if in_memory else os.fspath(file) if file is not None else _core.spec_file(text, origin, changes) or None
     if target is None and (resume or overwrite):
-        raise ValueError("resume and overwrite have no use in memory; allowed: with a file")
+        raise ValueError("resume and overwrite have no effect in memory; allowed: with a file")
     threads = whole("threads", threads, 0, 4096)
     work = _Sweep(text, origin, changes, resume, overwrite, threads, progress)
     size = _core.sweep_bytes(text, origin, changes)
@@ -55,8 +82,8 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
         return work.into(target, kept=True)
     free = shutil.disk_usage(tempfile.gettempdir()).free
     if size > free:
-        raise OSError(errno.ENOSPC, f"a map of {size / 1e9:.3g} GB in a folder with {free / 1e9:.3g} GB free; allowed: less of it, or with "
-                                    "file= where there is room", tempfile.gettempdir())
+        raise OSError(errno.ENOSPC, f"a map of {size / 1e9:.3g} GB in a folder with {free / 1e9:.3g} GB free; allowed: fewer designs or fields, or "
+                                    "file= on a disk with more room", tempfile.gettempdir())
     with _ends_by_signal(), tempfile.TemporaryDirectory(prefix="leapmap-") as folder:
         return work.into(os.path.join(folder, "map.h5"), kept=False)
 
@@ -68,12 +95,12 @@ def _refuse_beyond_memory(size):
         with open("/proc/meminfo") as file:
             free = next(1024 * int(line.split()[1]) for line in file if line.startswith("MemAvailable"))
     except (OSError, StopIteration, ValueError, IndexError):
-        pass  # not Linux: nothing is known
+        pass  # not Linux: unknown
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     free = min(free, math.inf if limit == resource.RLIM_INFINITY else limit)
     if size > free:
-        raise MemoryError(f"a map of {size / 1e9:.3g} GB, and {free / 1e9:.3g} GB of memory; allowed: fewer designs or fields, or leapmap sweep, "
-                          "which keeps no map in memory")
+        raise MemoryError(f"a map of {size / 1e9:.3g} GB exceeds {free / 1e9:.3g} GB of memory; allowed: fewer designs or fields, or the command "
+                          "leapmap sweep, which does not keep the map in memory")
 
 
 class _Ended(BaseException):
@@ -105,7 +132,7 @@ def _ends_by_signal():
 
 
 class _Sweep:
-    """One sweep, and the thread that tells its progress."""
+    """One sweep, and the thread that reports its progress."""
 
     def __init__(self, text, origin, changes, resume, overwrite, threads, progress):
         self.spec, self.options, self.progress = (text, origin, changes), (resume, overwrite, threads), progress
@@ -120,7 +147,7 @@ class _Sweep:
                 durable = _core.sweep(*self.spec, target, *self.options, self.watch)
         except KeyboardInterrupt:
             part = kept and os.path.exists(target + ".part")
-            raise KeyboardInterrupt(f"stopped; {target}.part keeps what is done; resume=True goes on" if part else "stopped") from None
+            raise KeyboardInterrupt(f"stopped; {target}.part keeps what is done; resume=True continues it" if part else "stopped") from None
         finally:
             self.finished.set()
             if self.progress:
@@ -128,7 +155,7 @@ class _Sweep:
         if self.failure is not None:
             raise self.failure
         if kept and not durable:
-            warnings.warn(f"{target}: its folder could not be synced; a power cut may undo the map's taking its place", stacklevel=3)
+            warnings.warn(f"{target}: its folder could not be synced; a power failure may undo the map's renaming", stacklevel=3)
         return load(target)
 
     def _tell(self):
@@ -148,8 +175,25 @@ class _Sweep:
 
 
 def load(path):
-    """A map that `leapmap sweep` wrote, or the .part of one, as an xarray.Dataset in memory; raises ValueError for a file that
-    is none."""
+    """Read a map, or the .part of an unfinished one.
+
+    Parameters
+    ----------
+    path : path
+        A file that `leapmap sweep` wrote.
+
+    Returns
+    -------
+    xarray.Dataset
+        The map, in memory.
+
+    Raises
+    ------
+    ValueError
+        If the file is not a map.
+    OSError
+        If it cannot be read.
+    """
     import xarray
 
     reader = _analysis.reader()
@@ -193,13 +237,13 @@ def _value(value, in_table=False, depth=0):
     if isinstance(value, (list, tuple)) and value and all(isinstance(item, str) for item in value):
         return "[" + ", ".join(map(_text, value)) + "]"
     if np.ma.is_masked(value):
-        raise ValueError(f"{shown(value)} has masked values; allowed: numbers, without those that are masked")
+        raise ValueError(f"{shown(value)} has masked values; allowed: numbers without a mask")
     try:
         array = np.asarray(value)
     except ValueError:  # rows of different lengths
         array = np.asarray(None)
     if array.dtype.kind not in "fiu" or array.ndim > 1:
-        raise ValueError(f"{shown(value)} is no value of a spec; allowed: a number, a text, or one list of numbers for an axis")
+        raise ValueError(f"{shown(value)} is not a value of a spec; allowed: a number, a text, or one list of numbers for an axis")
     if array.ndim == 0:
         return repr(float(array))
     numbers = "[" + ", ".join(repr(float(number)) for number in array) + "]"
@@ -217,6 +261,6 @@ def _toml(spec):
     lines = []
     for section, keys in spec.items():
         if not isinstance(keys, Mapping):
-            raise ValueError(f"{section} = {keys!r} is no section; allowed: {{section: {{key: value}}}}, as in a spec's TOML")
+            raise ValueError(f"{section} = {keys!r} is not a section; allowed: {{section: {{key: value}}}}, as in a spec's TOML")
         lines += [f"[{_key(section)}]", *(f"{_key(key)} = {_keyed(key, value)}" for key, value in keys.items())]
     return "\n".join(lines) + "\n"

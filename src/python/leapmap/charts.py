@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws charts of maps, traces and tables, and makes the page to explore a map with.
+"""Draw charts of maps, traces and tables, and make the page to explore a map.
 
     python3 -m leapmap.charts design MAP.h5 -o chart
     python3 -m leapmap.charts CHART --help
@@ -10,7 +10,7 @@ import sys
 
 from leapmap._analysis import FOLDER
 
-CHARTS = {name: name + "_chart.py" for name in ("adequacy", "cut", "design", "experiment", "fit", "front", "gait", "list", "period", "precision", "scatter", "stability", "status", "trace",
+CHARTS = {name: name + "_chart.py" for name in ("adequacy", "cut", "design", "experiment", "fit", "front", "gait", "jump", "list", "period", "precision", "scatter", "stability", "status", "trace",
                                              "yield")}
 CHARTS |= {"explorer": "explorer", "phases": "phase_diagram.py", "scatter_convergence": "scatter_convergence.py"}
 
@@ -21,7 +21,7 @@ def main():
         print(__doc__.strip(), "\n\nCHART is one of: ", ", ".join(CHARTS), sep="")
         return 0 if words else 2
     if words[0] not in CHARTS:
-        print(f"leapmap.charts: {words[0]!r} is no chart; allowed: {', '.join(CHARTS)}", file=sys.stderr)
+        print(f"leapmap.charts: {words[0]!r} is not a chart; allowed: {', '.join(CHARTS)}", file=sys.stderr)
         return 2
     script = os.path.join(FOLDER, CHARTS[words[0]])
     sys.argv = [script, *words[1:]]
