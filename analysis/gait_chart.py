@@ -59,7 +59,7 @@ def draw_bifurcations(axis, leapmap, hoop, runway, slopes, jumps):
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__)
     p.add_argument("-o", "--output", default="maps/gait", help="file name without ending; PNG, SVG and PDF are written (default: maps/gait)")
     for name, value in (("slope", 12.0), ("mass_ratio", 3.0), ("offset_ratio", 0.5)):
         p.add_argument("--" + name.replace("_", "-"), type=float, default=value, help=f"default {value}" + (", in degrees" if name == "slope" else ""))

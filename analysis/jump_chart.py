@@ -1,8 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the hoop of a trace on its slope at equal intervals of time, with the path of its mass; --animate makes a GIF.
+"""Draw the hoop of a trace on its slope at equal intervals of time, with the path of its mass.
 
-    leapmap hop --trace maps/hop.h5 && analysis/jump_chart.py maps/hop.h5 --animate
+--animate makes a GIF.
+
+    leapmap hop --trace maps/hop.h5
+    analysis/jump_chart.py maps/hop.h5 --animate
 
 The plane is drawn at its angle, lengths in metres. Dark hoops: contact; blue: flight of the jump.
 """
@@ -32,7 +35,9 @@ def markers(trace, numbers, slope):
     f = trace.fields
     radius, arm = numbers["radius"], numbers["offset_ratio"] * numbers["radius"]
     centre = slope.place(f["x"], f["y"] + radius)
-    mass = centre - arm * (np.sin(f["phi"])[:, None] * slope.downhill + np.cos(f["phi"])[:, None] * slope.away)
+    mass = centre - arm * (
+        np.sin(f["phi"])[:, None] * slope.downhill + np.cos(f["phi"])[:, None] * slope.away
+    )
     return centre, mass
 
 
@@ -62,7 +67,9 @@ def strobe(trace, numbers, count):
     axis.plot(*mass.T, color="#d62728", lw=0.8, alpha=0.6)
     t, flight = trace.dims["t"], trace.code("phase", "flight")
     for i in np.searchsorted(t, np.linspace(t[0], t[-1], count)).clip(max=len(t) - 1):
-        circle, dot = hoop_patches(axis, numbers["radius"], "#1f4e79" if flight[i] else "black", 1.0 if flight[i] else 0.45)
+        circle, dot = hoop_patches(
+            axis, numbers["radius"], "#1f4e79" if flight[i] else "black", 1.0 if flight[i] else 0.45
+        )
         circle.center, dot.center = centre[i], mass[i]
     return figure
 
@@ -72,14 +79,14 @@ def animation(trace, numbers, slow):
     centre, mass = markers(trace, numbers, slope)
     figure, axis = plt.subplots(figsize=(5.4, 2.7), layout="constrained")
     draw_plane(axis, slope, centre, numbers["radius"])
-    path, = axis.plot([], [], color="#d62728", lw=0.8, alpha=0.6)
+    (path,) = axis.plot([], [], color="#d62728", lw=0.8, alpha=0.6)
     circle, dot = hoop_patches(axis, numbers["radius"], "#1f4e79", 1.0)
     t = trace.dims["t"]
     frames = np.searchsorted(t, np.arange(t[0], t[-1], 1 / (slow * FRAMES_A_SECOND))).clip(max=len(t) - 1)
 
     def show(i):
         circle.center, dot.center = centre[i], mass[i]
-        path.set_data(*mass[:i + 1].T)
+        path.set_data(*mass[: i + 1].T)
         return circle, dot, path
 
     return FuncAnimation(figure, show, [*frames, *[frames[-1]] * (FRAMES_A_SECOND // 2)])
@@ -88,12 +95,16 @@ def animation(trace, numbers, slow):
 def main():
     p = style.parser(__doc__, "a trace, from leapmap hop --trace", "_jump")
     p.add_argument("--count", type=int, default=24, help="number of hoops drawn (default: %(default)s)")
-    p.add_argument("--animate", action="store_true", help="write OUTPUT.gif too, five times slower than the hoop")
+    p.add_argument(
+        "--animate", action="store_true", help="write OUTPUT.gif too, five times slower than the hoop"
+    )
     arguments = p.parse_args()
     trace = read_trace(arguments.source)
     numbers = trace.numbers()
     if len(trace.dims["t"]) < 2:
-        raise NotAMap(f"{trace.path}: holds no motion to draw (the hoop {trace.attributes['status'].replace('_', ' ')})")
+        raise NotAMap(
+            f"{trace.path}: holds no motion to draw (the hoop {trace.attributes['status'].replace('_', ' ')})"
+        )
     style.save(strobe(trace, numbers, arguments.count), arguments.output)
     if arguments.animate:
         path = f"{style.stem(arguments.output)}.gif"

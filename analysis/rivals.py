@@ -190,7 +190,7 @@ def chart(path):
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(description=__doc__)
     p.add_argument("-o", "--output", default="maps/rivals", help="file name without ending (default: %(default)s)")
     p.add_argument("--designs", type=int, default=40, help="random ones (default: %(default)s)")
     p.add_argument("--seed", type=int, default=1, help="of the designs (default: %(default)s)")

@@ -141,7 +141,7 @@ def logs_of(path, problem):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("questions", nargs="*", type=Path, help="specs (default: those of sweeps/questions)")
     parser.add_argument("--grid", type=float, default=1e8, metavar="DESIGNS")
     parser.add_argument("--slipping", type=float, default=1e6, metavar="DESIGNS")

@@ -4,8 +4,10 @@ import argparse
 import contextlib
 import io
 import os
+import re
 import sys
 import tempfile
+import textwrap
 
 import matplotlib
 
@@ -41,9 +43,15 @@ class _Parser(argparse.ArgumentParser):
         return parsed
 
 
+def _filled(text):
+    """A script's description in lines of at most 80 columns; examples, which are indented, stay as they are."""
+    blocks = re.split(r"\n\s*\n", text.strip())
+    return "\n\n".join(block if block.startswith("    ") else textwrap.fill(block, 79) for block in blocks)
+
+
 def parser(description, source, suffix, output="file name without ending; PNG, SVG and PDF are written (default: FILE's name{})", needs_source=True):
     """The command line every chart shares. suffix: what the default output adds to FILE's name, or None; output: what -o means."""
-    p = _Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = _Parser(description=_filled(description), formatter_class=argparse.RawDescriptionHelpFormatter)
     p.suffix = suffix
     p.add_argument("source", metavar="FILE", help=source, nargs=None if needs_source else "?")
     p.add_argument("-o", "--output", help=output.format(f" with {suffix}" if suffix else ""))

@@ -70,7 +70,7 @@ def chart(trace, paper):
         is_jump = jumps[i]
         if len(times) > 6 and i not in (0, np.argmax(jumps), len(times) - 1):
             continue  # there is no room for all
-        text = f"{'jump' if is_jump else 'candidate'} {time:.4f} s\nflies {height:.3g} diameters"
+        text = f"{'jump' if is_jump else 'lift-off'} {time:.4f} s\nflies {height:.3g} diameters"
         place = dict(xy=(time, 0.06), xytext=(5, 0), ha="left", va="bottom", color=style.MARK) if is_jump else dict(
             xy=(time, 0.94), xytext=(-5, 0), ha="right", va="top", color="#555555")
         axes[0].annotate(text, xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=7.5, zorder=5,

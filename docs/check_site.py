@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check a built site: every link within it leads somewhere, and no page but those of the reference exceeds 1,500 words.
+"""Check a built site: every link within it leads somewhere, and no page exceeds 1,500 words but the reference.
 
     docs/check_site.py FOLDER
 """
@@ -56,7 +56,8 @@ def main():
             elif parts.fragment and target in pages and unquote(parts.fragment) not in pages[target].anchors:
                 problems.append(f"{name}: {link}: the page has no such anchor")
     print(*problems, sep="\n", end="\n" if problems else "")
-    print(f"{len(pages)} pages, {sum(len(page.links) for page in pages.values())} links, {len(problems)} problems")
+    links = sum(len(page.links) for page in pages.values())
+    print(f"{len(pages)} pages, {links} links, {len(problems)} problems")
     return 1 if problems or not pages else 0
 
 

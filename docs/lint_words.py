@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks the words that a user meets: pages, help, messages, docstrings, public headers and the texts of the page.
+"""Check the words that a user meets: pages, help, messages, docstrings, public headers, the texts of the page.
 
     docs/lint_words.py            every text of the repository; exit status 1 if something is found
     docs/lint_words.py FILE ...   these files only
 
-It reports phrases of the hunt list, which hide what happens, and sentences of more than thirty words. If codespell is
-installed, it reports misspellings too. Code, file names and names in `backquotes` are not read.
+It reports phrases of the hunt list, which hide what happens, and sentences of more than thirty words. If
+codespell is installed, it reports misspellings too. Code, file names and names in `backquotes` are not read.
 """
 import argparse
 import ast
@@ -20,23 +20,26 @@ TOP = Path(__file__).resolve().parents[1]
 MOST_WORDS = 30
 
 # Each phrase and what to write in its place.
-HUNT = [(re.compile(pattern, re.I), instead) for pattern, instead in (
-    (r"\b(tell|tells|told)\b", "report, show, determine"),
-    (r"\bas (made|drawn)\b|\bmade hoops?\b|\bhoops? made\b", "manufactured, nominal, samples"),
-    (r"\blook(s|ed|ing)? (at|for|through)\b", "evaluate, search"),
-    (r"\bgo(es|ing)? on\b|\bgone on\b|\banew\b|\bbegun\b", "continue, resume, restart"),
-    (r"\bha(s|ve) no use\b", "has no effect"),
-    (r"\b(so|as) (many|much)\b", "the number of"),
-    (r"\bshares? (of|that)\b", "fraction"),
-    (r"\b(nobody|somebody)\b|\bwithout a word\b", "the passive; silently"),
-    (r"\ba hair\b|\bfor ever\b|\bforetells?\b|, say\b", "slightly, indefinitely, predict, for example"),
-    (r"\bis let\b|\blets? pass\b", "is ignored"),
-    (r"(?:^|[.;:] )of (one|no|none|each)\b", "another order of words"),
-    (r"\bwhere (it|they|there|that|no|an?)\b", "if, when"),
-    (r"\bto rounding\b", "to machine precision"),
-    (r"\bby the (block|panel|piece)\b", "one block at a time"),
-    (r"\ba hoop of one's own\b", "your own hoop"),
-)]
+HUNT = [
+    (re.compile(pattern, re.I), instead)
+    for pattern, instead in (
+        (r"\b(tell|tells|told)\b", "report, show, determine"),
+        (r"\bas (made|drawn)\b|\bmade hoops?\b|\bhoops? made\b", "manufactured, nominal, samples"),
+        (r"\blook(s|ed|ing)? (at|for|through)\b", "evaluate, search"),
+        (r"\bgo(es|ing)? on\b|\bgone on\b|\banew\b|\bbegun\b", "continue, resume, restart"),
+        (r"\bha(s|ve) no use\b", "has no effect"),
+        (r"\b(so|as) (many|much)\b", "the number of"),
+        (r"\bshares? (of|that)\b", "fraction"),
+        (r"\b(nobody|somebody)\b|\bwithout a word\b", "the passive; silently"),
+        (r"\ba hair\b|\bfor ever\b|\bforetells?\b|, say\b", "slightly, indefinitely, predict, for example"),
+        (r"\bis let\b|\blets? pass\b", "is ignored"),
+        (r"(?:^|[.;:] )of (one|no|none|each)\b", "another order of words"),
+        (r"\bwhere (it|they|there|that|no|an?)\b", "if, when"),
+        (r"\bto rounding\b", "to machine precision"),
+        (r"\bby the (block|panel|piece)\b", "one block at a time"),
+        (r"\ba hoop of one's own\b", "your own hoop"),
+    )
+]
 
 
 def paragraphs(text, first=1):
@@ -71,8 +74,12 @@ def markdown(text):
         elif mark and mark[1][0] != ":":
             fence = mark[1]
             kept.append("")
-        elif mark or re.match(r"( {4,}|\t)(?![-*] )", line) and not (kept and re.match(r" *([-*]|\d+\.) ", kept[-1])) \
-                or re.match(r"<!--|\(.*\)=$|[-=|: ]+$|:\w+:", line):
+        elif (
+            mark
+            or re.match(r"( {4,}|\t)(?![-*] )", line)
+            and not (kept and re.match(r" *([-*]|\d+\.) ", kept[-1]))
+            or re.match(r"<!--|\(.*\)=$|[-=|: ]+$|:\w+:", line)
+        ):
             kept.append("")
         elif line.startswith("|"):
             kept.append("\0" + line)
@@ -97,7 +104,11 @@ def markdown(text):
 
 def literals(text):
     """String literals of C++ or JavaScript that hold a phrase, neighbours joined."""
-    token = re.compile(r'R"\((.*?)\)"|"((?:[^"\\\n]|\\.)*)"|`((?:[^`\\]|\\.)*)`|\'((?:[^\'\\\n]|\\.)*)\'|//[^\n]*|/\*.*?\*/|\S', re.S)
+    token = re.compile(
+        r'R"\((.*?)\)"|"((?:[^"\\\n]|\\.)*)"|`((?:[^`\\]|\\.)*)`|\'((?:[^\'\\\n]|\\.)*)\''
+        r"|//[^\n]*|/\*.*?\*/|\S",
+        re.S,
+    )
     joined, start, at = [], 1, 0
     for match in token.finditer(text):
         line = text.count("\n", 0, match.start()) + 1
@@ -125,7 +136,11 @@ def header(text):
     block, start = [], 0
     for number, line in enumerate(text.splitlines() + [""], 1):
         mark = re.search(r"///<? ?(.*)$", line)
-        continues = mark and block and (line.strip().startswith("///<") or line.strip().startswith("/// ") or not mark[1])
+        continues = (
+            mark
+            and block
+            and (line.strip().startswith("///<") or line.strip().startswith("/// ") or not mark[1])
+        )
         if block and not continues:
             yield start, plain(re.sub(r"@\w+ ?(\{[^}]*\})?", "", " ".join(block)))
             block = []
@@ -143,10 +158,14 @@ def header(text):
 
 
 def python(text, is_module=False):
-    """Docstrings and strings that hold a phrase; of a script the first docstring, which its --help prints, of a module all."""
+    """Strings that hold a phrase, and docstrings: of a script the one that --help prints, of a module all."""
     tree = ast.parse(text)
-    documented = {id(node.body[0].value): getattr(node, "name", "") for node in ast.walk(tree)
-                  if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node, clean=False)}
+    documented = {
+        id(node.body[0].value): getattr(node, "name", "")
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))
+        and ast.get_docstring(node, clean=False)
+    }
     for node in ast.walk(tree):
         if isinstance(node, ast.JoinedStr):
             value = "".join(part.value if isinstance(part, ast.Constant) else "CODE" for part in node.values)
@@ -173,8 +192,17 @@ def html(text):
             yield text.count("\n", 0, match.start()) + 1, plain(" ".join(value.split()))
 
 
-READERS = {".md": markdown, ".cpp": c_source, ".hpp": c_source, ".js": c_source, ".py": python, ".html": html,
-           ".toml": lambda text: ((n, plain(line.partition("#")[2])) for n, line in enumerate(text.splitlines(), 1) if "#" in line)}
+READERS = {
+    ".md": markdown,
+    ".cpp": c_source,
+    ".hpp": c_source,
+    ".js": c_source,
+    ".py": python,
+    ".html": html,
+    ".toml": lambda text: (
+        (n, plain(line.partition("#")[2])) for n, line in enumerate(text.splitlines(), 1) if "#" in line
+    ),
+}
 
 
 def texts(path):
@@ -190,8 +218,24 @@ def texts(path):
 
 
 def user_files():
-    files = subprocess.run(["git", "-C", str(TOP), "ls-files", "--cached", "--others", "--exclude-standard", "*.md", "src", "analysis", "sweeps"],
-                           check=True, capture_output=True, text=True).stdout.split()
+    files = subprocess.run(
+        [
+            "git",
+            "-C",
+            str(TOP),
+            "ls-files",
+            "--cached",
+            "--others",
+            "--exclude-standard",
+            "*.md",
+            "src",
+            "analysis",
+            "sweeps",
+        ],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.split()
     for name in sorted(set(files)):
         path = TOP / name
         if not path.exists() or name.startswith(("tests/", "analysis/boost_rival", "src/python/stubs.py")):
@@ -204,23 +248,31 @@ def found_in(path):
     for line, text in texts(path):
         for pattern, instead in HUNT:
             for match in pattern.finditer(text):
-                around = text[max(0, match.start() - 40):match.end() + 40]
+                around = text[max(0, match.start() - 40) : match.end() + 40]
                 yield line, f"'{match[0].strip('.;: ')}' in \"... {around} ...\"; write: {instead}"
         for sentence in re.split(r"(?<=[.!?:;])\s+", text):
             words = [word for word in sentence.split() if re.search(r"\w", word)]
             if len(words) > MOST_WORDS and not re.search(r"(\S+, ){12}", sentence):
-                yield line, f"{len(words)} words in one sentence, \"{' '.join(words[:8])} ...\"; at most {MOST_WORDS}"
+                begin = " ".join(words[:8])
+                yield line, f'{len(words)} words in one sentence, "{begin} ..."; at most {MOST_WORDS}'
 
 
 def misspelt(paths):
     if not shutil.which("codespell"):
         return []
-    run = subprocess.run(["codespell", "--ignore-words-list", "te,fo,nd,ba,ue,theses,ot", *map(str, paths)], capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        ["codespell", "--ignore-words-list", "te,fo,nd,ba,ue,theses,ot", *map(str, paths)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     return run.stdout.splitlines()
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("files", nargs="*", type=Path, help="default: every text of the repository")
     paths = [path.resolve() for path in parser.parse_args().files] or list(user_files())
     count = 0

@@ -5,9 +5,9 @@
     docs/run_blocks.py PAGE ...             check pages; exit status 1 if a block fails
     docs/run_blocks.py PAGE ... --update    write the output of their commands into the pages
 
-Blocks of a page run in order, in one folder of its own that has the folders sweeps and analysis and an empty maps.
+Blocks of a page run in order, in a folder of its own with the folders sweeps and analysis and an empty maps.
 
-    ```console    lines after "$ " are commands of bash; what follows is their output, in which "..." matches anything
+    ```console    lines after "$ " are commands of bash; then their output, in which "..." matches anything
     ```python     runs as a script; with ">>>" as a doctest
     ```cpp        compiles; without main() as the body of a function
     ```toml       is a spec that leapmap reads
@@ -17,7 +17,6 @@ A comment before a block changes that: <!-- slow --> second tier of tests; <!-- 
 LEAPMAP_BUILD names the build tree; default: build/release.
 """
 import argparse
-import doctest
 import os
 import re
 import subprocess
@@ -34,6 +33,7 @@ SECONDS = 600  # the longest block of the second tier takes a few minutes
 @dataclass
 class Block:
     """A fenced block of a page."""
+
     kind: str
     text: str
     line: int  # of its first line in the page
@@ -61,7 +61,14 @@ def blocks(page):
         elif fence := re.fullmatch(r"(\s*)(`{3,})([^`]*)", lines[i]):
             end = next(k for k in range(i + 1, len(lines)) if lines[k].strip() == fence[2])
             indent = len(fence[1])
-            found.append(Block(fence[3].strip(), "\n".join(line[indent:] for line in lines[i + 1:end]) + "\n", i + 2, mark))
+            found.append(
+                Block(
+                    fence[3].strip(),
+                    "\n".join(line[indent:] for line in lines[i + 1 : end]) + "\n",
+                    i + 2,
+                    mark,
+                )
+            )
             i, mark = end, ""
         elif lines[i].strip():
             mark = ""
@@ -91,12 +98,26 @@ def pattern(expected):
 
 
 def environment():
-    return dict(os.environ, PATH=f"{BUILD}:{os.environ['PATH']}", PYTHONPATH=str(BUILD / "python"), MPLBACKEND="Agg", COLUMNS="80")
+    return dict(
+        os.environ,
+        PATH=f"{BUILD}:{os.environ['PATH']}",
+        PYTHONPATH=str(BUILD / "python"),
+        MPLBACKEND="Agg",
+        COLUMNS="80",
+    )
 
 
 def run(command, folder):
-    done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          timeout=SECONDS, check=False)
+    done = subprocess.run(
+        ["bash", "-c", command],
+        cwd=folder,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=SECONDS,
+        check=False,
+    )
     if done.returncode != 0:
         raise Failed(f"$ {command}\nends with status {done.returncode}:\n{done.stdout}")
     return done.stdout
@@ -112,11 +133,23 @@ def run_console(block, folder, outputs, compare=True):
 
 def run_python(block, folder, before):
     if ">>>" in block.text:
-        code = f"import doctest, sys\nexample = doctest.DocTestParser().get_doctest({block.text!r}, {{}}, 'page', 'page', 0)\n" \
-               f"sys.exit(doctest.DocTestRunner(optionflags={doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE}).run(example).failed)"
+        code = (
+            "import doctest, sys\n"
+            f"example = doctest.DocTestParser().get_doctest({block.text!r}, {{}}, 'page', 'page', 0)\n"
+            "flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE\n"
+            "sys.exit(doctest.DocTestRunner(optionflags=flags).run(example).failed)"
+        )
     else:
         code = before + block.text
-    done = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment(), capture_output=True, text=True, timeout=SECONDS, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=folder,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=SECONDS,
+        check=False,
+    )
     if done.returncode != 0:
         raise Failed(f"{block.text}\nends with\n{done.stdout}{done.stderr}")
 
@@ -125,15 +158,25 @@ def run_cpp(block):
     code = block.text
     if "main(" not in code:
         includes = "".join(line + "\n" for line in code.splitlines() if line.startswith("#include"))
-        code = includes + "void example() {\n" + "".join(line + "\n" for line in code.splitlines() if not line.startswith("#include")) + "}\n"
-    done = subprocess.run(["g++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wno-unused", f"-I{TOP / 'src'}", "-x", "c++", "-"], input=code, capture_output=True,
-                          text=True, check=False)
+        code = (
+            includes
+            + "void example() {\n"
+            + "".join(line + "\n" for line in code.splitlines() if not line.startswith("#include"))
+            + "}\n"
+        )
+    done = subprocess.run(
+        ["g++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wno-unused", f"-I{TOP / 'src'}", "-x", "c++", "-"],
+        input=code,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if done.returncode != 0:
         raise Failed(f"{code}\ndoes not compile:\n{done.stderr}")
 
 
 def run_page(page, slow=False, compare=True):
-    """Runs the blocks of a page, without those of the second tier unless slow, and returns the outputs of its commands."""
+    """Runs the blocks of a page, those of the second tier only if slow; returns the outputs of its commands."""
     outputs, before = [], ""
     with tempfile.TemporaryDirectory(prefix="leapmap-page-") as name:
         folder = Path(name)
@@ -176,7 +219,9 @@ def updated(page):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("pages", nargs="+", type=Path)
     parser.add_argument("--update", action="store_true", help="write the output of commands that show any")
     parser.add_argument("--slow", action="store_true", help="run blocks of the second tier too")

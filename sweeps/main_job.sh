@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The README's first command: installs what Debian provides, builds leapmap, sweeps slope x mass ratio x L/R
-# around the paper's hoop, draws its charts and makes the page to explore it. Safe to run again: everything is
-# made anew.
+# around the paper's hoop, draws its charts and makes the page to explore it. Safe to run again: it replaces what it
+# made before.
 set -eu
 cd "$(dirname "$0")/.."
 

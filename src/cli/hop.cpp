@@ -101,7 +101,7 @@ std::string sequence_line(const Spec& spec, const Outcome& outcome) {
     for (const Jump& jump : outcome.later_jumps) text += fmt::format(", {:.6f}", jump.height);
     return text;
   }();
-  const std::string_view end = outcome.sequence_end == Status::jumped    ? "the number requested"
+  const std::string_view end = outcome.sequence_end == Status::jumped    ? "all requested"
                                : outcome.sequence_end == Status::no_jump ? "then it reaches the rolling limit"
                                : outcome.sequence_end == Status::stalled ? "then it is trapped"
                                : outcome.sequence_end == Status::indeterminate

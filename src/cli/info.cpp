@@ -131,10 +131,10 @@ void print_sequences(const Summary& summary, std::size_t designs) {
 /// Lists failed designs, each with the command that shows what happens.
 int list_failed(const MapReader& map, const InfoArguments& arguments) {
   if (!map.has("status"))
-    throw InputError(arguments.path + ": holds no status; allowed: a map with that field");
+    throw InputError(arguments.path + ": lacks the field status; allowed: a map with it");
   const Spec spec = spec_of(map, arguments.path);
   if (shape_of(spec) != map.shape())
-    throw BrokenFile(arguments.path + ": is damaged: its spec is of other designs than it holds");
+    throw BrokenFile(arguments.path + ": is damaged: its spec describes other designs");
   const DesignSpace space(spec);
   std::size_t failed = 0;
   for_each_block(map, "status",

@@ -38,7 +38,8 @@ void tell(const std::string& line) { std::fputs(("leapmap: " + printable(line) +
 
 void tell_of_folder(const std::string& path) {
   tell(path +
-       ": is whole and in its place, but its folder cannot be brought to disk: a power cut may undo that");
+       ": is complete and in its place, but its folder cannot be synced to disk: a power failure may undo "
+       "that");
 }
 
 }  // namespace leapmap::cli

@@ -141,7 +141,8 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   say("designs  {} in {} chunks of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
       fmt::join(tiling.tile_shape(), " x "));
   if (!spec.scatter.spreads.empty())
-    say("samples  {} manufactured hoops per design\n", grouped(static_cast<std::uint64_t>(spec.scatter.samples)));
+    say("samples  {} manufactured hoops per design\n",
+        grouped(static_cast<std::uint64_t>(spec.scatter.samples)));
   say("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
   std::vector<std::string_view> fields;
   for (const Field* field : layout.fields) fields.push_back(field->name);

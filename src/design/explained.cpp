@@ -126,7 +126,7 @@ void Explained::free_by_default() {
     constexpr double late = 0.3;  // sqrt(R/g): from farther off nobody can tell where it was at the release
     if (measured_.film.t.front() > late * second)
       throw InputError(
-          fmt::format("{}: the film begins at t = {} s, too late to guess the release from; allowed: times "
+          fmt::format("{}: the film begins at t = {} s, too late to estimate the release; allowed: times "
                       "counted from its "
                       "first line, or release_angle and release_spin with bounds, {{ from, to }}",
                       measured_.origin, measured_.film.t.front()));

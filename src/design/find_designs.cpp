@@ -264,7 +264,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
   std::vector<char> stays(places.size(), 1);
   parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {
     return [&, solve = make_solver(all)](std::size_t i) {
-      if (options.stop_requested && options.stop_requested()) throw Stopped("the search was asked to stop");
+      if (options.stop_requested && options.stop_requested()) throw Stopped("the search was stopped");
       FoundDesign& one = told[i];
       one.design = question.at(places[i].at);
       solve({&one.design, 1}, {&one.outcome, 1});

@@ -48,7 +48,7 @@ void map_coarsely(const Explained& explained, const FitOptions& options, const S
   std::vector<double> sums(samples);
   parallel_for_each((samples + a_block - 1) / a_block, options.threads, options.stop_requested, [&] {
     return [&](std::size_t block) {
-      if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
+      if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was stopped");
       const std::size_t first = block * a_block, count = std::min(a_block, samples - first);
       for (std::size_t i = first; i < first + count; ++i)
         for (std::size_t k = 0; k < dimensions; ++k) {
@@ -111,7 +111,7 @@ LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<std::vec
   std::vector<LeastSquaresFit> fits(starts.size());
   parallel_for_each(starts.size(), options.threads, options.stop_requested, [&] {
     return [&](std::size_t i) {
-      if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
+      if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was stopped");
       fits[i] = minimize(problem, starts[i]);
       return true;
     };
@@ -217,7 +217,7 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
 void refuse_what_has_no_use(const Spec& spec) {
   const auto refuse = [&](std::string_view what) {
     throw InputError(
-        fmt::format("{}: {} has no effect in a fit; allowed: [scene], [design], and [numerics] as it is",
+        fmt::format("{}: {} has no effect in a fit; allowed: [scene], [design], and the default [numerics]",
                     origin_of(spec), what));
   };
   if (!spec.goals.empty() || !spec.maximize.empty() || !spec.minimize.empty()) refuse("[goal]");
@@ -257,7 +257,7 @@ Fitted fit_model(const Measurements& measured, const Spec& spec, Friction fricti
   LeastSquares problem = explained.problem();
   problem.evaluate = [&](std::span<const double> at, std::span<double> residuals,
                          std::span<double> jacobian) {
-    if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was asked to stop");
+    if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was stopped");
     return explained.problem().evaluate(at, residuals, jacobian);
   };
   const bool known = explained.errors_known();

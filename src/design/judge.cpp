@@ -148,7 +148,7 @@ void Judge::judge_designs(std::span<const Design> designs, std::span<Verdict> ve
     std::unique_ptr<Bench>& bench = benches_[next_bench++];
     if (!bench) bench = std::make_unique<Bench>(question_, points_);
     return [&](std::size_t number) {
-      if (stop_requested_ && stop_requested_()) throw Stopped("the search was asked to stop");
+      if (stop_requested_ && stop_requested_()) throw Stopped("the search was stopped");
       const std::size_t first = number * block, count = std::min(block, designs.size() - first);
       bench->judge(designs.subspan(first, count), verdicts.subspan(first, count));
       *evaluations_ += count;

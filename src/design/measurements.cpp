@@ -90,7 +90,7 @@ void check_event(const Measurements& measured, std::size_t row, const Spec& spec
   scene.friction = field->only_of.value_or(scene.friction);  // whichever models are fitted
   if (!has(scene, *field))
     throw InputError(
-        fmt::format("{}: {} is of more jumps, or of gaits, than the scene asks for; allowed: with "
+        fmt::format("{}: {} describes later jumps or gaits; allowed: with "
                     "scene.jumps or [gait]",
                     place, name));
   if (!std::isfinite(value))
@@ -115,19 +115,19 @@ void check_times(const Measurements& measured, double second) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) {
     if (!(t[i] > t[i - 1]))
-      throw InputError(fmt::format("{}: t = {} after {}; allowed: times that ascend", place_of(measured, i),
+      throw InputError(fmt::format("{}: t = {} after {}; allowed: ascending times", place_of(measured, i),
                                    t[i], t[i - 1]));
     steps.push_back(t[i] - t[i - 1]);
   }
   if (t.front() < 0.0)
-    throw InputError(
-        fmt::format("{}: t = {}; allowed: times since release, from 0 on", place_of(measured, 0), t.front()));
+    throw InputError(fmt::format("{}: t = {}; allowed: times since release, at least 0",
+                                 place_of(measured, 0), t.front()));
   constexpr double longest = 300.0;  // in sqrt(R/g): a hoop that rolls so long has left any picture
   if (t.back() > longest * second)
-    throw InputError(
-        fmt::format("{}: t = {} looks like another unit: {:.3g} s for a hoop that needs some {:.2g} s to its "
-                    "jump; allowed: seconds since release",
-                    place_of(measured, t.size() - 1), t.back(), t.back(), 8.0 * second));
+    throw InputError(fmt::format(
+        "{}: t = {} looks like another unit: {:.3g} s for a hoop that jumps after about {:.2g} s; "
+        "allowed: seconds since release",
+        place_of(measured, t.size() - 1), t.back(), t.back(), 8.0 * second));
   std::vector<double> sorted = steps;
   std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
   const double usual = sorted[sorted.size() / 2];
@@ -192,8 +192,8 @@ void check_held(const Measurements& measured, const Spec& spec, double second) {
   const double t = film.t[leaves] - film.t.front();
   if (0.5 * std::abs(acceleration) * t * t > 50.0 * (scatter + 1e-4))
     throw InputError(
-        fmt::format("{}: phi stays at {:.4g} for {:.3g} s, in which a hoop that is free turns by "
-                    "{:.2g}: it is held; allowed: times from the release on",
+        fmt::format("{}: phi stays at {:.4g} for {:.3g} s, in which a free hoop rotates by {:.2g}: "
+                    "it is held; allowed: times after the release",
                     place_of(measured, leaves), at, t, 0.5 * std::abs(acceleration) * t * t));
 }
 
@@ -223,8 +223,8 @@ void check_film(const Measurements& measured, const Spec& spec) {
                                    measured.origin, column->size(), film.t.size()));
     for (std::size_t i = 0; i < column->size(); ++i)
       if (!std::isfinite((*column)[i]))
-        throw InputError(
-            fmt::format("{}: {} is not a number; allowed: finite ones", place_of(measured, i), (*column)[i]));
+        throw InputError(fmt::format("{}: {} is not a number; allowed: finite numbers", place_of(measured, i),
+                                     (*column)[i]));
   }
   const bool markers =
       std::ranges::none_of(film.markers, [](const std::vector<double>& column) { return column.empty(); });
@@ -319,7 +319,7 @@ Measurements read_measurements(const std::string& path, const MeasurementOptions
                                          number((*markers)[k], marker_names[k]));
     }
   }
-  if (measured.lines.empty()) throw InputError(path + ": no line but the header; allowed: one or more");
+  if (measured.lines.empty()) throw InputError(path + ": no line after the header; allowed: at least one");
   return measured;
 }
 

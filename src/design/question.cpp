@@ -73,22 +73,23 @@ void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objec
     refuse_without_derivatives(spec, "goal", *find_field(goal.field));
     const bool quantity = std::holds_alternative<Quantity>(find_field(goal.field)->source);
     if (quantity && goal.at_least == goal.at_most && goal.at_least != 0.0)
-      refuse(spec, fmt::format("goal.{} {} is met by no hoop to the last digit", goal.field, text_of(goal)),
+      refuse(spec, fmt::format("goal.{} {} is met by no hoop exactly", goal.field, text_of(goal)),
              "{ at_least = ..., at_most = ... } with room between them");
     if (!(goal.at_least <= goal.at_most))
       refuse(spec, fmt::format("goal.{} {} contradicts itself", goal.field, text_of(goal)),
              "at_least not above at_most");
     const Range range = possible(*find_field(goal.field), spec.scene);
     if (goal.at_least > range.most || goal.at_most < range.least)
-      refuse(spec, fmt::format("goal.{} {} cannot be", goal.field, text_of(goal)),
-             fmt::format("what overlaps from {} to {}", range.least, range.most));
+      refuse(spec, fmt::format("goal.{} {} is impossible", goal.field, text_of(goal)),
+             fmt::format("a range that overlaps {} to {}", range.least, range.most));
   }
   const auto status = std::ranges::find(spec.goals, "status", &Goal::field);
   if (status == spec.goals.end() || status->at_least == static_cast<double>(Status::jumped)) return;
   const auto contradicts = [&](const std::string& key, const Field* field) {
     if (field && is_of_jumps(*field))
       refuse(spec,
-             fmt::format("goal.status {} contradicts {}, which is of hoops that jump", text_of(*status), key),
+             fmt::format("goal.status {} contradicts {}, which describes hoops that jump", text_of(*status),
+                         key),
              "goals that one hoop can reach");
   };
   for (const Goal& goal : spec.goals) contradicts("goal." + goal.field, find_field(goal.field));
@@ -107,7 +108,7 @@ std::vector<FreeParameter> free_parameters(const Spec& spec) {
                          axis.values.size() > 1 ? ", ..." : ""),
              "{ from, to }, between which it is free, or a number");
     if (!(low < high))
-      refuse(spec, fmt::format("design.{} is nothing but {}", axis.key, low), "two bounds, or a number");
+      refuse(spec, fmt::format("design.{} is the single value {}", axis.key, low), "two bounds, or a number");
     free.push_back({axis.key, member_of(axis.key), {low, high, axis.log}});
   }
   return free;
@@ -162,19 +163,18 @@ Question question_of(const Spec& spec) {
       if (spread.percent && spread.width > 0.0 && spread.parameter == parameter.name &&
           parameter.side.low < 0.0 && parameter.side.high > 0.0)
         refuse(spec,
-               fmt::format("scatter.{} is {} % of nothing where the parameter is 0, between its bounds",
+               fmt::format("scatter.{} is {} % of zero if the parameter is 0, which is within its bounds",
                            spread.parameter, spread.width),
                "a width in the parameter's unit");
   for (const std::string& name : spec.maximize)
     question.objectives.push_back(objective_of(spec, question.free, name, true));
   for (const std::string& name : spec.minimize) {
     if (std::ranges::find(spec.maximize, name) != spec.maximize.end())
-      refuse(spec, fmt::format("goal: {} is to be both as large and as small as can be", name),
-             "one of them");
+      refuse(spec, fmt::format("goal: {} is both maximized and minimized", name), "one of them");
     question.objectives.push_back(objective_of(spec, question.free, name, false));
   }
   if (question.objectives.empty())
-    refuse(spec, "nothing says what is best: maximize and minimize of [goal] are empty",
+    refuse(spec, "no objective: maximize and minimize of [goal] are empty",
            "for example maximize = [\"jump_height\"]");
   if (question.objectives.size() > 2)
     refuse(spec,
@@ -183,7 +183,7 @@ Question question_of(const Spec& spec) {
   const auto of_yield = [&](const auto& asked) { return asked.field && asked.field->name == "yield"; };
   if ((std::ranges::any_of(question.objectives, of_yield) || !question.made_goals.empty()) &&
       question.one.goals.empty())
-    refuse(spec, "yield is the fraction of hoops that reach every goal, and there is not a goal",
+    refuse(spec, "yield is the fraction of hoops that reach every goal, and there is no other goal",
            "with another field in [goal]");
   refuse_contradictions(spec, question.objectives);
   return question;

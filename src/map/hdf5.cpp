@@ -326,7 +326,7 @@ std::uint32_t read_chunk(hid_t dataset, const std::vector<hsize_t>& place, std::
   hsize_t size = 0;
   std::uint32_t skipped_filters = 0;
   check(H5Dget_chunk_storage_size(dataset, place.data(), &size), what);
-  if (size > file_bytes(dataset)) throw IoError(what + ": a chunk is larger than its file");
+  if (size > file_bytes(dataset)) throw IoError(what + ": a chunk exceeds its file");
   bytes.resize(size);
   check(H5Dread_chunk(dataset, H5P_DEFAULT, place.data(), &skipped_filters, bytes.data()), what);
   return skipped_filters;

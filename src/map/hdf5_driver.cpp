@@ -70,7 +70,7 @@ H5FD_t* open(const char* name, unsigned, hid_t access, haddr_t) {
     }
     const std::string plain = std::filesystem::path(name).filename().string();
     if (!target || !*target->sources || !(*target->sources)->contains(plain))
-      throw IoError("another file is referred to");
+      throw IoError("it refers to another file");
     opened.reset(new Driver{{}, source_of(*target, plain), nullptr});
   });
   if (done < 0 && target && (*target->file)->path() == name) (*target->file)->note_failure("out of memory");
@@ -187,8 +187,8 @@ Handle open_in(const std::shared_ptr<JournaledFile>& file, Mode mode) {
                   path + ": cannot be read as HDF5");
     *sources = refuse_foreign_parts(opened, path);
     if (!sources->empty() && mode == Mode::change)
-      throw ForeignFile(
-          path + ": its values lie in shards; allowed: a map that leapmap join made without --virtual");
+      throw ForeignFile(path +
+                        ": its values are in shards; allowed: a map of leapmap join without --virtual");
     return opened;
   } catch (const ForeignFile&) {
     throw;
@@ -259,7 +259,7 @@ std::optional<File> File::copy(const JournaledFile& original, const std::string&
                                std::string_view filetype, Locking locking,
                                const std::function<bool()>& stop_requested) {
   if (!original.seal_holds().value_or(true))
-    throw BrokenFile(original.path() + ": is damaged: its bytes are not those that were written");
+    throw BrokenFile(original.path() + ": is damaged: its bytes differ from what was written");
   refuse_other_unfinished(to, filetype, locking);
   File file(std::make_shared<JournaledFile>(to, JournaledFile::Access::create, locking));
   try {
@@ -339,7 +339,7 @@ void refuse_other_unfinished(const std::string& path, std::string_view filetype,
   }
   if (!ours)
     throw InputError(fmt::format(
-        "{}: is in the way, and no unfinished {}; allowed: another name, or remove it", path, filetype));
+        "{}: exists and is not an unfinished {}; allowed: another name, or remove it", path, filetype));
 }
 
 bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify) {

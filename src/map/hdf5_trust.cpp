@@ -56,7 +56,7 @@ std::string refusal_of_dataset(hid_t dataset, const std::string& name) {
   if (H5Pget_external_count(creation) != 0) return "has its values in another file";
   if (H5Tdetect_class(type, H5T_REFERENCE) != 0) return "holds references";
   if (!has_our_filters(creation)) return "is packed by a filter that leapmap does not use";
-  if (H5Dget_storage_size(dataset) > file_bytes(dataset)) return "says that it is larger than the file";
+  if (H5Dget_storage_size(dataset) > file_bytes(dataset)) return "claims to be larger than the file";
   if (layout != H5D_CHUNKED) return {};
   std::array<hsize_t, H5S_MAX_RANK> chunk{};
   const int rank = H5Pget_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
@@ -115,7 +115,7 @@ SourceNames refuse_foreign_parts(hid_t file, const std::string& path) {
   Survey survey;
   const herr_t visited = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &survey);
   if (survey.failure) std::rethrow_exception(survey.failure);
-  check(visited, path + ": cannot be surveyed");
+  check(visited, path + ": cannot be examined");
   if (!survey.refusal.empty()) throw ForeignFile(fmt::format("{}: is refused: {}", path, survey.refusal));
   return std::move(survey.sources);
 }
@@ -195,7 +195,7 @@ std::size_t bytes_in_memory(hid_t dataset, const std::string& what) {
   std::size_t bytes = size;
   for (const hsize_t extent : shape_of(dataset))
     bytes = extent == 0 ? 0 : bytes > most / extent ? most + 1 : bytes * extent;
-  if (bytes > most) throw IoError(what + ": it says that it holds more values than the file has bytes for");
+  if (bytes > most) throw IoError(what + ": it claims more values than the file has bytes for");
   return bytes;
 }
 

@@ -66,7 +66,7 @@ std::string refusal_of_sources(hid_t creation, const std::string& name) {
   for (std::size_t k = 0; k < count_of(creation); ++k)
     if (!lies_beside(text_by(H5Pget_virtual_filename, creation, k)) ||
         text_by(H5Pget_virtual_dsetname, creation, k) != name)
-      return "is a virtual dataset, made of other files than shards beside it";
+      return "is a virtual dataset of other files than shards beside it";
   return {};
 }
 

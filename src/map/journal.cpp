@@ -71,7 +71,7 @@ std::optional<Journal> read_journal(int descriptor, const std::string& path, std
   if (checksum_of(descriptor, path, footer.begin, stored - sizeof(Footer::checksum)) != footer.checksum)
     return {};
   const auto refuse_unless = [&](bool sense) {
-    if (!sense) throw BrokenFile(path + ": is damaged: its journal makes no sense");
+    if (!sense) throw BrokenFile(path + ": is damaged: its journal is invalid");
   };
   refuse_unless(footer.size <= footer.begin && stored - footer.begin <= most);
   Journal journal{footer.begin, footer.size, {}};

@@ -69,8 +69,8 @@ void JournaledFile::open(Locking locking) {
   lock(locking);
   if (access_ != Access::read && status_of(descriptor_, path_).st_nlink > 1)
     throw InputError(path_ +
-                     ": is a file with more names than this, which would be changed, too; allowed: a "
-                     "file of one name; if the other is what you want, remove this one");
+                     ": has several names (hard links), all of which would be changed; allowed: a "
+                     "file with one name");
   if (access_ == Access::create) return cut(descriptor_, path_, 0);
   committed_ = stored_ = static_cast<std::uint64_t>(status_of(descriptor_, path_).st_size);
   seal_ = read_seal(descriptor_, path_, stored_);
@@ -113,7 +113,7 @@ void JournaledFile::lock(Locking locking) const {
                     path_, std::strerror(errno)));
   if (busy ||
       !is_named(path_))  // the latter: renamed by whoever held it, between our opening and our locking
-    throw InputError(fmt::format("{}: a sweep or another program is {} it; allowed: once that has ended",
+    throw InputError(fmt::format("{}: a sweep or another program is {} it; allowed: after it has ended",
                                  path_, reads ? "writing" : "using"));
 }
 
@@ -162,7 +162,7 @@ void JournaledFile::commit() {
     committed_ = size_;
     make_waiting_writes();
     if (first && !sync_folder(folder_of(path_)))
-      throw IoError(path_ + ": its folder cannot be brought to disk");
+      throw IoError(path_ + ": its folder cannot be synced to disk");
   });
 }
 
@@ -196,7 +196,7 @@ void JournaledFile::abandon() {
 
 bool JournaledFile::rename(const std::string& path, bool replace) {
   const auto refuse_other = [&](bool ours, const std::string& name) {
-    if (!ours) throw IoError(name + ": another program has replaced or removed it meanwhile");
+    if (!ours) throw IoError(name + ": another program has replaced or removed it");
   };
   refuse_other(is_named(path_), path_);
   const std::string folder = folder_of(path);

@@ -20,7 +20,7 @@ using hdf5::Handle;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t no_word = 0;
 constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
-constexpr const char* label_long_name = "name of the design, as its list has it";
+constexpr const char* label_long_name = "name of the design in its list";
 constexpr const char* design_long_name = "number of the design in its list, from 0";
 
 void describe(hid_t dataset, std::string_view unit, std::string_view long_name) {
@@ -169,7 +169,7 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling, con
       same = same && hdf5::shape_of(dataset) == std::vector<hsize_t>{values.size()} &&
              hdf5::read_block(dataset, {0}, {values.size()}, "reading " + name) == values;
     }
-    if (!same) throw BrokenFile(fmt::format("{}: {} is not what was written", path, name));
+    if (!same) throw BrokenFile(fmt::format("{}: {} differs from what was written", path, name));
   };
   for (const auto* axes : {&layout.axes, &layout.columns})
     for (const MapAxis& axis : *axes) check_one(axis.name, axis.unit, axis.long_name, axis.values);
@@ -178,14 +178,14 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling, con
     std::iota(numbers.begin(), numbers.end(), 0.0);
     check_one("design", "1", design_long_name, numbers);
     if (!layout.labels.empty() && !hdf5::holds(file, label_name, layout.labels))
-      throw BrokenFile(path + ": label is not what was written");
+      throw BrokenFile(path + ": label differs from what was written");
   }
   for (const Field* field : layout.fields) {
     check_one(std::string(field->name), std::string(field->unit), std::string(field->long_name), {});
     const Handle dataset(H5Dopen2(file, std::string(field->name).c_str(), H5P_DEFAULT), H5Dclose,
                          fmt::format("opening {}", field->name));
     if (hdf5::sources_of(dataset).empty() && hdf5::chunk_of(dataset) != to_hsize(tiling.tile_shape()))
-      throw BrokenFile(fmt::format("{}: {} is stored in other tiles", path, field->name));
+      throw BrokenFile(fmt::format("{}: {} is stored in other chunks", path, field->name));
   }
 }
 

@@ -66,8 +66,8 @@ void MapReader::survey(Accept accept) {
   const std::string filetype =
       hdf5::has_attribute(file_, "filetype") ? hdf5::read_text(file_, "filetype") : "";
   if (filetype == shard_filetype && accept == Accept::maps)
-    throw InputError(fmt::format("{}: is shard {} of a map; allowed: the map that leapmap join makes of all",
-                                 path_, attribute(shard_attribute)));
+    throw InputError(fmt::format("{}: is shard {} of a map; allowed: the joined map (leapmap join)", path_,
+                                 attribute(shard_attribute)));
   if (filetype != map_filetype && filetype != shard_filetype)
     throw IoError(
         fmt::format("{}: is not a leapmap map (its attribute filetype is not \"{}\")", path_, map_filetype));
@@ -90,7 +90,7 @@ void MapReader::survey(Accept accept) {
     const htri_t scale = H5DSis_scale(dataset);
     if (scale < 0) hdf5::fail(path_ + ": reading " + name);
     if ((scale > 0 || name == label_name) && !hdf5::sources_of(dataset).empty())
-      throw BrokenFile(fmt::format("{}: {} lies in other files", path_, name));
+      throw BrokenFile(fmt::format("{}: {} is in other files", path_, name));
     if (scale > 0) {
       dimensions_.push_back(read_dimension(dataset, name));
     } else if (name == label_name) {
@@ -105,19 +105,19 @@ void MapReader::survey(Accept accept) {
     throw IoError(path_ + ": is a list and has other dimensions than design");
   double designs = 1.0;
   for (const Dimension& dimension : dimensions_) designs *= static_cast<double>(dimension.size);
-  if (designs > most_designs) throw IoError(path_ + ": says that it holds more than 10^12 designs");
+  if (designs > most_designs) throw IoError(path_ + ": claims more than 10^12 designs");
   std::vector<hsize_t> expected;
   for (const Dimension& dimension : dimensions_) expected.push_back(dimension.size);
   if (has_labels_ && hdf5::shape_of(open(label_name)) != expected)
-    throw IoError(path_ + ": has not a label for each design");
+    throw IoError(path_ + ": lacks a label for some designs");
   for (const std::string& name : fields_) {
     const Handle dataset = open(name);
     if (hdf5::shape_of(dataset) != expected)
-      throw IoError(fmt::format("{}: {} does not lie along the map's dimensions", path_, name));
+      throw IoError(fmt::format("{}: {} lacks the map's dimensions", path_, name));
     const std::vector<std::string> shards = hdf5::sources_of(dataset);
     if (shards.empty()) continue;  // a list's column
     if (!shards_.empty() && shards != shards_)
-      throw BrokenFile(fmt::format("{}: {} lies in other files than fields before it", path_, name));
+      throw BrokenFile(fmt::format("{}: {} is in other files than the fields before it", path_, name));
     shards_ = shards;
   }
   if (!shards_.empty()) check_shards();
@@ -127,10 +127,10 @@ void MapReader::survey(Accept accept) {
 void MapReader::check_shards() const {
   const std::string again = "allowed: the shards that it was made from, or a new leapmap join";
   if (!hdf5::has_attribute(file_, shard_checksums_attribute))
-    throw BrokenFile(path_ + ": does not say what its shards hold");
+    throw BrokenFile(path_ + ": lacks the checksums of its shards");
   const std::vector<std::int64_t> told =
       hdf5::read_integers(file_, shard_checksums_attribute, shards_.size());
-  if (told.size() != shards_.size()) throw BrokenFile(path_ + ": does not say what each shard holds");
+  if (told.size() != shards_.size()) throw BrokenFile(path_ + ": lacks the checksum of some shard");
   for (std::size_t k = 0; k < shards_.size(); ++k) {
     const std::string path = hdf5::path_beside(path_, shards_[k]);
     std::error_code ignored;
@@ -143,7 +143,7 @@ void MapReader::check_shards() const {
         shard.attribute("spec") != attribute("spec") || shard.fields_ != fields_ ||
         shard.shape() != shape() || !hdf5::has_attribute(shard.file_, tiles_checksum_attribute) ||
         hdf5::read_integers(shard.file_, tiles_checksum_attribute)[0] != told[k])
-      throw BrokenFile(fmt::format("{}: its shard {} is another; {}", path_, path, again));
+      throw BrokenFile(fmt::format("{}: its shard {} is a different one; {}", path_, path, again));
     // HDF5 reads the shard's chunks behind this map's back.
     for (const std::string& field : fields_)
       hdf5::refuse_inflation(shard.open(field), std::vector<std::size_t>(shape().size(), 0), shape(),
@@ -191,7 +191,7 @@ StatusCounts MapReader::status_counts() const {
   const auto designs = static_cast<std::int64_t>(designs_of(shape()));
   std::int64_t left = designs;
   for (const std::int64_t count : counts) {
-    if (count < 0 || count > left) throw BrokenFile(path_ + ": is damaged: its status_counts make no sense");
+    if (count < 0 || count > left) throw BrokenFile(path_ + ": is damaged: its status_counts are invalid");
     left -= count;
   }
   return counts;

@@ -49,7 +49,7 @@ bool write_tables(const std::string& path, const std::string& filetype, std::spa
       for (const Table& table : tables)
         for (const TableColumn& column : table)
           if (!hdf5::holds(written, column.name, column.values))
-            throw BrokenFile(part + ": " + column.name + " is not what was written");
+            throw BrokenFile(part + ": " + column.name + " differs from what was written");
     });
   } catch (...) {
     file.discard();

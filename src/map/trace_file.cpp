@@ -24,15 +24,15 @@ Table motion_table(const Motion& motion) {
   hdf5::Codes phases{{}, {1, 2, 3}, "rolling sliding flight"};
   for (const MotionPoint& point : motion.points)
     phases.values.push_back(static_cast<std::uint8_t>(point.phase));
-  return {{"t", "s", "time since release", points(&MotionPoint::t)},
-          {"phi", "rad", "angle; 0: mass on the plane", points(&MotionPoint::phi)},
-          {"spin", "rad s-1", "spin, positive downhill", points(&MotionPoint::spin)},
-          {"x", "m", "travel of the hoop's centre along the plane", points(&MotionPoint::x)},
-          {"y", "m", "height of the hoop's lowest point above the plane", points(&MotionPoint::y)},
-          {"normal_force", "1", "normal force over the weight (11)", points(&MotionPoint::normal_force)},
-          {"friction", "1", "friction force over the weight, positive downhill (12)",
-           points(&MotionPoint::friction)},
-          {"phase", "1", "phase of the motion", phases}};
+  return {
+      {"t", "s", "time since release", points(&MotionPoint::t)},
+      {"phi", "rad", "angle; 0: mass on the plane", points(&MotionPoint::phi)},
+      {"spin", "rad s-1", "spin, positive downhill", points(&MotionPoint::spin)},
+      {"x", "m", "travel of the hoop's centre along the plane", points(&MotionPoint::x)},
+      {"y", "m", "height of the hoop's lowest point above the plane", points(&MotionPoint::y)},
+      {"normal_force", "1", "normal force over the weight", points(&MotionPoint::normal_force)},
+      {"friction", "1", "friction force over the weight, positive downhill", points(&MotionPoint::friction)},
+      {"phase", "1", "phase of the motion", phases}};
 }
 
 /// Its lift-offs, by their number.

@@ -133,14 +133,14 @@ void MapWriter::verify() {
                                  : static_cast<std::int64_t>(tiling_->size());
   const std::vector<std::int64_t> statuses = hdf5::read_integers(file_, statuses_attribute);
   if (tiles < 0 || static_cast<std::size_t>(tiles) > tiling_->size() || statuses.size() != status_count)
-    throw BrokenFile(part_ + ": what it says of itself does not fit its spec");
+    throw BrokenFile(part_ + ": its attributes do not match its spec");
   progress_.tiles = static_cast<std::size_t>(tiles);
   std::ranges::copy(statuses, progress_.statuses.begin());
   progress_.seconds = hdf5::read_number(file_, seconds_attribute);
   datasets_ = open_fields(file_, *layout_);
 
   if (!tiles_are_as_written(file_, *layout_, *tiling_, progress_.tiles, part_))
-    throw BrokenFile(part_ + ": its tiles are not what was written");
+    throw BrokenFile(part_ + ": its chunks are not what was written");
   checksum_ = static_cast<std::uint32_t>(one(checksum_attribute));
   committed_ = progress_.designs();
 }
@@ -201,7 +201,7 @@ bool MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
   return file_.finish(path_, replace_, [&](hid_t written) {
     check_layout(written, *layout_, *tiling_, part_);
     if (!virtual_ && !tiles_are_as_written(written, *layout_, *tiling_, tiling_->size(), part_))
-      throw BrokenFile(part_ + ": its tiles are not what was written");
+      throw BrokenFile(part_ + ": its chunks are not what was written");
   });
 }
 

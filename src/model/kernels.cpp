@@ -21,7 +21,7 @@ constinit const std::array list{
             return rolling::tell_by_integration(design, scene, options, interval);
           },
           rolling::solving, rolling::effort},
-    Model{Friction::coulomb, "coulomb", "slips, lands and hops on", true, coulomb::exact, coulomb::jumps,
+    Model{Friction::coulomb, "coulomb", "slips, by Coulomb friction", true, coulomb::exact, coulomb::jumps,
           coulomb::gradients, coulomb::dual_jumps, coulomb::integration, coulomb::integrated_jumps,
           coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving,
           coulomb::effort}};

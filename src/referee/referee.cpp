@@ -157,7 +157,7 @@ Outcome Referee::solve_sticking() {
       gave_up = flown.failed;
       return gave_up || count_lift_off(flown);
     };
-    if (!follow(rolls, guards, happens) || gave_up) return failed_outcome("the referee gave up");
+    if (!follow(rolls, guards, happens) || gave_up) return failed_outcome("the reference solver failed");
     if (!turned) return outcome_;
     at_.spin = 0.0;
     // From rest, or nearly, the second or third turn is at the release, or short of it by the method's error.

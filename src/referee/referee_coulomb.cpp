@@ -67,7 +67,7 @@ class Referee::Slipping {
     if (next) ended(Status::failed);
     if (end_ == Status::failed || end_ == Status::indeterminate) {
       const std::uint64_t sequence = outcome_.phase_sequence;
-      outcome_ = failed_outcome("the referee gave up");
+      outcome_ = failed_outcome("the reference solver failed");
       outcome_.phase_sequence = sequence;
     } else {
       outcome_.slip_distance = slipped_ / referee_.scene_.radius;

@@ -55,8 +55,8 @@ StabilityCase dip(bool quick) {
 StabilityCase stick(bool quick) {
   Design design;
   design.mu_kinetic = 0.25;
-  return across("stick", "mu_static beyond where friction just holds, relative", design, &Design::mu_static,
-                0.26571636496098894, quick);
+  return across("stick", "mu_static beyond the value at which friction barely holds, relative", design,
+                &Design::mu_static, 0.26571636496098894, quick);
 }
 
 /// Rolls off ever more slowly near the top: the time goes as the logarithm of the spin.

@@ -113,7 +113,7 @@ std::vector<StabilityRow> run_landing_case(const StabilityOptions& options) {
       const Finding finding = error <= allowed ? Finding::fine
                               : error <= 0.05  ? Finding::lossy
                                                : Finding::wrong;
-      rows.push_back({"landing", "dip of the flight below the plane [hoop diameters]", method, "rule", nan,
+      rows.push_back({"landing", "penetration depth of the flight [hoop diameters]", method, "rule", nan,
                       subject.x, error, nan, nan, nan, nan, "", finding});
     }
   };

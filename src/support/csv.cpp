@@ -26,7 +26,7 @@ std::vector<std::string> split(std::string_view line, const std::string& place) 
         line.remove_prefix(1);
         const std::size_t quote = line.find('"');
         if (quote == std::string_view::npos)
-          throw InputError(place + ": a quote without an end; allowed: cells that end on their line");
+          throw InputError(place + ": an unclosed quote; allowed: cells that end on their line");
         cell += line.substr(0, quote);
         line.remove_prefix(quote + 1);
         inside = line.starts_with('"');
@@ -70,7 +70,7 @@ void refuse_other_form(const std::string& path, std::string_view head, std::stri
   const bool boxes = head.starts_with('\0');  // the length of its first box
   if ((boxes && (at(4, "ftyp") || at(4, "moov") || at(4, "mdat") || at(4, "wide") || at(4, "free"))) ||
       (at(0, "RIFF") && at(8, "AVI ")) || at(0, "\x1a\x45\xdf\xa3"))
-    refuse("a film itself: what is read are the coordinates of its marks over time");
+    refuse("a video; leapmap reads coordinates of its markers over time");
   if (at(0, "PK\x03\x04"))
     refuse(head.find("opendocument.spreadsheet") != head.npos ? "a spreadsheet (ods): save it as CSV"
            : head.find("xl/") != head.npos || head.find("[Content_Types].xml") != head.npos
@@ -116,9 +116,9 @@ void CsvFile::refuse_other_delimiter(std::string_view allowed) const {
   for (const auto& [mark, name] : {std::pair{';', "semicolons"}, {'\t', "tabs"}, {' ', "blanks"}})
     if (header_[0].find(mark) != std::string::npos)
       throw InputError(
-          fmt::format("{}: '{}' looks like columns apart by {}{}; allowed: commas between columns "
+          fmt::format("{}: '{}' looks like columns separated by {}{}; allowed: commas between columns "
                       "and a point in numbers: {}",
-                      place_, header_[0], name, mark == ';' ? ", with decimal commas perhaps" : "", allowed));
+                      place_, header_[0], name, mark == ';' ? ", perhaps with decimal commas" : "", allowed));
 }
 
 bool CsvFile::next(std::vector<std::string>& cells) {

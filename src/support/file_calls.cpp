@@ -23,7 +23,7 @@ void read_all(int descriptor, const std::string& path, std::uint64_t offset, std
     const ssize_t count = uninterrupted(
         [&] { return ::pread(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset)); });
     if (count < 0) fail_with_errno(path, "cannot be read");
-    if (count == 0) throw IoError(path + ": cannot be read: it ends too early");
+    if (count == 0) throw IoError(path + ": cannot be read: it is truncated");
     bytes = bytes.subspan(static_cast<std::size_t>(count));
     offset += static_cast<std::uint64_t>(count);
   }
@@ -57,7 +57,7 @@ void cut(int descriptor, const std::string& path, std::uint64_t size) {
 
 void sync(int descriptor, const std::string& path) {
   if (uninterrupted([&] { return ::fsync(descriptor); }) != 0)
-    fail_with_errno(path, "cannot be brought to disk");
+    fail_with_errno(path, "cannot be synced to disk");
 }
 
 std::uint32_t checksum_of(int descriptor, const std::string& path, std::uint64_t begin, std::uint64_t end) {

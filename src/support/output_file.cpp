@@ -71,9 +71,9 @@ void make_folder(const std::string& folder) {
   for (fs::path made = folder; !made.empty() && !fs::exists(made, error); made = made.parent_path())
     parents.push_back(folder_of(made.string()));
   fs::create_directories(folder, error);
-  if (error) throw IoError(fmt::format("{}: cannot be made: {}", folder, error.message()));
+  if (error) throw IoError(fmt::format("{}: cannot be created: {}", folder, error.message()));
   for (const std::string& parent : parents)
-    if (!sync_folder(parent)) throw IoError(folder + ": cannot be brought to disk");
+    if (!sync_folder(parent)) throw IoError(folder + ": cannot be synced to disk");
 }
 
 std::string behind_links(const std::string& name) {
@@ -82,7 +82,7 @@ std::string behind_links(const std::string& name) {
   fs::path path = name;
   std::error_code error;
   for (int i = 0; fs::is_symlink(path, error); ++i) {
-    if (i == most_links) throw InputError(name + ": is a ring of symbolic links; allowed: a file's name");
+    if (i == most_links) throw InputError(name + ": is a cycle of symbolic links; allowed: a file's name");
     path = path.parent_path() / fs::read_symlink(path, error);
   }
   return path.string();
@@ -112,16 +112,14 @@ void refuse_same_files(std::span<const NamedPath> inputs, std::span<const NamedP
     for (const std::string& path : written(output)) {
       for (const NamedPath& input : inputs)
         if (!input.path.empty() && same_file(path, input.path))
-          throw InputError(
-              fmt::format("{} {}: is the file of something else here, {} {}; allowed: another name",
-                          output.name, path, input.name, input.path));
+          throw InputError(fmt::format("{} {}: is the same file as {} {}; allowed: another name", output.name,
+                                       path, input.name, input.path));
       for (const NamedPath& other : outputs) {
         if (&other == &output || other.path.empty()) continue;
         for (const std::string& also : written(other))
           if (same_file(path, also))
-            throw InputError(
-                fmt::format("{} {}: is the file of something else here, {} {}; allowed: another name",
-                            output.name, output.path, other.name, other.path));
+            throw InputError(fmt::format("{} {}: is the same file as {} {}; allowed: another name",
+                                         output.name, output.path, other.name, other.path));
       }
     }
   }
@@ -200,8 +198,7 @@ void TextOutput::refuse_if_changed() const {
   const bool same = there && replaces_ && now.st_dev == replaced_.st_dev && now.st_ino == replaced_.st_ino &&
                     now.st_size == replaced_.st_size && now.st_mtim.tv_sec == replaced_.st_mtim.tv_sec &&
                     now.st_mtim.tv_nsec == replaced_.st_mtim.tv_nsec;
-  if (there && !same)
-    throw IoError(path_ + ": another program has written it meanwhile; allowed: another name");
+  if (there && !same) throw IoError(path_ + ": another program has written it; allowed: another name");
 }
 
 }  // namespace leapmap

@@ -81,7 +81,7 @@ void TextFile::check_end() const {
       now.st_mtim.tv_nsec != opened_.st_mtim.tv_nsec)
     throw IoError(path_ + ": it changed while it was read");
   if (read_ != static_cast<std::size_t>(opened_.st_size))
-    throw IoError(path_ + ": cannot be read: it ends too early");
+    throw IoError(path_ + ": cannot be read: it is truncated");
 }
 
 std::string_view TextFile::peek(std::size_t bytes) {

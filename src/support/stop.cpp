@@ -31,7 +31,7 @@ void throw_if_stopped() {
   if (!asked_here || ++calls % between != 0) return;
   if (!(*asked_here)()) return;
   if (!since) since = Clock::now();
-  if (Clock::now() - *since > grace) throw Stopped("the work was asked to stop");
+  if (Clock::now() - *since > grace) throw Stopped("the work was stopped");
 }
 
 }  // namespace leapmap

@@ -86,7 +86,7 @@ void refuse_own_input(const Spec& spec, const std::string& map) {
   for (const std::string& input : {spec.origin, spec.points})
     for (const std::string& output : {map, part_of(map)})
       if (!input.empty() && same_file(input, output))
-        throw InputError(fmt::format("{}: is what the sweep is made from; allowed: another -o", output));
+        throw InputError(fmt::format("{}: is an input of the sweep; allowed: another -o", output));
 }
 
 bool is_done(const std::string& map, const Spec& spec, std::span<const hdf5::Attribute> opening,
@@ -98,7 +98,7 @@ bool is_done(const std::string& map, const Spec& spec, std::span<const hdf5::Att
     refuse_other_beginning(whole, map, spec, opening);
   } else if (const auto difference = first_difference(spec_of(whole, map), spec)) {
     throw InputError(fmt::format(
-        "{}: exists already, of another spec: {}; allowed: another -o, or --overwrite", map, *difference));
+        "{}: exists already, with another spec: {}; allowed: another -o, or --overwrite", map, *difference));
   }
   return true;
 }

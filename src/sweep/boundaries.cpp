@@ -41,14 +41,13 @@ Spec bare(const Spec& original) {
 
 void check_grid(const Spec& spec) {
   check_spec(spec);
-  if (spec.axes.empty())
-    throw InputError(origin_of(spec) + ": is of no grid; allowed: one axis or more, along which to look");
+  if (spec.axes.empty()) throw InputError(origin_of(spec) + ": has no axes; allowed: at least one axis");
   const std::size_t designs = designs_of(shape_of(spec));
   if (designs > most_bounded_designs)
-    throw InputError(fmt::format("{}: {} designs; allowed: at most {} for cliffs", origin_of(spec), designs,
-                                 most_bounded_designs));
+    throw InputError(
+        fmt::format("{}: {} designs; allowed: at most {}", origin_of(spec), designs, most_bounded_designs));
   if (std::ranges::none_of(spec.axes, [](const Axis& axis) { return axis.values.size() > 1; }))
-    throw InputError(origin_of(spec) + ": no axis has two values; allowed: neighbours to look between");
+    throw InputError(origin_of(spec) + ": no axis has two values; allowed: an axis with at least two");
 }
 
 /// The grid's outcomes, as words.
@@ -70,7 +69,7 @@ std::vector<std::uint64_t> solve_grid(const Spec& spec, const BoundaryOptions& o
                       return Prepared{[] {}, 0};
                     }};
   });
-  if (options.stop_requested && options.stop_requested()) throw Stopped("boundaries was asked to stop");
+  if (options.stop_requested && options.stop_requested()) throw Stopped("boundaries was stopped");
   return words;
 }
 
@@ -142,8 +141,7 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
                                     discrete(at.above.outcome, options.phases)});
           },
           [&] {
-            if (options.stop_requested && options.stop_requested())
-              throw Stopped("boundaries was asked to stop");
+            if (options.stop_requested && options.stop_requested()) throw Stopped("boundaries was stopped");
           });
       const std::lock_guard lock(telling);
       done += some.size();

@@ -47,7 +47,7 @@ struct Check {
   bool stopped() const { return options.stop_requested && options.stop_requested(); }
   std::string place(const Field& field, std::size_t tile) const {
     const Tile block = tiling.tile(tile);
-    return fmt::format("{} in tile {} ({} designs from number {})", field.name, tile, block.count,
+    return fmt::format("{} in chunk {} ({} designs from number {})", field.name, tile, block.count,
                        tiling.number(block, 0));
   }
 };
@@ -60,7 +60,7 @@ std::string wrong_value(const Field& field, const std::vector<double>& values) {
     const bool right = code ? (code->names.empty() && value >= 0.0 && value < 256.0) || value == code->fill ||
                                   (value >= 0.0 && value < static_cast<double>(code->names.size()))
                             : std::isnan(value) || std::abs(value) < beyond;
-    if (!right) return fmt::format("holds {}, which it never does", value);
+    if (!right) return fmt::format("holds {}, which no map does", value);
   }
   return {};
 }
@@ -133,11 +133,11 @@ void check_sample(Check& check) {
   check.bytes.rethrow_failure();
   const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
     if (design)
-      check.find(fmt::format("design {}: {}; see it by: {}", told_design(check.spec, *design), what,
+      check.find(fmt::format("design {}: {}; show it: {}", told_design(check.spec, *design), what,
                              hop_command(check.spec, DesignSpace(check.spec).at(*design))));
   };
   tell(audited.first_mismatch,
-       "the map has another status, flag, number of candidates or sequence than " + audited.method);
+       "the map has another status, flag, number of lift-offs or sequence than " + audited.method);
   tell(audited.first_inaccurate,
        fmt::format("the map differs by more than {:.1e} from {}", audited.allowed_error, audited.method));
   tell(audited.first_wrong_gradient,
@@ -145,7 +145,7 @@ void check_sample(Check& check) {
   tell(audited.first_wrong_sequence,
        "a later jump differs from " + audited.method + " by more than errors grow");
   tell(audited.first_wrong_gait, "integration does not find the gait that the map has");
-  tell(audited.first_overruled, "the map differs from an integration of the paper's (7) to (9)");
+  tell(audited.first_overruled, "the map differs from the reference solver");
   check.report.sample = audited;
 }
 
@@ -154,7 +154,7 @@ std::size_t tiles_of(const MapReader& map, const Tiling& tiling) {
   if (map.is_whole()) return tiling.size();
   const std::int64_t done = hdf5::read_integer(map.file(), "tiles_done", 0);
   if (static_cast<std::size_t>(done) > tiling.size())
-    throw BrokenFile("it says that more tiles are done than it has");
+    throw BrokenFile("tiles_done exceeds the number of chunks");
   return static_cast<std::size_t>(done);
 }
 
@@ -179,7 +179,7 @@ void check_attributes(Check& check) {
   for (const char* number : {"wall_time", "tolerance"})
     look_at(number, [&](const char* name) {
       if (!(hdf5::read_number(root, name) >= 0.0))
-        throw BrokenFile(fmt::format("reading attribute {}: it is below zero", name));
+        throw BrokenFile(fmt::format("reading attribute {}: it is negative", name));
     });
   look_at("audit_designs", [&](const char*) { read_audit(check.map); });
 }
@@ -188,7 +188,7 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
                    const CheckOptions& options, CheckReport& report) {
   const Spec spec = spec_of(map, path);
   const MapLayout layout = layout_of(spec);
-  if (shape_of(spec) != map.shape()) throw BrokenFile(path + ": its spec is of other designs than it holds");
+  if (shape_of(spec) != map.shape()) throw BrokenFile(path + ": its spec describes other designs");
   const Tiling whole =
       map.blocks(std::string(layout.fields.front()->name));  // as it was cut by whoever wrote it
   const bool is_shard = hdf5::has_attribute(map.file(), shard_tiles_attribute);
@@ -205,9 +205,7 @@ void check_content(const JournaledFile& bytes, const MapReader& map, const std::
   report.sealed = bytes.is_sealed();
   if (report.whole && !report.sealed &&
       !std::ranges::lexicographical_compare(hdf5::read_integers(map.file(), "version"), first_sealed))
-    check.find(
-        "the checksum at its end is missing: another program changed the file, or its end is damaged or cut "
-        "off");
+    check.find("the checksum at its end is missing: another program changed the file, or it is truncated");
 }
 
 }  // namespace

@@ -49,13 +49,13 @@ std::size_t shards_of(const std::string& map, std::size_t asked) {
   if (asked > 0) return asked;
   const std::set<std::size_t> totals = totals_beside(map);
   if (totals.empty())
-    throw InputError(
-        fmt::format("{}: no shard of it lies beside it; allowed: a map whose shards leapmap sweep SPEC -o {} "
-                    "--shard I/N made, such as {}",
-                    map, shell_quoted(map), shard_path(map, {1, 8})));
+    throw InputError(fmt::format(
+        "{}: no shard lies beside it; allowed: shards of leapmap sweep SPEC -o {} --shard I/N, for "
+        "example {}",
+        map, shell_quoted(map), shard_path(map, {1, 8})));
   if (totals.size() > 1)
     throw InputError(
-        fmt::format("{}: shards of {} and of {} lie beside it; allowed: --shards with the number that counts",
+        fmt::format("{}: shards of {} and of {} lie beside it; allowed: --shards with one of these numbers",
                     map, *totals.begin(), *std::next(totals.begin())));
   return *totals.begin();
 }
@@ -137,7 +137,7 @@ class Joining {
     }
     faults.tell();
     if (const auto hole = std::ranges::find(holder, 0u); hole != holder.end())
-      throw InputError(fmt::format("{}: no shard holds tile {}; allowed: shards that one program has cut",
+      throw InputError(fmt::format("{}: no shard holds chunk {}; allowed: shards from a single partitioning",
                                    map_, hole - holder.begin()));
   }
 
@@ -145,13 +145,12 @@ class Joining {
     const std::string path = path_of(i);
     const MapReader shard(path, locking_, Accept::shards_too);
     if (!hdf5::has_attribute(shard.file(), shard_attribute))
-      throw InputError(fmt::format("{}: is a whole map and no shard; allowed: what --shard {}/{} makes", path,
-                                   i, shards_));
+      throw InputError(fmt::format("{}: is a whole map, not a shard; allowed: the file of --shard {}/{}",
+                                   path, i, shards_));
     if (const std::string told = shard.attribute(shard_attribute); told != text_of(Shard{i, shards_}))
       throw InputError(
-          fmt::format("{}: is shard {}, whatever its name says; allowed: shard {}/{} under that name", path,
-                      told, i, shards_));
-    if (!shard.is_whole()) throw BrokenFile("it is not whole");
+          fmt::format("{}: is shard {} despite its name; allowed: shard {}/{}", path, told, i, shards_));
+    if (!shard.is_whole()) throw BrokenFile("it is incomplete");
     const Spec spec = spec_of(shard, path);
     if (!tiling_) {
       spec_ = spec;
@@ -161,7 +160,7 @@ class Joining {
       for (const char* name : bits_depend_on) same_.emplace_back(name, shard.attribute(name));
       holder.resize(tiling_->size());
     } else if (const auto difference = first_difference(spec_, spec)) {
-      throw InputError(fmt::format("{}: is of another spec than {}: {}; allowed: shards of one spec", path,
+      throw InputError(fmt::format("{}: has another spec than {}: {}; allowed: shards of one spec", path,
                                    first_, *difference));
     }
     refuse_other_program(shard, path);
@@ -169,8 +168,9 @@ class Joining {
     const std::vector<std::size_t> tiles = tiles_held(shard.file(), tiling_->size());
     for (const std::size_t t : tiles) {
       if (holder[t] != 0)
-        throw InputError(fmt::format("{}: holds tile {} as {} does; allowed: shards that one program has cut",
-                                     path, t, path_of(holder[t])));
+        throw InputError(
+            fmt::format("{}: holds chunk {}, and so does {}; allowed: shards from a single partitioning",
+                        path, t, path_of(holder[t])));
       holder[t] = i;
     }
     if (options_.as_virtual && !tiles.empty()) sources_.push_back(source_of(path, tiles));
@@ -262,7 +262,7 @@ class Joining {
     const std::vector<std::int64_t> told = hdf5::read_integers(shard.file(), "tiles_checksum");
     if (told.size() != 1 || told[0] != checksum)
       throw BrokenFile(fmt::format(
-          "{}: its tiles are not what was written; remove it, then run it again: --array={}", path, number));
+          "{}: its chunks are not what was written; remove it, then run it again: --array={}", path, number));
     if (!tiles.empty()) checksums_.push_back(told[0]);
     return true;
   }
@@ -295,10 +295,9 @@ std::optional<JoinReport> join(const std::string& path, const JoinOptions& optio
     throw InputError(map +
                      ": exists already; allowed: another name for the shards and the map, or --overwrite");
   if (options.as_virtual && fs::path(map).filename().string().find('%') != std::string::npos)
-    throw InputError(
-        map +
-        ": has a % in its name, which means something to HDF5's virtual datasets; allowed: another "
-        "name for the shards and the map, or a join without --virtual");
+    throw InputError(map +
+                     ": has a % in its name, which HDF5's virtual datasets interpret; allowed: another "
+                     "name for the shards and the map, or a join without --virtual");
   const std::size_t shards = shards_of(map, options.shards);
   remove_unfinished(map, options.lock ? Locking::required : Locking::if_possible);
   return Joining(map, shards, options).run();

@@ -43,7 +43,7 @@ void JoinFaults::tell() const {
   std::ranges::sort(again);
   std::string text = fmt::format("{}: ", map_);
   if (const std::size_t missing = again_.size() - broken_.size(); missing > 0)
-    text += fmt::format("{} of its {} shards {} not there{}; ", missing, shards_, missing == 1 ? "is" : "are",
+    text += fmt::format("{} of its {} shards {} missing{}; ", missing, shards_, missing == 1 ? "is" : "are",
                         unfinished_ > 0 ? fmt::format(", {} of them unfinished", unfinished_) : "");
   for (const std::string& reason : reasons_) text += reason + "; ";
   if (broken_.size() > reasons_.size())

@@ -46,7 +46,7 @@ std::vector<double> Map::read(const std::string& field, const std::vector<std::s
   for (std::size_t i = 0; inside && i < all.size(); ++i)
     inside = start[i] <= all[i] && extent[i] <= all[i] - start[i];
   if (!inside)
-    throw InputError(fmt::format("{}: the block at ({}) of ({}) is not in it; allowed: within ({})", path_,
+    throw InputError(fmt::format("{}: the block at ({}) of size ({}) is outside; allowed: within ({})", path_,
                                  fmt::join(start, ", "), fmt::join(extent, ", "), fmt::join(all, ", ")));
   return reader_->read(
       field,

@@ -90,9 +90,9 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
                                       int threads, const std::function<bool()>& stop_requested) {
   constexpr std::size_t most_at_once = 100'000;
   const MapReader map(path, file);
-  if (!map.is_whole()) throw InputError(path + ": is not whole; allowed: a whole map, by sweep --resume");
+  if (!map.is_whole()) throw InputError(path + ": is incomplete; allowed: a complete map, by sweep --resume");
   if (!stores(spec.output, "status"))
-    throw InputError(path + ": holds no status; allowed: a map with that field");
+    throw InputError(path + ": lacks the field status; allowed: a map with it");
   const MapLayout layout = layout_of(spec);
   const Tiling tiling =
       map.blocks(std::string(layout.fields.front()->name));  // as whoever wrote it has cut it
@@ -164,14 +164,13 @@ std::optional<RetryReport> retry_with(const std::string& path, const Spec& spec,
       file->discard();
       return report;
     }
-    if (!original.is_named(path))
-      throw IoError(path + ": another program has replaced or removed it meanwhile");
+    if (!original.is_named(path)) throw IoError(path + ": another program has replaced or removed it");
     report->durable = file->finish(path, true, [&](hid_t written) {
       const MapLayout layout = layout_of(spec);
       const Tiling tiling = MapReader(path, written).blocks(std::string(layout.fields.front()->name));
       check_layout(written, layout, tiling, path + ".retry");
       if (!tiles_are_as_written(written, layout, tiling, tiling.size(), path))
-        throw BrokenFile(path + ".retry: its tiles are not what was written");
+        throw BrokenFile(path + ".retry: its chunks are not what was written");
     });
     return report;
   } catch (...) {

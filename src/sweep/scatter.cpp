@@ -42,7 +42,7 @@ void refuse_percent_of_nothing(const Spec& spec, const Spread& spread, std::span
   for (const double value : values)
     if (std::abs(value) <= 1e-12 * most)
       refuse(spec, "scatter", spread.parameter,
-             fmt::format("is {} % of nothing: a nominal value is {}", spread.width, value),
+             fmt::format("is {} % of a nominal value of {}", spread.width, value),
              "a width in the parameter's unit");
 }
 
@@ -98,7 +98,7 @@ void check_goal(const Spec& spec, const Goal& goal) {
   if (std::holds_alternative<Word>(field.source) &&
       !(exactly && goal.at_least >= 1.0 && goal.at_least < 9e15))
     refuse(spec, "goal", goal.field, "is not a sequence of phases",
-           "{ is = \"RSF\" } and the like, up to 26 letters");
+           "for example { is = \"RSF\" }, up to 26 letters");
 }
 
 }  // namespace
@@ -141,7 +141,7 @@ void check_scatter(const Spec& spec) {
   if (scatter.spreads.empty()) return;
   if (scatter.samples % static_cast<long>(SobolPoints::replicates) != 0)
     refuse(spec, "scatter", "samples", fmt::format("= {}", scatter.samples),
-           fmt::format("{} times a whole number", SobolPoints::replicates));
+           fmt::format("a multiple of {}", SobolPoints::replicates));
   for (const Spread& spread : scatter.spreads) check_spread(spec, spread);
 }
 

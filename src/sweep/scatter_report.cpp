@@ -51,8 +51,7 @@ class Workshop {
           return [&, hoops = std::move(hoops), solve = make_solver(solved_),
                   made = std::vector<Design>(made_at_once),
                   outcomes = std::vector<Outcome>(made_at_once)](std::size_t block) mutable {
-            if (options_.stop_requested && options_.stop_requested())
-              throw Stopped("scatter was asked to stop");
+            if (options_.stop_requested && options_.stop_requested()) throw Stopped("scatter was stopped");
             const std::size_t first = block * made_at_once, count = std::min(made_at_once, samples() - first);
             hoops.fill(first, std::span(made).first(count));
             solve(std::span(made).first(count), std::span(outcomes).first(count));
@@ -118,12 +117,12 @@ Importance importance(std::string of, std::span<const std::vector<double>> outpu
 ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
   check_spec(spec);
   if (!spec.axes.empty() || !spec.points.empty() || !spec.list.columns.empty())
-    throw InputError(
-        fmt::format("{}: is of many designs; allowed: one design, whose hoops are made", origin_of(spec)));
+    throw InputError(fmt::format("{}: has several designs; allowed: one design", origin_of(spec)));
   if (spec.scatter.spreads.empty())
-    throw InputError(fmt::format(
-        "{}: nothing scatters; allowed: a spec with [scatter], or --set 'scatter.slope={{normal=\"1 deg\"}}'",
-        origin_of(spec)));
+    throw InputError(
+        fmt::format("{}: has no tolerances; allowed: a spec with [scatter], or --set "
+                    "'scatter.slope={{normal=\"1 deg\"}}'",
+                    origin_of(spec)));
   ScatterOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
   const std::vector<const Field*> quantities = quantities_of_made(spec);

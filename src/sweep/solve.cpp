@@ -55,7 +55,7 @@ void in_blocks(std::string_view what, std::size_t designs, std::size_t most, con
       const std::size_t first = block * most;
       solve_block(first, std::min(most, designs - first));
       if (options.stop_requested && options.stop_requested())
-        throw Stopped(fmt::format("{} was asked to stop", what));
+        throw Stopped(fmt::format("{} was stopped", what));
       return true;
     };
   });

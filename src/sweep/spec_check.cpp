@@ -155,7 +155,7 @@ void check_spec(const Spec& spec) {
         option.slot);
   if (resolved_method(spec.numerics) == "exact" &&
       (spec.numerics.fixed_step > 0.0 || spec.numerics.absolute_tolerance > 0.0))
-    refuse(spec, "fixed_step or absolute_tolerance", "is set, and exact takes no steps",
+    refuse(spec, "fixed_step or absolute_tolerance", "has no effect, because exact takes no steps",
            "with method = \"gsl-...\"");
   for (const auto& [key, names] : {std::pair{"maximize", &spec.maximize}, {"minimize", &spec.minimize}})
     if (!names->empty() && spec.list.columns.empty())  // a list may tell what it was found for

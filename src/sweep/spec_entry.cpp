@@ -84,7 +84,7 @@ std::size_t count_of_steps(const Entry& entry, const toml::table& table, double 
   // Bounds and step are rounded, so that a whole number of steps is one but for some roundings.
   if (!(steps >= 1.0 && std::abs(steps - std::round(steps)) < 1e-9 * steps))
     refuse(entry, fmt::format("'step' leads {} steps from 'from' to 'to'", steps),
-           "a whole number of steps, or count in place of step");
+           "a whole number of steps, or count instead of step");
   if (std::round(steps) >= most_axis_values)
     refuse(entry, "'step' is too small", fmt::format("up to {} values", most_axis_values));
   return static_cast<std::size_t>(std::round(steps)) + 1;
@@ -109,7 +109,7 @@ Spacing to_spacing(const Entry& entry, const toml::table& table) {
   if (spacing.log && !(from > 0.0 && to > 0.0))
     refuse(entry, "a log axis starts and ends above 0", "'from' and 'to' > 0");
   if (!table.contains("count")) {  // a free one: its bounds
-    if (!(from < to)) refuse(entry, "'from' is not below 'to'", "two bounds, the lesser one first");
+    if (!(from < to)) refuse(entry, "'from' is not below 'to'", "two bounds, the smaller one first");
     spacing.count = 2;
     return spacing;
   }

@@ -56,7 +56,7 @@ double to_bound(const Entry& entry, const Field& field, const toml::node& node, 
   if (std::holds_alternative<Word>(field.source)) {
     const auto phases = text ? to_phases(text->get()) : std::nullopt;
     if (!phases || part != "is")
-      refuse(entry, "is not a sequence of phases", "{ is = \"RSF\" } and the like, up to 26 letters");
+      refuse(entry, "is not a sequence of phases", "for example { is = \"RSF\" }, up to 26 letters");
     return *phases;
   }
   return to_number(entry, node, part);

@@ -199,7 +199,7 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
     throw IoError(fmt::format(
         "{}; the disk or its driver loses data; start again by --overwrite, on another disk", error.what()));
   } catch (const IoError& error) {
-    if (writer.committed() == 0) throw IoError(fmt::format("{}; nothing is kept", error.what()));
+    if (writer.committed() == 0) throw IoError(fmt::format("{}; nothing was kept", error.what()));
     throw KeptError(error.what(), writer.committed(), tiling.designs());
   }
 }

@@ -12,4 +12,4 @@ shift 3
 array=$(sbatch --parsable --array="${AGAIN:-1-$shards}" "$@" "$here/shards.sbatch" "$shards" "$spec" "$map")
 array=${array%%;*}  # where there are several clusters, which one
 join=$(sbatch --parsable --dependency="afterany:$array" "$@" --cpus-per-task=1 "$here/join.sbatch" "$shards" "$map")
-echo "array $array of $shards shards, then join $join; squeue tells how far they are"
+echo "array $array of $shards shards, then join $join; squeue shows their progress"

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import h5py
@@ -174,8 +175,27 @@ def test_the_trace_chart_marks_both_candidates(tmp_path):
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "figure.svg")
     for word in ("angle φ [degrees]", "spin [rad/s]", "normal force [weights]", "friction [weights]", "height y [mm]",
-                 "time since release [s]", "candidate 0.1700 s", "jump 0.3200 s", "flies 0.0074 diameters", "flies 0.997 diameters"):
+                 "time since release [s]", "lift-off 0.1700 s", "jump 0.3200 s", "flies 0.0074 diameters", "flies 0.997 diameters"):
         assert word in words, word
+
+
+def test_the_jump_chart_shows_the_hoop_where_the_trace_has_it(tmp_path):
+    leapmap("hop", "--trace", tmp_path / "trace.h5", "--trace-interval", "0.01")
+    done = draw("jump_chart.py", tmp_path / "trace.h5", "--count", "12", "--animate", "-o", tmp_path / "jump")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "jump.gif").read_bytes()[:6] == b"GIF89a"
+    sys.path.insert(0, str(TOP / "analysis"))
+    import jump_chart
+    from read_map import read_trace
+
+    trace = read_trace(str(tmp_path / "trace.h5"))
+    slope = jump_chart.Slope(0.4)
+    centre, mass = jump_chart.markers(trace, trace.numbers(), slope)
+    assert np.allclose(np.linalg.norm(mass - centre, axis=1), 0.041), "the mass is on the rim"
+    assert np.allclose(centre @ slope.away - 0.041, trace.fields["y"]), "the lowest point is y above the plane"
+    rolls = trace.code("phase", "rolling")
+    at_plane = rolls & (np.cos(trace.fields["phi"]) > 0.999)
+    assert at_plane.any() and (mass[at_plane] @ slope.away < 1e-3).all(), "phi = 0: the mass touches the plane"
 
 
 def test_the_trace_charts_mark_what_the_paper_published(tmp_path):

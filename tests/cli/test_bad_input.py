@@ -203,7 +203,7 @@ def test_an_empty_name_is_refused(arguments):
 
 
 @pytest.mark.parametrize("name, words", [
-    ("film.mp4", ["a film itself"]), ("points_utf16.csv", ["UTF-16"]), ("points_nul.csv", ["byte 0"]), ("points_semicolon.csv", ["semicolons"]),
+    ("film.mp4", ["a video"]), ("points_utf16.csv", ["UTF-16"]), ("points_nul.csv", ["byte 0"]), ("points_semicolon.csv", ["semicolons"]),
     ("film_tabs.csv", ["tabs"]), ("film_degrees_2000fps.csv", ["degrees"]), ("film_held_before_release.csv", ["held"]),
     ("film_two_nan_rows.csv", [":22:", "--allow-gaps"]), ("events_degrees.csv", ["jump_angle = 700", "degrees"]),
 ])

@@ -275,7 +275,7 @@ def test_every_flipped_bit_of_a_finished_map_is_found_and_told(original, tmp_pat
         path.write_bytes(damaged)
         done = leapmap("check", path)
         assert done.returncode == 1 and done.stdout.startswith("WRONG"), (flip, done.stdout, done.stderr)
-        told_where += "in tile" in done.stdout
+        told_where += "in chunk" in done.stdout
         retried = leapmap("sweep", original.parent / "spec.toml", "-o", path, "--retry-failed")
         assert retried.returncode == 3 and path.read_bytes() == damaged, (flip, retried.stderr)
     assert told_where >= 2

@@ -166,7 +166,7 @@ def test_a_part_whose_bytes_changed_is_refused_and_left_alone(uninterrupted, tmp
         assert part.read_bytes() == broken, what
     part.write_bytes(b"words" * 40000)
     refused = finished(*command(tmp_path, "--resume"))
-    assert refused.returncode == 2 and "no unfinished leapmap map" in refused.stderr
+    assert refused.returncode == 2 and "not an unfinished leapmap map" in refused.stderr
     assert part.read_bytes() == b"words" * 40000
 
 

@@ -129,7 +129,7 @@ def test_shards_of_equal_sums_are_told_apart(tmp_path):
         assert first == second, "else there is nothing to tell apart"
     shutil.copy(shard(joined, 1, 2), shard(joined, 2, 2))
     told = leapmap("info", joined)
-    assert told.returncode != 0 and "is another" in told.stderr
+    assert told.returncode != 0 and "a different one" in told.stderr
 
 
 def test_what_a_killed_virtual_join_left_is_in_nobodys_way(tmp_path):
@@ -275,7 +275,7 @@ def test_all_that_is_wrong_is_told_at_once_and_mended_by_removing_what_is_broken
     broken = [shard(joined, i, 5) for i in (2, 3)]
     for path in broken:
         os.truncate(path, path.stat().st_size // 2)
-    refused(joined, "1 of its 5 shards is not there", broken[0].name, broken[1].name, "--array=2-4", status=3)
+    refused(joined, "1 of its 5 shards is missing", broken[0].name, broken[1].name, "--array=2-4", status=3)
     for path in broken:
         path.unlink()
     shards(tmp_path, SMALL, 5, "--resume", which=[2, 3, 4])

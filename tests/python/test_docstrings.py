@@ -36,7 +36,11 @@ def test_classes_and_their_methods_are_documented(name):
     one = getattr(leapmap, name)
     assert one.__doc__.strip()
     for method, value in vars(one).items():
-        if not method.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)) and name not in ("Estimate", "Status"):
+        if (
+            not method.startswith("_")
+            and (inspect.isfunction(value) or isinstance(value, property))
+            and name not in ("Estimate", "Status")
+        ):
             assert inspect.getdoc(value), f"{name}.{method}"
 
 
