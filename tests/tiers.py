@@ -13,13 +13,13 @@ TOP = Path(__file__).resolve().parents[1]
 README = TOP / "tests" / "README.md"
 BEGIN, END = "<!-- tiers: made by sh tests/run.sh --all -->\n", "<!-- end of tiers -->\n"
 # Twins of other names.
-TWINS = {"cli.test_slurm": "`cli.test_shards`: by GNU parallel", "analysis.test_firefox": "`analysis.test_live`: in chromium"}
+TWINS = {"cli.test_slurm": "`cli.test_shards`: by GNU parallel", "analysis.test_firefox": "`analysis.test_live`: in chromium",
+         "mutation": "`mutation.none`: the solvers as they are"}
 # What the second tier has beside ctest's tests: what the first tier has of it.
 STAGES = {
     "all C++ tests with ASan and UBSan (`tests/sanitized.sh`)": "`.ci/run` does so for map, support and referee",
     "every instruction set, each solving the reference tables; old processors by qemu": "this machine's best set",
     "libFuzzer on specs and maps, ten minutes (`tests/fuzz/run.sh`)": "`cli.test_hostile_files`: flipped bits, cut and strange files",
-    "all planted errors (`tests/mutation/mutate.py`)": "`mutation.twin`: one of them, and `mutation.none`: the solvers as they are",
     "every call fails, and allocations do (`tests/faults/run.sh`)": "`cli.test_faults`: some of them",
 }
 

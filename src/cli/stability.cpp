@@ -22,9 +22,11 @@ namespace leapmap::cli {
 namespace {
 
 constexpr const char* filetype = "leapmap stability";
+constexpr std::string_view landing_case = "landing";
 
 struct StabilityArguments {
   std::string table = "maps/stability.h5";
+  std::vector<std::string> cases;  // empty: all
   StabilityOptions options;
   Locking locking = Locking::required;
 };
@@ -122,7 +124,11 @@ int run(const StabilityArguments& arguments) {
       "control", "verdict", "fine", "lossy", "failed", "wrong", "undecided", "worst", "most rhs");
   std::vector<StabilityRow> rows;
   const auto stop_requested = [] { return noted_signal() != 0; };
+  const auto wanted = [&](std::string_view name) {
+    return arguments.cases.empty() || std::ranges::find(arguments.cases, name) != arguments.cases.end();
+  };
   for (const StabilityCase& stability_case : stability_cases(arguments.options)) {
+    if (!wanted(stability_case.name)) continue;
     const std::vector<StabilityRow> more = run_case(stability_case, stop_requested);
     if (stop_requested()) {
       tell(fmt::format("interrupted in the case \"{}\"; nothing was written", stability_case.name));
@@ -131,9 +137,11 @@ int run(const StabilityArguments& arguments) {
     print_verdicts(more);
     rows.insert(rows.end(), more.begin(), more.end());
   }
-  const std::vector<StabilityRow> landings = run_landing_case(arguments.options);
-  print_verdicts(landings);
-  rows.insert(rows.end(), landings.begin(), landings.end());
+  if (wanted(landing_case)) {
+    const std::vector<StabilityRow> landings = run_landing_case(arguments.options);
+    print_verdicts(landings);
+    rows.insert(rows.end(), landings.begin(), landings.end());
+  }
   std::vector<hdf5::Attribute> attributes = file_provenance(filetype, "Where methods for passive hoops fail");
   attributes.emplace_back("quick", std::int64_t{arguments.options.quick});
   attributes.emplace_back("wall_time",
@@ -155,6 +163,11 @@ void add_stability(CommandLine& line, int& status) {
   auto arguments = std::make_shared<StabilityArguments>();
   command.value("-o,--output", arguments->table, "the HDF5 table to write; default: maps/stability.h5")
       .check(named_file());
+  std::vector<std::string> cases{std::string(landing_case)};
+  for (const StabilityCase& each : stability_cases({})) cases.push_back(each.name);
+  command.value("--cases", arguments->cases, "cases to run, separated by commas; default: all of those below")
+      .with_commas()
+      .check(one_of(cases));
   command.flag("--quick", arguments->options.quick, "fewer positions in each case: within a minute");
   add_no_lock(command, arguments->locking);
   command.footer(
