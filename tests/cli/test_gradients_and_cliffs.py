@@ -105,7 +105,7 @@ def test_boundaries_are_told_and_written_of_a_spec_and_of_its_map(tmp_path):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    ([TOP / "sweeps" / "paper.toml"], "no grid"),
+    ([TOP / "sweeps" / "paper.toml"], "no axes"),
     (["no_such_spec.toml"], "no_such_spec.toml"),
     ([], "SPEC|MAP"),
     ([TOP / "sweeps" / "slope_mass_ratio.toml", "--phases"], "--phases"),

@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadQuestion{"a_percentage_of_a_bound_beyond_zero",
                     "[design]\nslope = { from = -0.1, to = 0.5 }\n[scatter]\nslope = { normal = \"5 %\" }\n"
                     "[goal]\nmaximize = [\"jump_height\"]",
-                    {"scatter.slope", "nothing"}},
+                    {"scatter.slope", "of zero"}},
         BadQuestion{
             "a_goal_against_itself",
             box + "[goal]\njump_time = { at_least = 2.0, at_most = 1.0 }\nmaximize = [\"jump_height\"]",
