@@ -127,11 +127,11 @@ int run(const StabilityArguments& arguments) {
   const auto wanted = [&](std::string_view name) {
     return arguments.cases.empty() || std::ranges::find(arguments.cases, name) != arguments.cases.end();
   };
-  for (const StabilityCase& stability_case : stability_cases(arguments.options)) {
-    if (!wanted(stability_case.name)) continue;
-    const std::vector<StabilityRow> more = run_case(stability_case, stop_requested);
+  for (const NamedCase& named : stability_cases()) {
+    if (!wanted(named.name)) continue;
+    const std::vector<StabilityRow> more = run_case(stability_case(named, arguments.options), stop_requested);
     if (stop_requested()) {
-      tell(fmt::format("interrupted in the case \"{}\"; nothing was written", stability_case.name));
+      tell(fmt::format("interrupted in the case \"{}\"; nothing was written", named.name));
       return 128 + noted_signal();
     }
     print_verdicts(more);
@@ -164,7 +164,7 @@ void add_stability(CommandLine& line, int& status) {
   command.value("-o,--output", arguments->table, "the HDF5 table to write; default: maps/stability.h5")
       .check(named_file());
   std::vector<std::string> cases{std::string(landing_case)};
-  for (const StabilityCase& each : stability_cases({})) cases.push_back(each.name);
+  for (const NamedCase& each : stability_cases()) cases.emplace_back(each.name);
   command.value("--cases", arguments->cases, "cases to run, separated by commas; default: all of those below")
       .with_commas()
       .check(one_of(cases));

@@ -75,9 +75,18 @@ struct StabilityOptions {
   bool quick = false;  ///< fewer places and fewer steps before a method gives up
 };
 
+/// A case before its subjects are made: some of them are solved for, which takes longer than a name should.
+struct NamedCase {
+  std::string_view name;
+  StabilityCase (*make)(bool quick);
+};
+
 /// The cases whose subjects are designs: needle, release, graze, long, step, tolerance, chaos, and those of
 /// friction_cases.
-std::vector<StabilityCase> stability_cases(const StabilityOptions& options);
+std::vector<NamedCase> stability_cases();
+
+/// The case with its subjects; with options.quick with fewer of them, and fewer steps.
+StabilityCase stability_case(const NamedCase& named, const StabilityOptions& options);
 
 /// exact, all of GSL's steppers at the default tolerance, and at a fixed step the classical fourth order;
 /// without friction also those that games use and the implicit midpoint rule (symplectic, for Hamiltonian
@@ -85,7 +94,7 @@ std::vector<StabilityCase> stability_cases(const StabilityOptions& options);
 std::vector<Contestant> usual_contestants(Friction friction);
 
 /// The cases with Coulomb friction: painleve, slow, dip, stick, bounces.
-std::vector<StabilityCase> friction_cases(bool quick);
+std::span<const NamedCase> friction_cases();
 
 /// Every contestant on every subject, one contestant after another. One thread. stop_requested is asked
 /// before each design; the rows are then those there are.

@@ -2,6 +2,7 @@
 /// The walks into trouble, as data.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "model/model.hpp"
@@ -148,17 +149,19 @@ std::vector<Contestant> usual_contestants(Friction friction) {
   return contestants;
 }
 
-std::vector<StabilityCase> stability_cases(const StabilityOptions& options) {
-  std::vector<StabilityCase> cases{needle(options.quick),     release(options.quick),
-                                   graze(options.quick),      long_run(options.quick),
-                                   long_steps(options.quick), unreachable_tolerances(options.quick),
-                                   chaos(options.quick)};
-  for (StabilityCase& with_friction : friction_cases(options.quick))
-    cases.push_back(std::move(with_friction));
-  if (options.quick)
-    for (StabilityCase& stability_case : cases)
-      stability_case.max_steps = std::min(stability_case.max_steps, 20'000l);
+std::vector<NamedCase> stability_cases() {
+  std::vector<NamedCase> cases{{"needle", needle},   {"release", release},
+                               {"graze", graze},     {"long", long_run},
+                               {"step", long_steps}, {"tolerance", unreachable_tolerances},
+                               {"chaos", chaos}};
+  std::ranges::copy(friction_cases(), std::back_inserter(cases));
   return cases;
+}
+
+StabilityCase stability_case(const NamedCase& named, const StabilityOptions& options) {
+  StabilityCase made = named.make(options.quick);
+  if (options.quick) made.max_steps = std::min(made.max_steps, 20'000l);
+  return made;
 }
 
 }  // namespace leapmap

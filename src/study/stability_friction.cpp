@@ -91,8 +91,10 @@ StabilityCase bounces(bool quick) {
 
 }  // namespace
 
-std::vector<StabilityCase> friction_cases(bool quick) {
-  return {painleve(quick), slow(quick), dip(quick), stick(quick), bounces(quick)};
+std::span<const NamedCase> friction_cases() {
+  static constexpr NamedCase cases[] = {
+      {"painleve", painleve}, {"slow", slow}, {"dip", dip}, {"stick", stick}, {"bounces", bounces}};
+  return cases;
 }
 
 }  // namespace leapmap

@@ -24,8 +24,8 @@ StabilityCase only(StabilityCase stability_case, const std::string& method, bool
 }
 
 StabilityCase find_case(const std::string& name, bool quick) {
-  for (StabilityCase& stability_case : stability_cases({quick}))
-    if (stability_case.name == name) return stability_case;
+  for (const NamedCase& named : stability_cases())
+    if (named.name == name) return stability_case(named, {quick});
   ADD_FAILURE() << name;
   return {};
 }
