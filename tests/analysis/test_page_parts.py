@@ -60,7 +60,7 @@ def pixels(browser, canvas):
     return browser.execute_script("return document.getElementById(arguments[0]).toDataURL()", canvas)
 
 
-HOOPS_TYPED = int(os.environ.get("LEAPMAP_HOOPS_TYPED", 10))
+HOOPS_TYPED = int(os.environ.get("LEAPMAP_HOOPS_TYPED", 5))
 
 
 @pytest.mark.parametrize(("friction", "count"), [(False, HOOPS_TYPED * 3 // 5), (True, HOOPS_TYPED * 2 // 5)])
@@ -199,7 +199,7 @@ def test_cliffs_lie_where_what_becomes_of_a_hoop_changes(page):
     sides = page.execute_script("""const { map, solver } = window.explorer, [x, y] = map.axes, step = [x, y].map((a) => a.values[1] - a.values[0]), found = [];
         const place = (axis, v, k) => (v - axis.values[0]) / step[k], course = (u, v) => { const { outcome: o } = solver.solve({ ...map.fixed, [x.name]: u, [y.name]: v }, false, 1e-10);
           return `${o.status} ${o.spurious_first_jump} ${o.candidates}`; };
-        for (const curve of map.curves) for (let k = 0; k < curve.x.length; k += 5) {
+        for (const curve of map.curves) for (let k = 0; k < curve.x.length; k += 15) {
           const i = place(x, curve.x[k], 0), j = place(y, curve.y[k], 1), right = Math.abs(j - Math.round(j)) < 1e-6, up = Math.abs(i - Math.round(i)) < 1e-6;
           if (right === up) continue;  // a middle of a square, or a corner
           const [dx, dy] = right ? [step[0] / 64, 0] : [0, step[1] / 64];
@@ -207,7 +207,7 @@ def test_cliffs_lie_where_what_becomes_of_a_hoop_changes(page):
         }
         return found""")
     # A row of the solver's and one of its whole story may count a lift-off at its very edge differently, and a third outcome may lie between two.
-    assert len(sides) > 300 and np.mean(sides) > 0.99
+    assert len(sides) > 100 and np.mean(sides) > 0.99
 
 
 def test_forces_are_drawn_at_the_contact_and_may_be_left_out(page):

@@ -214,7 +214,7 @@ def test_a_file_of_another_form_is_recognised(name, words):
 
 
 @pytest.mark.parametrize("head, words", [(b"PK\3\4" + b"\0" * 26 + b"xl/workbook.xml", "xlsx"), (b"\xd0\xcf\x11\xe0", "xls"), (b"\x89HDF\r\n", "HDF5"),
-                                         (b"<?xml version", "XML"), (b"RIFF\0\0\0\0AVI LIST", "film"), (b"\xff\xfet\0", "UTF-16")])
+                                         (b"<?xml version", "XML"), (b"RIFF\0\0\0\0AVI LIST", "video"), (b"\xff\xfet\0", "UTF-16")])
 @pytest.mark.parametrize("how", [["fit", "x"], ["sweep", "--dry-run", "--points", "x"], ["sweep", "--dry-run", "x"]], ids=["film", "points", "spec"])
 def test_what_is_no_text_is_named_wherever_texts_are_read(head, words, how, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

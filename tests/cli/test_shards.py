@@ -240,7 +240,7 @@ def test_a_shard_that_cannot_be_right_is_named_and_nothing_is_written(harm, tmp_
         path.rename(tmp_path / "kept")
         shard(joined, 1, 3).rename(path)
         (tmp_path / "kept").rename(shard(joined, 1, 3))
-        refused(joined, "is shard 2/3", "whatever its name says")
+        refused(joined, "is shard 2/3", "despite its name")
     elif harm == "doubled":
         shutil.copy(shard(joined, 1, 3), path)
         refused(joined, path.name, "is shard 1/3")
@@ -264,7 +264,7 @@ def test_a_shard_that_cannot_be_right_is_named_and_nothing_is_written(harm, tmp_
     elif harm == "whole map":
         path.unlink()
         sweep(tmp_path, SMALL, name=path.name)
-        refused(joined, path.name, "no shard")
+        refused(joined, path.name, "not a shard")
     elif harm == "unreadable":
         path.write_text("no HDF5 at all")
         refused(joined, path.name, status=3)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include "design/climb.hpp"
@@ -20,7 +21,12 @@ namespace {
 constexpr std::size_t sample = 1 << 11, brute = 30,
                       most = 1;  // with sanitizers a hoop takes twenty times as long
 #else
-constexpr std::size_t sample = 1 << 17, brute = 120, most = 8;
+constexpr std::size_t most = 8;
+/// Hoops of a sample: 32768 unless LEAPMAP_SEARCHED says how many.
+const std::size_t sample =
+    std::getenv("LEAPMAP_SEARCHED") ? std::strtoul(std::getenv("LEAPMAP_SEARCHED"), nullptr, 10) : 1 << 15;
+/// Hoops of a grid along each of three parameters: 60 beside 32768.
+const auto brute = static_cast<std::size_t>(std::cbrt(7.0 * static_cast<double>(sample)));
 #endif
 
 struct Asked {

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from support.program import TOP, leapmap
+from support.program import TOP, leapmap, scripted
 
 sys.path.append(str(TOP / "docs"))
 import run_blocks
@@ -125,12 +125,7 @@ def test_help_fits_eighty_columns_and_begins_with_examples():
 
 
 @pytest.mark.parametrize("script", sorted(set(CHARTS.values())))
-def test_the_help_of_charts_fits_eighty_columns(script):
-    shown = subprocess.run(
-        [sys.executable, TOP / "analysis" / script, "--help"],
-        capture_output=True,
-        text=True,
-        check=True,
-        env=dict(run_blocks.environment(), COLUMNS="80"),
-    ).stdout
-    assert max(map(len, shown.splitlines())) <= 80
+def test_the_help_of_charts_fits_eighty_columns(script, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    shown = scripted(script, "--help")
+    assert shown.returncode == 0 and max(map(len, shown.stdout.splitlines())) <= 80

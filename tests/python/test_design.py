@@ -35,7 +35,7 @@ def test_a_front_is_in_order():
 
 
 def test_bad_questions_raise_value_errors():
-    for arguments, word in (({**BOX, "goal": {"jump_height": {"is": 1.0}}, "minimize": ["slope"]}, "last digit"), ({}, "free"), ({**BOX, "maximize": ["height"]}, "height"), ({**BOX, "goal": {"nothing": {"is": 1}}, "maximize": ["jump_height"]}, "nothing")):
+    for arguments, word in (({**BOX, "goal": {"jump_height": {"is": 1.0}}, "minimize": ["slope"]}, "by no hoop exactly"), ({}, "free"), ({**BOX, "maximize": ["height"]}, "height"), ({**BOX, "goal": {"nothing": {"is": 1}}, "maximize": ["jump_height"]}, "nothing")):
         with pytest.raises(ValueError, match=word):
             leapmap.design(**arguments)
 

@@ -62,10 +62,8 @@ TEST(Boundaries, AreWhereLongDoublesSeeThem) {
       };
       double low = cliff.value - 1e-7, high = cliff.value + 1e-7;
       if (!(seen(low) == cliff.below) || !(seen(high) == cliff.above)) continue;
-      for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (low + high);
+      for (double middle; (middle = 0.5 * (low + high)) != low && middle != high;)
         (seen(middle) == cliff.below ? low : high) = middle;
-      }
       ++compared;
       worst = std::max(worst, std::abs(low - cliff.value));
       // Roundings of G and of a height, over how fast they change with the slope; the worst here is 1e-14.
