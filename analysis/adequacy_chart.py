@@ -4,7 +4,7 @@
 
 One panel for each friction coefficient, over slope and mass ratio. Dark green: heights agree within 5 %, possibly by chance.
 Yellow: both models jump, but heights differ. Orange: only one of them jumps. Purple: Painlevé's paradox. Hatched: only one of them
-has a spurious first lift-off. A star marks the paper's hoop.
+has a sub-threshold first lift-off. A star marks the paper's hoop.
 """
 import numpy as np
 from matplotlib.colors import ListedColormap
@@ -91,7 +91,7 @@ def chart(rigid, slipping, of_rigid, of_slipping):
         axis.set_ylabel("mass ratio mₚ/m")
     handles = [Patch(color=c, label=text) for c, text in KINDS]
     handles += cliffs.handles(drawn)
-    handles += [Patch(facecolor="none", edgecolor=style.EDGE, hatch="////", label="only one sees a spurious first lift-off"),
+    handles += [Patch(facecolor="none", edgecolor=style.EDGE, hatch="////", label="only one sees a sub-threshold first lift-off"),
                 plt.Line2D([], [], marker="*", linestyle="", markersize=10, color=style.MARK, label="the paper's hoop")]
     axes[0, -1].legend(handles=handles, loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False)
     return figure

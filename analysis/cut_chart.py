@@ -84,7 +84,7 @@ def chart(m, along, by, wanted, at, fields):
     words = looks.words_of(m, looks.fixed_numbers(m) | {n: m.dims[n][index[n]] for n in names if n not in (along, by)})
     axes[-1, 0].set_xlabel(f"{planes.axis_label(along)}\n{style.wrapped(words, figure)}")
     handles = axes[0, 0].get_legend_handles_labels()[0]
-    handles += [plt.Line2D([], [], color="#404040", linestyle=(0, (3, 1.2)), label="dashed: first lift-off is spurious")]
+    handles += [plt.Line2D([], [], color="#404040", linestyle=(0, (3, 1.2)), label="dashed: first lift-off below the threshold")]
     style.legend_above(figure, handles)
     return figure
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the design charts of a map: jump height, time and agility over two axes, one panel for each value of the others.
 
-Isolines are labelled. Hatched: the first lift-off is spurious. Lines: discontinuities, if leapmap boundaries has found them; without
+Isolines are labelled. Hatched: first lift-off below the threshold. Lines: discontinuities, if leapmap boundaries has found them; without
 them, one cell for each design. Other colours: no jump, by the reason. A star marks the paper's hoop.
 Agility is the jump's height over the time from release to its apex; the colour bar marks published jumpers.
 Agility needs jump_height, jump_time and apex_time. spurious_first_jump, jump_angle and status are drawn if the map has them.
@@ -127,7 +127,7 @@ def chart(grid, name, panels_of):
                             textcoords="offset points", ha="right", va="center", fontsize=7, color=style.MARK, annotation_clip=False)
     handles = []
     if any((f == 1).any() for f in flags):
-        handles.append(style.swatch("white", "first lift-off is spurious", edgecolor=style.EDGE, hatch="///"))
+        handles.append(style.swatch("white", "first lift-off below the threshold", edgecolor=style.EDGE, hatch="///"))
     for code, (colour, words) in looks.STATUSES.items():
         if any(t.any() for t in told[code]):
             handles.append(style.swatch(colour, words))

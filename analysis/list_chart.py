@@ -58,7 +58,7 @@ def chart(m, along, fields):
         style.log_scale(axes[-1, 0].xaxis)
     axes[-1, 0].set_xlabel(f"{label}\n{style.wrapped(looks.words_of(m, looks.fixed_numbers(m)), figure)}")
     marker = lambda sign, colour, words, fill="full": plt.Line2D([], [], linestyle="", marker=sign, color=colour, fillstyle=fill, label=words)
-    handles = [marker("o", "#1b7837", "first lift-off is the jump"), marker("o", "#e08214", "first lift-off is spurious", "none")]
+    handles = [marker("o", "#1b7837", "first lift-off is the jump"), marker("o", "#e08214", "first lift-off below the threshold", "none")]
     handles += [marker("x", looks.STATUSES[code][0], f"{looks.STATUSES[code][1]}: {there.sum()}") for code, there in reasons.items() if there.any()]
     style.legend_above(figure, handles)
     return figure

@@ -13,7 +13,7 @@ import looks
 import style
 from read_map import NotAMap
 
-JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a spurious first lift-off"),
+JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a sub-threshold first lift-off"),
          ("#5aae61", "jumps (lift-off unknown)")]
 NONE_SPURIOUS = ("#dfc27d", "no jump: all lift-offs below the jump threshold")
 

@@ -154,8 +154,9 @@ def spec():
             ],
         )
         + '\nA list of designs instead of axes: `points = "designs.csv"`, a file whose header names parameters, one\n'
-        "design in a row. A column\n"
-        "`label` names them. Parameters that it leaves out come from the spec.\n"
+        "design in a row. A column `label` names them. Parameters that it leaves out come from the spec. Numbers are in\n"
+        "the parameter's unit (angles in rad); `30deg` is allowed too:\n"
+        "\n```text\nlabel,slope,mass_ratio\nprototype,22.9deg,2.44\nlight,0.35,1.8\n```\n"
     )
     for section, about in SECTIONS.items():
         rows = [

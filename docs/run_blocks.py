@@ -4,6 +4,7 @@
 
     docs/run_blocks.py PAGE ...             check pages; exit status 1 if a block fails
     docs/run_blocks.py PAGE ... --update    write the output of their commands into the pages
+    docs/run_blocks.py PAGE ... --pictures  run all of their blocks; replace the pictures that they draw and show
 
 Blocks of a page run in order, in a folder of its own with the folders sweeps and analysis and an empty maps.
 
@@ -19,6 +20,7 @@ LEAPMAP_BUILD names the build tree; default: build/release.
 import argparse
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -175,7 +177,17 @@ def run_cpp(block):
         raise Failed(f"{code}\ndoes not compile:\n{done.stderr}")
 
 
-def run_page(page, slow=False, compare=True):
+def replace_pictures(page, folder):
+    """Copies each picture that the page shows from the folder in which its blocks drew one of that name."""
+    for link in re.findall(r"!\[[^\]]*\]\(([^)]*)\)", page.read_text(encoding="utf-8")):
+        shown = (page.parent / link).resolve()
+        drawn = folder / "maps" / shown.name
+        if drawn.exists():
+            shutil.copyfile(drawn, shown)
+        print(f"{shown.relative_to(TOP)}: {'replaced' if drawn.exists() else 'not drawn by this page'}")
+
+
+def run_page(page, slow=False, compare=True, pictures=False):
     """Runs the blocks of a page, those of the second tier only if slow; returns the outputs of its commands."""
     outputs, before = [], ""
     with tempfile.TemporaryDirectory(prefix="leapmap-page-") as name:
@@ -204,6 +216,8 @@ def run_page(page, slow=False, compare=True):
                     run("leapmap sweep block.toml -o block.h5 --dry-run", folder)
             except Failed as error:
                 raise Failed(f"{page.relative_to(TOP)}:{block.line}: {error}") from None
+        if pictures:
+            replace_pictures(page, folder)
     return outputs
 
 
@@ -225,6 +239,7 @@ def main():
     parser.add_argument("pages", nargs="+", type=Path)
     parser.add_argument("--update", action="store_true", help="write the output of commands that show any")
     parser.add_argument("--slow", action="store_true", help="run blocks of the second tier too")
+    parser.add_argument("--pictures", action="store_true", help="with --slow's blocks; replace the pictures")
     arguments = parser.parse_args()
     status = 0
     for page in arguments.pages:
@@ -232,7 +247,7 @@ def main():
             if arguments.update:
                 page.write_text(updated(page.resolve()), encoding="utf-8")
             else:
-                run_page(page.resolve(), arguments.slow)
+                run_page(page.resolve(), arguments.slow or arguments.pictures, pictures=arguments.pictures)
         except Failed as error:
             print(error, file=sys.stderr)
             status = 1

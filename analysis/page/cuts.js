@@ -1,4 +1,4 @@
-// Cuts through the design pointed at: the quantity shown along both axes of the map, broken at cliffs, dashed where the first lift-off is spurious.
+// Cuts through the design pointed at: the quantity shown along both axes of the map, broken at cliffs, dashed where the first lift-off is below the threshold.
 
 /** Draws one cut. offset(index): a design's place among the values; axis: along which. */
 function drawCut(canvas, map, view, axis, offset) {

@@ -42,7 +42,7 @@ function filtersPart(map, view, changed, best) {
     const n = map.fields[0].values.length;
     let left = 0;
     for (let k = 0; k < n; ++k) if (keeps(k)) ++left;
-    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field))) ? "; goals that the yield counts dim nothing" : "";
+    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field))) ? "; goals are part of the yield and do not dim designs" : "";
     const others = map.asked.made ? goals.filter(({ field }) => !field.made && !isOfHoop(field)).map(({ field }) => field.label.split(":")[0]) : [];
     const without = others.length > 0 ? `; not a goal for manufactured hoops: ${[...new Set(others)].join(", ")}` : "";
     told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs remain${inYield}${without}`;

@@ -1,4 +1,4 @@
-// The hoop shown, number by number: each of its parameters to type, and what a little more of each would do.
+// The hoop shown, number by number: each of its parameters to type, and what a small increase of each changes.
 
 /** Lets arrow keys change a number by a round hundredth or so of its span(), where any number may be typed. */
 function stepsOf(input, span) {
@@ -62,7 +62,7 @@ function gradientPart(map, solver) {
   function draw() {
     if (!part.open || !now.design) return;
     const head = document.createElement("tr");
-    head.append(cell("th", "a little more"), ...DIFFERENTIATED.map(([, words, unit]) => { const th = cell("th", `${words} [${shownIn(unit, now.design)[1]}]`); th.scope = "col"; return th; }));
+    head.append(cell("th", "small increase"), ...DIFFERENTIATED.map(([, words, unit]) => { const th = cell("th", `${words} [${shownIn(unit, now.design)[1]}]`); th.scope = "col"; return th; }));
     const slopes = DIFFERENTIATED.map(([name]) => solver.gradient(now.design, map.slips, map.tolerance, name));
     const rows = Object.entries(map.parameters).filter(([name]) => slopes.some((slope) => Number.isFinite(slope[name]))).map(([name, { label, unit }]) => {
       // Of an angle and of what may be zero a step, of the rest a hundredth: what a workshop's tolerance is.

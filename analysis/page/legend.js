@@ -11,7 +11,7 @@ function showLegend(map, view) {
   };
   const items = [];
   const { field } = view.view, showsSpurious = isOfFirstJump(field) && map.codes.spurious_first_jump?.values.includes(1);
-  if (showsSpurious && !map.columns) items.push(entry("first lift-off is spurious", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+  if (showsSpurious && !map.columns) items.push(entry("first lift-off below the threshold", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
   // Of hoops as made a number stands wherever there are some.
   const bare = field.made && new Set(map.codes.status?.values.filter((_, k) => Number.isNaN(field.values[k])));
   map.codes.status?.shown.forEach(({ colour, words }, k) => {
@@ -27,7 +27,7 @@ function showLegend(map, view) {
     item.append(mark, ` ${words}`);
     return item;
   };
-  if (showsSpurious && map.columns) items.push(symbol("first lift-off is spurious", "○", tones.data));
+  if (showsSpurious && map.columns) items.push(symbol("first lift-off below the threshold", "○", tones.data));
   if (view.showsPaper()) items.push(symbol("the paper's hoop", "★", tones.mark));
   items.push(symbol("selected", "⊕", tones.ink), symbol("shown on the right", "⊕", tones.mark));
   if (!field.gait) for (const kind of new Set(map.live ? ["outcome"] : map.curves.map((curve) => curve.kind)))

@@ -158,7 +158,7 @@ function countPart(map, name, what, changed) {
   input.addEventListener("change", () => {
     const good = input.value !== "" && input.checkValidity();
     input.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `${what} must be ${input.step > 1 ? `${input.step} times ` : ""}a whole number from ${input.min} to ${input.max}.`);
+    notice(good ? "" : `${what} must be ${input.step > 1 ? `a multiple of ${input.step}` : "a whole number"} from ${input.min} to ${input.max}.`);
     if (!good) return;
     map[name] = Number(input.value);
     changed();

@@ -72,7 +72,7 @@ function mapView(canvas, map, onPoint, onPick) {
     return looked ? chains : undefined;
   }
 
-  /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where the lines of spurious lift-offs run. */
+  /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where the lines of sub-threshold lift-offs run. */
   function colouring() {
     const { table, place } = view.field, own = isOfFirstJump(view.field), back = rgbOf(tones.ground);  // which what fails is dimmed towards
     const word = (rgb, dark, dim) => rgb.map((v, at) => back[at] + (v * dark - back[at]) * dim).reduceRight((all, v) => all << 8 | v, 255) >>> 0;

@@ -25,15 +25,15 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
     add("jump_spin", "spin at lift-off", measure.spin(outcome.jump_spin / second));
     add("jump_angle", "angle at lift-off", `${short(outcome.jump_angle * 180 / Math.PI, 5)}°`);
     add("jump_distance", slips ? "travelled until lift-off" : "rolled until lift-off", measure.length(outcome.jump_distance * R));
-    if (!slips) add("dip", "penetration depth", measure.length(2 * R * outcome.dip, 3));
+    if (!slips) add("dip", "penetration depth", measure.length(-2 * R * outcome.dip, 3));
   }
   if (jumped && chosen.jumps > 1)
     add("jumps", "number of jumps", `${outcome.jumps} of ${chosen.jumps}: ${[...liftOffs.height].filter((_, i) => liftOffs.is_jump[i] === 1).map((h) => measure.length(2 * R * h)).join(", ")}`);
   if (outcome.candidates > 0) {
     const after = measure.time(outcome.first_jump_time);
     add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"
-      : outcome.first_jump_height > 0 ? `spurious: ${measure.length(2 * R * outcome.first_jump_height, 3)} high, after ${after}`
-      : `spurious: sinks at once, after ${after}; contact without slip would need a pull`);
+      : outcome.first_jump_height > 0 ? `below the threshold: ${measure.length(2 * R * outcome.first_jump_height, 3)} high, after ${after}`
+      : `sinks at once, after ${after}: the normal force is negative`);
     add("candidates", "number of lift-offs", String(outcome.candidates));
   }
   if (slips) {

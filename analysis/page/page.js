@@ -154,7 +154,7 @@ function start(map, solver, teller) {
     const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : isSolving(f) ? "being solved" : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious ? [`no jump: all lift-offs below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
-      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is spurious" : ""];
+      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is below the threshold" : ""];
     element("place").textContent = placeText(map, index);
     const notesSaid = notes.filter((w) => w && !isSolving(shown)).map((note) => (shown.made ? `nominal: ${note}` : note));
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notesSaid].join("; ");
@@ -407,7 +407,7 @@ function addressed(map, words) {
 (async () => {
   try {
     if (typeof DecompressionStream === "undefined" || typeof WebAssembly === "undefined")
-      throw new Error("this browser is too old; Chrome 97, Firefox 113 and Safari 16.4 are not");
+      throw new Error("this page needs Chrome 97, Firefox 113, Safari 16.4 or newer");
     const module = await loadModule(element("module").textContent), solver = await solverOf(module), data = JSON.parse(element("data").textContent);
     const live = data.only_live || addressWords().has("live");
     Object.assign(address, { live: Boolean(live), others: !data.only_live });

@@ -94,7 +94,7 @@ function tolerancesPart(map, changed) {
     };
     each.show = show;
     option(law, "normal", "normal, σ =");
-    option(law, "uniform", "anywhere within ±");
+    option(law, "uniform", "uniform, ±");
     Object.assign(number, { type: "number", min: 0, step: "any" });
     Object.assign(away, { type: "button", textContent: "×" });
     /** The number shown stays, whatever it is of. */

@@ -205,7 +205,7 @@ int run(const BoundariesArguments& arguments) {
   progress.reset();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (!arguments.quiet) {
-    say("cliffs   {} in {}\n", grouped(found.cliffs.size()), spoken_duration(seconds));
+    say("found    {} discontinuities in {}\n", grouped(found.cliffs.size()), spoken_duration(seconds));
     print_counts(found);
   }
   if (!arguments.output.empty()) {
@@ -248,7 +248,8 @@ void add_boundaries(CommandLine& line, int& status) {
   add_threads(command, arguments->options.threads);
   add_no_lock(command, arguments->locking);
   command.footer(
-      "Neighbours of the grid with different outcomes (status, spurious flag, number of the lift-off that "
+      "Neighbours of the grid with different outcomes (status, sub-threshold first lift-off, number of the "
+      "lift-off that "
       "jumps) have a discontinuity between them. It is bisected until no number is left between.\n"
       "\n"
       "Kinds of discontinuities:\n"

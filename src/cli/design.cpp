@@ -106,7 +106,10 @@ void print_design(const Question& question, const FoundDesign& found, std::size_
   if (!std::isnan(found.yield.value))
     say("     yield {:.4f} +- {:.4f}, from {} manufactured hoops\n", found.yield.value, found.yield.error,
         question.one.scatter.samples);
-  if (!found.binds.empty()) say("     active constraints: {}\n", fmt::join(found.binds, "; "));
+  std::string binds = fmt::format("{}", fmt::join(found.binds, "; "));
+  if (const std::size_t at = binds.find("cliff ("); at != std::string::npos)
+    binds.replace(at, 5, "discontinuity");
+  if (!binds.empty()) say("     active constraints: {}\n", binds);
   if (!found.cliff.empty())
     say("     nearest discontinuity: at {:.2g} of the bounds' range, {}; beyond: {}\n",
         found.cliff[0].distance, name_of(found.cliff[0].kind), told(found.cliff[0].beyond));
@@ -309,7 +312,8 @@ void add_design(CommandLine& line, int& status) {
       .check(whole_number(1, 1e5));
   command
       .value("--sample", arguments->options.sample,
-             "designs in the initial sample; default: what takes a second or two")
+             "designs in the initial sample; default: 2,097,152, with friction 262,144, and fewer with "
+             "tolerances")
       .check(whole_number(16, 1 << 27));
   add_threads(command, arguments->options.threads);
   add_flags_of_the_scene(command, arguments->overrides);

@@ -269,8 +269,10 @@ void add_fit(CommandLine& line, int& status) {
                      "a film, with a free mass ratio; residuals as a table"}});
   auto arguments = std::make_shared<FitArguments>();
   command
-      .value("DATA", arguments->data,
-             "measurements (CSV); columns t, phi, or t, x_P, y_P, x_O, y_O, or event, value, error")
+      .value(
+          "DATA", arguments->data,
+          "measurements (CSV); columns t [s since the release], phi [rad]; or t, x_P, y_P, x_O, y_O [m]; or "
+          "event, value, error in the unit of the field")
       .required()
       .check(named_file());
   command
@@ -283,7 +285,7 @@ void add_fit(CommandLine& line, int& status) {
   command.value("--model", arguments->model, "model to fit; default: both, and report which one is preferred")
       .check(one_of(names));
   add_set(command, arguments->overrides, ", for example radius=0.05 or 'slope={from=0.3,to=0.5}'");
-  command.value("--seed", arguments->options.seed, "seed of the coarse map; default: 1")
+  command.value("--seed", arguments->options.seed, "seed of the initial sample; default: 1")
       .check(whole_number(0, most_seed));
   add_threads(command, arguments->options.threads);
   command.group("Film");
@@ -299,7 +301,8 @@ void add_fit(CommandLine& line, int& status) {
   command.group("Output");
   command
       .value("--csv", arguments->csv,
-             "write measurements, models and residuals to this CSV file, for fit_chart.py")
+             "write measurements, models and residuals to this CSV file; draw it by python3 -m "
+             "leapmap.charts fit")
       .check(named_file());
   command.flag("--overwrite", arguments->overwrite, "allow --csv to replace any file");
   command.flag("--json", arguments->json, "print JSON only");

@@ -49,7 +49,7 @@ std::string verdict(const Motion& motion, const Scene& scene) {
   switch (motion.outcome.status) {
     case Status::jumped:
       return motion.outcome.spurious_first_jump == 1
-                 ? fmt::format("It jumps, after a spurious first lift-off below {} diameters.",
+                 ? fmt::format("It jumps, after a first lift-off below the threshold of {} diameters.",
                                scene.hop_height)
                  : "It jumps at its first lift-off.";
     case Status::no_jump:
@@ -57,7 +57,7 @@ std::string verdict(const Motion& motion, const Scene& scene) {
     case Status::stalled:
       return "It is trapped: it rocks between two turning points indefinitely, or rests in an equilibrium.";
     case Status::airborne_at_release:
-      return "The normal force is negative at the release: it is airborne from the start.";
+      return "The normal force at the release is not positive: it is airborne from the start.";
     case Status::indeterminate:
       return "The rigid-body equations have no solution or two: Painleve's paradox while sliding, or a motor "
              "that alone would lift the hoop and idles in flight.";
@@ -115,7 +115,7 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
   if (jump.status == Status::jumped) {
     say("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off",
         jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time, jump.flight_time);
-    if (jump.dip < 0.0) say("; penetration depth {:.4g} diameters", jump.dip);
+    if (jump.dip < 0.0) say("; penetration depth {:.4g} diameters", -jump.dip);
     say(".\n");
     if (std::isfinite(jump.energy_lost)) {
       say("Slid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
@@ -173,11 +173,14 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
                  const std::optional<Motor>& motor, bool is_example) {
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters(spec)) {
-    const double value = value_of(*parameter, spec.design);
+    double value = value_of(*parameter, spec.design);
+    const bool is_set = parameter->key == "mu_static" && spec.design.mu_kinetic > value;
+    if (is_set) value = spec.design.mu_kinetic;
     say("{:<15} {:<12.8g} {}\n", parameter->key, value,
-        parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", in_degrees(value))
-        : parameter->unit == "1" ? ""
-                                 : parameter->unit);
+        is_set                     ? "set to mu_kinetic, which is larger"
+        : parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", in_degrees(value))
+        : parameter->unit == "1"   ? ""
+                                   : parameter->unit);
   }
   say("{:<15} {:<12.8g} m, gravity {:g} m/s^2, sqrt(R/g) = {:.6g} s\n", "radius", spec.scene.radius,
       spec.scene.gravity, second);
@@ -313,7 +316,7 @@ void add_hop(CommandLine& line, int& status) {
   command.examples(
       {{"leapmap hop", "the paper's hoop"},
        {"leapmap hop --slope 30deg --friction coulomb --mu-static 0.4", "another slope, with friction"},
-       {"leapmap hop --trace hop.h5", "its motion over time, for trace_chart.py"},
+       {"leapmap hop --trace hop.h5", "its motion over time; python3 -m leapmap.charts trace hop.h5"},
        {"leapmap hop --gradient --json", "derivatives too, for a program"}});
   auto arguments = std::make_shared<HopArguments>();
   command.value("SPEC", arguments->spec, "a spec without axes (TOML); default: the paper's hoop")

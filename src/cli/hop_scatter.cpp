@@ -66,14 +66,14 @@ std::string goal_of(const Goal& goal) { return goal.field + " " + text_of(goal);
 
 void print_spreads(const Spec& spec, const ScatterReport& report) {
   say("{:<16} {:<18} {:>9}", "tolerance", "distribution", "truncated");
-  say("{}\n", report.shrink.empty() ? "" : "   yield without it; for a yield of 99 % it must shrink to");
+  say("{}\n", report.shrink.empty() ? "" : "   yield if it were 0; largest width for a yield of 99 %");
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
     const Spread& spread = spec.scatter.spreads[k];
     say("{:<16} {:<18} {:>8.2g} %", spread.parameter, law_of(spread), 100.0 * report.cut_off[k]);
     if (!report.shrink.empty())
       say("   {:.4f}; {}", report.without[k],
-          report.shrink[k] >= 1.0   ? "good enough"
-          : report.shrink[k] <= 0.0 ? "that is not enough"
+          report.shrink[k] >= 1.0   ? "unchanged"
+          : report.shrink[k] <= 0.0 ? "no width is small enough"
                                     : fmt::format("{:.1f} % of its width", 100.0 * report.shrink[k]));
     say("\n");
   }

@@ -92,9 +92,9 @@ std::string heights_beside(const Spec& spec, const Design& design, const NearCli
 
 std::string told(const Discrete& outcome) {
   std::string text(name_of(outcome.status));
-  if (outcome.jumps_on > 0) text += fmt::format(" on {}", outcome.jumps_on);
+  if (outcome.jumps_on > 0) text += fmt::format(" at lift-off {}", outcome.jumps_on);
   if (outcome.status != Status::jumped && outcome.spurious_first_jump == 1)
-    text += ", after a spurious lift-off";
+    text += ", after a sub-threshold lift-off";
   if (outcome.phase_sequence != 0) text += fmt::format(" {}", phase_letters(outcome.phase_sequence));
   return text;
 }

@@ -13,7 +13,7 @@ namespace leapmap::cli {
 /// AXIS=VALUE,... with every axis of the spec. Throws InputError.
 void print_place(const Spec& spec, const std::string& at);
 
-/// "jumped on 2", "no_jump" and the like.
+/// "jumped at lift-off 2", "no_jump" and the like.
 std::string told(const Discrete& outcome);
 
 }  // namespace leapmap::cli

@@ -141,7 +141,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
   const std::array tables{table_of(rows)};
   if (!write_tables(behind_links(arguments.table), filetype, tables, attributes, arguments.locking))
     tell_of_folder(arguments.table);
-  say("table    {} rows in {}\nchart    /usr/bin/python3 analysis/precision_chart.py {}\n", rows.size(),
+  say("table    {} rows in {}\nchart    /usr/bin/python3 -m leapmap.charts precision {}\n", rows.size(),
       arguments.table, shell_quoted(arguments.table));
   return 0;
 }
@@ -150,8 +150,9 @@ int run(PrecisionArguments arguments, bool designs_given) {
 
 void add_precision(CommandLine& line, int& status) {
   Command command = line.command("precision", "measure speed against accuracy of every method, in one run");
-  command.examples({{"leapmap precision", "two minutes; then analysis/precision_chart.py maps/precision.h5"},
-                    {"leapmap precision --quick --methods exact,gsl-rk8pd", "a few seconds"}});
+  command.examples(
+      {{"leapmap precision", "two minutes; then python3 -m leapmap.charts precision maps/precision.h5"},
+       {"leapmap precision --quick --methods exact,gsl-rk8pd", "a few seconds"}});
   auto arguments = std::make_shared<PrecisionArguments>();
   command.value("-o,--output", arguments->table, "the HDF5 table to write; default: maps/precision.h5")
       .check(named_file());

@@ -149,7 +149,7 @@ int run(const StabilityArguments& arguments) {
   const std::array tables{table_of(rows)};
   if (!write_tables(behind_links(arguments.table), filetype, tables, attributes, arguments.locking))
     tell_of_folder(arguments.table);
-  say("table    {} rows in {}\ncharts   /usr/bin/python3 analysis/stability_chart.py {}\n", rows.size(),
+  say("table    {} rows in {}\ncharts   /usr/bin/python3 -m leapmap.charts stability {}\n", rows.size(),
       arguments.table, shell_quoted(arguments.table));
   return 0;
 }
@@ -158,8 +158,9 @@ int run(const StabilityArguments& arguments) {
 
 void add_stability(CommandLine& line, int& status) {
   Command command = line.command("stability", "find where methods fail: every method in thirteen cases");
-  command.examples({{"leapmap stability", "ten minutes; then analysis/stability_chart.py maps/stability.h5"},
-                    {"leapmap stability --quick", "a minute at most; fewer positions"}});
+  command.examples(
+      {{"leapmap stability", "ten minutes; then python3 -m leapmap.charts stability maps/stability.h5"},
+       {"leapmap stability --quick", "a minute at most; fewer positions"}});
   auto arguments = std::make_shared<StabilityArguments>();
   command.value("-o,--output", arguments->table, "the HDF5 table to write; default: maps/stability.h5")
       .check(named_file());

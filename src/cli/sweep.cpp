@@ -156,7 +156,7 @@ int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditRep
                        hop_command(spec, DesignSpace(spec).at(*design))));
   };
   const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
-  complain(report.first_mismatch, both + " disagree on status, spurious flag or number of lift-offs");
+  complain(report.first_mismatch, both + " disagree on status, the first lift-off or number of lift-offs");
   complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
   complain(report.first_wrong_gradient,
            "a derivative differs by more than 1e-6 from differences in long double");

@@ -206,8 +206,10 @@ std::vector<std::string> binding(const Question& question, const Place& place, c
     const auto told = [&](double bound) {
       return angle ? fmt::format("{:.6g} deg", bound / degrees(1.0)) : fmt::format("{:.6g}", bound);
     };
-    if (place.at[k] < on) binds.push_back(parameter.name + " from " + told(parameter.side.low));
-    if (place.at[k] > 1.0 - on) binds.push_back(parameter.name + " to " + told(parameter.side.high));
+    if (place.at[k] < on)
+      binds.push_back(parameter.name + " at its lower bound, " + told(parameter.side.low));
+    if (place.at[k] > 1.0 - on)
+      binds.push_back(parameter.name + " at its upper bound, " + told(parameter.side.high));
   }
   for (const Goal& goal : question.one.goals) {
     const Field& field = *find_field(goal.field);

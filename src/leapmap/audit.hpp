@@ -21,9 +21,10 @@ struct AuditReport {
   double max_rel_time_error = 0;    ///< of the times to lift-off, apex and landing, relative
   double max_rel_motion_error = 0;  ///< of angles, spins, distances and energies, relative to 1 + size
   std::size_t failed = 0;           ///< designs with status failed in the map; they are not compared
-  std::size_t flag_mismatches = 0;  ///< designs whose status, spurious flag or number of lift-offs differ
-  std::size_t undecided = 0;        ///< designs that the second method cannot decide within its own error
-  double allowed_error = 0;         ///< error above which a design counts as wrong; heights: times 1 + height
+  std::size_t flag_mismatches =
+      0;                      ///< designs whose status, the first lift-off or number of lift-offs differ
+  std::size_t undecided = 0;  ///< designs that the second method cannot decide within its own error
+  double allowed_error = 0;   ///< error above which a design counts as wrong; heights: times 1 + height
   std::size_t beyond_tolerance = 0;             ///< designs whose error is larger than that
   std::optional<std::size_t> first_mismatch;    ///< lowest design number whose flags differ
   std::optional<std::size_t> first_inaccurate;  ///< lowest design number beyond the tolerance
@@ -43,7 +44,8 @@ struct AuditReport {
 
   // Later jumps, if the map stores any: by the second method.
   std::size_t jumps_compared = 0;   ///< jumps after the first, over the whole sample
-  std::size_t jumps_beyond = 0;     ///< jumps not compared: initial errors grow by more than 1e5
+  std::size_t jumps_beyond = 0;     ///< jumps not compared: initial errors grow by more than 1e5,
+                                    ///< or the second method is inconclusive
   std::size_t sequences_wrong = 0;  ///< designs with other jumps, or farther off than errors grow
   double jump_max_error = 0;        ///< largest error of height or time over the growth of errors
   std::optional<std::size_t> first_wrong_sequence;  ///< lowest design number of a wrong sequence

@@ -98,7 +98,7 @@ Boundaries find_boundaries(const Spec& spec, const BoundaryOptions& options = {}
 
 /// A discontinuity near a design.
 struct NearCliff {
-  std::vector<double> at;  ///< its coordinates along the spec's axes
+  std::vector<double> at;  ///< its coordinates along the spec's axes, in the parameters' units
   double distance;         ///< as a fraction of the axes' ranges, logarithmic for logarithmic axes
   CliffKind kind;          ///< cause
   Discrete beyond;         ///< outcome on its other side

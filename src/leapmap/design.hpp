@@ -11,16 +11,20 @@ namespace leapmap {
 /// One hoop and its release. The defaults are the paper's hoop, released from rest with its mass on top.
 struct Design {
   double slope = 0.40;                      ///< theta [rad], in (-pi/2, pi/2); below zero: uphill
-  double mass_ratio = 20.0 / 8.2;           ///< beta = m_p / m, >= 0
+  double mass_ratio = 20.0 / 8.2;           ///< beta = m_p / m, in [0, 1e12]
   double offset_ratio = 1.0;                ///< lambda = L / R, in [0, 1]
-  double inertia_factor = 1.0;              ///< kappa = I / (m R^2), >= 0: thin hoop 1, disc 1/2
-  double release_angle = std::numbers::pi;  ///< phi at t = 0 [rad]; 0: mass on the plane, pi: mass on top
-  double release_spin = 0.0;                ///< w at t = 0 [sqrt(g/R)], positive downhill
-  double drive_torque = 0.0;                ///< tau, of a motor, in contact only [(m + m_p) g R]
+  double inertia_factor = 1.0;              ///< kappa = I / (m R^2), in [0, 1e12]: thin hoop 1, disc 1/2
+  double release_angle = std::numbers::pi;  ///< phi at t = 0 [rad], in [-1e6, 1e6]; 0: mass on the
+                                            ///< plane, pi: mass on top
+  double release_spin = 0.0;                ///< w at t = 0 [sqrt(g/R)], in [-1e4, 1e4], positive downhill
+  double drive_torque = 0.0;                ///< tau, of a motor, in contact only [(m + m_p) g R], in
+                                            ///< [-1e3, 1e3], positive downhill
   // Contact; no effect with Friction::sticking.
-  double mu_static = 0.5;                                        ///< static friction coefficient, >= 0
-  double mu_kinetic = std::numeric_limits<double>::quiet_NaN();  ///< kinetic, >= 0; NaN: equal to mu_static
-  double restitution = 0.0;                                      ///< Poisson's, in [0, 1]
+  double mu_static = 0.5;  ///< static friction coefficient, in [0, 1e6]
+  double mu_kinetic =
+      std::numeric_limits<double>::quiet_NaN();  ///< kinetic, in [0, 1e6]; NaN: equal to
+                                                 ///< mu_static; larger: mu_static is set to it
+  double restitution = 0.0;                      ///< Poisson's, in [0, 1]
 };
 
 }  // namespace leapmap

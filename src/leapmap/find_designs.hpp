@@ -42,7 +42,8 @@ struct FoundDesigns {
   /// the order of the first objective.
   std::vector<FoundDesign> designs{};
   bool reached = false;  ///< false: no design reaches every goal, and `designs` holds the nearest miss
-  std::vector<double> missed{};  ///< values of the goals' fields at the nearest miss, in the order of goals
+  std::vector<double> missed{};  ///< values of the goals' fields at the nearest miss, in the fields' units
+                                 ///< and the order of goals
   std::size_t evaluations = 0;   ///< number of designs solved
   double seconds = 0.0;          ///< duration [s]
   /// With two objectives: fraction of the rectangle between the front's ends that the front dominates.
@@ -54,7 +55,8 @@ struct FoundDesigns {
 struct FindOptions {
   std::uint64_t seed = 1;  ///< equal seeds give equal designs, for any number of threads
   std::size_t most = 0;    ///< largest number of designs returned; 0: 8, or 2,048 for a front
-  std::size_t sample = 0;  ///< designs in the initial sample; 0: as large as one second allows
+  std::size_t sample = 0;  ///< designs in the initial sample; 0: 2^21, with friction 2^18,
+                           ///< fewer with tolerances
   int threads = 0;         ///< number of threads; 0: all that OpenMP offers
   /// Receives the number of steps done and their total, from the caller's thread.
   std::function<void(std::size_t done, std::size_t total)> progress{};

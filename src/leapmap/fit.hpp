@@ -123,8 +123,8 @@ struct FitReport {
 /// Options of fit.
 struct FitOptions {
   std::vector<Friction> models{Friction::sticking, Friction::coulomb};  ///< models to fit
-  std::uint64_t seed = 1;  ///< of the coarse map; equal seeds give equal fits
-  std::size_t coarse = 0;  ///< size of the coarse map, a multiple of 16; 0: 4,096 for a film, else 65,536
+  std::uint64_t seed = 1;  ///< of the initial sample; equal seeds give equal fits
+  std::size_t coarse = 0;  ///< size of the initial sample, a multiple of 16; 0: 4,096 for a film, else 65,536
   std::size_t starts = 0;  ///< its best points that are followed; 0: 8 for a film, 24 for events
   int threads = 0;         ///< number of threads; 0: all that OpenMP offers
   /// Polled from any thread; if it returns true, fit throws Stopped.
@@ -133,9 +133,9 @@ struct FitOptions {
 
 /// Fits free parameters to measurements by least squares.
 ///
-/// A coarse map of the bounds comes first; GSL's trust region follows its best points with exact derivatives.
-/// The spec's axes { from, to } are the free parameters. Without any these are release_angle, release_spin
-/// and, with Coulomb friction, mu_static.
+/// An initial sample of the bounds comes first; GSL's trust region follows its best points with exact
+/// derivatives. The spec's axes { from, to } are the free parameters. Without any these are release_angle,
+/// release_spin and, with Coulomb friction, mu_static.
 /// @throws InputError for more free parameters than numbers, and as check_measurements and check_spec do;
 ///         Stopped
 FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& options = {});

@@ -16,7 +16,8 @@ struct MotionPoint {
   double spin;          ///< phi' [rad/s], positive downhill
   double x;             ///< travel of the hoop's centre along the plane since release [m]
   double y;             ///< height of the hoop's lowest point above the plane [m]; 0 in contact
-  double normal_force;  ///< N of the paper's (11), over the weight; negative: contact would need a pull
+  double normal_force;  ///< N of the paper's (11), over the weight; 0 in flight; negative: the plane would
+                        ///< have to hold the hoop down
   double friction;      ///< F of the paper's (12), over the weight, positive downhill
   Phase phase;          ///< contact phase
 };
@@ -39,7 +40,7 @@ struct Candidate {
   double height;       ///< apex above the plane [hoop diameters]; 0: the hoop sinks at once
   double apex_time;    ///< from the lift-off to the apex [s]
   double flight_time;  ///< from the lift-off to the landing [s]
-  double dip;          ///< penetration depth when the flight first enters the plane [hoop diameters], <= 0
+  double dip;          ///< lowest height right after lift-off [hoop diameters], <= 0
   bool is_jump;        ///< whether it reaches Scene::hop_height
 };
 

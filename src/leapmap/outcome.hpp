@@ -19,7 +19,7 @@ enum class Status : std::uint8_t {
   jumped = 1,               ///< it jumps; every jump_ field is valid
   no_jump = 2,              ///< it reaches the rolling limit first
   stalled = 3,              ///< trapped: it rocks between two turning points, or rests
-  airborne_at_release = 4,  ///< the normal force is negative at t = 0
+  airborne_at_release = 4,  ///< the normal force at the release is zero or negative
   indeterminate = 5,        ///< Painleve's paradox: the rigid-body equations have no solution or two
   failed = 6,               ///< the method could not solve it; no field is valid
 };
@@ -85,12 +85,12 @@ struct Outcome {
   double jump_distance = none;                 ///< travel of the centre from release to lift-off [R]
   double apex_time = none;                     ///< from lift-off to apex [s]
   double flight_time = none;                   ///< from lift-off to landing [s]
-  double dip = none;                ///< penetration depth at the flight's start [hoop diameters], <= 0
-  double first_jump_height = none;  ///< apex of the first lift-off [hoop diameters]
-  double first_jump_time = none;    ///< from release to the first lift-off [s]
+  double dip = none;                           ///< lowest height right after lift-off [hoop diameters], <= 0
+  double first_jump_height = none;             ///< apex of the first lift-off [hoop diameters]
+  double first_jump_time = none;               ///< from release to the first lift-off [s]
   // With Coulomb friction.
   std::uint64_t phase_sequence = 0;  ///< two bits a phase, the first lowest, up to 32; see Phase
-  double slip_distance = none;       ///< distance slid until the end [R], >= 0; NaN if the hoop rocks to rest
+  double slip_distance = none;       ///< slid until the jump, or the end [R]; NaN if the hoop rocks to rest
   double landing_spin = none;        ///< w after the landing of the jump [sqrt(g/R)]
   double energy_lost = none;         ///< from release to lift-off [(m + m_p) g R]
   // With Scene::jumps > 1, if requested by name:
@@ -134,7 +134,7 @@ struct OutcomeNumber {
   }
 };
 
-/// Whether two outcomes agree in status, spurious flag, number of lift-offs and phases.
+/// Whether two outcomes agree in status, sub-threshold first lift-off, number of lift-offs and phases.
 inline bool same_flags(const Outcome& a, const Outcome& b) {
   return a.status == b.status && a.spurious_first_jump == b.spurious_first_jump &&
          a.candidates == b.candidates && a.phase_sequence == b.phase_sequence;

@@ -16,7 +16,7 @@ enum class Friction {
 /// Contact model, definition of a jump, size and gravity.
 struct Scene {
   Friction friction = Friction::sticking;  ///< contact model
-  double runway = 5.0;  ///< rolling limit, at which the search for a jump ends [revolutions], > 0
+  double runway = 5.0;  ///< rolling limit, at which the search for a jump ends [revolutions], in (0, 1e6]
   double hop_height =
       0.05;        ///< jump threshold: the first lift-off this high is the jump [hoop diameters], >= 0
   long jumps = 1;  ///< number of jumps to follow, in [1, 250]
@@ -25,8 +25,8 @@ struct Scene {
   long most_period = 16;         ///< longest period of a gait [jumps], in [1, 64]
   double gait_tolerance = 1e-3;  ///< distance of landings that count as equal [rad, sqrt(g/R)], in (0, 1]
   double rest_speed = 1e-3;      ///< Coulomb only: a slower rebound counts as zero [sqrt(g R)], >= 0
-  double radius = 0.041;         ///< R [m], > 0; scales lengths and times only
-  double gravity = 9.81;         ///< g [m/s^2], > 0; scales times only
+  double radius = 0.041;         ///< R [m], in [1e-9, 1e9]; scales lengths, times and speeds only
+  double gravity = 9.81;         ///< g [m/s^2], in [1e-9, 1e9]; scales times and speeds only
 };
 
 /// The unit of time of the dimensionless equations, sqrt(R/g) [s].

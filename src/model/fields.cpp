@@ -40,7 +40,7 @@ const std::array fields{
     Field{"jump_angle", Quantity{&Outcome::jump_angle}, "rad", "angle phi at the lift-off of the jump"},
     Field{"jump_spin", Quantity{&Outcome::jump_spin}, "1", "spin at the lift-off of the jump, in sqrt(g/R)"},
     Field{"jump_distance", Quantity{&Outcome::jump_distance}, "1",
-          "distance rolled from release to the lift-off of the jump, in R"},
+          "distance travelled by the hoop's centre from release to the lift-off of the jump, in R"},
     Field{"apex_time", Quantity{&Outcome::apex_time, Measure::time}, "s",
           "time from the lift-off of the jump to its apex"},
     Field{"flight_time", Quantity{&Outcome::flight_time, Measure::time}, "s",
@@ -50,7 +50,8 @@ const std::array fields{
     Field{"first_jump_time", Quantity{&Outcome::first_jump_time, Measure::time}, "s",
           "time from release to the first lift-off"},
     Field{"dip", Quantity{&Outcome::dip, Measure::height}, "1",
-          "penetration depth when the flight of the jump first enters the plane, in hoop diameters, <= 0"},
+          "lowest height of the hoop right after the lift-off of the jump, in hoop diameters; negative: its "
+          "penetration depth"},
     Field{"candidates",
           Code{[](const Outcome& o) { return o.candidates; },
                [](Outcome& o, std::uint8_t code) { o.candidates = code; },
@@ -61,9 +62,11 @@ const std::array fields{
         "phase_sequence", Word{&Outcome::phase_sequence}, "1",
         "contact phases, two bits each, the first lowest, up to 32: 1 rolling, 2 sliding, 3 flight; 0: none",
         3, Friction::coulomb},
-    Field{"slip_distance", Quantity{&Outcome::slip_distance}, "1",
-          "distance slid from release to the end, in R, >= 0; NaN if the hoop rocks to rest", 3,
-          Friction::coulomb},
+    Field{
+        "slip_distance", Quantity{&Outcome::slip_distance}, "1",
+        "distance slid from release to the lift-off of the jump, or without a jump to the end of the motion, "
+        "in R; NaN if the hoop rocks to rest",
+        3, Friction::coulomb},
     Field{"landing_spin", Quantity{&Outcome::landing_spin}, "1",
           "spin after the landing of the jump, in sqrt(g/R)", 3, Friction::coulomb},
     Field{"energy_lost", Quantity{&Outcome::energy_lost}, "1",

@@ -130,9 +130,9 @@ def test_info_tells_a_place_of_the_map_and_how_far_its_cliffs_are(tmp_path):
     path = str(tmp_path / "m.h5")
     leapmap("sweep", "-o", path, *GRID)
     told = leapmap("info", path, "--at", "slope=0.4,mass_ratio=2.4").stdout
-    assert "jumped on 2" in told and "jump_height" in told and "Derivatives" in told
+    assert "jumped at lift-off 2" in told and "jump_height" in told and "Derivatives" in told
     line = next(line for line in told.splitlines() if line.strip().startswith("slope 0.45"))
-    assert "threshold" in line and "jumped on 1" in line
+    assert "threshold" in line and "jumped at lift-off 1" in line
     assert "over all directions" in told
     for at, words in (("slope=0.4", "mass_ratio"), ("slope=0.4,mass_ratio=50", "outside"), ("slope=x,mass_ratio=2", "x"),
                       ("spin=1,mass_ratio=2", "spin"), ("slope=0.4,slope=0.4", "slope")):

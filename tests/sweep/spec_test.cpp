@@ -188,7 +188,8 @@ TEST(Spec, AValueBesideAColumnOfItsNameIsRefused) {
     read_spec(path, {});
     FAIL() << "the column would win without a word";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("slope = 0.3 has no effect beside the column"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("slope = 0.3 has no effect beside the column"),
+              std::string::npos)
         << error.what();
   }
 }

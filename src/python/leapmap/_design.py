@@ -20,11 +20,12 @@ class Found:
     reached : bool
         False: no design reaches every goal, and the only one is the nearest miss.
     parameters, objectives : dict of ndarray
-        By name, one element for each design.
+        By name, one element for each design, in the parameter's or field's unit (angles in rad).
     outcomes : Outcomes
         Outcomes of the nominal designs.
     gradients : dict
-        {field: {free parameter: ndarray}} of the fields that objectives and goals name; empty for a front.
+        {field: {free parameter: ndarray}}, units of the field per unit of the parameter, of the fields that objectives and
+        goals name; empty for a front.
     binds : list of list of str
         Active constraints of each design, in words.
     cliff_distance : ndarray
@@ -78,7 +79,7 @@ def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed
     most : int, default 0
         Largest number of designs returned; 0: 8, or 2,048 for a front.
     sample : int, default 0
-        Number of designs in the initial sample; 0: what takes a second or two.
+        Number of designs in the initial sample; 0: 2,097,152, with friction 262,144, and fewer with tolerances.
     threads : int, default 0
         Number of threads; 0: all cores.
     **overrides
@@ -163,33 +164,40 @@ class DesignProblem:
         Parameters
         ----------
         places : array_like
-            One design in a row.
+            Shape (n, len(names)): a design in each row, angles in rad.
 
         Returns
         -------
-        costs, violations : ndarray
-            One row of costs and one number for each design; a violation is 0 if every goal is reached.
+        costs : ndarray
+            Shape (n, len(objectives)), in the objectives' units.
+        violations : ndarray
+            Shape (n,); 0 if every goal is reached.
+
+        Raises
+        ------
+        ValueError
+            For another shape or a value outside the bounds.
         """
         rows = np.atleast_2d(array("places", places) if np.size(places) else np.empty((0, len(self.names))))
         return self._core.judge(rows)
 
     def costs(self, places):
-        """Evaluate designs, one in a row, and return an array with one row of costs for each."""
+        """Evaluate designs, shape (n, len(names)), and return their costs, shape (n, len(objectives))."""
         costs, violations = self.judge(places)
         return np.where(violations[:, None] > 0, 1e30 * (1 + violations[:, None]), costs)
 
     def cost(self, place):
-        """Evaluate one design and return the cost of the first objective."""
+        """Evaluate one design, shape (len(names),), and return the cost of the first objective."""
         if np.ndim(place) != 1:
             raise ValueError("cost takes one design; allowed: a vector, or costs for several designs")
         return float(self.costs(place)[0, 0])
 
     def fitness(self, place):
-        """Costs of one design, for pygmo."""
+        """Costs of one design, shape (len(objectives),), for pygmo."""
         return self.costs(place)[0]
 
     def batch_fitness(self, places):
-        """Costs of several designs in one vector, for pygmo."""
+        """Costs of designs whose parameters follow each other in one vector; one vector, for pygmo."""
         return self.costs(array("places", places).reshape(-1, len(self.names))).ravel()
 
     def has_batch_fitness(self):

@@ -17,7 +17,7 @@ class FittedParameter:
     Attributes
     ----------
     value, error : float
-        Best fit and its standard error; error NaN: not identified.
+        Best fit and its standard error, in the parameter's unit (angles in rad); error NaN: not identified.
     low, high : float
         Interval in which chi-square rises by less than 1, the other parameters refitted.
     identified : bool
@@ -99,17 +99,18 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
     data : path or mapping
         A CSV file; or arrays {"t", "phi"} or {"t", "x_P", "y_P", "x_O", "y_O"} in s, rad and m; or events {field: (value,
         standard error)}. The angle phi is 0 if the mass touches the plane. x is along the plane, downhill; y is away from it.
-        P is the mass, O the hoop's centre.
+        P is the mass, O the hoop's centre. Convert pixels to metres first.
     spec : path or mapping, optional
-        The hoop, and free parameters {"from", "to"}. Without any these are release_angle, release_spin and mu_static.
+        The hoop, and free parameters {"from", "to"}. Without any these are release_angle, release_spin and,
+        with friction, mu_static.
     model : str, default "both"
         "sticking", "coulomb" or "both".
     error : float, optional
-        Standard error of a film's numbers; default: from the residuals.
+        Standard error of a film's angles [rad] or positions [m]; default: from the residuals.
     allow_gaps : bool, default False
         Accept films with missing lines.
     seed : int, default 1
-        Seed of the coarse map.
+        Seed of the initial sample.
     threads : int, default 0
         Number of threads; 0: all cores.
     **overrides

@@ -14,7 +14,7 @@ _PHASES = {1: "rolling", 2: "sliding", 3: "flight"}
 _POINTS = {"t": ("s", "since release"), "phi": ("rad", "angle; 0: mass on the plane"), "spin": ("rad s-1", "positive downhill"),
            "x": ("m", "travel of the hoop's centre along the plane since release"),
            "y": ("m", "height of the hoop's lowest point above the plane"),
-           "normal_force": ("1", "over the weight; negative: contact would need a pull"),
+           "normal_force": ("1", "over the weight, 0 in flight; negative: the plane would have to hold the hoop down"),
            "friction": ("1", "over the weight, positive downhill"), "phase": ("1", "1 rolling, 2 sliding, 3 flight")}
 
 
@@ -107,9 +107,11 @@ class Motion:
     phase : ndarray
         1 rolling, 2 sliding, 3 flight.
     phases : list of dict
-        The beginning of each phase.
+        The beginning of each phase: phase, direction of sliding (1 forwards, -1 backwards, else 0), t [s], phi [rad],
+        spin [rad/s], x [m].
     candidates : list of dict
-        Every lift-off; height and dip in hoop diameters.
+        Every lift-off: t [s], phi [rad], spin [rad/s], height and dip [hoop diameters], apex_time and flight_time [s],
+        is_jump.
     outcome : Outcomes
         As solve returns it.
     failure : str or None

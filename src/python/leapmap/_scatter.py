@@ -38,7 +38,8 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
         missed: {field of a goal: fraction that misses it}.
         jump_height, jump_time, or the quantities in fields: {"mean", "sd", "q05", "q50", "q95"} of the hoops that jump.
         first, total: Sobol' indices, {quantity: {parameter: Estimate}}; NaN if nothing varies. Those of height and time
-        describe the fraction `pairs` of pairs in which both hoops jump.
+        describe the pairs of hoops in which both jump; pairs: {quantity: their fraction}.
+        samples: number of hoops.
         cut_off: {parameter: fraction of its distribution outside its domain}.
         unsolved: fraction that the method could not solve; the errors include it.
         shrink: {parameter: factor by which its tolerance must shrink for a yield of 99 %, the others unchanged}; 0: even

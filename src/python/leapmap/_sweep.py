@@ -33,9 +33,9 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
     spec : path or mapping
         A TOML file, or {section: {key: value}} in which an array is an axis.
     file : path, optional
-        The map to write; default: output.file of the spec. Without one, nothing is kept on disk.
+        The map to write; default: output.file of the spec. Without one, as with in_memory.
     in_memory : bool, default False
-        Keep nothing on disk.
+        Leave no file; a temporary one is written to $TMPDIR.
     resume : bool, default False
         Continue what an interrupted sweep left, or read the map if it is complete.
     overwrite : bool, default False
@@ -57,7 +57,9 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
     ValueError
         With key, value and what is allowed.
     OSError
-        If the file cannot be written.
+        If the file cannot be written, or if $TMPDIR has too little room for it.
+    MemoryError
+        If the map exceeds the memory.
     KeyboardInterrupt
         After Ctrl-C; FILE.part keeps what is done.
 
