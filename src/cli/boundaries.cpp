@@ -219,6 +219,8 @@ int run(const BoundariesArguments& arguments) {
     if (!arguments.quiet) say("file     {}\n", arguments.output);
   }
   if (!arguments.csv.empty()) csv.commit(csv_of(found));
+  if (arguments.output.empty() && arguments.csv.empty() && !arguments.quiet)
+    say("nothing was written; -o FILE.h5 or --csv FILE.csv keeps them\n");
   return 0;
 }
 
@@ -238,7 +240,9 @@ void add_boundaries(CommandLine& line, int& status) {
   command.group("Output");
   command.value("-o,--output", arguments->output, "write discontinuities and curves to this HDF5 file")
       .check(named_file());
-  command.value("--csv", arguments->csv, "write the discontinuities to this CSV file, one in a row")
+  command
+      .value("--csv", arguments->csv,
+             "write the curves to this CSV file, a point in a row; where curves meet, a point for each")
       .check(named_file());
   command.flag("--overwrite", arguments->overwrite, "allow --csv to replace any file");
   command.flag("--quiet", arguments->quiet, "print errors only");

@@ -6,11 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "cli/audit_lines.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
-#include "cli/told_sequences.hpp"
 #include "support/posix.hpp"
 #include "support/printable.hpp"
 #include "sweep/parallel.hpp"
@@ -29,22 +29,7 @@ bool tell_findings(const CheckArguments& arguments, const CheckReport& report) {
   if (!report.findings.empty()) return false;
   say("read     {} designs in {} chunks{}: all intact\n", grouped(report.designs), grouped(report.tiles),
       report.whole ? "" : ", all that the interrupted sweep left");
-  if (report.sample)
-    say("sample   {} designs solved again by {}: height within {:.1e} diameters, time within {:.1e}, motion "
-        "within {:.1e}{}\n",
-        grouped(report.sample->designs), report.sample->method, report.sample->max_abs_height_error,
-        report.sample->max_rel_time_error, report.sample->max_rel_motion_error,
-        report.sample->undecided > 0 ? fmt::format("; {} inconclusive", report.sample->undecided) : "");
-  if (report.sample && report.sample->refereed > 0)
-    say("referee  {} designs by the independent reference solver: largest error {:.1e}{}\n",
-        grouped(report.sample->refereed), report.sample->referee_max_error,
-        report.sample->referee_undecided > 0
-            ? fmt::format("; {} inconclusive", report.sample->referee_undecided)
-            : "");
-  if (report.sample && report.sample->gradient_designs > 0)
-    say("gradient {} designs by differences in long double: largest error {:.1e}\n",
-        grouped(report.sample->gradient_designs), report.sample->gradient_max_error);
-  if (report.sample) say_sequences(*report.sample);
+  if (report.sample) say_audit(*report.sample);
   if (report.whole && !report.sealed)
     say("note     its format is older than 1.4, which had no checksum of the whole file\n");
   say("right    {}\n", printable(arguments.path));

@@ -12,6 +12,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/info_place.hpp"
+#include "cli/json.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
@@ -162,51 +163,38 @@ void print_miss(const Spec& spec, const Question& question, const FoundDesigns& 
   say("     {}\n", command_of(question, nearest.design));
 }
 
-std::string json_of(const Question& question, const FoundDesign& found) {
-  std::vector<std::string> parameters, objectives, fields, gradients;
+Json json_of(const Question& question, const FoundDesign& found) {
+  const bool near = !found.cliff.empty();
+  Json json{
+      {"yield", {{"value", found.yield.value}, {"error", found.yield.error}}},
+      {"parameters", Json::object()},
+      {"objectives", Json::object()},
+      {"fields", Json::object()},
+      {"gradients", Json::object()},
+      {"binds", found.binds},
+      {"cliff",
+       near ? Json{{"distance", found.cliff[0].distance}, {"kind", name_of(found.cliff[0].kind)}} : Json()},
+      {"hop", command_of(question, found.design)}};
   for (const FreeParameter& parameter : question.free)
-    parameters.push_back(
-        fmt::format("\"{}\": {}", parameter.name, json_number(found.design.*parameter.member)));
+    json["parameters"][parameter.name] = found.design.*parameter.member;
   for (std::size_t k = 0; k < question.objectives.size(); ++k)
-    objectives.push_back(
-        fmt::format("\"{}\": {}", question.objectives[k].name, json_number(found.objectives[k])));
+    json["objectives"][question.objectives[k].name] = found.objectives[k];
   for (const Field* field : fields_of(question.one.scene))
     if (!std::holds_alternative<Word>(field->source))
-      fields.push_back(
-          fmt::format("\"{}\": {}", field->name, json_number(stored_number(*field, found.outcome))));
-  for (const FieldGradient& gradient : found.gradients) {
-    std::vector<std::string> by;
+      json["fields"][std::string(field->name)] = stored_number(*field, found.outcome);
+  for (const FieldGradient& gradient : found.gradients)
     for (const FreeParameter& parameter : question.free)
-      by.push_back(fmt::format("\"{}\": {}", parameter.name, json_number(gradient.by.*parameter.member)));
-    gradients.push_back(fmt::format("\"{}\": {{{}}}", gradient.of, fmt::join(by, ", ")));
-  }
-  std::vector<std::string> binds;
-  for (const std::string& one : found.binds) binds.push_back(fmt::format("\"{}\"", one));
-  const std::string cliff =
-      found.cliff.empty() ? "null"
-                          : fmt::format("{{\"distance\": {}, \"kind\": \"{}\"}}",
-                                        json_number(found.cliff[0].distance), name_of(found.cliff[0].kind));
-  const std::string yield = fmt::format("{{\"value\": {}, \"error\": {}}}", json_number(found.yield.value),
-                                        json_number(found.yield.error));
-  return fmt::format(
-      "    {{\"yield\": {}, \"parameters\": {{{}}}, \"objectives\": {{{}}}, \"fields\": {{{}}},\n     "
-      "\"gradients\": "
-      "{{{}}}, "
-      "\"binds\": [{}], \"cliff\": {}, \"hop\": {}}}",
-      yield, fmt::join(parameters, ", "), fmt::join(objectives, ", "), fmt::join(fields, ", "),
-      fmt::join(gradients, ", "), fmt::join(binds, ", "), cliff,
-      json_string(command_of(question, found.design)));
+      json["gradients"][gradient.of][parameter.name] = gradient.by.*parameter.member;
+  return json;
 }
 
-void print_json(const Spec& spec, const Question& question, const FoundDesigns& found) {
-  std::vector<std::string> designs, missed;
-  for (std::size_t k = 0; k < found.missed.size(); ++k)
-    missed.push_back(fmt::format("\"{}\": {}", spec.goals[k].field, json_number(found.missed[k])));
-  for (const FoundDesign& one : found.designs) designs.push_back(json_of(question, one));
-  say("{{\"reached\": {}, \"evaluations\": {}, \"seconds\": {}, \"hypervolume\": {}, \"missed\": {{{}}}, "
-      "\"designs\": [\n{}\n]}}\n",
-      found.reached, found.evaluations, json_number(found.seconds), json_number(found.hypervolume),
-      fmt::join(missed, ", "), fmt::join(designs, ",\n"));
+Json json_of(const Spec& spec, const Question& question, const FoundDesigns& found) {
+  Json json{{"reached", found.reached}, {"evaluations", found.evaluations},
+            {"seconds", found.seconds}, {"hypervolume", found.hypervolume},
+            {"missed", Json::object()}, {"designs", Json::array()}};
+  for (std::size_t k = 0; k < found.missed.size(); ++k) json["missed"][spec.goals[k].field] = found.missed[k];
+  for (const FoundDesign& one : found.designs) json["designs"].push_back(json_of(question, one));
+  return json;
 }
 
 /// The columns that design.points takes.
@@ -263,7 +251,7 @@ int run(const DesignArguments& arguments) {
   }
   progress.reset();
   if (arguments.json)
-    print_json(spec, question, found);
+    say_json(json_of(spec, question, found));
   else if (!found.reached)
     print_miss(spec, question, found);
   else if (!arguments.quiet)

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "cli/commands.hpp"
+#include "cli/json.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
@@ -124,7 +125,7 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
     say("  This model does not explain the measurements{}. Check slope, radius, masses, L/R{}; or free "
         "them.\n",
         !film || !std::isnan(fit.probability) ? ""
-        : runs(fit) ? fmt::format(": residuals keep their sign for long, only {:.3g} lines are independent",
+        : runs(fit) ? fmt::format(": the residuals are systematic, only {:.3g} lines are independent",
                                   fit.independent)
                     : fmt::format(": residuals are {:.3g} times their scatter from line to line", fit.misfit),
         film && measured.film.phi.empty() ? ", --scale, --y-down and the sign of x" : "");
@@ -137,8 +138,11 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
             ? fmt::format("; the sequence ended early, {}, with runway = {}",
                           name_of(fit.outcome.sequence_end), fit.scene.runway)
             : "");
-  say("  jump: {}, height {:.4g}, at {:.4g} s\n  {}\n", name_of(fit.outcome.status), fit.outcome.jump_height,
-      fit.outcome.jump_time, hop_command(spec_of(fit), fit.design));
+  if (fit.outcome.status == Status::jumped)
+    say("  jumps {:.4g} diameters high, at {:.4g} s\n", fit.outcome.jump_height, fit.outcome.jump_time);
+  else
+    say("  does not jump: {}\n", name_of(fit.outcome.status));
+  say("  {}\n", hop_command(spec_of(fit), fit.design));
 }
 
 /// Which model the data prefer, by Akaike's weights.
@@ -156,29 +160,27 @@ void print_preference(const FitReport& report) {
       model_of(report.models[0].scene).name, less);
 }
 
-std::string json_of(const std::vector<double>& numbers) {
-  std::vector<std::string> told;
-  for (const double number : numbers) told.push_back(json_number(number));
-  return fmt::format("[{}]", fmt::join(told, ", "));
-}
-
-std::string json_of(const ModelFit& fit) {
-  std::vector<std::string> parameters;
+Json json_of(const ModelFit& fit) {
+  Json parameters = Json::object();
   for (const FittedParameter& parameter : fit.parameters)
-    parameters.push_back(fmt::format(
-        R"("{}": {{"value": {}, "error": {}, "low": {}, "high": {}, "identified": {}, "at_bound": {}}})",
-        parameter.name, json_number(parameter.value), json_number(parameter.error),
-        json_number(parameter.low), json_number(parameter.high), parameter.identified, parameter.at_bound));
-  return fmt::format(
-      "  {{\"friction\": \"{}\", \"found\": {}, \"judged\": {}, \"explains\": {}, \"parameters\": {{{}}},\n"
-      "   \"correlations\": {}, \"chi_square\": {}, "
-      "\"degrees\": {}, \"error\": {}, \"information\": {}, \"correlation\": {}, \"independent\": {},\n   "
-      "\"model\": {},\n   \"residuals\": {},\n   "
-      "\"hop\": \"{}\"}}",
-      model_of(fit.scene).name, fit.found, fit.judged, explains(fit), fmt::join(parameters, ", "),
-      json_of(fit.correlations), json_number(fit.chi_square), fit.degrees, json_number(fit.error),
-      json_number(fit.information), json_number(fit.correlation), json_number(fit.independent),
-      json_of(fit.model), json_of(fit.residuals), fit.found ? hop_command(spec_of(fit), fit.design) : "");
+    parameters[parameter.name] = {
+        {"value", parameter.value}, {"error", parameter.error},           {"low", parameter.low},
+        {"high", parameter.high},   {"identified", parameter.identified}, {"at_bound", parameter.at_bound}};
+  return {{"friction", model_of(fit.scene).name},
+          {"found", fit.found},
+          {"judged", fit.judged},
+          {"explains", explains(fit)},
+          {"parameters", parameters},
+          {"correlations", fit.correlations},
+          {"chi_square", fit.chi_square},
+          {"degrees", fit.degrees},
+          {"error", fit.error},
+          {"information", fit.information},
+          {"correlation", fit.correlation},
+          {"independent", fit.independent},
+          {"model", fit.model},
+          {"residuals", fit.residuals},
+          {"hop", fit.found ? hop_command(spec_of(fit), fit.design) : ""}};
 }
 
 constexpr std::string_view csv_head = "t,quantity,measured";
@@ -213,9 +215,10 @@ void tell_fitted_anew(const Spec& spec) {
   if (!spec.axes.empty()) return;
   for (const char* name : {"release_angle", "release_spin", "mu_static"})
     if (const double given = spec.design.*member_of(name); given != Design{}.*member_of(name))
-      tell(fmt::format(
-          "{} = {} is not used but fitted; to fix it, choose the free parameters, each {{ from, to }}", name,
-          given));
+      tell(
+          fmt::format("{0} is fitted, so its value {1} is ignored; to fix it, choose the free parameters, "
+                      "each {{ from, to }}",
+                      name, given));
 }
 
 int run(const FitArguments& arguments) {
@@ -247,9 +250,9 @@ int run(const FitArguments& arguments) {
     return 128 + noted_signal();
   }
   if (arguments.json) {
-    std::vector<std::string> told;
-    for (const ModelFit& one : report.models) told.push_back(json_of(one));
-    say("{{\"seconds\": {}, \"models\": [\n{}\n]}}\n", json_number(report.seconds), fmt::join(told, ",\n"));
+    Json json{{"seconds", report.seconds}, {"models", Json::array()}};
+    for (const ModelFit& one : report.models) json["models"].push_back(json_of(one));
+    say_json(json);
   } else {
     say("{} in {}\n", arguments.data, spoken_duration(report.seconds));
     for (const ModelFit& one : report.models) print_fit(measured, one);

@@ -7,14 +7,15 @@
 #include <memory>
 #include <numbers>
 
+#include "cli/audit_lines.hpp"
 #include "cli/commands.hpp"
+#include "cli/json.hpp"
 #include "cli/output.hpp"
-#include "cli/told_sequences.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/gait.hpp"
 #include "model/model.hpp"
+#include "request/solver.hpp"
 #include "sweep/options.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -57,36 +58,35 @@ void print_gaits(const Gaits& found, int most_period) {
         "--most-period.\n\n");
 }
 
+Json json_of(const Gait& gait) {
+  Json jumps = Json::array();
+  for (const Jump& jump : gait.jumps)
+    jumps.push_back({{"angle", jump.angle},
+                     {"spin", jump.spin},
+                     {"height", jump.height},
+                     {"time", jump.time},
+                     {"distance", jump.distance}});
+  return {{"period", gait.jumps.size()}, {"multiplier", gait.multiplier},   {"height", gait.height},
+          {"speed", gait.speed},         {"energy_lost", gait.energy_lost}, {"jumps", jumps}};
+}
+
 /// found: nullptr if there was no search.
-std::string json_text(const Spec& spec, const Gaits* found, const Outcome& outcome) {
-  std::vector<std::string> gaits, returns;
-  for (const Gait& gait : found ? found->gaits : std::vector<Gait>{}) {
-    std::vector<std::string> jumps;
-    for (const Jump& jump : gait.jumps)
-      jumps.push_back(fmt::format(R"({{"angle": {}, "spin": {}, "height": {}, "time": {}, "distance": {}}})",
-                                  json_number(jump.angle), json_number(jump.spin), json_number(jump.height),
-                                  json_number(jump.time), json_number(jump.distance)));
-    gaits.push_back(fmt::format(
-        R"({{"period": {}, "multiplier": {}, "height": {}, "speed": {}, "energy_lost": {}, "jumps": [{}]}})",
-        gait.jumps.size(), json_number(gait.multiplier), json_number(gait.height), json_number(gait.speed),
-        json_number(gait.energy_lost), fmt::join(jumps, ", ")));
-  }
-  for (const ReturnPoint& point : found ? found->returns : std::vector<ReturnPoint>{})
-    returns.push_back(fmt::format("[{}, {}, {}, {}, {}]", json_number(point.angle), json_number(point.next),
-                                  json_number(point.slope), json_number(point.height), point.uphill));
-  std::vector<std::string> design;
-  for (const Option* parameter : design_parameters(spec))
-    design.push_back(
-        fmt::format("\"{}\": {}", parameter->key, json_number(value_of(*parameter, spec.design))));
-  return fmt::format(
-      "{{\n  \"design\": {{{}}},\n  \"gait_period\": {},\n  \"gait_multiplier\": {},\n  \"gait_height\": "
-      "{},\n  "
-      "\"gait_speed\": {},\n  \"gait_energy_lost\": {},\n  \"gaits\": {},\n  \"return_map\": {}\n}}\n",
-      fmt::join(design, ", "), outcome.gait_period, json_number(outcome.gait_multiplier),
-      json_number(outcome.gait_height), json_number(outcome.gait_speed),
-      json_number(outcome.gait_energy_lost),
-      found ? fmt::format("[{}]", fmt::join(gaits, ",\n    ")) : "null",
-      found ? fmt::format("[{}]", fmt::join(returns, ",\n    ")) : "null");
+Json json_of(const Spec& spec, const Gaits* found, const Outcome& outcome) {
+  Json json{{"design", design_json(spec, spec.design)},
+            {"gait_period", outcome.gait_period},
+            {"gait_multiplier", outcome.gait_multiplier},
+            {"gait_height", outcome.gait_height},
+            {"gait_speed", outcome.gait_speed},
+            {"gait_energy_lost", outcome.gait_energy_lost},
+            {"gaits", nullptr},
+            {"return_map", nullptr}};
+  if (!found) return json;
+  json["gaits"] = json["return_map"] = Json::array();
+  for (const Gait& gait : found->gaits) json["gaits"].push_back(json_of(gait));
+  for (const ReturnPoint& point : found->returns)
+    json["return_map"].push_back(
+        Json::array({point.angle, point.next, point.slope, point.height, point.uphill}));
+  return json;
 }
 
 int run(const GaitArguments& arguments) {
@@ -117,14 +117,14 @@ int run(const GaitArguments& arguments) {
   spec.output = {};
   check_spec(spec);
   Outcome outcome;
-  make_solver(spec)({&spec.design, 1}, {&outcome, 1});
+  make_solver(request_of(spec))({&spec.design, 1}, {&outcome, 1});
   Gaits found;
   const int most_period = arguments.most_period != 0 ? arguments.most_period : usual_most_period;
   if (!slips)
     found = find_gaits(spec.design, spec.scene,
                        {.most_period = most_period, .tolerance = spec.numerics.tolerance});
   if (arguments.json) {
-    say("{}", json_text(spec, slips ? nullptr : &found, outcome));
+    say_json(json_of(spec, slips ? nullptr : &found, outcome));
     return 0;
   }
   if (!slips) print_gaits(found, most_period);

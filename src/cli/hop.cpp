@@ -8,13 +8,14 @@
 #include <numbers>
 #include <optional>
 
+#include "cli/audit_lines.hpp"
 #include "cli/commands.hpp"
 #include "cli/hop_gradient.hpp"
 #include "cli/hop_scatter.hpp"
+#include "cli/json.hpp"
 #include "cli/motor.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
-#include "cli/told_sequences.hpp"
 #include "coulomb/contact_phases.hpp"
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
@@ -22,6 +23,7 @@
 #include "map/trace_file.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
+#include "request/solver.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
 #include "sweep/audit.hpp"
@@ -173,7 +175,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
                  const std::optional<Motor>& motor, bool is_example) {
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters(spec)) {
-    double value = value_of(*parameter, spec.design);
+    double value = effective_value(*parameter, spec.design);
     const bool is_set = parameter->key == "mu_static" && spec.design.mu_kinetic > value;
     if (is_set) value = spec.design.mu_kinetic;
     say("{:<15} {:<12.8g} {}\n", parameter->key, value,
@@ -199,66 +201,85 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
         graze.makes_lift_off() ? "a " : "no ");
 }
 
+/// A field of the outcome under the map's name; codes and words by their names.
+Json json_of(const Field& field, const Outcome& outcome) {
+  if (std::holds_alternative<Word>(field.source)) return phase_letters(outcome.phase_sequence);
+  if (field.name == "status") return name_of(outcome.status);
+  if (field.name == "sequence_end") return name_of(outcome.sequence_end);
+  const double number = stored_number(field, outcome);
+  if (std::holds_alternative<Code>(field.source) && !std::isnan(number)) return static_cast<int>(number);
+  return number;
+}
+
 /// The outcome under the map's names and units, so that a script finds the same words in both.
-std::string json_text(const Spec& spec, const Motion& motion, const Outcome& checked,
-                      const std::optional<Motor>& motor, bool gradient,
-                      const std::optional<ScatterReport>& made) {
-  const double second = time_unit(spec.scene);
-  std::vector<std::string> design, outcome, candidates, grazes, phases;
-  for (const Option* parameter : design_parameters(spec))
-    design.push_back(
-        fmt::format("\"{}\": {}", parameter->key, json_number(value_of(*parameter, spec.design))));
-  for (const Field* row : fields_of(spec.scene)) {
-    const Field& field = *row;
-    std::string value;
-    if (std::holds_alternative<Word>(field.source))
-      value = fmt::format("\"{}\"", phase_letters(motion.outcome.phase_sequence));
-    else if (field.name == "status")
-      value = fmt::format("\"{}\"", name_of(motion.outcome.status));
-    else if (field.name == "sequence_end")
-      value = fmt::format("\"{}\"", name_of(motion.outcome.sequence_end));
-    else
-      value = json_number(stored_number(field, motion.outcome));
-    outcome.push_back(fmt::format("\"{}\": {}", field.name, value));
-  }
+Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
+  const Scene& scene = spec.scene;
+  const double second = time_unit(scene);
+  Json json{{"design", design_json(spec, spec.design)},
+            {"scene",
+             {{"friction", model_of(scene).name},
+              {"runway", scene.runway},
+              {"hop_height", scene.hop_height},
+              {"radius", scene.radius},
+              {"gravity", scene.gravity},
+              {"rest_speed", scene.rest_speed}}},
+            {"method", resolved_method(spec.numerics)},
+            {"tolerance", spec.numerics.tolerance}};
+  for (const Field* field : fields_of(scene))
+    json[std::string(field->name)] = json_of(*field, motion.outcome);
+  Json &lift_offs = json["lift_offs"] = Json::array(), &grazes = json["grazes"] = Json::array();
   for (const Candidate& flown : motion.candidates)
-    candidates.push_back(fmt::format(
-        R"({{"time": {}, "angle": {}, "spin": {}, "height": {}, "apex_time": {}, "flight_time": {}, "dip": {}, "is_jump": {}}})",
-        json_number(flown.t), json_number(flown.phi), json_number(flown.spin * second),
-        json_number(flown.height), json_number(flown.apex_time), json_number(flown.flight_time),
-        json_number(flown.dip), flown.is_jump));
+    lift_offs.push_back({{"time", flown.t},
+                         {"angle", flown.phi},
+                         {"spin", flown.spin * second},
+                         {"height", flown.height},
+                         {"apex_time", flown.apex_time},
+                         {"flight_time", flown.flight_time},
+                         {"dip", flown.dip},
+                         {"is_jump", flown.is_jump}});
   for (const Graze& graze : motion.grazes)
-    grazes.push_back(fmt::format(
-        R"({{"time": {}, "angle": {}, "normal_force": {}, "extremum": "{}", "makes_lift_off": {}}})",
-        json_number(graze.t), json_number(graze.phi), json_number(graze.normal_force),
-        graze.minimum ? "minimum" : "maximum", graze.makes_lift_off()));
+    grazes.push_back({{"time", graze.t},
+                      {"angle", graze.phi},
+                      {"normal_force", graze.normal_force},
+                      {"extremum", graze.minimum ? "minimum" : "maximum"},
+                      {"makes_lift_off", graze.makes_lift_off()}});
+  json["check"] = {{"method", audit_method(spec.numerics)}, {"tolerance", check_tolerance},
+                   {"status", name_of(checked.status)},     {"candidates", checked.candidates},
+                   {"jump_height", checked.jump_height},    {"jump_time", checked.jump_time}};
+  Json& phases = json["phases"] = Json::array();
   for (const PhaseStart& at : motion.phases)
-    phases.push_back(fmt::format(
-        R"({{"phase": "{}", "direction": {}, "time": {}, "angle": {}, "spin": {}, "x": {}}})",
-        phase_letters(static_cast<std::uint64_t>(at.phase)), at.direction, json_number(at.t),
-        json_number(at.phi), json_number(at.spin * second), json_number(at.x / spec.scene.radius)));
-  const std::string check = fmt::format(
-      R"({{"method": "{}", "tolerance": 1e-12, "status": "{}", "candidates": {}, "jump_height": {}, "jump_time": {}}})",
-      audit_method(spec.numerics), name_of(checked.status), checked.candidates,
-      json_number(checked.jump_height), json_number(checked.jump_time));
-  const std::string motor_told =
-      motor ? fmt::format(R"("motor": {{"mass": {}, "torque": {}, "power": {}, "rpm": {}, "work": {}}},)"
-                          "\n  ",
-                          json_number(motor->mass), json_number(motor->torque), json_number(motor->power),
-                          json_number(motor->spin), json_number(motor->work))
-            : "";
-  return fmt::format(
-      "{{\n  \"design\": {{{}}},\n  \"scene\": {{\"friction\": \"{}\", \"runway\": {}, \"hop_height\": {}, "
-      "\"radius\": {}, "
-      "\"gravity\": {}, \"rest_speed\": {}}},\n  \"method\": \"{}\",\n  \"tolerance\": {},\n  {},\n  {}{}"
-      "\"lift_offs\": [{}],\n  "
-      "\"grazes\": [{}],\n  \"check\": {},\n  \"phases\": [{}]\n}}\n",
-      fmt::join(design, ", "), model_of(spec.scene).name, spec.scene.runway, spec.scene.hop_height,
-      spec.scene.radius, spec.scene.gravity, spec.scene.rest_speed, resolved_method(spec.numerics),
-      spec.numerics.tolerance, fmt::join(outcome, ",\n  "), motor_told,
-      (gradient ? fmt::format("\"gradient\": {},\n  ", gradient_json(spec)) : "") +
-          (made ? fmt::format("\"scatter\": {},\n  ", scatter_json(spec, *made)) : ""),
-      fmt::join(candidates, ", "), fmt::join(grazes, ", "), check, fmt::join(phases, ", "));
+    phases.push_back({{"phase", phase_letters(static_cast<std::uint64_t>(at.phase))},
+                      {"direction", at.direction},
+                      {"time", at.t},
+                      {"angle", at.phi},
+                      {"spin", at.spin * second},
+                      {"x", at.x / scene.radius}});
+  return json;
+}
+
+Json json_of(const Motor& motor) {
+  return {{"mass", motor.mass},
+          {"torque", motor.torque},
+          {"power", motor.power},
+          {"rpm", motor.spin},
+          {"work", motor.work}};
+}
+
+/// What the report leaves open.
+void print_hints(const Spec& spec, bool made) {
+  if (!model_of(spec.scene).slips)
+    say("The contact never slips in this model; for a hoop that you build, add --friction coulomb.\n");
+  if (!made && (!spec.scatter.spreads.empty() || !spec.goals.empty()))
+    say("[scatter] and [goal] are not used here; --scatter reports yields.\n");
+}
+
+void print_json(const Spec& spec, const Motion& motion, const Outcome& checked,
+                const std::optional<Motor>& motor, bool gradient, const std::optional<ScatterReport>& made) {
+  Json json = json_of(spec, motion, checked);
+  if (motor) json["motor"] = json_of(*motor);
+  if (gradient) json["gradient"] = gradient_json(spec);
+  if (made) json["scatter"] = scatter_json(spec, *made);
+  say_json(json);
 }
 
 int run(const HopArguments& arguments) {
@@ -285,8 +306,10 @@ int run(const HopArguments& arguments) {
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval;
   if (!arguments.trace.empty() && !(interval > 0.0))
     throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
-  Motion motion = tell(spec, interval);
-  const Motion check = tell(spec, audit_method(spec.numerics), check_tolerance);
+  Motion motion = tell(spec.design, request_of_everything(spec), interval);
+  const Request second{.scene = spec.scene,  // phases and lift-offs alone
+                       .numerics = {.method = audit_method(spec.numerics), .tolerance = check_tolerance}};
+  const Motion check = tell(spec.design, second, 0.0);
   if (resolved_method(spec.numerics) == "exact") motion.grazes = check.grazes;
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
@@ -295,16 +318,16 @@ int run(const HopArguments& arguments) {
       tell_of_folder(arguments.trace);
   }
   const bool moves = !motion.phases.empty() && motion.outcome.status != Status::failed;
-  const std::optional<Motor> motor =
-      driven && moves ? std::optional(motor_of(spec, motion, is_example ? papers_mass : arguments.mass))
-                      : std::nullopt;
+  std::optional<Motor> motor;
+  if (driven && moves) motor = motor_of(spec, motion, is_example ? papers_mass : arguments.mass);
   if (arguments.json) {
-    say("{}", json_text(spec, motion, check.outcome, motor, arguments.gradient, made));
+    print_json(spec, motion, check.outcome, motor, arguments.gradient, made);
   } else {
     print_table(spec, motion, check.outcome, motor, is_example);
     if (arguments.gradient) print_gradient(spec);
     if (made) print_scatter(spec, *made);
     if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
+    print_hints(spec, made.has_value());
   }
   return motion.outcome.status == Status::failed ? 1 : 0;
 }

@@ -8,8 +8,8 @@
 #include "cli/output.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
+#include "request/solver.hpp"
 #include "sweep/options.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -31,10 +31,11 @@ Table table_of(const Spec& original) {
   for (const Field* field : fields_of(spec.scene))
     if (can_be_differentiated(*field)) spec.output.gradients.emplace_back(field->name);
   check_spec(spec);
-  const GradientWanted wanted = gradients_of(spec);
+  const Request request = request_of(spec);
+  const GradientWanted wanted = derivatives_of(request);
   Gradients gradients(wanted);
   Outcome outcome;
-  make_gradient_solver(spec)({&spec.design, 1}, {&outcome, 1}, gradients);
+  make_gradient_solver(request)({&spec.design, 1}, {&outcome, 1}, gradients);
 
   Table table;
   for (const std::size_t by : wanted.by)
@@ -70,20 +71,18 @@ void print_gradient(const Spec& spec) {
     say("\n");
   }
   if (infinite)
-    say("nan: infinite, as on a fold, at which a lift-off appears, or known to fewer than six digits; by\n"
-        "mu_kinetic: it is not given or equal to mu_static, whose derivative is of both.\n");
+    say("nan: infinite, as on a fold, at which a lift-off appears, or known to fewer than six digits. If\n"
+        "mu_kinetic follows mu_static, the column mu_static is the derivative by both.\n");
 }
 
-std::string gradient_json(const Spec& spec) {
+Json gradient_json(const Spec& spec) {
   const Table table = table_of(spec);
-  std::vector<std::string> rows;
+  Json json = Json::object();
   for (const Row& row : table.rows) {
-    std::vector<std::string> cells;
-    for (std::size_t j = 0; j < row.by.size(); ++j)
-      cells.push_back(fmt::format("\"{}\": {}", table.parameters[j]->key, json_number(row.by[j])));
-    rows.push_back(fmt::format("\"{}\": {{{}}}", row.quantity->name, fmt::join(cells, ", ")));
+    Json& by = json[std::string(row.quantity->name)] = Json::object();
+    for (std::size_t j = 0; j < row.by.size(); ++j) by[std::string(table.parameters[j]->key)] = row.by[j];
   }
-  return fmt::format("{{{}}}", fmt::join(rows, ",\n    "));
+  return json;
 }
 
 }  // namespace leapmap::cli

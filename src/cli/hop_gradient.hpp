@@ -2,8 +2,7 @@
 /// leapmap hop --gradient: how one design's outcome changes with its parameters.
 #pragma once
 
-#include <string>
-
+#include "cli/json.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap::cli {
@@ -12,6 +11,6 @@ namespace leapmap::cli {
 void print_gradient(const Spec& spec);
 
 /// The same as JSON: {"jump_height": {"slope": ..., ...}, ...}
-std::string gradient_json(const Spec& spec);
+Json gradient_json(const Spec& spec);
 
 }  // namespace leapmap::cli

@@ -66,7 +66,7 @@ std::string goal_of(const Goal& goal) { return goal.field + " " + text_of(goal);
 
 void print_spreads(const Spec& spec, const ScatterReport& report) {
   say("{:<16} {:<18} {:>9}", "tolerance", "distribution", "truncated");
-  say("{}\n", report.shrink.empty() ? "" : "   yield if it were 0; largest width for a yield of 99 %");
+  say("{}\n", report.shrink.empty() ? "" : "   yield without it; largest width for a yield of 99 %");
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
     const Spread& spread = spec.scatter.spreads[k];
     say("{:<16} {:<18} {:>8.2g} %", spread.parameter, law_of(spread), 100.0 * report.cut_off[k]);
@@ -146,21 +146,16 @@ void print_importance(const Spec& spec, const ScatterReport& report) {
           100.0 * importance.pairs);
 }
 
-std::string json_of(const Estimate& estimate) {
-  return fmt::format("{{\"value\": {}, \"error\": {}}}", json_number(estimate.value),
-                     json_number(estimate.error));
+Json json_of(const Estimate& estimate) { return {{"value", estimate.value}, {"error", estimate.error}}; }
+
+Json json_of(const std::vector<Estimate>& estimates, const std::vector<Spread>& spreads) {
+  Json json = Json::object();
+  for (std::size_t k = 0; k < spreads.size(); ++k) json[spreads[k].parameter] = json_of(estimates[k]);
+  return json;
 }
 
-std::string json_of(const std::vector<Estimate>& estimates, const std::vector<Spread>& spreads) {
-  std::vector<std::string> cells;
-  for (std::size_t k = 0; k < spreads.size(); ++k)
-    cells.push_back(fmt::format("\"{}\": {}", spreads[k].parameter, json_of(estimates[k])));
-  return fmt::format("{{{}}}", fmt::join(cells, ", "));
-}
-
-std::string json_of(const Histogram& histogram) {
-  return fmt::format("{{\"from\": {}, \"to\": {}, \"counts\": [{}]}}", json_number(histogram.from),
-                     json_number(histogram.to), fmt::join(histogram.counts, ", "));
+Json json_of(const Histogram& histogram) {
+  return {{"from", histogram.from}, {"to", histogram.to}, {"counts", histogram.counts}};
 }
 
 }  // namespace
@@ -181,40 +176,45 @@ void print_scatter(const Spec& spec, const ScatterReport& report) {
   print_importance(spec, report);
 }
 
-std::string scatter_json(const Spec& spec, const ScatterReport& report) {
+Json scatter_json(const Spec& spec, const ScatterReport& report) {
   constexpr std::size_t bins = 60;
-  std::vector<std::string> spreads, goals, quantities, importance;
+  const bool shrinks = !report.shrink.empty();
+  Json json{{"samples", report.samples},
+            {"seed", spec.scatter.seed},
+            {"yield", json_of(report.yield)},
+            {"jumps", json_of(report.jumps)},
+            {"unsolved", report.unsolved},
+            {"spreads", Json::object()},
+            {"shrink_all", shrinks ? Json(report.shrink_all) : Json()},
+            {"goals", Json::object()},
+            {"quantities", Json::object()},
+            {"importance", Json::object()}};
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
     const Spread& spread = spec.scatter.spreads[k];
-    spreads.push_back(fmt::format(
-        R"("{}": {{"law": "{}", "width": {}, "percent": {}, "cut_off": {}, "without": {}, "shrink": {}}})",
-        spread.parameter, spread.law == Spread::Law::normal ? "normal" : "uniform", json_number(spread.width),
-        spread.percent, json_number(report.cut_off[k]),
-        report.shrink.empty() ? "null" : json_number(report.without[k]),
-        report.shrink.empty() ? "null" : json_number(report.shrink[k])));
+    json["spreads"][spread.parameter] = {{"law", spread.law == Spread::Law::normal ? "normal" : "uniform"},
+                                         {"width", spread.width},
+                                         {"percent", spread.percent},
+                                         {"cut_off", report.cut_off[k]},
+                                         {"without", shrinks ? Json(report.without[k]) : Json()},
+                                         {"shrink", shrinks ? Json(report.shrink[k]) : Json()}};
   }
-  for (std::size_t k = 0; k < spec.goals.size(); ++k)
-    goals.push_back(fmt::format(R"("{}": {{"at_least": {}, "at_most": {}, "missed": {}}})",
-                                spec.goals[k].field, json_number(spec.goals[k].at_least),
-                                json_number(spec.goals[k].at_most), json_of(report.missed[k])));
-  for (const MadeQuantity& told : report.quantities)
-    quantities.push_back(fmt::format(
-        R"("{}": {{"mean": {}, "sd": {}, "q05": {}, "q50": {}, "q95": {}, "histogram": {}}})", told.field,
-        json_of(told.mean), json_of(told.sd), json_of(told.q05), json_of(told.q50), json_of(told.q95),
-        json_of(histogram_of(report, std::get<Quantity>(find_field(told.field)->source).member, bins))));
+  for (std::size_t k = 0; k < spec.goals.size(); ++k) {
+    const Goal& goal = spec.goals[k];
+    json["goals"][goal.field] = {
+        {"at_least", goal.at_least}, {"at_most", goal.at_most}, {"missed", json_of(report.missed[k])}};
+  }
+  for (const MadeQuantity& of : report.quantities) {
+    const auto member = std::get<Quantity>(find_field(of.field)->source).member;
+    json["quantities"][of.field] = {
+        {"mean", json_of(of.mean)}, {"sd", json_of(of.sd)},
+        {"q05", json_of(of.q05)},   {"q50", json_of(of.q50)},
+        {"q95", json_of(of.q95)},   {"histogram", json_of(histogram_of(report, member, bins))}};
+  }
   for (const Importance& of : report.importance)
-    importance.push_back(fmt::format(R"("{}": {{"pairs": {}, "first": {}, "total": {}}})", of.of,
-                                     json_number(of.pairs), json_of(of.first, spec.scatter.spreads),
-                                     json_of(of.total, spec.scatter.spreads)));
-  return fmt::format(
-      "{{\"samples\": {}, \"seed\": {}, \"yield\": {}, \"jumps\": {}, \"unsolved\": {},\n    \"spreads\": "
-      "{{{}}}, "
-      "\"shrink_all\": "
-      "{},\n    \"goals\": {{{}}},\n    \"quantities\": {{{}}},\n    \"importance\": {{{}}}}}",
-      report.samples, spec.scatter.seed, json_of(report.yield), json_of(report.jumps),
-      json_number(report.unsolved), fmt::join(spreads, ", "),
-      report.shrink.empty() ? "null" : json_number(report.shrink_all), fmt::join(goals, ", "),
-      fmt::join(quantities, ",\n    "), fmt::join(importance, ",\n    "));
+    json["importance"][of.of] = {{"pairs", of.pairs},
+                                 {"first", json_of(of.first, spec.scatter.spreads)},
+                                 {"total", json_of(of.total, spec.scatter.spreads)}};
+  return json;
 }
 
 }  // namespace leapmap::cli

@@ -2,8 +2,7 @@
 /// leapmap hop --scatter: yield and distribution of one design as manufactured.
 #pragma once
 
-#include <string>
-
+#include "cli/json.hpp"
 #include "leapmap/scatter.hpp"
 
 namespace leapmap::cli {
@@ -12,6 +11,6 @@ namespace leapmap::cli {
 void print_scatter(const Spec& spec, const ScatterReport& report);
 
 /// The same as JSON, histograms of height and time with it.
-std::string scatter_json(const Spec& spec, const ScatterReport& report);
+Json scatter_json(const Spec& spec, const ScatterReport& report);
 
 }  // namespace leapmap::cli

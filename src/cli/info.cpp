@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 
+#include "cli/audit_lines.hpp"
 #include "cli/commands.hpp"
 #include "cli/info_place.hpp"
 #include "cli/output.hpp"
@@ -20,6 +21,7 @@
 #include "map/writer.hpp"
 #include "model/fields.hpp"
 #include "support/printable.hpp"
+#include "sweep/audit_report.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/map_spec.hpp"
 
@@ -190,40 +192,13 @@ void print_origin(const MapReader& map, const std::string& path) {
   say("method {}, tolerance {}\n", told("method"), told("tolerance"));
 }
 
-/// What others who solved some of its designs again came to.
+/// What the cross-check found.
 void print_audit(const MapReader& map) {
   const Told told{map};
-  if (const std::string audited = map.attribute("audit_designs"); !audited.empty())
-    say("cross-check{}: {} designs by {}: height within {} diameters, time within {} relative, motion within "
-        "{}, {} flags differ, {} errors beyond the tolerance, {} inconclusive\n",
-        told.has("retry_designs") ? " (before failed designs were retried)" : "", audited,
-        told("audit_method"), told("audit_max_abs_height_error", "{:.1e}"),
-        told("audit_max_rel_time_error", "{:.1e}"), told("audit_max_rel_motion_error", "{:.1e}"),
-        told("audit_flag_mismatches"), told("audit_beyond_tolerance"), told("audit_undecided"));
-  if (told.has("audit_referee_designs"))
-    say("reference solver: {} of them: {} wrong, largest error {}, {} inconclusive\n",
-        told("audit_referee_designs"), told("audit_overruled"), told("audit_referee_max_error", "{:.1e}"),
-        told("audit_referee_undecided"));
-  if (const std::string compared = map.attribute("audit_gradient_designs");
-      !compared.empty() && compared != "0")
-    say("derivatives: of {} designs by differences in long double: {} wrong, largest error {}, {} "
-        "inconclusive\n",
-        compared, told("audit_gradients_wrong"), told("audit_gradient_max_error", "{:.1e}"),
-        told("audit_gradient_undecided"));
-  if (const std::string compared = map.attribute("audit_jumps_compared");
-      !compared.empty() &&
-      (compared != "0" || told("audit_jumps_beyond") != "0" || told("audit_sequences_wrong") != "0"))
-    say("later jumps: {} compared, {} not, because errors grow too much; {} designs wrong, largest error "
-        "{}\n",
-        compared, told("audit_jumps_beyond"), told("audit_sequences_wrong"),
-        told("audit_jump_max_error", "{:.1e}"));
-  if (const std::string gaits = map.attribute("audit_gaits"); !gaits.empty() && gaits != "0")
-    say("gaits: {} by integration: {} wrong, largest error {}, of a multiplier {}, {} inconclusive\n", gaits,
-        told("audit_gaits_wrong"), told("audit_gait_max_error", "{:.1e}"),
-        told("audit_multiplier_max_error", "{:.1e}"), told("audit_gaits_undecided"));
+  if (told.has("audit_designs")) say_audit(read_audit(map));
   if (told.has("retry_designs"))
-    say("retried: {} failed designs by {} at tolerance {}\n", told("retry_designs"), told("retry_method"),
-        told("retry_tolerance"));
+    say("retried  {} failed designs, after the check, by {} at tolerance {}\n", told("retry_designs"),
+        told("retry_method"), told("retry_tolerance"));
 }
 
 void print_dimensions(const MapReader& map) {

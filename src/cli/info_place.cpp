@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "cli/hop_gradient.hpp"
 #include "cli/output.hpp"
 #include "leapmap/errors.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
+#include "request/solver.hpp"
 #include "sweep/cliff.hpp"
 #include "sweep/options.hpp"
 #include "sweep/scatter.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -62,8 +63,9 @@ void print_outcome(const Outcome& outcome, const Scene& scene) {
 
 /// As the map has it at its designs.
 void print_made(const Spec& spec, const Design& design) {
-  MadeColumns columns(scatter_fields_of(spec));
-  scatter_solver_of(spec, points_of(spec.scatter)).solve({&design, 1}, columns);
+  const Request request = request_of(spec);
+  MadeColumns columns(statistics_of(request));
+  scatter_solver_of(request, points_of(spec.scatter)).solve({&design, 1}, columns);
   say("manufactured, {} hoops\n", spec.scatter.samples);
   for (const Field* field : columns.fields())
     say("  {:<20} {:<14.8g} {}\n", field->name, columns.column(*field)[0],
@@ -79,9 +81,7 @@ std::string heights_beside(const Spec& spec, const Design& design, const NearCli
   std::array<Design, 2> designs{design, design};
   std::array<Outcome, 2> outcomes;
   designs[0].*member = cliff.at[axis] - step, designs[1].*member = cliff.at[axis] + step;
-  Spec one = spec;
-  one.output = {};
-  make_solver(one)(designs, outcomes);
+  make_solver(request_of(spec, {find_field("jump_height")}))(designs, outcomes);
   const auto height = [](const Outcome& o) {
     return std::isnan(o.jump_height) ? "none" : fmt::format("{:.4g}", o.jump_height);
   };
@@ -109,7 +109,7 @@ void print_place(const Spec& original, const std::string& at) {
   one.output = {};
   check_scatter(one);  // a percentage may be one of nothing just here
   Outcome outcome;
-  make_solver(one)({&one.design, 1}, {&outcome, 1});
+  make_solver(request_of(one))({&one.design, 1}, {&outcome, 1});
   print_outcome(outcome, one.scene);
   if (!original.scatter.spreads.empty()) print_made(original, one.design);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);
@@ -118,20 +118,24 @@ void print_place(const Spec& original, const std::string& at) {
       "missed)\n");
   const auto place = [&](std::size_t k, double value) {
     const Option& option = *find_option("", original.axes[k].key);
-    return fmt::format("{} {:.8g} ({:+.3g})", option.key, value, value - value_of(option, one.design));
+    const double from_here = value - value_of(option, one.design);
+    if (option.unit != "rad") return fmt::format("{} {:.8g} ({:+.3g})", option.key, value, from_here);
+    constexpr double degree = std::numbers::pi / 180.0;
+    return fmt::format("{} {:.8g} rad = {:.6g} deg ({:+.3g} deg)", option.key, value, value / degree,
+                       from_here / degree);
   };
   bool none = true;
   for (std::size_t k = 0; k < original.axes.size(); ++k)
     for (const NearCliff& cliff : cliffs.along[k]) {
       none = false;
-      say("  {:<34} {:<10} height {}, beyond: {}\n", place(k, cliff.at[k]), name_of(cliff.kind),
+      say("  {:<46} {:<10} height {}, beyond: {}\n", place(k, cliff.at[k]), name_of(cliff.kind),
           heights_beside(original, one.design, cliff, k), told(cliff.beyond));
     }
   if (none) say("  none along any axis\n");
   if (cliffs.nearest.empty()) return;
   std::vector<std::string> places;
   for (std::size_t k = 0; k < original.axes.size(); ++k) places.push_back(place(k, cliffs.nearest[0].at[k]));
-  say("Nearest over all directions: {:.3g} of the axes' ranges away, at {}: {}\n", cliffs.nearest[0].distance,
+  say("Nearest over all directions: {:.3g} of the map's ranges away, at {}: {}\n", cliffs.nearest[0].distance,
       fmt::join(places, ", "), name_of(cliffs.nearest[0].kind));
 }
 

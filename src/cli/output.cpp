@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/output.hpp"
 
-#include <cmath>
 #include <cstdio>
 
 #include "support/posix.hpp"
@@ -17,21 +16,6 @@ void write_out(const std::string& raw) {
 
 void flush_out() {
   if (std::fflush(stdout) != 0) fail_with_errno("standard output", "cannot be written");
-}
-
-std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
-
-std::string json_string(std::string_view text) {
-  std::string told = "\"";
-  for (const char c : printable(text, "\n\t")) {
-    if (static_cast<unsigned char>(c) < 0x20) {
-      told += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-      continue;
-    }
-    if (c == '"' || c == '\\') told += '\\';
-    told += c;
-  }
-  return told + '"';
 }
 
 void tell(const std::string& line) { std::fputs(("leapmap: " + printable(line) + "\n").c_str(), stderr); }

@@ -22,11 +22,6 @@ void say(fmt::format_string<T...> form, T&&... values) {
   write_out(fmt::format(form, std::forward<T>(values)...));
 }
 
-/// A number as JSON has it: null where it is not finite.
-std::string json_number(double value);
-/// A text as JSON has it, quoted.
-std::string json_string(std::string_view text);
-
 /// A line on stderr, control characters escaped. A terminal that is gone or a log on a full disk is no reason
 /// to stop.
 void tell(const std::string& line);

@@ -8,12 +8,12 @@
 
 #include <optional>
 
+#include "cli/audit_lines.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
-#include "cli/told_sequences.hpp"
 #include "leapmap/version.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
@@ -134,36 +134,8 @@ std::string sweep_command(const SweepArguments& arguments, const std::string& ma
 }
 
 int tell_audit(const SweepArguments& arguments, const Spec& spec, const AuditReport& report) {
-  if (!arguments.quiet)
-    say("check    {} designs by {}: height within {:.1e} diameters, time within {:.1e}, motion within "
-        "{:.1e}, {} flags differ{}{}\n",
-        grouped(report.designs), report.method, report.max_abs_height_error, report.max_rel_time_error,
-        report.max_rel_motion_error, report.flag_mismatches,
-        report.undecided > 0 ? fmt::format("; {} inconclusive", report.undecided) : "",
-        report.failed > 0 ? fmt::format("; {} failed, not compared", report.failed) : "");
-  if (!arguments.quiet && report.refereed > 0)
-    say("referee  {} of them by the independent reference solver: {} wrong, largest error {:.1e}{}\n",
-        grouped(report.refereed), report.overruled, report.referee_max_error,
-        report.referee_undecided > 0 ? fmt::format("; {} inconclusive", report.referee_undecided) : "");
-  if (!arguments.quiet && report.gradient_designs > 0)
-    say("gradient {} of them by differences in long double: {} wrong, largest error {:.1e}{}\n",
-        grouped(report.gradient_designs), report.gradients_wrong, report.gradient_max_error,
-        report.gradient_undecided > 0 ? fmt::format("; {} inconclusive", report.gradient_undecided) : "");
-  if (!arguments.quiet) say_sequences(report);
-  const auto complain = [&](const std::optional<std::size_t>& design, const std::string& what) {
-    if (design)
-      tell(fmt::format("cross-check: {} on design {}; show it: {}", what, told_design(spec, *design),
-                       hop_command(spec, DesignSpace(spec).at(*design))));
-  };
-  const std::string both = fmt::format("{} and {}", resolved_method(spec.numerics), report.method);
-  complain(report.first_mismatch, both + " disagree on status, the first lift-off or number of lift-offs");
-  complain(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
-  complain(report.first_wrong_gradient,
-           "a derivative differs by more than 1e-6 from differences in long double");
-  complain(report.first_wrong_sequence, both + " disagree on later jumps by more than errors grow");
-  complain(report.first_wrong_gait, "integration does not find the gait that is stored");
-  complain(report.first_overruled,
-           resolved_method(spec.numerics) + " and an integration of the paper's (7) to (9) disagree");
+  if (!arguments.quiet) say_audit(report);
+  for (const std::string& disagreement : disagreements(spec, report)) tell("cross-check: " + disagreement);
   return disagree(report) ? 1 : 0;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/output.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "request/request.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
@@ -151,7 +152,8 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   say("memory   {}\n", memory_line(spec, layout, tiling, threads));
   say("file     about {}{}\n", spoken_bytes(map_file_bytes(layout, tiling)),
       layout.compression > 0 ? " before compression" : "");
-  const double alone = seconds_per_design(spec, 0.5) * static_cast<double>(tiling.designs() - already);
+  const double alone =
+      seconds_per_design(spec, request_of(spec), 0.5) * static_cast<double>(tiling.designs() - already);
   const double seconds = alone / static_cast<double>(std::clamp<std::size_t>(
                                      tiling.size(), 1, static_cast<std::size_t>(threads)));
   if (const std::string places = told_places(); !places.empty()) say("places   {}\n", places);

@@ -4,7 +4,7 @@
 
 #include "design/engines.hpp"
 #include "leapmap/errors.hpp"
-#include "sweep/solver.hpp"
+#include "request/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -12,24 +12,32 @@ namespace {
 /// What SLSQP may ask: objective and goals, which are quantities or parameters, with derivatives.
 class Slope {
  public:
-  explicit Slope(Judge& judge) : judge_(judge), spec_(judge.question().one) {
+  explicit Slope(Judge& judge) : judge_(judge) {
     const Question& question = judge.question();
-    spec_.scatter = {};
+    std::vector<OutcomeNumber> of;
+    std::vector<const Field*> columns{find_field("status")};
+    const auto ask = [&](const Field* field) {
+      if (!field || !std::holds_alternative<Quantity>(field->source)) return;
+      if (std::ranges::find(columns, field) != columns.end()) return;
+      columns.push_back(field);
+      of.push_back(*number_of(*field));
+    };
     const Objective& objective = question.objectives[0];
-    if (objective.field) ask(objective.name, std::get_if<Quantity>(&objective.field->source));
+    ask(objective.field);
     for (const Goal& goal : question.one.goals)
       if (const auto* quantity = std::get_if<Quantity>(&find_field(goal.field)->source)) {
-        ask(goal.field, quantity);
+        ask(find_field(goal.field));
         const Goal tight = tightened(goal, question.one.numerics.tolerance);
         if (std::isfinite(tight.at_least)) bounds_.push_back({quantity->member, tight.at_least, -1.0});
         if (std::isfinite(tight.at_most)) bounds_.push_back({quantity->member, tight.at_most, 1.0});
       }
-    spec_.output.fields = spec_.output.gradients;
-    spec_.output.fields.push_back("status");
-    for (const FreeParameter& parameter : question.free) spec_.output.gradients_by.push_back(parameter.name);
-    if (spec_.output.gradients.empty()) return;
-    solver_ = make_gradient_solver(spec_);
-    gradients_ = Gradients(gradients_of(spec_));
+    if (of.empty()) return;
+    std::vector<std::string> by;
+    for (const FreeParameter& parameter : question.free) by.push_back(parameter.name);
+    std::ranges::copy(derivative_columns(question.one.scene, of, by), std::back_inserter(columns));
+    const Request request = request_of(question.one, columns);
+    solver_ = make_gradient_solver(request);
+    gradients_ = Gradients(derivatives_of(request));
   }
 
   /// Goals as inequalities, each at most 0.
@@ -58,10 +66,6 @@ class Slope {
     double Outcome::*of;
     double value, sign;
   };
-  void ask(const std::string& name, const Quantity* quantity) {
-    auto& asked = spec_.output.gradients;
-    if (quantity && std::find(asked.begin(), asked.end(), name) == asked.end()) asked.push_back(name);
-  }
   /// Solves the design there, if it is not the last one.
   void look(const std::vector<double>& at) {
     if (at == at_) return;

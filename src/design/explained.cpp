@@ -13,8 +13,8 @@
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "physics/rolling.hpp"
+#include "request/solver.hpp"
 #include "sweep/options.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -209,17 +209,21 @@ bool Explained::film_residuals(std::span<const double> at, std::span<const std::
 
 bool Explained::event_residuals(std::span<const double> at, std::span<double> residuals,
                                 std::span<double> jacobian) const {
-  Spec spec = spec_;
+  Request request = request_of(spec_);
   if (!jacobian.empty()) {
+    std::vector<OutcomeNumber> of;
     for (const MeasuredEvent& event : measured_.events)
-      if (std::ranges::find(spec.output.gradients, event.field) == spec.output.gradients.end())
-        spec.output.gradients.push_back(event.field);
-    for (const FreeParameter& parameter : free_) spec.output.gradients_by.push_back(parameter.name);
+      if (const OutcomeNumber each = *number_of(*find_field(event.field));
+          std::ranges::find(of, each) == of.end())
+        of.push_back(each);
+    std::vector<std::string> by;
+    for (const FreeParameter& parameter : free_) by.push_back(parameter.name);
+    std::ranges::copy(derivative_columns(scene(), of, by), std::back_inserter(request.columns));
   }
   const Design design = design_at(at);
   Outcome outcome;
-  Gradients gradients(gradients_of(spec));
-  make_gradient_solver(spec)({&design, 1}, {&outcome, 1}, gradients);
+  Gradients gradients(derivatives_of(request));
+  make_gradient_solver(request)({&design, 1}, {&outcome, 1}, gradients);
   for (std::size_t i = 0; i < measured_.events.size(); ++i) {
     const MeasuredEvent& event = measured_.events[i];
     const auto member = std::get<Quantity>(find_field(event.field)->source).member;
@@ -258,7 +262,7 @@ void Explained::coarse_sums(std::span<const std::vector<double>> places, std::sp
   std::vector<Design> designs;
   for (const std::vector<double>& place : places) designs.push_back(design_at(place));
   std::vector<Outcome> outcomes(designs.size());
-  make_solver(spec_)(designs, outcomes);
+  make_solver(request_of(spec_))(designs, outcomes);
   for (std::size_t i = 0; i < places.size(); ++i) {
     double sum = 0.0;
     for (const MeasuredEvent& event : measured_.events) {

@@ -17,10 +17,10 @@
 #include "leapmap/units.hpp"
 #include "model/model.hpp"
 #include "numerics/sobol_points.hpp"
+#include "request/solver.hpp"
 #include "support/stop.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -231,11 +231,11 @@ std::vector<std::string> binding(const Question& question, const Place& place, c
 
 /// The yield of hoops made after a design.
 Estimate yield_of(const Question& question, const Design& design) {
-  Spec many = question.one;
-  many.output.fields = {"yield", "yield_error"};
-  MadeColumns columns(scatter_fields_of(many));
-  scatter_solver_of(many, points_of(many.scatter)).solve({&design, 1}, columns);
-  return {columns.column(*find_field("yield"))[0], columns.column(*find_field("yield_error"))[0]};
+  const std::vector<const Field*> asked{find_field("yield"), find_field("yield_error")};
+  MadeColumns columns(asked);
+  scatter_solver_of(request_of(question.one, asked), points_of(question.one.scatter))
+      .solve({&design, 1}, columns);
+  return {columns.column(*asked[0])[0], columns.column(*asked[1])[0]};
 }
 
 /// The quantities that objectives and goals name, each once.
@@ -260,8 +260,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
   const std::vector<GoalCheck> goals = goal_checks(question.one.goals);
   const bool made = judge.makes_hoops() && !question.one.goals.empty();
   const Spec grid = question.grid();
-  Spec all = question.one;
-  all.scatter = {};
+  Request all = request_of(question.one);
   std::vector<FoundDesign> told(places.size());
   std::vector<char> stays(places.size(), 1);
   parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {

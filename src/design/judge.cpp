@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "leapmap/errors.hpp"
+#include "request/solver.hpp"
 #include "sweep/cliff.hpp"
 #include "sweep/parallel.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -26,24 +26,21 @@ bool asks_of_made(const Question& question) {
   return !question.made_goals.empty() || std::ranges::any_of(question.objectives, &Objective::is_of_made);
 }
 
-/// Computes no more than goals and objectives of a hoop as drawn.
-Spec spec_of_drawn(const Question& question) {
-  Spec spec = question.one;
-  spec.scatter = {};
-  spec.output.fields = {"status"};
-  for (const Goal& goal : spec.goals) spec.output.fields.push_back(goal.field);
+/// What goals and objectives of a nominal hoop need.
+Request request_of_nominal(const Question& question) {
+  std::vector<const Field*> columns{find_field("status")};
+  for (const Goal& goal : question.one.goals) columns.push_back(find_field(goal.field));
   for (const Objective& objective : question.objectives)
-    if (objective.field) spec.output.fields.push_back(objective.name);
-  return spec;
+    if (objective.is_of_drawn()) columns.push_back(objective.field);
+  return request_of(question.one, columns);
 }
 
-/// The same of hoops as made.
-Spec spec_of_many(const Question& question) {
-  Spec spec = question.one;
-  spec.output.fields = {"yield"};
+/// What they need of manufactured hoops.
+Request request_of_many(const Question& question) {
+  std::vector<const Field*> columns{find_field("yield")};
   for (const Objective& objective : question.objectives)
-    if (objective.is_of_made()) spec.output.fields.push_back(objective.name);
-  return spec;
+    if (objective.is_of_made() && objective.field != columns.front()) columns.push_back(objective.field);
+  return request_of(question.one, columns);
 }
 
 std::uint64_t number_of(const Discrete& outcome) {
@@ -67,15 +64,15 @@ Goal tightened(const Goal& goal, double tolerance) {
 }
 
 Bench::Bench(const Question& question, const std::shared_ptr<const SobolPoints>& points)
-    : question_(question), solver_(make_solver(spec_of_drawn(question))) {
+    : question_(question), solver_(make_solver(request_of_nominal(question))) {
   std::vector<Goal> goals;
   for (const Goal& goal : question.one.goals)
     goals.push_back(tightened(goal, question.one.numerics.tolerance));
   goals_ = goal_checks(goals);
   if (!points) return;
-  const Spec many = spec_of_many(question);
+  const Request many = request_of_many(question);
   scatter_.emplace(scatter_solver_of(many, points));
-  columns_ = MadeColumns(scatter_fields_of(many));
+  columns_ = MadeColumns(statistics_of(many));
 }
 
 void Bench::weigh(std::size_t objective, double value, Verdict& verdict) const {

@@ -282,6 +282,16 @@ std::span<const Field> scatter_fields() {
   return table.rows;
 }
 
+std::vector<const Field*> quantities_of(const std::vector<const Field*>& statistics) {
+  std::vector<const Field*> quantities;
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source))
+      if (std::any_of(statistics.begin(), statistics.end(),
+                      [&](const Field* row) { return std::get<OfMade>(row->source).of == quantity->member; }))
+        quantities.push_back(&field);
+  return quantities;
+}
+
 const Field* find_field(std::string_view name) {
   if (const Field* found = find_among(fields, name)) return found;
   if (!name.empty() && name.back() >= '0' && name.back() <= '9')

@@ -106,6 +106,9 @@ const Field* find_gradient(const OutcomeNumber& of, double Design::*by);
 /// What a map may hold of hoops as made: yield, jump_height_mean and so on, each followed by its error.
 std::span<const Field> scatter_fields();
 
+/// The quantities of which these are statistics, in the order of map_fields.
+std::vector<const Field*> quantities_of(const std::vector<const Field*>& statistics);
+
 /// The field of that name, of any of these kinds, or nullptr.
 const Field* find_field(std::string_view name);
 

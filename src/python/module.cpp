@@ -48,7 +48,7 @@ py::dict solve(const py::dict& given, const std::string& friction, const std::ve
   options.stop_requested = [&] { return interrupts(); };
   try {
     const py::gil_scoped_release unlocked;
-    solve_blocks(designs.count(), designs.scene(), options, columns.names(),
+    solve_blocks(designs.count(), designs.scene(), options, columns.fields(),
                  {[&](std::size_t first, std::span<Design> some) { designs.fill(first, some); },
                   [&](std::size_t first, std::span<const Outcome> some) { columns.take(first, some); }});
   } catch (const Stopped&) {

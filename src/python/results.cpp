@@ -57,10 +57,10 @@ Columns::Columns(const std::vector<std::string>& fields, const Scene& scene,
   }
 }
 
-std::vector<std::string> Columns::names() const {
-  std::vector<std::string> names;
-  for (const Column& column : columns_) names.emplace_back(column.field->name);
-  return names;
+std::vector<const Field*> Columns::fields() const {
+  std::vector<const Field*> fields;
+  for (const Column& column : columns_) fields.push_back(column.field);
+  return fields;
 }
 
 void Columns::take(std::size_t first, std::span<const Outcome> outcomes) {

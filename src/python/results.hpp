@@ -23,7 +23,7 @@ class Columns {
   Columns(const std::vector<std::string>& fields, const Scene& scene,
           const std::vector<pybind11::ssize_t>& shape);
 
-  std::vector<std::string> names() const;
+  std::vector<const Field*> fields() const;
 
   /// Takes outcomes first, first + 1, ...; from any thread, Python's lock not needed.
   void take(std::size_t first, std::span<const Outcome> outcomes);

@@ -13,6 +13,7 @@
 #include "model/fields.hpp"
 #include "numerics/mixed.hpp"
 #include "referee/referee.hpp"
+#include "request/solver.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
@@ -124,7 +125,7 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
   std::vector<bool> gave_up;  // the map's method on them: settled since, if they are, without derivatives
   for (const Outcome& outcome : outcomes) gave_up.push_back(outcome.status == Status::failed);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].outcome = std::move(outcomes[i]);
-  const GradientWanted derivatives = gradients_of(spec);
+  const GradientWanted derivatives = derivatives_of(request_of(spec));
   for (const auto of : derivatives.of)
     for (const std::size_t by : derivatives.by) {
       if (samples.empty()) continue;
@@ -177,9 +178,13 @@ AuditReport begin_audit(const Spec& spec) {
 
 namespace {
 
-Spec first_jump_of(Spec spec) {
-  spec.scene.jumps = 1, spec.scene.settle = 0;
-  return spec;
+/// The first jump of the spec's designs, all of it, by the method that audits.
+Solver second_solver(const Spec& spec, double tolerance) {
+  Request request{.scene = spec.scene,
+                  .numerics = {.method = audit_method(spec.numerics), .tolerance = tolerance}};
+  request.scene.jumps = 1, request.scene.settle = 0;
+  request.columns = fields_of(request.scene);
+  return make_solver(request);
 }
 
 Solver solver_by_referee(const Scene& scene, double tolerance) {
@@ -194,8 +199,7 @@ Solver solver_by_referee(const Scene& scene, double tolerance) {
 Auditor::Auditor(const Spec& spec, std::size_t referee_every)
     : spec_(spec),
       space_(spec),
-      second_{make_solver(first_jump_of(spec), audit_method(spec.numerics), audit_tolerance),
-              make_solver(first_jump_of(spec), audit_method(spec.numerics), coarser_tolerance)},
+      second_{second_solver(spec, audit_tolerance), second_solver(spec, coarser_tolerance)},
       referee_{solver_by_referee(spec.scene, audit_tolerance),
                solver_by_referee(spec.scene, coarser_tolerance)},
       gradients_(spec),

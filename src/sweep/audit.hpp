@@ -19,7 +19,6 @@
 #include "sweep/audit_sequence.hpp"
 #include "sweep/audit_solver.hpp"
 #include "sweep/designs.hpp"
-#include "sweep/solver.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap {

@@ -11,8 +11,8 @@
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "numerics/mixed.hpp"
+#include "request/request.hpp"
 #include "sweep/designs.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -75,7 +75,7 @@ std::size_t parameters_of_each(const Spec& spec, std::size_t parameters) {
 
 GradientAuditor::GradientAuditor(const Spec& spec)
     : spec_(spec),
-      wanted_(gradients_of(spec)),
+      wanted_(derivatives_of(request_of(spec))),
       parameters_each_(parameters_of_each(spec, wanted_.by.size())),
       rounding_(spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0) {}
 

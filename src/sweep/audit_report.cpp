@@ -10,45 +10,9 @@
 #include "leapmap/errors.hpp"
 #include "leapmap/outcome.hpp"
 #include "map/tile.hpp"
+#include "sweep/designs.hpp"
 
 namespace leapmap {
-
-void merge(AuditReport& report, const AuditReport& other) {
-  const auto least = [](std::optional<std::size_t>& mine, const std::optional<std::size_t>& theirs) {
-    if (theirs) mine = std::min(mine.value_or(*theirs), *theirs);
-  };
-  report.designs += other.designs;
-  report.max_abs_height_error = std::max(report.max_abs_height_error, other.max_abs_height_error);
-  report.max_rel_time_error = std::max(report.max_rel_time_error, other.max_rel_time_error);
-  report.max_rel_motion_error = std::max(report.max_rel_motion_error, other.max_rel_motion_error);
-  report.failed += other.failed;
-  report.flag_mismatches += other.flag_mismatches;
-  report.undecided += other.undecided;
-  report.beyond_tolerance += other.beyond_tolerance;
-  least(report.first_mismatch, other.first_mismatch);
-  least(report.first_inaccurate, other.first_inaccurate);
-  report.refereed += other.refereed;
-  report.referee_undecided += other.referee_undecided;
-  report.overruled += other.overruled;
-  report.referee_max_error = std::max(report.referee_max_error, other.referee_max_error);
-  least(report.first_overruled, other.first_overruled);
-  report.gradient_designs += other.gradient_designs;
-  report.gradient_undecided += other.gradient_undecided;
-  report.gradients_wrong += other.gradients_wrong;
-  report.gradient_max_error = std::max(report.gradient_max_error, other.gradient_max_error);
-  least(report.first_wrong_gradient, other.first_wrong_gradient);
-  report.jumps_compared += other.jumps_compared;
-  report.jumps_beyond += other.jumps_beyond;
-  report.sequences_wrong += other.sequences_wrong;
-  report.jump_max_error = std::max(report.jump_max_error, other.jump_max_error);
-  least(report.first_wrong_sequence, other.first_wrong_sequence);
-  report.gaits += other.gaits;
-  report.gaits_undecided += other.gaits_undecided;
-  report.gaits_wrong += other.gaits_wrong;
-  report.gait_max_error = std::max(report.gait_max_error, other.gait_max_error);
-  report.multiplier_max_error = std::max(report.multiplier_max_error, other.multiplier_max_error);
-  least(report.first_wrong_gait, other.first_wrong_gait);
-}
 
 namespace {
 
@@ -97,6 +61,32 @@ constexpr std::array firsts{First{"audit_first_mismatch", &AuditReport::first_mi
                             First{"audit_first_wrong_gait", &AuditReport::first_wrong_gait, 10}};
 
 }  // namespace
+
+void merge(AuditReport& report, const AuditReport& other) {
+  for (const auto& row : counts) report.*row.member += other.*row.member;
+  for (const auto& row : errors) report.*row.member = std::max(report.*row.member, other.*row.member);
+  for (const auto& row : firsts)
+    if (const std::optional<std::size_t>& first = other.*row.member)
+      report.*row.member = std::min((report.*row.member).value_or(*first), *first);
+}
+
+std::vector<std::string> disagreements(const Spec& spec, const AuditReport& report) {
+  const std::string ours = resolved_method(spec.numerics),
+                    both = fmt::format("{} and {}", ours, report.method);
+  std::vector<std::string> found;
+  const auto add = [&](const std::optional<std::size_t>& design, const std::string& what) {
+    if (design)
+      found.push_back(fmt::format("design {}: {}; show it: {}", told_design(spec, *design), what,
+                                  hop_command(spec, DesignSpace(spec).at(*design))));
+  };
+  add(report.first_mismatch, both + " disagree on status, the first lift-off or number of lift-offs");
+  add(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
+  add(report.first_wrong_gradient, "a derivative differs by more than 1e-6 from differences in long double");
+  add(report.first_wrong_sequence, both + " disagree on later jumps by more than errors grow");
+  add(report.first_wrong_gait, "integration does not find the gait that is stored");
+  add(report.first_overruled, ours + " and an integration of the paper's (7) to (9) disagree");
+  return found;
+}
 
 std::vector<hdf5::Attribute> audit_attributes(const AuditReport& report) {
   std::vector<hdf5::Attribute> attributes;

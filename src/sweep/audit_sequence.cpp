@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "model/model.hpp"
+#include "request/request.hpp"
 #include "sweep/audit.hpp"
-#include "sweep/solver.hpp"
+#include "trajectory/integration_options.hpp"
 
 namespace leapmap {
 namespace {
@@ -24,7 +25,7 @@ Solver solver_of(const Scene& scene, const std::string& method, double tolerance
 }  // namespace
 
 SequenceAuditor::SequenceAuditor(const Spec& spec, double allowed)
-    : spec_(spec), scene_(scene_asked(spec)), allowed_(allowed) {
+    : spec_(spec), scene_(scene_asked(request_of(spec))), allowed_(allowed) {
   if (scene_.jumps > 1) growth_ = std::make_unique<ErrorGrowth>(scene_, spec.numerics.tolerance);
 }
 

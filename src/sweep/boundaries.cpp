@@ -10,13 +10,13 @@
 
 #include "leapmap/errors.hpp"
 #include "model/parameters.hpp"
+#include "request/solver.hpp"
 #include "sweep/cliff.hpp"
 #include "sweep/cliff_curves.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -29,14 +29,11 @@ std::uint64_t word_of(const Discrete& outcome) {
          (outcome.phase_sequence * 0x9e3779b97f4a7c15u >> 24) << 24;
 }
 
-/// What of a spec matters to cliffs.
-Spec bare(const Spec& original) {
-  Spec spec = original;
-  spec.output = {};
-  spec.output.fields = {"status"};
-  spec.numerics.audit = 0.0;
-  spec.scatter = {}, spec.goals.clear();  // cliffs are of hoops as drawn
-  return spec;
+/// The outcomes of nominal designs, whatever else their spec asks.
+Request request_for_outcomes(const Spec& spec) {
+  Request request = request_of(spec, {find_field("status")});
+  request.scatter = {}, request.goals.clear();
+  return request;
 }
 
 void check_grid(const Spec& spec) {
@@ -56,7 +53,7 @@ std::vector<std::uint64_t> solve_grid(const Spec& spec, const BoundaryOptions& o
   std::vector<std::uint64_t> words(tiling.designs());
   std::mutex telling;
   std::size_t done = 0;
-  run_sweep(spec, tiling, {options.threads, 0, options.stop_requested}, [&] {
+  run_sweep(spec, request_for_outcomes(spec), tiling, {options.threads, 0, options.stop_requested}, [&] {
     return TileWork{[&](const Tile& tile, std::size_t first, const Solved& solved) {
                       const std::span<const Outcome> some = solved.outcomes;
                       for (std::size_t i = 0; i < some.size(); ++i)
@@ -103,7 +100,7 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
   std::mutex telling;
   std::size_t done = 0;
   parallel_for_each(found.size(), options.threads, options.stop_requested, [&] {
-    return [&, solve = make_solver(spec)](std::size_t block) {
+    return [&, solve = make_solver(request_for_outcomes(spec))](std::size_t block) {
       const std::span some =
           std::span(edges).subspan(block * at_once, std::min(at_once, edges.size() - block * at_once));
       std::vector<Design> beginnings;
@@ -169,9 +166,7 @@ std::vector<double> place_of(const Boundaries& boundaries, const Cliff& cliff) {
   return place;
 }
 
-Boundaries find_boundaries(const Spec& original, const BoundaryOptions& asked) {
-  check_spec(original);
-  const Spec spec = bare(original);
+Boundaries find_boundaries(const Spec& spec, const BoundaryOptions& asked) {
   check_grid(spec);
   BoundaryOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);

@@ -14,12 +14,12 @@
 #include "map/reader.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
+#include "request/solver.hpp"
 #include "support/stop.hpp"
 #include "sweep/audit_report.hpp"
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/shard.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -111,7 +111,7 @@ void check_sample(Check& check) {
       std::min(1.0, static_cast<double>(check.options.sample) / static_cast<double>(check.tiling.designs()));
   Spec sampled = check.spec;
   sampled.numerics.audit = share;  // what is compared of each design hangs on how many there are
-  const Solver solve = make_solver(sampled);
+  const Solver solve = make_solver(request_of(sampled));
   AuditReport audited = begin_audit(sampled);
   std::vector<AuditSample> samples;
   const auto look_at_samples = [&] {
@@ -131,21 +131,7 @@ void check_sample(Check& check) {
     }
   look_at_samples();
   check.bytes.rethrow_failure();
-  const auto tell = [&](const std::optional<std::size_t>& design, const std::string& what) {
-    if (design)
-      check.find(fmt::format("design {}: {}; show it: {}", told_design(check.spec, *design), what,
-                             hop_command(check.spec, DesignSpace(check.spec).at(*design))));
-  };
-  tell(audited.first_mismatch,
-       "the map has another status, flag, number of lift-offs or sequence than " + audited.method);
-  tell(audited.first_inaccurate,
-       fmt::format("the map differs by more than {:.1e} from {}", audited.allowed_error, audited.method));
-  tell(audited.first_wrong_gradient,
-       "a derivative differs by more than 1e-6 from differences in long double");
-  tell(audited.first_wrong_sequence,
-       "a later jump differs from " + audited.method + " by more than errors grow");
-  tell(audited.first_wrong_gait, "integration does not find the gait that the map has");
-  tell(audited.first_overruled, "the map differs from the reference solver");
+  for (const std::string& disagreement : disagreements(check.spec, audited)) check.find(disagreement);
   check.report.sample = audited;
 }
 

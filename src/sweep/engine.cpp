@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "leapmap/errors.hpp"
+#include "request/solver.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/ordered_delivery.hpp"
 #include "sweep/parallel.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 
@@ -20,10 +20,10 @@ namespace {
 
 /// Designs solved at once: what the solvers take as one block, and no more than stays in the second cache;
 /// with many hoops made after each fewer, so that a stop need not wait long.
-std::size_t piece_of(const Spec& spec) {
+std::size_t piece_of(const Request& request) {
   constexpr std::size_t most = 1024, most_hoops = 1 << 16;
-  if (spec.scatter.spreads.empty()) return most;
-  return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1, most);
+  if (request.scatter.spreads.empty()) return most;
+  return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(request.scatter.samples), 1, most);
 }
 
 struct Item {
@@ -38,13 +38,13 @@ std::span<const double> Solved::column(const Field& field) const {
   return derivative ? gradients.column(derivative->of, derivative->by) : made.column(field);
 }
 
-BlockSolver::BlockSolver(const Spec& spec, std::size_t most_designs,
+BlockSolver::BlockSolver(const Request& request, std::size_t most_designs,
                          const std::shared_ptr<const SobolPoints>& points)
-    : solver_(make_gradient_solver(spec)),
-      gradients_(gradients_of(spec)),
-      made_(scatter_fields_of(spec)),
+    : solver_(make_gradient_solver(request)),
+      gradients_(derivatives_of(request)),
+      made_(statistics_of(request)),
       outcomes_(most_designs) {
-  if (!spec.scatter.spreads.empty()) scatter_.emplace(scatter_solver_of(spec, points));
+  if (!request.scatter.spreads.empty()) scatter_.emplace(scatter_solver_of(request, points));
 }
 
 Solved BlockSolver::solve(std::span<const Design> designs) {
@@ -68,9 +68,9 @@ std::function<TileWork()> in_order(TileSink sink) {
   };
 }
 
-std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options,
-                      const std::function<TileWork()>& make_work) {
-  const DesignSpace space(spec);
+std::size_t run_sweep(const Spec& designs, const Request& request, const Tiling& tiling,
+                      const EngineOptions& options, const std::function<TileWork()>& make_work) {
+  const DesignSpace space(designs);
   std::size_t delivered = 0;
   OrderedDelivery<Item> delivery(
       options.first_tile,
@@ -80,14 +80,14 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
       },
       most_waiting_bytes(thread_count(options.threads)));
 
-  const std::size_t piece = std::min(piece_of(spec), tiling.largest_tile());
-  const auto points = points_of(spec.scatter);
-  const bool scattered = !spec.scatter.spreads.empty();
+  const std::size_t piece = std::min(piece_of(request), tiling.largest_tile());
+  const auto points = points_of(request.scatter);
+  const bool scattered = !request.scatter.spreads.empty();
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
-    return [&, solver = BlockSolver(spec, piece, points), work = make_work(),
-            designs = std::vector<Design>(piece)](std::size_t i) mutable {
+    return [&, solver = BlockSolver(request, piece, points), work = make_work(),
+            block = std::vector<Design>(piece)](std::size_t i) mutable {
       try {
         const std::size_t number = options.first_tile + i;
         const Tile tile = tiling.tile(number);
@@ -99,7 +99,7 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
             return false;
           }
           const std::size_t count = std::min(piece, tile.count - first);
-          const std::span some(designs.data(), count);
+          const std::span some(block.data(), count);
           space.fill(tile, first, some);
           work.take(tile, first, solver.solve(some));
         }
@@ -124,25 +124,25 @@ std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOption
   return delivered;
 }
 
-double seconds_per_design(const Spec& spec, double seconds) {
+double seconds_per_design(const Spec& designs, const Request& request, double seconds) {
   using Clock = std::chrono::steady_clock;
-  const DesignSpace space(spec);
-  const std::size_t count = designs_of(shape_of(spec));
+  const DesignSpace space(designs);
+  const std::size_t count = designs_of(shape_of(designs));
   constexpr std::size_t most = 8192;
-  BlockSolver solver(spec, most, points_of(spec.scatter));
+  BlockSolver solver(request, most, points_of(request.scatter));
   std::mt19937_64 random(1);
   std::uniform_int_distribution<std::size_t> pick(0, count - 1);
   // Few at a time while it is not known how long one takes: an integration may need seconds.
-  std::vector<Design> designs(spec.scatter.spreads.empty() ? 8 : 1);
+  std::vector<Design> some(request.scatter.spreads.empty() ? 8 : 1);
   std::chrono::duration<double> passed{0};
   std::size_t solved = 0;
   while (passed.count() < seconds) {
-    for (Design& design : designs) design = space.at(pick(random));
+    for (Design& design : some) design = space.at(pick(random));
     const auto begin = Clock::now();
-    solver.solve(designs);
+    solver.solve(some);
     passed += Clock::now() - begin;
-    solved += designs.size();
-    if (passed.count() < 0.1 * seconds) designs.resize(std::min(2 * designs.size(), most));
+    solved += some.size();
+    if (passed.count() < 0.1 * seconds) some.resize(std::min(2 * some.size(), most));
   }
   return passed.count() / static_cast<double>(solved);
 }

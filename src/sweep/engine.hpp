@@ -37,7 +37,7 @@ struct Prepared {
   std::size_t bytes = 0;
 };
 
-/// Everything that a spec asks of a block of designs.
+/// Everything that a request asks of a block of designs.
 struct Solved {
   std::span<const Outcome> outcomes;
   const Gradients& gradients;
@@ -51,7 +51,8 @@ struct Solved {
 class BlockSolver {
  public:
   /// points: of hoops as made, shared by all threads.
-  BlockSolver(const Spec& spec, std::size_t most_designs, const std::shared_ptr<const SobolPoints>& points);
+  BlockSolver(const Request& request, std::size_t most_designs,
+              const std::shared_ptr<const SobolPoints>& points);
   /// What it returns holds until the next call.
   Solved solve(std::span<const Design> designs);
 
@@ -81,10 +82,10 @@ std::function<TileWork()> in_order(TileSink sink);
 /// was requested. make_work is called once on each thread. What the work or `take` throws ends the sweep and
 /// is thrown on. Outcomes depend on the spec alone, not on threads or timing; memory does not grow with the
 /// number of designs, nor when whoever takes them is slow.
-std::size_t run_sweep(const Spec& spec, const Tiling& tiling, const EngineOptions& options,
-                      const std::function<TileWork()>& make_work);
+std::size_t run_sweep(const Spec& designs, const Request& request, const Tiling& tiling,
+                      const EngineOptions& options, const std::function<TileWork()>& make_work);
 
 /// Seconds per design on one thread, from a seeded sample solved for about the given time.
-double seconds_per_design(const Spec& spec, double seconds);
+double seconds_per_design(const Spec& designs, const Request& request, double seconds);
 
 }  // namespace leapmap

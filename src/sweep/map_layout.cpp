@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "model/model.hpp"
+#include "request/request.hpp"
 #include "sweep/options.hpp"
-#include "sweep/scatter.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -21,11 +19,6 @@ MapAxis describe(const Option& option, std::vector<double> values) {
 
 }  // namespace
 
-bool stores(const Spec& spec, const Field& field) {
-  const bool silent = !has(spec.scene, field) || field.by_name;
-  return stores(spec.output, field.name) && !(spec.output.fields.empty() && silent);
-}
-
 MapLayout layout_of(const Spec& spec) {
   MapLayout layout;
   for (const Axis& axis : spec.axes) layout.axes.push_back(describe(*find_option("", axis.key), axis.values));
@@ -33,13 +26,7 @@ MapLayout layout_of(const Spec& spec) {
     for (const Option* parameter : design_parameters(spec))
       layout.columns.push_back(describe(*parameter, list_values(spec, *parameter)));
   layout.labels = spec.list.labels;
-  for (const Field* field : fields_of(spec.scene))
-    if (stores(spec, *field)) layout.fields.push_back(field);
-  const GradientWanted derivatives = gradients_of(spec);
-  for (const auto of : derivatives.of)
-    for (const std::size_t by : derivatives.by)
-      layout.fields.push_back(find_gradient(of, differentiable[by]));
-  for (const Field* field : scatter_fields_of(spec)) layout.fields.push_back(field);
+  layout.fields = columns_of(spec);
   layout.single = spec.output.precision == "f4";
   layout.compression = static_cast<int>(spec.output.compression);
   return layout;

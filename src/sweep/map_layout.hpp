@@ -11,9 +11,6 @@ namespace leapmap {
 
 MapLayout layout_of(const Spec& spec);
 
-/// Whether the spec's map has that field: those asked for; by default all that say something.
-bool stores(const Spec& spec, const Field& field);
-
 /// How large the map's file is at most: as large as without compression.
 double map_file_bytes(const MapLayout& layout, const Tiling& tiling);
 

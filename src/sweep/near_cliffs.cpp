@@ -8,9 +8,9 @@
 
 #include "leapmap/boundaries.hpp"
 #include "leapmap/errors.hpp"
+#include "request/solver.hpp"
 #include "sweep/cliff.hpp"
 #include "sweep/options.hpp"
-#include "sweep/solver.hpp"
 #include "sweep/spacing.hpp"
 
 namespace leapmap {
@@ -89,7 +89,7 @@ class Box {
 class Looking {
  public:
   Looking(const Spec& spec, const Box& box, const Design& design)
-      : scene_(spec.scene), box_(box), solve_(make_solver(spec)) {
+      : scene_(spec.scene), box_(box), solve_(make_solver(request_of(spec, {find_field("status")}))) {
     solve_({&design, 1}, {&here_, 1});
   }
 
@@ -162,8 +162,7 @@ std::vector<Vector> directions_about(const Vector& axis, double spread, std::siz
 
 NearCliffs near_cliffs(const Spec& original, const Design& design) {
   Spec spec = original;
-  spec.output = {};
-  spec.output.fields = {"status"};
+  spec.output = {};  // whatever a map of them stores, even fields that this version refuses
   check_spec(spec);
   if (spec.axes.empty())
     throw InputError(origin_of(spec) + ": has no axes; allowed: axes, whose ranges are searched");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -75,6 +76,11 @@ double Design::*member_of(std::string_view parameter);
 
 /// A design's value of one of these parameters.
 inline double value_of(const Option& parameter, const Design& design) { return design.*member_of(parameter); }
+/// The same where another parameter's value is used, as mu_static's for a mu_kinetic that is not given.
+inline double effective_value(const Option& parameter, const Design& design) {
+  const double value = value_of(parameter, design);
+  return std::isnan(value) ? design.mu_static : value;
+}
 
 /// The values of a parameter along a spec's list of designs.
 std::vector<double> list_values(const Spec& spec, const Option& parameter);

@@ -11,6 +11,7 @@
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "model/fields.hpp"
+#include "request/solver.hpp"
 #include "support/output_file.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/begin_map.hpp"
@@ -18,7 +19,6 @@
 #include "sweep/map_layout.hpp"
 #include "sweep/map_spec.hpp"
 #include "sweep/parallel.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -37,7 +37,7 @@ void solve(const Spec& spec, const Tiling& tiling, std::vector<Failed>& designs,
   constexpr std::size_t at_once = 64;
   const DesignSpace space(spec);
   parallel_for_each((designs.size() + at_once - 1) / at_once, threads, stop_requested, [&] {
-    return [&, solver = make_solver(spec)](std::size_t group) {
+    return [&, solver = make_solver(request_of(spec))](std::size_t group) {
       std::vector<Design> some;
       const std::size_t first = group * at_once, last = std::min(first + at_once, designs.size());
       for (std::size_t i = first; i < last; ++i)
@@ -69,9 +69,10 @@ double stored_value(const Field& field, const Outcome& outcome) {
 
 /// Puts the outcomes of one tile's designs in their places in every field.
 void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Failed> designs) {
-  for (const Field* row : fields_of(spec.scene)) {
+  for (const Field* row : columns_of(spec)) {
     const Field& field = *row;
-    if (!stores(spec, field)) continue;
+    if (std::holds_alternative<Derivative>(field.source) || std::holds_alternative<OfMade>(field.source))
+      continue;  // of a failed design there are none
     const std::string name(field.name), what = "retrying failed designs in " + name;
     hdf5::Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, what);
     if (const auto* word = std::get_if<Word>(&field.source)) {
@@ -91,7 +92,7 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
   constexpr std::size_t most_at_once = 100'000;
   const MapReader map(path, file);
   if (!map.is_whole()) throw InputError(path + ": is incomplete; allowed: a complete map, by sweep --resume");
-  if (!stores(spec.output, "status"))
+  if (!wants(request_of(spec), "status"))
     throw InputError(path + ": lacks the field status; allowed: a map with it");
   const MapLayout layout = layout_of(spec);
   const Tiling tiling =

@@ -10,14 +10,11 @@
 
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
+#include "request/solver.hpp"
 #include "sweep/options.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
-
-/// Quantities told of by default.
-constexpr double Outcome::*usual[]{&Outcome::jump_height, &Outcome::jump_time};
 
 [[noreturn]] void refuse(const Spec& spec, std::string_view section, std::string_view key,
                          const std::string& what, const std::string& allowed) {
@@ -103,30 +100,6 @@ void check_goal(const Spec& spec, const Goal& goal) {
 
 }  // namespace
 
-std::vector<const Field*> scatter_fields_of(const Spec& spec) {
-  std::vector<const Field*> fields;
-  if (spec.scatter.spreads.empty()) return fields;
-  const auto asked = [&](const Field& row) {
-    const OfMade& made = std::get<OfMade>(row.source);
-    const auto of = made.of;
-    if (!of) return made.statistic != Statistic::yield || !spec.goals.empty();
-    if (made.error) return false;
-    if (spec.output.fields.empty()) return std::ranges::find(usual, of) != std::end(usual);
-    return std::ranges::any_of(spec.output.fields, [&](const std::string& name) {
-      const auto* quantity = std::get_if<Quantity>(&find_field(name)->source);
-      return quantity && quantity->member == of;
-    });
-  };
-  for (const Field& row : scatter_fields())
-    if (asked(row) || std::ranges::find(spec.output.fields, row.name) != spec.output.fields.end())
-      fields.push_back(&row);
-  return fields;
-}
-
-std::vector<const Field*> quantities_of_made(const Spec& spec) {
-  return quantities_of(scatter_fields_of(spec));
-}
-
 void check_scatter(const Spec& spec) {
   const Scatter& scatter = spec.scatter;
   for (const std::string& name : spec.output.fields)
@@ -151,19 +124,9 @@ std::shared_ptr<const SobolPoints> points_of(const Scatter& scatter, std::size_t
                                              static_cast<std::uint64_t>(scatter.seed));
 }
 
-Spec spec_of_made(const Spec& spec, const std::vector<const Field*>& quantities) {
-  Spec made;
-  made.scene = spec.scene, made.design = spec.design, made.numerics = spec.numerics;
-  made.output.fields = {"status"};
-  for (const Goal& goal : spec.goals) made.output.fields.push_back(goal.field);
-  for (const Field* quantity : quantities) made.output.fields.emplace_back(quantity->name);
-  return made;
-}
-
-ScatterSolver scatter_solver_of(const Spec& spec, std::shared_ptr<const SobolPoints> points) {
-  const std::vector<const Field*> quantities = quantities_of_made(spec);
-  return {spec.scatter, std::move(points), spec.goals, quantities,
-          make_solver(spec_of_made(spec, quantities))};
+ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points) {
+  return {request.scatter, std::move(points), request.goals, quantities_of(statistics_of(request)),
+          make_solver(request_of_sample(request))};
 }
 
 }  // namespace leapmap

@@ -11,9 +11,9 @@
 #include "leapmap/errors.hpp"
 #include "leapmap/scatter.hpp"
 #include "numerics/sobol_indices.hpp"
+#include "request/solver.hpp"
 #include "sweep/parallel.hpp"
 #include "sweep/scatter.hpp"
-#include "sweep/solver.hpp"
 #include "sweep/spec.hpp"
 
 namespace leapmap {
@@ -25,16 +25,16 @@ constexpr double wanted_yield = 0.99;
 /// Makes hoops after one design and solves them, on all threads.
 class Workshop {
  public:
-  Workshop(const Spec& spec, const std::vector<const Field*>& quantities, const ScatterOptions& options)
+  Workshop(const Spec& spec, const ScatterOptions& options)
       : spec_(spec),
         options_(options),
         points_(points_of(spec.scatter, 2)),
-        solved_(spec_of_made(spec, quantities)) {}
+        asked_(request_of_sample(request_of(spec))) {}
 
   /// The hoop as drawn.
   Outcome drawn() const {
     Outcome outcome;
-    make_solver(solved_)({&spec_.design, 1}, {&outcome, 1});
+    make_solver(asked_)({&spec_.design, 1}, {&outcome, 1});
     return outcome;
   }
 
@@ -48,7 +48,7 @@ class Workshop {
         (samples() + made_at_once - 1) / made_at_once, options_.threads, options_.stop_requested, [&] {
           MadeHoops hoops(scatter, points_);
           hoops.draw(spec_.design, dimensions);
-          return [&, hoops = std::move(hoops), solve = make_solver(solved_),
+          return [&, hoops = std::move(hoops), solve = make_solver(asked_),
                   made = std::vector<Design>(made_at_once),
                   outcomes = std::vector<Outcome>(made_at_once)](std::size_t block) mutable {
             if (options_.stop_requested && options_.stop_requested()) throw Stopped("scatter was stopped");
@@ -66,7 +66,7 @@ class Workshop {
   const Spec& spec_;
   const ScatterOptions& options_;
   std::shared_ptr<const SobolPoints> points_;
-  Spec solved_;
+  Request asked_;
 };
 
 /// What importance is told of, by what it is of a hoop; NaN: it is not known, or does not apply.
@@ -125,8 +125,8 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
                     origin_of(spec)));
   ScatterOptions options = asked;
   options.stop_requested = latched(asked.stop_requested);
-  const std::vector<const Field*> quantities = quantities_of_made(spec);
-  const Workshop workshop(spec, quantities, options);
+  const std::vector<const Field*> quantities = quantities_of(statistics_of(request_of(spec)));
+  const Workshop workshop(spec, options);
   MadeTally tally(spec.goals, quantities, workshop.samples());
   ScatterReport report;
   report.samples = workshop.samples();

@@ -9,16 +9,6 @@
 
 namespace leapmap {
 
-std::vector<const Field*> quantities_of(const std::vector<const Field*>& made) {
-  std::vector<const Field*> quantities;
-  for (const Field& field : map_fields())
-    if (const auto* quantity = std::get_if<Quantity>(&field.source))
-      if (std::any_of(made.begin(), made.end(),
-                      [&](const Field* row) { return std::get<OfMade>(row->source).of == quantity->member; }))
-        quantities.push_back(&field);
-  return quantities;
-}
-
 MadeColumns::MadeColumns(std::vector<const Field*> fields)
     : fields_(std::move(fields)), columns_(fields_.size()) {}
 

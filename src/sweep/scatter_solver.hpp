@@ -16,9 +16,6 @@ namespace leapmap {
 /// Hoops solved at once.
 inline constexpr std::size_t made_at_once = 1024;
 
-/// The quantities of which fields of hoops as made are, in the order of map_fields.
-std::vector<const Field*> quantities_of(const std::vector<const Field*>& made);
-
 /// Of a block of designs, a column for each field.
 class MadeColumns {
  public:

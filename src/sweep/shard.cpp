@@ -14,9 +14,9 @@
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
 #include "model/model.hpp"
+#include "request/request.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/parallel.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -38,8 +38,9 @@ struct Sampled {
 };
 
 DesignEffort effort_of(const Spec& spec) {
-  const Scene scene = scene_followed(spec);
-  return model_of(scene).effort(scene, !spec.output.gradients.empty());
+  const Request request = request_of(spec);
+  const Scene scene = scene_followed(request);
+  return model_of(scene).effort(scene, !derivatives_of(request).of.empty());
 }
 
 /// Counts the efforts of so many designs of each tile, one of each of as many pieces of it.

@@ -11,10 +11,10 @@
 #include "leapmap/trace.hpp"
 #include "model/fields.hpp"
 #include "model/parameters.hpp"
+#include "request/solver.hpp"
 #include "sweep/options.hpp"
 #include "sweep/parallel.hpp"
 #include "sweep/solve_blocks.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -67,7 +67,7 @@ Outcome solve(const Design& design, const Scene& scene, const SolveOptions& opti
   const Spec spec = spec_of(scene, options);
   check_design(design, scene);
   Outcome outcome;
-  make_solver(spec)({&design, 1}, {&outcome, 1});
+  make_solver(request_of(spec))({&design, 1}, {&outcome, 1});
   return outcome;
 }
 
@@ -78,7 +78,7 @@ void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, co
         fmt::format("{} outcomes for {} designs; allowed: equal numbers", outcomes.size(), designs.size()));
   const Spec spec = spec_of(scene, options);
   in_blocks("solve", designs.size(), designs_a_block(spec), options, [&] {
-    return [&, solver = make_solver(spec)](std::size_t first, std::size_t size) {
+    return [&, solver = make_solver(request_of(spec))](std::size_t first, std::size_t size) {
       check_designs(designs.subspan(first, size), scene, first, designs.size());
       solver(designs.subspan(first, size), outcomes.subspan(first, size));
     };
@@ -86,12 +86,12 @@ void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, co
 }
 
 void solve_blocks(std::size_t designs, const Scene& scene, const SolveOptions& options,
-                  const std::vector<std::string>& fields, const BlockEnds& ends) {
-  Spec spec = spec_of(scene, options);
-  spec.output.fields = fields;
+                  const std::vector<const Field*>& fields, const BlockEnds& ends) {
+  const Spec spec = spec_of(scene, options);
+  const Request request = request_of(spec, fields);
   in_blocks("solve", designs, designs_a_block(spec), options, [&] {
     const std::size_t most = std::min(designs, designs_a_block(spec));
-    return [&, solver = make_solver(spec), some = std::vector<Design>(most),
+    return [&, solver = make_solver(request), some = std::vector<Design>(most),
             outcomes = std::vector<Outcome>(most)](std::size_t first, std::size_t size) mutable {
       const std::span<Design> block = std::span(some).first(size);
       ends.fill(first, block);
@@ -117,7 +117,6 @@ std::vector<Design> gradient(std::span<const Design> designs, const OutcomeNumbe
                              const SolveOptions& options) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Spec spec = spec_of(scene, options);
-  spec.output.fields = {"status"};
   for (const Field* field : fields_of(scene))
     if (can_be_differentiated(*field) && number_of(*field) == of)
       spec.output.gradients = {std::string(field->name)};
@@ -127,11 +126,12 @@ std::vector<Design> gradient(std::span<const Design> designs, const OutcomeNumbe
         "the jumps",
         of.jump, scene.jumps));
   check_spec(spec);
-  const GradientWanted wanted = gradients_of(spec);
+  const Request request = request_of(spec, derivative_columns(scene, {of}));
+  const GradientWanted wanted = derivatives_of(request);
   std::vector<Design> found(designs.size());
   constexpr std::size_t most = 256;
   in_blocks("gradient", designs.size(), most, options, [&] {
-    return [&, solver = make_gradient_solver(spec), gradients = Gradients(wanted),
+    return [&, solver = make_gradient_solver(request), gradients = Gradients(wanted),
             outcomes = std::vector<Outcome>(most)](std::size_t first, std::size_t size) mutable {
       check_designs(designs.subspan(first, size), scene, first, designs.size());
       solver(designs.subspan(first, size), std::span(outcomes).first(size), gradients);
@@ -146,13 +146,12 @@ std::vector<Design> gradient(std::span<const Design> designs, const OutcomeNumbe
 }
 
 Motion trace(const Design& design, const Scene& scene, const TraceOptions& options) {
-  Spec spec = spec_of(scene, options);
+  const Spec spec = spec_of(scene, options);
   check_design(design, scene);
   if (!(options.interval >= 0.0 && options.interval < 1e9))
     throw InputError(fmt::format("interval = {} is out of range; allowed: a number of seconds in [0, 1e9)",
                                  options.interval));
-  spec.design = design;
-  return tell(spec, options.interval);
+  return tell(design, request_of_everything(spec), options.interval);
 }
 
 }  // namespace leapmap

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "leapmap/solve.hpp"
+#include "model/fields.hpp"
 
 namespace leapmap {
 
@@ -21,9 +21,9 @@ struct BlockEnds {
   std::function<void(std::size_t first, std::span<const Outcome>)> take;
 };
 
-/// Solves so many designs. fields: those that will be looked at; what only others need is not computed;
-/// empty: all. Throws as solve does.
+/// Solves so many designs. fields: those that will be looked at; what only others need is not computed.
+/// Throws as solve does.
 void solve_blocks(std::size_t designs, const Scene& scene, const SolveOptions& options,
-                  const std::vector<std::string>& fields, const BlockEnds& ends);
+                  const std::vector<const Field*>& fields, const BlockEnds& ends);
 
 }  // namespace leapmap

@@ -11,6 +11,7 @@
 
 #include "map/schema.hpp"
 #include "map/writer.hpp"
+#include "request/request.hpp"
 #include "support/output_file.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/begin_map.hpp"
@@ -55,7 +56,7 @@ class Sweeping {
   void run() {
     tell_progress();
     EngineOptions engine{options_.threads, writer_.progress().tiles, options_.stop_requested};
-    run_sweep(spec_, tiling_, engine, [&] { return work(); });
+    run_sweep(spec_, request_of(spec_), tiling_, engine, [&] { return work(); });
     commit();
   }
 

@@ -28,7 +28,7 @@ void WithoutFile(benchmark::State& state) {
   const Spec spec = grid(0);
   const Tiling tiling(shape_of(spec));
   for (auto _ : state)
-    run_sweep(spec, tiling, {}, [] {
+    run_sweep(spec, request_of(spec), tiling, {}, [] {
       return TileWork{[](const Tile&, std::size_t, const Solved&) {},
                       [](std::size_t, const Tile&) { return Prepared{[] {}}; }};
     });

@@ -94,7 +94,8 @@ void Engine(benchmark::State& state) {
   options.threads = static_cast<int>(state.range(1));
   for (auto _ : state) {
     std::size_t jumps = 0;
-    run_sweep(spec, tiling, options, in_order([&](const Tile&, std::span<const Outcome> outcomes) {
+    run_sweep(spec, request_of(spec), tiling, options,
+              in_order([&](const Tile&, std::span<const Outcome> outcomes) {
                 for (const Outcome& outcome : outcomes) jumps += outcome.status == Status::jumped;
               }));
     benchmark::DoNotOptimize(jumps);

@@ -7,9 +7,9 @@
 
 #include <random>
 
+#include "request/solver.hpp"
 #include "rolling/rolling_integration.hpp"
 #include "sweep/engine.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -54,7 +54,8 @@ void Engine(benchmark::State& state) {
   options.threads = static_cast<int>(state.range(0));
   for (auto _ : state) {
     double sum = 0.0;
-    run_sweep(spec, tiling, options, in_order([&](const Tile&, std::span<const Outcome> outcomes) {
+    run_sweep(spec, request_of(spec), tiling, options,
+              in_order([&](const Tile&, std::span<const Outcome> outcomes) {
                 for (const Outcome& outcome : outcomes)
                   sum += outcome.status == Status::jumped ? outcome.jump_height : 0.0;
               }));

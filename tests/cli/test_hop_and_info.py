@@ -91,7 +91,7 @@ def test_info_counts_statuses_and_places_extremes(tmp_path):
         place = f"at slope {m['slope'][i]:.6g}, mass_ratio {m['mass_ratio'][j]:.6g}, offset_ratio {m['offset_ratio'][k]:.6g}"
         assert f"most  {height[i, j, k]:.8g}" in text and place in text
         assert f"none  in {np.isnan(height).sum()} designs" in text
-    assert "cross-check: 14 designs" in text  # 5 % of 264, rounded up
+    assert "check    14 designs" in text  # 5 % of 264, rounded up
     assert leapmap("info", path, "--spec").stdout.startswith("[scene]")  # a TOML and nothing else
 
 

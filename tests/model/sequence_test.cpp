@@ -15,8 +15,8 @@
 #include "leapmap/trace.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
+#include "request/solver.hpp"
 #include "support/reference_table.hpp"
-#include "sweep/solver.hpp"
 #include "trajectory/contact_state.hpp"
 
 namespace leapmap {
@@ -260,11 +260,11 @@ TEST(Sequences, DoNotDependOnWhatIsStored) {
   Spec spec;
   spec.scene = sequence_scene(Friction::sticking, 4);
   Outcome all, heights, times;
-  make_solver(spec)({&spec.design, 1}, {&all, 1});
+  make_solver(request_of(spec))({&spec.design, 1}, {&all, 1});
   spec.output.fields = {"jump_height_4"};
-  make_solver(spec)({&spec.design, 1}, {&heights, 1});
+  make_solver(request_of(spec))({&spec.design, 1}, {&heights, 1});
   spec.output.fields = {"jump_time_4"};
-  make_solver(spec)({&spec.design, 1}, {&times, 1});
+  make_solver(request_of(spec))({&spec.design, 1}, {&times, 1});
   ASSERT_EQ(all.jumps(), 4u);
   ASSERT_EQ(heights.jumps(), 4u);
   EXPECT_EQ(heights.later_jumps[2].height, all.later_jumps[2].height);

@@ -35,8 +35,9 @@ inline std::map<std::string, std::vector<double>> columns_of(Spec spec, const st
        {"jump_height_mean_error", "jump_height_q05_error", "jump_height_q50_error", "jump_height_q95_error"})
     spec.output.fields.emplace_back(error);
   spec.output.fields.emplace_back("jump_height");
-  MadeColumns columns(scatter_fields_of(spec));
-  scatter_solver_of(spec, points_of(spec.scatter)).solve(designs, columns);
+  const Request request = request_of(spec);
+  MadeColumns columns(statistics_of(request));
+  scatter_solver_of(request, points_of(spec.scatter)).solve(designs, columns);
   std::map<std::string, std::vector<double>> found;
   for (const Field* field : columns.fields()) {
     const auto values = columns.column(*field);

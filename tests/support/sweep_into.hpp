@@ -11,7 +11,7 @@ namespace leapmap::testing {
 
 inline void sweep_into(MapWriter& writer, const Spec& spec, const MapLayout& layout, const Tiling& tiling,
                        const EngineOptions& options = {}) {
-  run_sweep(spec, tiling, options, [&] {
+  run_sweep(spec, request_of(spec), tiling, options, [&] {
     const auto encoder = std::make_shared<TileEncoder>(layout, tiling);
     return TileWork{[encoder](const Tile&, std::size_t first, const Solved& solved) {
                       encoder->take(first, solved.outcomes,

@@ -37,7 +37,8 @@ const std::vector<std::string> chaotic{"slope=0.35", "mass_ratio=3.0", "offset_r
 std::vector<AuditSample> solved_all(const Spec& spec) {
   const Tiling tiling(shape_of(spec));
   std::vector<AuditSample> samples;
-  run_sweep(spec, tiling, {}, in_order([&](const Tile& tile, std::span<const Outcome> outcomes) {
+  run_sweep(spec, request_of(spec), tiling, {},
+            in_order([&](const Tile& tile, std::span<const Outcome> outcomes) {
               std::ranges::copy(audit_samples(spec, tiling, tile, 0, outcomes), std::back_inserter(samples));
             }));
   return samples;

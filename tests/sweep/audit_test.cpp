@@ -9,9 +9,9 @@
 #include <numbers>
 #include <set>
 
+#include "request/solver.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/engine.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -26,7 +26,8 @@ std::vector<AuditSample> drawn_from(const Spec& spec, int threads = 0) {
   std::vector<AuditSample> samples;
   EngineOptions options;
   options.threads = threads;
-  run_sweep(spec, tiling, options, in_order([&](const Tile& tile, std::span<const Outcome> outcomes) {
+  run_sweep(spec, request_of(spec), tiling, options,
+            in_order([&](const Tile& tile, std::span<const Outcome> outcomes) {
               std::ranges::copy(audit_samples(spec, tiling, tile, 0, outcomes), std::back_inserter(samples));
             }));
   return samples;
@@ -262,8 +263,8 @@ TEST(Audit, LooksAtDerivativesByEveryParameter) {
   std::vector<Design> designs;
   for (std::size_t i = 0; i < 100; ++i) designs.push_back(space.at(i));
   std::vector<Outcome> outcomes(designs.size());
-  Gradients gradients(gradients_of(spec));
-  make_gradient_solver(spec)(designs, outcomes, gradients);
+  Gradients gradients(derivatives_of(request_of(spec)));
+  make_gradient_solver(request_of(spec))(designs, outcomes, gradients);
   const std::size_t parameters = gradients.wanted().by.size();
   ASSERT_EQ(parameters, 7u);
   for (std::size_t spoiled = 0; spoiled <= parameters; ++spoiled) {  // the last one: none
@@ -287,8 +288,8 @@ TEST(Audit, ConvictsOneWrongDerivativeWithFriction) {
                      "mu_kinetic=0.09786187830505558", "gradients=[\"jump_time\"]", "audit=1"});
   const std::vector<Design> designs{DesignSpace(spec).at(0)};
   std::vector<Outcome> outcomes(1);
-  Gradients gradients(gradients_of(spec));
-  make_gradient_solver(spec)(designs, outcomes, gradients);
+  Gradients gradients(derivatives_of(request_of(spec)));
+  make_gradient_solver(request_of(spec))(designs, outcomes, gradients);
   const std::size_t parameters = gradients.wanted().by.size();
   ASSERT_EQ(parameters, differentiable.size());
   for (std::size_t spoiled = 0; spoiled <= parameters; ++spoiled) {  // the last one: none

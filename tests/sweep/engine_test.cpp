@@ -9,12 +9,12 @@
 #include <stdexcept>
 #include <thread>
 
+#include "request/solver.hpp"
 #include "support/designs.hpp"
 #include "sweep/audit.hpp"
 #include "sweep/designs.hpp"
 #include "sweep/ordered_delivery.hpp"
 #include "sweep/parallel.hpp"
-#include "sweep/solver.hpp"
 
 namespace leapmap {
 namespace {
@@ -30,7 +30,8 @@ std::vector<Outcome> outcomes_of(const Spec& spec, int threads) {
   std::vector<Outcome> all;
   EngineOptions options;
   options.threads = threads;
-  run_sweep(spec, tiling, options, in_order([&](const Tile&, std::span<const Outcome> outcomes) {
+  run_sweep(spec, request_of(spec), tiling, options,
+            in_order([&](const Tile&, std::span<const Outcome> outcomes) {
               all.insert(all.end(), outcomes.begin(), outcomes.end());
             }));
   return all;
@@ -56,7 +57,7 @@ TEST(Engine, SolvesEachDesignOfEachTileInItsPlace) {
   const Spec spec = small_grid();
   const Tiling tiling(shape_of(spec));
   const DesignSpace space(spec);
-  const Solver solve = make_solver(spec);
+  const Solver solve = make_solver(request_of(spec));
   std::size_t expected_number = 0;
   const auto check = [&](const Tile& tile, std::span<const Outcome> outcomes) {
     EXPECT_EQ(tile.start, tiling.tile(expected_number++).start) << "tiles come in order";
@@ -70,7 +71,7 @@ TEST(Engine, SolvesEachDesignOfEachTileInItsPlace) {
       }
     }
   };
-  run_sweep(spec, tiling, {}, in_order(check));
+  run_sweep(spec, request_of(spec), tiling, {}, in_order(check));
   EXPECT_EQ(expected_number, tiling.size());
 }
 
@@ -79,11 +80,11 @@ TEST(Engine, AnErrorOfTheSinkEndsTheSweepAndIsThrownOn) {
   int taken = 0;
   EngineOptions options;
   options.threads = 4;
-  EXPECT_THROW(
-      run_sweep(spec, Tiling(shape_of(spec)), options, in_order([&](const Tile&, std::span<const Outcome>) {
-                  if (++taken == 3) throw std::runtime_error("disk full");
-                })),
-      std::runtime_error);
+  EXPECT_THROW(run_sweep(spec, request_of(spec), Tiling(shape_of(spec)), options,
+                         in_order([&](const Tile&, std::span<const Outcome>) {
+                           if (++taken == 3) throw std::runtime_error("disk full");
+                         })),
+               std::runtime_error);
   EXPECT_EQ(taken, 3) << "nothing is handed on after an error";
 }
 
@@ -96,7 +97,7 @@ TEST(Engine, ATileOfSeveralPiecesIsFilledSolvedAndAuditedAsAWhole) {
   const DesignSpace space(spec);
   std::vector<AuditSample> samples;
   std::size_t taken = 0, pieces = 0;
-  run_sweep(spec, tiling, {}, [&] {
+  run_sweep(spec, request_of(spec), tiling, {}, [&] {
     return TileWork{[&](const Tile& tile, std::size_t first, const Solved& solved) {
                       const std::span<const Outcome> outcomes = solved.outcomes;
                       EXPECT_EQ(first, taken);
@@ -128,7 +129,7 @@ TEST(Engine, ATileOfSeveralPiecesIsFilledSolvedAndAuditedAsAWhole) {
   for (std::size_t i = 0; i < drawn.size(); ++i) EXPECT_EQ(samples[i].number, drawn[i]);
 
   std::vector<Outcome> alone(taken);
-  const Solver solve = make_solver(spec);
+  const Solver solve = make_solver(request_of(spec));
   for (const AuditSample& sample : samples) {
     const Design design = space.at(sample.number);
     solve({&design, 1}, {&alone[sample.number], 1});
@@ -144,7 +145,7 @@ TEST(Engine, AStopKeepsWhatWasDoneInOrder) {
   EngineOptions options;
   options.threads = 2;
   options.stop_requested = [&] { return solved > 200; };
-  const std::size_t done = run_sweep(spec, tiling, options, [&] {
+  const std::size_t done = run_sweep(spec, request_of(spec), tiling, options, [&] {
     return TileWork{[&](const Tile&, std::size_t, const Solved& some) { solved += some.outcomes.size(); },
                     [&](std::size_t, const Tile& tile) {
                       return Prepared{[&taken, count = tile.count] { taken += count; }};
@@ -163,10 +164,10 @@ TEST(Engine, GoesOnAtAnyTile) {
   for (const std::size_t first : {std::size_t{1}, tiling.size() / 2, tiling.size() - 1, tiling.size()}) {
     options.first_tile = first;
     std::size_t next = first;
-    const std::size_t done =
-        run_sweep(spec, tiling, options, in_order([&](const Tile& tile, std::span<const Outcome>) {
-                    EXPECT_EQ(tile.start, tiling.tile(next++).start);
-                  }));
+    const std::size_t done = run_sweep(spec, request_of(spec), tiling, options,
+                                       in_order([&](const Tile& tile, std::span<const Outcome>) {
+                                         EXPECT_EQ(tile.start, tiling.tile(next++).start);
+                                       }));
     EXPECT_EQ(next, tiling.size());
     const std::size_t before =
         first < tiling.size() ? tiling.designs_before(tiling.tile(first)) : tiling.designs();
@@ -249,7 +250,7 @@ TEST(ParallelForEach, EachNumberOnceAndAnExceptionFromAnyThreadIsThrownOn) {
 }
 
 TEST(Probe, EstimatesAPositiveTimeForEachDesign) {
-  const double seconds = seconds_per_design(small_grid(), 0.02);
+  const double seconds = seconds_per_design(small_grid(), request_of(small_grid()), 0.02);
   EXPECT_GT(seconds, 0.0);
   EXPECT_LT(seconds, 1.0);
 }

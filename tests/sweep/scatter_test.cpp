@@ -58,7 +58,8 @@ Plain plain_sampling(const Spec& spec, const Design& drawn, std::size_t hoops) {
       } while (!range.holds(design.*member));
   }
   std::vector<Outcome> outcomes(hoops);
-  solve_blocks(hoops, spec.scene, {}, {"jump_height", "jump_time", "status"},
+  solve_blocks(hoops, spec.scene, {},
+               {find_field("jump_height"), find_field("jump_time"), find_field("status")},
                {[&](std::size_t first, std::span<Design> some) {
                   std::ranges::copy(std::span(made).subspan(first, some.size()), some.begin());
                 },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Later jumps and gaits, and what an audit found of them, for people.
+/// What the cross-check of a map found, and how later jumps and gaits are reported.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace leapmap::cli {
 
-/// Prints a line of later jumps and one of gaits, where the audit looked at any.
-void say_sequences(const AuditReport& report);
+/// Prints a line for each method that solved some of a map's designs again.
+void say_audit(const AuditReport& report);
 
 /// What a release comes to: its gait, after so many jumps.
 std::string settled_line(const Outcome& outcome, long settle);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/told_sequences.hpp"
+#include "cli/audit_lines.hpp"
 
 #include <fmt/format.h>
 
@@ -8,22 +8,45 @@
 #include "cli/info_place.hpp"
 #include "cli/output.hpp"
 #include "cli/spoken.hpp"
+#include "support/printable.hpp"
 #include "sweep/cliff.hpp"
 
 namespace leapmap::cli {
 
-void say_sequences(const AuditReport& report) {
+namespace {
+
+/// "; 3 inconclusive", or nothing.
+std::string and_some(std::size_t designs, std::string_view what) {
+  return designs > 0 ? fmt::format("; {} {}", grouped(designs), what) : "";
+}
+
+}  // namespace
+
+void say_audit(const AuditReport& report) {
+  say("check    {} designs by {}: height within {:.1e} diameters, time within {:.1e}, motion within {:.1e}, "
+      "{} "
+      "flags differ{}{}{}\n",
+      grouped(report.designs), printable(report.method), report.max_abs_height_error,
+      report.max_rel_time_error, report.max_rel_motion_error, report.flag_mismatches,
+      and_some(report.beyond_tolerance, "beyond the tolerance"), and_some(report.undecided, "inconclusive"),
+      and_some(report.failed, "failed, not compared"));
+  if (report.refereed > 0)
+    say("referee  {} of them by the independent reference solver: {} wrong, largest error {:.1e}{}\n",
+        grouped(report.refereed), report.overruled, report.referee_max_error,
+        and_some(report.referee_undecided, "inconclusive"));
+  if (report.gradient_designs > 0)
+    say("gradient {} of them by differences in long double: {} wrong, largest error {:.1e}{}\n",
+        grouped(report.gradient_designs), report.gradients_wrong, report.gradient_max_error,
+        and_some(report.gradient_undecided, "inconclusive"));
   if (report.jumps_compared + report.jumps_beyond + report.sequences_wrong > 0)
     say("jumps    {} later jumps: {} designs wrong, largest error {:.1e} over its growth{}\n",
         grouped(report.jumps_compared), report.sequences_wrong, report.jump_max_error,
-        report.jumps_beyond > 0 ? fmt::format("; {} more not compared, because errors grow too much",
-                                              grouped(report.jumps_beyond))
-                                : "");
+        and_some(report.jumps_beyond, "more not compared, because errors grow too much"));
   if (report.gaits > 0)
     say("gaits    {} by integration over one period: {} wrong, largest error {:.1e}, of a multiplier "
         "{:.1e}{}\n",
         grouped(report.gaits), report.gaits_wrong, report.gait_max_error, report.multiplier_max_error,
-        report.gaits_undecided > 0 ? fmt::format("; {} inconclusive", report.gaits_undecided) : "");
+        and_some(report.gaits_undecided, "inconclusive"));
 }
 
 std::string settled_line(const Outcome& outcome, long settle) {

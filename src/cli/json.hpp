@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What commands print for programs. A number that does not apply, NaN, is null in JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "sweep/spec.hpp"
+
+namespace leapmap::cli {
+
+/// Objects keep their members in the order in which they were added.
+using Json = nlohmann::ordered_json;
+
+/// The parameters of the spec's model, by name; null: follows another one.
+Json design_json(const Spec& spec, const Design& design);
+
+/// Prints the object, a line for each member and for each item of a list of objects. Throws as write_out
+/// does.
+void say_json(const Json& object);
+
+}  // namespace leapmap::cli

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "request/request.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+#include "model/model.hpp"
+#include "model/parameters.hpp"
+#include "sweep/spec.hpp"
+
+namespace leapmap {
+namespace {
+
+/// Quantities whose statistics a map of manufactured hoops has by default.
+constexpr double Outcome::*usual[]{&Outcome::jump_height, &Outcome::jump_time};
+
+bool is_stored(const Spec& spec, const Field& field) {
+  return spec.output.fields.empty() ? !field.by_name : stores(spec.output, field.name);
+}
+
+bool is_asked_for(const Spec& spec, const Field& row) {
+  if (std::ranges::find(spec.output.fields, row.name) != spec.output.fields.end()) return true;
+  const OfMade& made = std::get<OfMade>(row.source);
+  if (!made.of) return made.statistic != Statistic::yield || !spec.goals.empty();
+  if (made.error) return false;
+  if (spec.output.fields.empty()) return std::ranges::find(usual, made.of) != std::end(usual);
+  return std::ranges::any_of(spec.output.fields, [&](const std::string& name) {
+    const auto* quantity = std::get_if<Quantity>(&find_field(name)->source);
+    return quantity && quantity->member == made.of;
+  });
+}
+
+bool is_statistic(const Field* column) { return std::holds_alternative<OfMade>(column->source); }
+
+/// Whether a column of nominal designs is of jumps after the first.
+bool is_of_later_jumps(const Field* column) {
+  if (const auto* derivative = std::get_if<Derivative>(&column->source)) return derivative->of.jump > 1;
+  return column->of_sequence && !is_statistic(column);
+}
+
+void add_once(std::vector<const Field*>& columns, const Field* column) {
+  if (std::ranges::find(columns, column) == columns.end()) columns.push_back(column);
+}
+
+}  // namespace
+
+std::vector<const Field*> columns_of(const Spec& spec) {
+  std::vector<const Field*> columns;
+  for (const Field* field : fields_of(spec.scene))
+    if (is_stored(spec, *field)) columns.push_back(field);
+  std::vector<OutcomeNumber> derived;
+  for (const std::string& name : spec.output.gradients) derived.push_back(*number_of(*find_field(name)));
+  std::ranges::copy(derivative_columns(spec.scene, derived, spec.output.gradients_by),
+                    std::back_inserter(columns));
+  if (spec.scatter.spreads.empty()) return columns;
+  for (const Field& row : scatter_fields())
+    if (is_asked_for(spec, row)) columns.push_back(&row);
+  return columns;
+}
+
+Request request_of(const Spec& spec) { return request_of(spec, columns_of(spec)); }
+
+Request request_of(const Spec& spec, std::vector<const Field*> columns) {
+  return {.scene = spec.scene,
+          .numerics = spec.numerics,
+          .columns = std::move(columns),
+          .scatter = spec.scatter,
+          .goals = spec.goals};
+}
+
+Request request_of_everything(const Spec& spec) { return request_of(spec, fields_of(spec.scene)); }
+
+Request request_of_sample(const Request& request) {
+  Request sample = request;
+  sample.scatter = {}, sample.goals.clear();
+  sample.columns = {find_field("status")};
+  for (const Goal& goal : request.goals) add_once(sample.columns, find_field(goal.field));
+  for (const Field* quantity : quantities_of(statistics_of(request))) add_once(sample.columns, quantity);
+  return sample;
+}
+
+bool wants(const Request& request, std::string_view field) {
+  return std::ranges::find(request.columns, field, &Field::name) != request.columns.end();
+}
+
+bool wants_gaits(const Request& request) {
+  return request.scene.settle > 0 && std::ranges::any_of(request.columns, [](const Field* column) {
+           return column->of_gait && !is_statistic(column);
+         });
+}
+
+Scene scene_asked(const Request& request) {
+  Scene scene = request.scene;
+  if (std::ranges::none_of(request.columns, is_of_later_jumps)) scene.jumps = 1;
+  return scene;
+}
+
+Scene scene_followed(const Request& request) {
+  Scene scene = scene_asked(request);
+  if (wants_gaits(request)) scene.jumps = std::max(scene.jumps, scene.settle);
+  return scene;
+}
+
+GradientWanted derivatives_of(const Request& request) {
+  GradientWanted wanted;
+  for (const Field* column : request.columns) {
+    const auto* derivative = std::get_if<Derivative>(&column->source);
+    if (!derivative) continue;
+    if (!wanted.wants(derivative->of)) wanted.of.push_back(derivative->of);
+    const auto place =
+        static_cast<std::size_t>(std::ranges::find(differentiable, derivative->by) - differentiable.begin());
+    if (std::ranges::find(wanted.by, place) == wanted.by.end()) wanted.by.push_back(place);
+  }
+  return wanted;
+}
+
+std::vector<const Field*> derivative_columns(const Scene& scene, const std::vector<OutcomeNumber>& of,
+                                             const std::vector<std::string>& by) {
+  std::vector<const Field*> columns;
+  for (const OutcomeNumber& quantity : of)
+    for (double Design::*member : differentiable) {
+      const auto parameter = std::ranges::find_if(parameters(), [&](const Parameter& row) {
+        const auto* same = std::get_if<double Design::*>(&row.member);
+        return same && *same == member;
+      });
+      if (has(scene.friction, parameter->only_of) &&
+          (by.empty() || std::ranges::find(by, parameter->name) != by.end()))
+        columns.push_back(find_gradient(quantity, member));
+    }
+  return columns;
+}
+
+std::vector<const Field*> statistics_of(const Request& request) {
+  std::vector<const Field*> statistics;
+  std::ranges::copy_if(request.columns, std::back_inserter(statistics), is_statistic);
+  return statistics;
+}
+
+}  // namespace leapmap

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "request/solver.hpp"
+
+#include <algorithm>
+
+#include "gait/error_growth.hpp"
+#include "gait/settle.hpp"
+#include "model/model.hpp"
+#include "sweep/spec.hpp"
+
+namespace leapmap {
+
+IntegrationOptions integration_options(const Numerics& numerics) {
+  IntegrationOptions options = adaptive(resolved_method(numerics), numerics.tolerance);
+  if (numerics.absolute_tolerance > 0.0) options.control.absolute = numerics.absolute_tolerance;
+  options.control.fixed_step = numerics.fixed_step;
+  options.max_steps = numerics.max_steps;
+  return options;
+}
+
+namespace {
+
+bool is_exact(const Request& request) { return resolved_method(request.numerics) == "exact"; }
+
+Wanted wanted_of(const Request& request) {
+  const bool of_later_times = std::ranges::any_of(request.columns, [](const Field* column) {
+    const auto* later = std::get_if<OfJump>(&column->source);
+    return later && later->number.of_jump == &Jump::time;
+  });
+  return {.first_jump_time = wants(request, "first_jump_time"),
+          .jump_time = wants(request, "jump_time") || of_later_times,
+          .descent = wants(request, "flight_time") || wants(request, "dip")};
+}
+
+/// Fills in what comes of whole sequences, once the designs are solved; empty: nothing is asked for.
+Solver afterwards(const Request& request) {
+  const double tolerance = request.numerics.tolerance;
+  std::shared_ptr<ErrorGrowth> growth;
+  std::shared_ptr<GaitSolver> gaits;
+  if (request.scene.jumps > 1 && wants(request, "sequence_condition"))
+    growth = std::make_shared<ErrorGrowth>(request.scene, tolerance);
+  if (wants_gaits(request)) gaits = std::make_shared<GaitSolver>(request.scene, tolerance);
+  if (!growth && !gaits) return {};
+  return [growth, gaits](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    if (growth) growth->tell(designs, outcomes);
+    if (gaits) gaits->solve(designs, outcomes);
+  };
+}
+
+}  // namespace
+
+Solver make_solver(const Request& request) {
+  const Scene scene = scene_asked(request);
+  const Model& model = model_of(scene);
+  Solver solver = is_exact(request) ? model.exact(scene, request.numerics.tolerance, wanted_of(request))
+                                    : model.integration(scene, integration_options(request.numerics));
+  const Solver after = afterwards(request);
+  if (!after) return solver;
+  return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    solver(designs, outcomes);
+    after(designs, outcomes);
+  };
+}
+
+GradientSolver make_gradient_solver(const Request& request) {
+  const GradientWanted asked = derivatives_of(request);
+  if (asked.of.empty())
+    return [solver = make_solver(request)](std::span<const Design> designs, std::span<Outcome> outcomes,
+                                           Gradients&) { solver(designs, outcomes); };
+  const Scene scene = scene_asked(request);
+  GradientSolver solver =
+      model_of(scene).gradients(scene, request.numerics.tolerance, wanted_of(request), asked);
+  const Solver after = afterwards(request);
+  if (!after) return solver;
+  return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes,
+                                             Gradients& gradients) {
+    solver(designs, outcomes, gradients);
+    after(designs, outcomes);
+  };
+}
+
+Motion tell(const Design& design, const Request& request, double interval) {
+  const Model& model = model_of(request.scene);
+  Motion motion =
+      is_exact(request)
+          ? model.tell_exactly(design, request.scene, request.numerics.tolerance, interval)
+          : model.tell_by_integration(design, request.scene, integration_options(request.numerics), interval);
+  if (const Solver after = afterwards(request)) after({&design, 1}, {&motion.outcome, 1});
+  return motion;
+}
+
+}  // namespace leapmap

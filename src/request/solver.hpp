@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Solves designs by the method of a request.
+#pragma once
+
+#include "leapmap/motion.hpp"
+#include "request/request.hpp"
+#include "trajectory/gradient.hpp"
+#include "trajectory/integration_options.hpp"
+#include "trajectory/solver.hpp"
+
+namespace leapmap {
+
+/// The stepper and its controls that numerics asks for, where the method is one of GSL's.
+IntegrationOptions integration_options(const Numerics& numerics);
+
+/// The solver of the request's method, for all but derivatives and statistics.
+Solver make_solver(const Request& request);
+
+/// The same with the derivatives among the columns, if any.
+GradientSolver make_gradient_solver(const Request& request);
+
+/// The motion of a design by the request's method, sampled every `interval` [s]; 0: not sampled.
+Motion tell(const Design& design, const Request& request, double interval);
+
+}  // namespace leapmap
