@@ -47,7 +47,7 @@ def chart(m):
     bar.ax.set_yticklabels(["none", "1", "2", "3 or more"])
     for axis in (left, right):
         axis.set_facecolor(looks.STATUSES["no_jump"][0])
-    right.set_title("where the spurious jump is real: hops below 0.05 diameters on the way; grey: no jump", fontsize=8)
+    right.set_title("it hops below 0.05 diameters before the jump; grey: no jump", fontsize=8)
     style.legend_above(figure, handles)
     for axis in (left, right):
         axis.set_xlabel("release angle [°]")

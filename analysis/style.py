@@ -13,6 +13,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import LogFormatter
 
 EDGE = "#303030"  # outlines and hatching
 MARK = "#d62728"  # the paper's hoop
@@ -114,9 +115,10 @@ def save(figure, output):
 
 
 def log_scale(axis):
-    """Makes an x or y axis logarithmic, its numbers written out."""
+    """Makes an x or y axis logarithmic, its numbers written out; within two decades also some between powers of ten."""
     getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
     axis.set_major_formatter(lambda v, _: f"{v:g}")
+    axis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.4)))
 
 
 def draw_star(axis, place, colour=MARK):
