@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# C++ tests with ASan and UBSan: of some folders and files (tests/sanitized.sh map sweep/spec), or all of them.
+# C++ tests with ASan and UBSan: of some folders and files (tests/sanitized.sh map spec/bad_spec), or all of them.
 set -eu
 cd "$(dirname "$0")/.."
 allowed=$(for file in tests/*/*_test.cpp; do echo "${file%/*}" "${file%_test.cpp}"; done | tr ' ' '\n' | sed 's:^tests/::' | sort -u)

@@ -5,11 +5,11 @@
 
 #include <cmath>
 
+#include "boundaries/cliff.hpp"
 #include "cli/info_place.hpp"
 #include "cli/output.hpp"
 #include "cli/spoken.hpp"
 #include "support/printable.hpp"
-#include "sweep/cliff.hpp"
 
 namespace leapmap::cli {
 

@@ -13,16 +13,16 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "engine/parallel.hpp"
+#include "engine/provenance.hpp"
 #include "leapmap/boundaries.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/schema.hpp"
 #include "map/table_file.hpp"
 #include "model/model.hpp"
+#include "spec/map_spec.hpp"
+#include "spec/options.hpp"
 #include "support/output_file.hpp"
-#include "sweep/map_spec.hpp"
-#include "sweep/options.hpp"
-#include "sweep/parallel.hpp"
-#include "sweep/provenance.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -11,9 +11,9 @@
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
+#include "engine/parallel.hpp"
 #include "support/posix.hpp"
 #include "support/printable.hpp"
-#include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "cli/command_line.hpp"
 #include "map/journaled_file.hpp"
-#include "sweep/options.hpp"
+#include "spec/options.hpp"
 
 namespace leapmap::cli {
 

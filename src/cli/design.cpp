@@ -18,15 +18,15 @@
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
 #include "design/question.hpp"
+#include "engine/parallel.hpp"
 #include "leapmap/find_designs.hpp"
 #include "leapmap/sweep.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/reader.hpp"
 #include "model/model.hpp"
+#include "spec/designs.hpp"
+#include "spec/map_spec.hpp"
 #include "support/output_file.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/map_spec.hpp"
-#include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
 namespace {

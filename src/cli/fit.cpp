@@ -15,13 +15,13 @@
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
+#include "engine/parallel.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "spec/designs.hpp"
+#include "spec/options.hpp"
 #include "support/output_file.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/options.hpp"
-#include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -15,7 +15,7 @@
 #include "leapmap/gait.hpp"
 #include "model/model.hpp"
 #include "request/solver.hpp"
-#include "sweep/options.hpp"
+#include "spec/options.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "audit/audit.hpp"
 #include "cli/audit_lines.hpp"
 #include "cli/commands.hpp"
 #include "cli/hop_gradient.hpp"
@@ -17,6 +18,7 @@
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
 #include "coulomb/contact_phases.hpp"
+#include "engine/provenance.hpp"
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
 #include "map/table_file.hpp"
@@ -24,11 +26,9 @@
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "request/solver.hpp"
+#include "spec/options.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
-#include "sweep/audit.hpp"
-#include "sweep/options.hpp"
-#include "sweep/provenance.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "request/solver.hpp"
-#include "sweep/options.hpp"
+#include "spec/options.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cli/json.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 namespace leapmap::cli {
 

@@ -9,7 +9,7 @@
 #include "cli/spoken.hpp"
 #include "model/fields.hpp"
 #include "numerics/sobol_points.hpp"
-#include "sweep/options.hpp"
+#include "spec/options.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 
+#include "audit/audit_report.hpp"
 #include "cli/audit_lines.hpp"
 #include "cli/commands.hpp"
 #include "cli/info_place.hpp"
@@ -20,10 +21,9 @@
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "model/fields.hpp"
+#include "spec/designs.hpp"
+#include "spec/map_spec.hpp"
 #include "support/printable.hpp"
-#include "sweep/audit_report.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/map_spec.hpp"
 
 namespace leapmap::cli {
 namespace {

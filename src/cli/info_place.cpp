@@ -6,15 +6,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "boundaries/cliff.hpp"
 #include "cli/hop_gradient.hpp"
 #include "cli/output.hpp"
 #include "leapmap/errors.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "request/solver.hpp"
-#include "sweep/cliff.hpp"
-#include "sweep/options.hpp"
-#include "sweep/scatter.hpp"
+#include "spec/options.hpp"
+#include "spec/scatter_check.hpp"
 
 namespace leapmap::cli {
 namespace {

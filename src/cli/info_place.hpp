@@ -5,7 +5,7 @@
 #include <string>
 
 #include "leapmap/boundaries.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 namespace leapmap::cli {
 

@@ -11,7 +11,7 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
-#include "sweep/shard.hpp"
+#include "shards/shard.hpp"
 
 namespace leapmap::cli {
 namespace {

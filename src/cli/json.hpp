@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 namespace leapmap::cli {
 

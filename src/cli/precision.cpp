@@ -12,16 +12,16 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "engine/provenance.hpp"
 #include "leapmap/errors.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
 #include "model/model.hpp"
+#include "spec/designs.hpp"
+#include "spec/point_list.hpp"
 #include "study/precision.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/point_list.hpp"
-#include "sweep/provenance.hpp"
 
 namespace leapmap::cli {
 namespace {

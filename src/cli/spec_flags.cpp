@@ -7,8 +7,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
-#include "sweep/parallel.hpp"
 
 namespace leapmap::cli {
 namespace {

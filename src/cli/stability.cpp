@@ -11,12 +11,12 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "engine/provenance.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/table_file.hpp"
 #include "study/stability.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
-#include "sweep/provenance.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -14,13 +14,13 @@
 #include "cli/progress.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "engine/parallel.hpp"
 #include "leapmap/version.hpp"
+#include "shards/shard.hpp"
+#include "spec/designs.hpp"
+#include "spec/options.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/options.hpp"
-#include "sweep/parallel.hpp"
-#include "sweep/shard.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "audit/audit.hpp"
 #include "leapmap/sweep.hpp"
 #include "map/writer.hpp"
-#include "sweep/audit.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 namespace leapmap::cli {
 

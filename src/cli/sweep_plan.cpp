@@ -6,17 +6,17 @@
 #include <filesystem>
 #include <numeric>
 
+#include "audit/audit.hpp"
 #include "cli/output.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
+#include "engine/engine.hpp"
+#include "engine/map_layout.hpp"
+#include "engine/parallel.hpp"
+#include "engine/places.hpp"
 #include "request/request.hpp"
-#include "sweep/audit.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/engine.hpp"
-#include "sweep/map_layout.hpp"
-#include "sweep/parallel.hpp"
-#include "sweep/places.hpp"
-#include "sweep/shard.hpp"
+#include "shards/shard.hpp"
+#include "spec/designs.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
 #include "leapmap/errors.hpp"
+#include "spec/map_spec.hpp"
 #include "support/printable.hpp"
-#include "sweep/map_spec.hpp"
 #include "sweep/retry.hpp"
 
 namespace leapmap::cli {

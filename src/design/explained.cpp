@@ -14,7 +14,7 @@
 #include "model/parameters.hpp"
 #include "physics/rolling.hpp"
 #include "request/solver.hpp"
-#include "sweep/options.hpp"
+#include "spec/options.hpp"
 
 namespace leapmap {
 namespace {

@@ -11,6 +11,7 @@
 #include "design/engines.hpp"
 #include "design/front.hpp"
 #include "design/judge.hpp"
+#include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/find_designs.hpp"
 #include "leapmap/gradient.hpp"
@@ -18,9 +19,8 @@
 #include "model/model.hpp"
 #include "numerics/sobol_points.hpp"
 #include "request/solver.hpp"
+#include "spec/options.hpp"
 #include "support/stop.hpp"
-#include "sweep/options.hpp"
-#include "sweep/parallel.hpp"
 
 namespace leapmap {
 namespace {

@@ -15,14 +15,14 @@
 #include "design/correlated.hpp"
 #include "design/explained.hpp"
 #include "design/least_squares.hpp"
+#include "engine/parallel.hpp"
 #include "leapmap/solve.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "numerics/sobol_points.hpp"
+#include "spec/options.hpp"
+#include "spec/spec.hpp"
 #include "support/stop.hpp"
-#include "sweep/options.hpp"
-#include "sweep/parallel.hpp"
-#include "sweep/spec.hpp"
 
 namespace leapmap {
 namespace {

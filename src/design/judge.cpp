@@ -5,10 +5,10 @@
 #include <cassert>
 #include <cmath>
 
+#include "boundaries/cliff.hpp"
+#include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
 #include "request/solver.hpp"
-#include "sweep/cliff.hpp"
-#include "sweep/parallel.hpp"
 
 namespace leapmap {
 namespace {

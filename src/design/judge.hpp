@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "design/question.hpp"
-#include "sweep/scatter.hpp"
+#include "request/solver.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap {

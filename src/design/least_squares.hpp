@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "sweep/spacing.hpp"
+#include "spec/spacing.hpp"
 
 namespace leapmap {
 

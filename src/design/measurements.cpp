@@ -13,10 +13,10 @@
 #include "physics/parameters.hpp"
 #include "physics/rolling.hpp"
 #include "physics/sliding.hpp"
+#include "spec/spacing.hpp"
 #include "support/closest.hpp"
 #include "support/csv.hpp"
 #include "support/number.hpp"
-#include "sweep/spacing.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap {

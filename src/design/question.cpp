@@ -9,7 +9,7 @@
 
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
-#include "sweep/options.hpp"
+#include "spec/options.hpp"
 
 namespace leapmap {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "model/fields.hpp"
-#include "sweep/made_sample.hpp"
-#include "sweep/spacing.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spacing.hpp"
+#include "spec/spec.hpp"
+#include "tolerance/made_sample.hpp"
 
 namespace leapmap {
 

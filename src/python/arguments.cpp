@@ -11,8 +11,8 @@
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "spec/options.hpp"
 #include "support/closest.hpp"
-#include "sweep/options.hpp"
 
 namespace py = pybind11;
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 namespace leapmap::python {
 

@@ -9,6 +9,8 @@
 #include <atomic>
 #include <optional>
 
+#include "engine/map_layout.hpp"
+#include "engine/solve_blocks.hpp"
 #include "leapmap/leapmap.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
@@ -16,12 +18,10 @@
 #include "python/arguments.hpp"
 #include "python/calls.hpp"
 #include "python/results.hpp"
+#include "spec/designs.hpp"
+#include "spec/options.hpp"
+#include "spec/spec.hpp"
 #include "support/printable.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/map_layout.hpp"
-#include "sweep/options.hpp"
-#include "sweep/solve_blocks.hpp"
-#include "sweep/spec.hpp"
 
 namespace py = pybind11;
 

@@ -8,7 +8,7 @@
 
 #include "model/model.hpp"
 #include "model/parameters.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 namespace leapmap {
 namespace {

@@ -6,7 +6,7 @@
 #include "gait/error_growth.hpp"
 #include "gait/settle.hpp"
 #include "model/model.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 namespace leapmap {
 
@@ -77,6 +77,11 @@ GradientSolver make_gradient_solver(const Request& request) {
     solver(designs, outcomes, gradients);
     after(designs, outcomes);
   };
+}
+
+ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points) {
+  return {request.scatter, std::move(points), request.goals, quantities_of(statistics_of(request)),
+          make_solver(request_of_sample(request))};
 }
 
 Motion tell(const Design& design, const Request& request, double interval) {

@@ -4,6 +4,7 @@
 
 #include "leapmap/motion.hpp"
 #include "request/request.hpp"
+#include "tolerance/scatter_solver.hpp"
 #include "trajectory/gradient.hpp"
 #include "trajectory/integration_options.hpp"
 #include "trajectory/solver.hpp"
@@ -18,6 +19,9 @@ Solver make_solver(const Request& request);
 
 /// The same with the derivatives among the columns, if any.
 GradientSolver make_gradient_solver(const Request& request);
+
+/// A solver for the request's statistics of manufactured hoops, after these points.
+ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points);
 
 /// The motion of a design by the request's method, sampled every `interval` [s]; 0: not sampled.
 Motion tell(const Design& design, const Request& request, double interval);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "audit/audit_report.hpp"
+#include "engine/map_layout.hpp"
 #include "leapmap/errors.hpp"
 #include "map/hdf5_virtual.hpp"
 #include "map/layout.hpp"
@@ -15,11 +17,9 @@
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "request/solver.hpp"
+#include "shards/shard.hpp"
+#include "spec/map_spec.hpp"
 #include "support/stop.hpp"
-#include "sweep/audit_report.hpp"
-#include "sweep/map_layout.hpp"
-#include "sweep/map_spec.hpp"
-#include "sweep/shard.hpp"
 
 namespace leapmap {
 namespace {

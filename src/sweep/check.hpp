@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "audit/audit.hpp"
 #include "map/journaled_file.hpp"
-#include "sweep/audit.hpp"
 
 namespace leapmap {
 

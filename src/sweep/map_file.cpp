@@ -4,10 +4,10 @@
 #include <functional>
 #include <numeric>
 
+#include "audit/audit_report.hpp"
 #include "leapmap/map.hpp"
 #include "map/reader.hpp"
-#include "sweep/audit_report.hpp"
-#include "sweep/map_spec.hpp"
+#include "spec/map_spec.hpp"
 
 namespace leapmap {
 

@@ -6,19 +6,19 @@
 #include <algorithm>
 #include <vector>
 
+#include "audit/audit.hpp"
+#include "engine/begin_map.hpp"
+#include "engine/map_layout.hpp"
+#include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
 #include "map/reader.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "model/fields.hpp"
 #include "request/solver.hpp"
+#include "spec/designs.hpp"
+#include "spec/map_spec.hpp"
 #include "support/output_file.hpp"
-#include "sweep/audit.hpp"
-#include "sweep/begin_map.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/map_layout.hpp"
-#include "sweep/map_spec.hpp"
-#include "sweep/parallel.hpp"
 
 namespace leapmap {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "leapmap/sweep.hpp"
 #include "map/journaled_file.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 namespace leapmap {
 

@@ -9,18 +9,18 @@
 #include <iterator>
 #include <utility>
 
+#include "audit/audit.hpp"
+#include "engine/begin_map.hpp"
+#include "engine/engine.hpp"
+#include "engine/map_layout.hpp"
+#include "engine/parallel.hpp"
+#include "engine/provenance.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
 #include "request/request.hpp"
+#include "shards/shard.hpp"
+#include "spec/designs.hpp"
 #include "support/output_file.hpp"
-#include "sweep/audit.hpp"
-#include "sweep/begin_map.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/engine.hpp"
-#include "sweep/map_layout.hpp"
-#include "sweep/parallel.hpp"
-#include "sweep/provenance.hpp"
-#include "sweep/shard.hpp"
 
 namespace leapmap {
 namespace {

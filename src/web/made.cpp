@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "sweep/scatter_solver.hpp"
+#include "tolerance/scatter_solver.hpp"
 #include "web/page.hpp"
 
 namespace leapmap::web {

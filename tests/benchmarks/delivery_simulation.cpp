@@ -18,8 +18,8 @@
 #include <thread>
 #include <vector>
 
-#include "sweep/engine.hpp"
-#include "sweep/ordered_delivery.hpp"
+#include "engine/engine.hpp"
+#include "engine/ordered_delivery.hpp"
 
 namespace leapmap {
 namespace {

@@ -8,10 +8,10 @@
 
 #include <filesystem>
 
+#include "engine/map_layout.hpp"
 #include "map/writer.hpp"
+#include "spec/designs.hpp"
 #include "support/sweep_into.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/map_layout.hpp"
 
 namespace leapmap {
 namespace {

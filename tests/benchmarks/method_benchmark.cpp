@@ -6,11 +6,11 @@
 /// whose status, flag or number of candidates differs from it. Engine is run_sweep on one thread: designs
 /// from axes, everything but the file.
 #include "benchmarks/tell_errors.hpp"
+#include "engine/engine.hpp"
 #include "rolling/exact.hpp"
 #include "rolling/rolling_integration.hpp"
+#include "spec/designs.hpp"
 #include "study/precision.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/engine.hpp"
 
 namespace leapmap {
 namespace {

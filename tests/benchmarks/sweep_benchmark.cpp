@@ -7,9 +7,9 @@
 
 #include <random>
 
+#include "engine/engine.hpp"
 #include "request/solver.hpp"
 #include "rolling/rolling_integration.hpp"
-#include "sweep/engine.hpp"
 
 namespace leapmap {
 namespace {

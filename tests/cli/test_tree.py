@@ -33,6 +33,19 @@ def test_no_two_types_of_a_namespace_share_a_name():
     assert {name: where for name, where in files.items() if len(where) > 1} == {}
 
 
+def test_includes_point_to_rooms_above_their_own():
+    rooms = re.findall(r"^\| `(\w+)` \|", (TOP / "src/README.md").read_text(), re.M)
+    assert sorted(rooms) == sorted(p.name for p in (TOP / "src").iterdir() if p.is_dir())
+    wrong, includes = [], 0
+    for path in (TOP / "src").rglob("*.[ch]pp"):
+        room = path.relative_to(TOP / "src").parts[0]
+        for header, target in re.findall(r'^#include "((\w+)/[^"]+)"', path.read_text(), re.M):
+            includes += 1
+            if target != room and rooms.index(target) > rooms.index(room):
+                wrong.append(f"{path.relative_to(TOP)} includes {header}")
+    assert includes > 1000 and wrong == []
+
+
 def test_ctest_runs_every_test_in_cpp_once():
     build = Path(os.environ["LEAPMAP_BUILD"])
     ours, suite = [], ""

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "leapmap/errors.hpp"
+#include "spec/spec.hpp"
 #include "support/refusal.hpp"
-#include "sweep/spec.hpp"
 
 namespace leapmap {
 namespace {

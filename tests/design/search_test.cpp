@@ -11,8 +11,8 @@
 #include "design/front.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/leapmap.hpp"
-#include "sweep/made_sample.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
+#include "tolerance/made_sample.hpp"
 
 namespace leapmap {
 namespace {

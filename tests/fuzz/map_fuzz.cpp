@@ -17,14 +17,14 @@
 #include <fstream>
 #include <string>
 
+#include "engine/map_layout.hpp"
 #include "leapmap/errors.hpp"
 #include "map/writer.hpp"
+#include "spec/designs.hpp"
+#include "spec/map_spec.hpp"
 #include "support/small_map.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/check.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/map_layout.hpp"
-#include "sweep/map_spec.hpp"
 #include "sweep/retry.hpp"
 
 namespace {

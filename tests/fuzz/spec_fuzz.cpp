@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "leapmap/errors.hpp"
-#include "sweep/spec.hpp"
+#include "spec/spec.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leapmap;

@@ -10,10 +10,10 @@
 #include <memory>
 #include <mutex>
 
+#include "engine/parallel.hpp"
 #include "support/designs.hpp"
 #include "support/exact.hpp"
 #include "support/reference_table.hpp"
-#include "sweep/parallel.hpp"
 
 namespace leapmap {
 namespace {

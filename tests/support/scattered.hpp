@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "leapmap/units.hpp"
-#include "sweep/scatter.hpp"
+#include "request/solver.hpp"
 
 namespace leapmap::testing {
 

@@ -4,8 +4,8 @@
 
 #include <memory>
 
+#include "engine/engine.hpp"
 #include "map/writer.hpp"
-#include "sweep/engine.hpp"
 
 namespace leapmap::testing {
 

@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <numeric>
 
+#include "engine/map_layout.hpp"
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
+#include "spec/designs.hpp"
 #include "support/sweep_into.hpp"
 #include "support/temporary_folder.hpp"
-#include "sweep/designs.hpp"
-#include "sweep/map_layout.hpp"
 
 namespace leapmap {
 namespace {

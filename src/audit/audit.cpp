@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "audit/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include "engine/map_layout.hpp"
+#include "engine/parallel.hpp"
+#include "leapmap/errors.hpp"
+#include "map/hdf5.hpp"
+#include "model/fields.hpp"
+#include "numerics/mixed.hpp"
+#include "referee/referee.hpp"
+#include "request/solver.hpp"
+#include "spec/options.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t usual_referee_every = 10;
+constexpr double most_refereed = 200;  // designs that the referee judges of a large audit, about
+constexpr double own_error = 1e-11;    // an integration's at that tolerance, over a few revolutions
+constexpr double adaptive_slack = 100.0;
+
+using Difference = AuditDifference;
+
+Difference larger(const Difference& a, const Difference& b, double weight) {
+  return {a.flags || b.flags, std::max(a.height, weight * b.height), std::max(a.time, weight * b.time),
+          std::max(a.motion, weight * b.motion)};
+}
+
+/// `ours` may lack what its sweep was not asked to store.
+Difference difference(const Outcome& ours, const Outcome& theirs, const Output& output = {}) {
+  Difference d;
+  d.flags = !same_flags(ours, theirs);
+  if (d.flags) return d;
+  for (const Field& field : map_fields()) {
+    const auto* quantity = std::get_if<Quantity>(&field.source);
+    if (!quantity || field.of_sequence || field.of_gait) continue;  // judged elsewhere
+    const double a = ours.*quantity->member, b = theirs.*quantity->member;
+    if (std::isnan(a) && std::isnan(b)) continue;
+    // After as many phases as a sequence holds, only some methods see that a hoop rocks to rest.
+    const bool is_left_open = quantity->member == &Outcome::slip_distance && ours.status == Status::stalled &&
+                              ours.phase_sequence >> 62 != 0;
+    if (is_left_open && (std::isnan(a) || std::isnan(b))) continue;
+    const Measure measure = quantity->measure;
+    double& most = measure == Measure::height ? d.height : measure == Measure::time ? d.time : d.motion;
+    double error = std::abs(a - b);
+    if (measure == Measure::time && b != 0.0) error = std::abs(a / b - 1.0);
+    if (measure == Measure::other) error /= 1.0 + std::abs(b);
+    if (!std::isnan(error)) {
+      most = std::max(most, error);
+    } else if (stores(output, field.name)) {
+      most = std::numeric_limits<double>::infinity();
+    }
+  }
+  return d;
+}
+
+/// As a map in f4 keeps it.
+void round_to_single(Outcome& outcome) {
+  const auto round = [](double& value) { value = static_cast<float>(value); };
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source)) round(outcome.*quantity->member);
+  for (Jump& jump : outcome.later_jumps) round(jump.height), round(jump.time);
+}
+
+}  // namespace
+
+std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile) {
+  return audit_draw(share, tiling, tile, 0, tile.count);
+}
+
+std::vector<std::size_t> audit_draw(double share, const Tiling& tiling, const Tile& tile, std::size_t first,
+                                    std::size_t designs) {
+  const auto due = [&](std::size_t so_many) {
+    return static_cast<std::size_t>(std::ceil(share * static_cast<double>(so_many)));
+  };
+  const std::size_t before = tiling.designs_before(tile), count = due(before + tile.count) - due(before);
+  std::vector<std::size_t> drawn;
+  for (std::size_t i = first * count / tile.count; i < count; ++i) {
+    // One at random from each of `count` equal shares of the tile.
+    const std::size_t begin = i * tile.count / count, end = std::max(begin + 1, (i + 1) * tile.count / count);
+    if (begin >= first + designs) break;
+    const std::size_t one = begin + mixed(before + i) % (end - begin);
+    if (one >= first && one < first + designs) drawn.push_back(one);
+  }
+  return drawn;
+}
+
+std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, const Tile& tile,
+                                       std::size_t first, std::span<const Outcome> outcomes,
+                                       const Gradients& gradients) {
+  std::vector<AuditSample> samples;
+  const bool single = spec.output.precision == "f4";
+  const GradientWanted& derivatives = gradients.wanted();
+  for (const std::size_t drawn : audit_draw(spec.numerics.audit, tiling, tile, first, outcomes.size())) {
+    samples.push_back({tiling.number(tile, drawn), outcomes[drawn - first]});
+    if (single) round_to_single(samples.back().outcome);
+    for (std::size_t i = 0; i < derivatives.of.size(); ++i)
+      for (std::size_t j = 0; j < derivatives.by.size(); ++j) {
+        const double value = gradients.column(i, j)[drawn - first];
+        samples.back().gradient.push_back(single ? static_cast<float>(value) : value);
+      }
+  }
+  return samples;
+}
+
+std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, double share,
+                                       const Tiling& tiling, const Tile& tile, const Solver& solve) {
+  const std::vector<std::size_t> drawn = audit_draw(share, tiling, tile);
+  std::vector<AuditSample> samples;
+  const DesignSpace space(spec);
+  std::vector<Design> designs;
+  for (const std::size_t index : drawn) {
+    samples.push_back({tiling.number(tile, index), {}});
+    designs.push_back(space.at(samples.back().number));
+  }
+  std::vector<Outcome> outcomes(designs.size());
+  solve(designs, outcomes);
+  std::vector<bool> gave_up;  // the map's method on them: settled since, if they are, without derivatives
+  for (const Outcome& outcome : outcomes) gave_up.push_back(outcome.status == Status::failed);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].outcome = std::move(outcomes[i]);
+  const GradientWanted derivatives = derivatives_of(request_of(spec));
+  for (const auto of : derivatives.of)
+    for (const std::size_t by : derivatives.by) {
+      if (samples.empty()) continue;
+      const std::vector<double> values =
+          map.read(std::string(find_gradient(of, differentiable[by])->name), tile);
+      for (std::size_t i = 0; i < samples.size(); ++i) samples[i].gradient.push_back(values[drawn[i]]);
+    }
+  if (hdf5::has_attribute(map.file(), "retry_designs"))
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (gave_up[i]) samples[i].gradient.clear();
+  for (const Field* each : fields_of(spec.scene)) {
+    const Field& field = *each;
+    if (samples.empty() || !map.has(std::string(field.name))) continue;
+    const auto place = [&](const auto& values, const auto& put) {
+      for (std::size_t i = 0; i < samples.size(); ++i) put(samples[i].outcome, values[drawn[i]]);
+    };
+    if (const auto* word = std::get_if<Word>(&field.source)) {
+      place(map.read_words(std::string(field.name), tile),
+            [&](Outcome& outcome, std::uint64_t value) { outcome.*word->member = value; });
+      continue;
+    }
+    const std::vector<double> values = map.read(std::string(field.name), tile);
+    if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
+      place(values, [&](Outcome& outcome, double value) { outcome.*quantity->member = value; });
+    } else if (const auto* later = std::get_if<OfJump>(&field.source)) {
+      place(values, [&](Outcome& outcome, double value) {
+        if (double* kept = later->number.in(outcome)) *kept = value;
+      });
+    } else {
+      const auto& code = std::get<Code>(field.source);
+      place(values,
+            [&](Outcome& outcome, double value) { code.put(outcome, static_cast<std::uint8_t>(value)); });
+    }
+  }
+  return samples;
+}
+
+std::string audit_method(const Numerics& numerics) {
+  return resolved_method(numerics) == "exact" ? "gsl-rk8pd" : "exact";
+}
+
+AuditReport begin_audit(const Spec& spec) {
+  AuditReport report;
+  report.method = audit_method(spec.numerics);
+  const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
+  const double slack = report.method == "exact" ? adaptive_slack : 1.0;
+  report.allowed_error = std::max(spec.numerics.tolerance * slack, own_error) + rounding;
+  return report;
+}
+
+namespace {
+
+/// The first jump of the spec's designs, all of it, by the method that audits.
+Solver second_solver(const Spec& spec, double tolerance) {
+  Request request{.scene = spec.scene,
+                  .numerics = {.method = audit_method(spec.numerics), .tolerance = tolerance}};
+  request.scene.jumps = 1, request.scene.settle = 0;
+  request.columns = fields_of(request.scene);
+  return make_solver(request);
+}
+
+Solver solver_by_referee(const Scene& scene, double tolerance) {
+  return [referee = std::make_shared<referee::Referee>(scene, tolerance)](std::span<const Design> designs,
+                                                                          std::span<Outcome> outcomes) {
+    std::ranges::transform(designs, outcomes.begin(), [&](const Design& d) { return referee->solve(d); });
+  };
+}
+
+}  // namespace
+
+Auditor::Auditor(const Spec& spec, std::size_t referee_every)
+    : spec_(spec),
+      space_(spec),
+      second_{second_solver(spec, audit_tolerance), second_solver(spec, coarser_tolerance)},
+      referee_{solver_by_referee(spec.scene, audit_tolerance),
+               solver_by_referee(spec.scene, coarser_tolerance)},
+      gradients_(spec),
+      sequences_(spec, begin_audit(spec).allowed_error),
+      gaits_(spec, begin_audit(spec).allowed_error),
+      referee_every_(referee_every),
+      allowed_(begin_audit(spec).allowed_error) {
+  if (referee_every == 0) {
+    const double audited = spec.numerics.audit * static_cast<double>(designs_of(shape_of(spec)));
+    const auto large = static_cast<std::size_t>(audited / most_refereed);
+    referee_every_ = audited <= 3.0 * usual_referee_every ? 1 : std::max(usual_referee_every, large);
+  }
+}
+
+auto Auditor::verdict_of(const AuditSolver& judge, const Design& design, const Outcome& ours) const
+    -> Verdict {
+  const Outcome theirs = solved(judge.solve, design);
+  Verdict verdict;
+  verdict.difference = difference(ours, theirs, spec_.output);
+  verdict.undecided = theirs.status == Status::failed;
+  if (verdict.undecided) return verdict;
+  verdict.wrong_flags = verdict.difference.flags;
+  verdict.inaccurate = !verdict.wrong_flags && exceeds(verdict.difference, {}, ours);
+  if (!verdict.wrong_flags && !verdict.inaccurate) return verdict;
+
+  std::vector<Outcome> beside = outcomes_beside(judge, design, spec_, verdict.wrong_flags);
+  if (std::ranges::all_of(beside, [&](const Outcome& o) { return same_flags(o, theirs); })) {
+    Difference doubt;
+    for (const Outcome& outcome : beside) doubt = larger(doubt, difference(outcome, theirs), 10.0);
+    verdict.inaccurate = verdict.inaccurate && exceeds(verdict.difference, doubt, ours);
+    return verdict;
+  }
+  beside.push_back(theirs);
+  std::erase_if(beside, [](const Outcome& o) { return o.status == Status::failed; });
+  return verdict_among(ours, beside);
+}
+
+/// A judge whose answers nearby differ cannot decide. What it is asked about is wrong all the same if it is
+/// like none of them; not where bounces make every answer its own, and as to numbers only if it is far off,
+/// as they may go with the root of the distance from a cliff.
+auto Auditor::verdict_among(const Outcome& ours, const std::vector<Outcome>& beside) const -> Verdict {
+  constexpr std::size_t most_kinds = 3, least_of_a_kind = 2, least_like = 3;
+  constexpr Difference far_off{false, 1e-4, 1e-4, 1e-4};
+  Verdict verdict;
+  std::vector<std::pair<const Outcome*, std::size_t>> kinds;
+  for (const Outcome& outcome : beside) {
+    const auto kind =
+        std::ranges::find_if(kinds, [&](const auto& k) { return same_flags(*k.first, outcome); });
+    if (kind == kinds.end())
+      kinds.emplace_back(&outcome, 1);
+    else
+      ++kind->second;
+  }
+  const bool few_kinds = kinds.size() <= most_kinds && std::ranges::all_of(kinds, [](const auto& k) {
+                           return k.second >= least_of_a_kind;
+                         });
+  std::vector<Outcome> like;
+  std::ranges::copy_if(beside, std::back_inserter(like),
+                       [&](const Outcome& o) { return same_flags(o, ours); });
+  verdict.wrong_flags = like.empty() && few_kinds;
+  if (like.size() >= least_like) {
+    Difference spread = far_off;
+    bool is_like_one = false;
+    for (const Outcome& outcome : like) spread = larger(spread, difference(outcome, like.front()), 10.0);
+    for (const Outcome& outcome : like) {
+      verdict.difference = difference(ours, outcome, spec_.output);
+      is_like_one = is_like_one || !exceeds(verdict.difference, spread, ours);
+    }
+    verdict.inaccurate = !is_like_one;
+  }
+  verdict.undecided = !verdict.wrong_flags && !verdict.inaccurate;
+  return verdict;
+}
+
+/// Whether a difference is more than is allowed, and more than a judge's doubt.
+bool Auditor::exceeds(const AuditDifference& d, const AuditDifference& doubt, const Outcome& ours) const {
+  const double height_allowed = allowed_ * (std::isnan(ours.jump_height) ? 1.0 : 1.0 + ours.jump_height);
+  return d.height > std::max(height_allowed, doubt.height) || d.time > std::max(allowed_, doubt.time) ||
+         d.motion > std::max(allowed_, doubt.motion);
+}
+
+void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
+  const std::size_t number = sample.number;
+  const Outcome& ours = sample.outcome;
+  ++report.designs;
+  if (ours.status == Status::failed) {
+    ++report.failed;
+    return;
+  }
+  const Design design = space_.at(number);
+  sequences_.look_at(number, design, ours, report);
+  gaits_.look_at(number, design, ours, report);
+  if (!sample.gradient.empty()) gradients_.look_at(number, design, ours, sample.gradient, report);
+  Verdict verdict = verdict_of(second_, design, ours);
+  std::optional<Verdict> ruling;
+  // Where an integration convicts exact, the referee is asked for its opinion.
+  const bool second_opinion = verdict.convicts() && resolved_method(spec_.numerics) == "exact";
+  if (mixed(number) % referee_every_ == 0 || second_opinion) ruling = verdict_of(referee_, design, ours);
+  const bool acquitted = ruling && !ruling->undecided && !ruling->convicts();
+  if (verdict.convicts() && acquitted) verdict.undecided = true;
+  // Of flags two of three decide. Numbers may be wrong by a formula that the second method shares.
+  if (ruling && ruling->wrong_flags && !verdict.undecided && !verdict.convicts()) ruling->undecided = true;
+
+  const auto note_first = [&](std::optional<std::size_t>& first) {
+    first = std::min(first.value_or(number), number);
+  };
+  if (verdict.undecided) {
+    ++report.undecided;
+  } else if (verdict.wrong_flags) {
+    ++report.flag_mismatches;
+    note_first(report.first_mismatch);
+  } else {
+    report.max_abs_height_error = std::max(report.max_abs_height_error, verdict.difference.height);
+    report.max_rel_time_error = std::max(report.max_rel_time_error, verdict.difference.time);
+    report.max_rel_motion_error = std::max(report.max_rel_motion_error, verdict.difference.motion);
+    if (verdict.inaccurate) ++report.beyond_tolerance, note_first(report.first_inaccurate);
+  }
+  if (!ruling) return;
+  ++report.refereed;
+  if (ruling->undecided) {
+    ++report.referee_undecided;
+    return;
+  }
+  if (ruling->convicts()) ++report.overruled, note_first(report.first_overruled);
+  if (!ruling->wrong_flags)
+    report.referee_max_error = std::max({report.referee_max_error, ruling->difference.height,
+                                         ruling->difference.time, ruling->difference.motion});
+}
+
+AuditReport audit(const Spec& spec, std::span<const AuditSample> samples, int threads,
+                  const std::function<bool()>& stop_requested, std::size_t referee_every) {
+  AuditReport report = begin_audit(spec);
+  std::mutex reporting;
+  parallel_for_each(samples.size(), threads, stop_requested, [&] {
+    return [&, auditor = Auditor(spec, referee_every)](std::size_t i) {
+      AuditReport one;
+      try {
+        auditor.look_at(samples[i], one);
+      } catch (const Stopped&) {
+        return false;
+      }
+      const std::lock_guard lock(reporting);
+      merge(report, one);
+      return !(stop_requested && stop_requested());
+    };
+  });
+  return report;
+}
+
+}  // namespace leapmap

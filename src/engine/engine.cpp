@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/engine.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "engine/ordered_delivery.hpp"
+#include "engine/parallel.hpp"
+#include "leapmap/errors.hpp"
+#include "request/solver.hpp"
+#include "spec/designs.hpp"
+
+namespace leapmap {
+
+namespace {
+
+/// Designs solved at once: what the solvers take as one block, and no more than stays in the second cache;
+/// with many hoops made after each fewer, so that a stop need not wait long.
+std::size_t piece_of(const Request& request) {
+  constexpr std::size_t most = 1024, most_hoops = 1 << 16;
+  if (request.scatter.spreads.empty()) return most;
+  return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(request.scatter.samples), 1, most);
+}
+
+struct Item {
+  Prepared prepared;
+  std::size_t designs;
+};
+
+}  // namespace
+
+std::span<const double> Solved::column(const Field& field) const {
+  const auto* derivative = std::get_if<Derivative>(&field.source);
+  return derivative ? gradients.column(derivative->of, derivative->by) : made.column(field);
+}
+
+BlockSolver::BlockSolver(const Request& request, std::size_t most_designs,
+                         const std::shared_ptr<const SobolPoints>& points)
+    : solver_(make_gradient_solver(request)),
+      gradients_(derivatives_of(request)),
+      made_(statistics_of(request)),
+      outcomes_(most_designs) {
+  if (!request.scatter.spreads.empty()) scatter_.emplace(scatter_solver_of(request, points));
+}
+
+Solved BlockSolver::solve(std::span<const Design> designs) {
+  const std::span outcomes = std::span(outcomes_).first(designs.size());
+  solver_(designs, outcomes, gradients_);
+  if (scatter_) scatter_->solve(designs, made_);
+  return {outcomes, gradients_, made_};
+}
+
+std::function<TileWork()> in_order(TileSink sink) {
+  return [sink = std::move(sink)] {
+    const auto kept = std::make_shared<std::vector<Outcome>>();
+    return TileWork{
+        [kept](const Tile&, std::size_t, const Solved& solved) {
+          kept->insert(kept->end(), solved.outcomes.begin(), solved.outcomes.end());
+        },
+        [sink, kept](std::size_t, const Tile& tile) {
+          const std::size_t bytes = kept->size() * sizeof(Outcome);
+          return Prepared{[sink, tile, outcomes = std::exchange(*kept, {})] { sink(tile, outcomes); }, bytes};
+        }};
+  };
+}
+
+std::size_t run_sweep(const Spec& designs, const Request& request, const Tiling& tiling,
+                      const EngineOptions& options, const std::function<TileWork()>& make_work) {
+  const DesignSpace space(designs);
+  std::size_t delivered = 0;
+  OrderedDelivery<Item> delivery(
+      options.first_tile,
+      [&](Item& item) {
+        item.prepared.take();
+        delivered += item.designs;
+      },
+      most_waiting_bytes(thread_count(options.threads)));
+
+  const std::size_t piece = std::min(piece_of(request), tiling.largest_tile());
+  const auto points = points_of(request.scatter);
+  const bool scattered = !request.scatter.spreads.empty();
+  const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
+  parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
+    // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
+    return [&, solver = BlockSolver(request, piece, points), work = make_work(),
+            block = std::vector<Design>(piece)](std::size_t i) mutable {
+      try {
+        const std::size_t number = options.first_tile + i;
+        const Tile tile = tiling.tile(number);
+        for (std::size_t first = 0; first < tile.count; first += piece) {
+          // A tile of many hoops as made may take minutes, and is given up; any other is brought to its end,
+          // unless that takes seconds.
+          if (scattered && options.stop_requested && options.stop_requested()) {
+            delivery.close(number);
+            return false;
+          }
+          const std::size_t count = std::min(piece, tile.count - first);
+          const std::span some(block.data(), count);
+          space.fill(tile, first, some);
+          work.take(tile, first, solver.solve(some));
+        }
+        Prepared prepared = work.prepare(number, tile);
+        if (!prepared.take) {
+          delivery.close(number);
+          return false;
+        }
+        const std::size_t bytes = prepared.bytes;
+        const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
+        return wanted && !(options.stop_requested && options.stop_requested());
+      } catch (const Stopped&) {  // inside a design that takes long: the tile is given up
+        delivery.close(options.first_tile + i);
+        return false;
+      } catch (...) {
+        delivery.abandon();
+        throw;
+      }
+    };
+  });
+  delivery.finish();
+  return delivered;
+}
+
+double seconds_per_design(const Spec& designs, const Request& request, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const DesignSpace space(designs);
+  const std::size_t count = designs_of(shape_of(designs));
+  constexpr std::size_t most = 8192;
+  BlockSolver solver(request, most, points_of(request.scatter));
+  std::mt19937_64 random(1);
+  std::uniform_int_distribution<std::size_t> pick(0, count - 1);
+  // Few at a time while it is not known how long one takes: an integration may need seconds.
+  std::vector<Design> some(request.scatter.spreads.empty() ? 8 : 1);
+  std::chrono::duration<double> passed{0};
+  std::size_t solved = 0;
+  while (passed.count() < seconds) {
+    for (Design& design : some) design = space.at(pick(random));
+    const auto begin = Clock::now();
+    solver.solve(some);
+    passed += Clock::now() - begin;
+    solved += some.size();
+    if (passed.count() < 0.1 * seconds) some.resize(std::min(2 * some.size(), most));
+  }
+  return passed.count() / static_cast<double>(solved);
+}
+
+}  // namespace leapmap

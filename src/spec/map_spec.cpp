@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spec/map_spec.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "map/hdf5_trust.hpp"
+#include "model/model.hpp"
+#include "spec/designs.hpp"
+#include "spec/options.hpp"
+
+namespace leapmap {
+namespace {
+
+/// The values of an option: a number's alone, an axis's all.
+std::vector<double> numbers_of(Spec& spec, const Option& option) {
+  if (std::holds_alternative<SpreadSlot>(option.slot) || std::holds_alternative<GoalSlot>(option.slot))
+    return {};
+  const auto axis = std::ranges::find(spec.axes, option.key, &Axis::key);
+  if (axis != spec.axes.end()) return axis->values;
+  if (const auto* slot = std::get_if<ParameterSlot>(&option.slot)) {
+    if (spec.axes.empty()) return list_values(spec, option);
+    const double value = spec.design.*slot->member;
+    return std::isnan(value) ? std::vector<double>{} : std::vector{value};  // NaN: follows another
+  }
+  if (const auto* slot = std::get_if<SceneSlot>(&option.slot)) return {spec.scene.*slot->member};
+  if (const auto* slot = std::get_if<NumberSlot>(&option.slot)) return {(*slot)(spec)};
+  if (const auto* slot = std::get_if<IntegerSlot>(&option.slot)) return {static_cast<double>((*slot)(spec))};
+  return {};
+}
+
+std::vector<std::string> texts_of(Spec& spec, const Option& option) {
+  if (std::holds_alternative<SpreadSlot>(option.slot)) {
+    const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
+    return spread == spec.scatter.spreads.end() ? std::vector<std::string>{} : std::vector{text_of(*spread)};
+  }
+  if (std::holds_alternative<GoalSlot>(option.slot)) {
+    const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
+    return goal == spec.goals.end() ? std::vector<std::string>{} : std::vector{text_of(*goal)};
+  }
+  if (std::holds_alternative<FrictionSlot>(option.slot)) return {std::string(model_of(spec.scene).name)};
+  if (const auto* slot = std::get_if<TextSlot>(&option.slot)) return {(*slot)(spec)};
+  if (const auto* slot = std::get_if<TextsSlot>(&option.slot)) return (*slot)(spec);
+  return {};
+}
+
+std::string told(const std::vector<double>& numbers, const std::vector<std::string>& texts) {
+  if (!texts.empty() || numbers.empty())
+    return texts.empty() ? "not set" : fmt::format("{}", fmt::join(texts, ", "));
+  if (numbers.size() == 1) return fmt::format("{}", numbers[0]);
+  return fmt::format("{} values from {} to {}", numbers.size(), numbers.front(), numbers.back());
+}
+
+}  // namespace
+
+Spec spec_of(const MapReader& map, const std::string& origin) {
+  Spec spec = parse_map_spec(map.attribute("spec"), origin);
+  if (!spec.axes.empty()) return spec;
+  spec.list = {spec.points, {}, map.labels(), map.shape()[0]};
+  const Tile all{{0}, {spec.list.count}, spec.list.count};
+  for (const Option* parameter : design_parameters()) {
+    const std::string name(parameter->key);
+    if (!map.has(name)) continue;
+    hdf5::bytes_in_memory(map.open(name), fmt::format("{}: {}", origin, name));
+    spec.list.columns.push_back({name, map.read(name, all)});
+  }
+  return spec;
+}
+
+std::optional<std::string> first_difference(const Spec& original_there, const Spec& original_here,
+                                            bool only_designs) {
+  Spec there = original_there, here = original_here;
+  for (Spec* spec : {&there, &here}) {
+    spec->numerics.method = resolved_method(spec->numerics);
+    spec->output.file.clear();
+    const bool varies = !spec->points.empty() ||
+                        std::ranges::find(spec->axes, "mu_static", &Axis::key) != spec->axes.end() ||
+                        std::ranges::find(spec->scatter.spreads, "mu_static", &Spread::parameter) !=
+                            spec->scatter.spreads.end();
+    if (std::isnan(spec->design.mu_kinetic) && !varies) spec->design.mu_kinetic = spec->design.mu_static;
+    spec->points.clear();  // where a list was read from does not count, only what it holds
+  }
+  const auto keys = [](const Spec& spec) {
+    std::vector<std::string_view> names;
+    for (const Axis& axis : spec.axes) names.push_back(axis.key);
+    return fmt::format("{}", fmt::join(names, ", "));
+  };
+  if (keys(there) != keys(here))
+    return fmt::format("its axes are [{}] there and [{}] here", keys(there), keys(here));
+  for (const Option& option : spec_options()) {
+    if (only_designs && option.section != "scene" && option.section != "design") continue;
+    const auto a = numbers_of(there, option), b = numbers_of(here, option);
+    const auto c = texts_of(there, option), d = texts_of(here, option);
+    if (a == b && c == d) continue;
+    const std::string key = fmt::format("{}.{}", option.section, option.key);
+    if (a.size() != b.size() || a.size() <= 1)
+      return fmt::format("{} is {} there and {} here", key, told(a, c), told(b, d));
+    const auto at = std::ranges::mismatch(a, b);
+    return fmt::format("value {} of {} is {} there and {} here", at.in1 - a.begin(), key, *at.in1, *at.in2);
+  }
+  const bool same = there.list.labels == here.list.labels;
+  return same ? std::nullopt : std::optional<std::string>("the labels of its designs differ");
+}
+
+}  // namespace leapmap

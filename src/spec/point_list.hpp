@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Designs one by one, from a CSV file.
+#pragma once
+
+#include <string>
+
+#include "spec/spec.hpp"
+
+namespace leapmap {
+
+/// Reads a list of designs. The header names parameters of a design; each line below holds one number for
+/// each (angles in rad, or written "23 deg"), and what stands in a column `label` names the design; origin,
+/// the spec's file, is for messages. Throws InputError naming line and column, IoError if the file cannot be
+/// read.
+PointList read_points(const std::string& path, const std::string& origin);
+
+}  // namespace leapmap

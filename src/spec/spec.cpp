@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spec/spec.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+
+#include "leapmap/errors.hpp"
+#include "map/schema.hpp"
+#include "model/model.hpp"
+#include "spec/point_list.hpp"
+#include "spec/spec_entry.hpp"
+#include "support/closest.hpp"
+#include "support/csv.hpp"
+#include "support/number.hpp"
+#include "support/posix.hpp"
+
+namespace leapmap {
+namespace {
+
+/// Puts one key's value where its option says.
+struct Assign {
+  const Entry& entry;
+  Spec& spec;
+
+  void operator()(const ParameterSlot& slot) const {
+    if (const toml::table* table = entry.node->as_table()) {
+      spec.axes.push_back(to_axis(entry, *table));
+    } else {
+      spec.design.*slot.member = to_number(entry, *entry.node);
+    }
+  }
+  void operator()(SceneSlot slot) const { spec.scene.*slot.member = one_number(); }
+  void operator()(NumberSlot slot) const { slot(spec) = one_number(); }
+  void operator()(FrictionSlot) const {
+    spec.scene.friction = std::ranges::find(models(), text(*entry.node), &Model::name)->friction;
+  }
+  void operator()(IntegerSlot slot) const {
+    const auto value = to_whole(*entry.node);
+    if (!value) refuse(entry, "is not a whole number", allowed_values(*entry.option));
+    if (!in_range(*entry.option, static_cast<double>(*value)))
+      refuse(entry, "is out of range", allowed_values(*entry.option));
+    slot(spec) = *value;
+  }
+  void operator()(SpreadSlot) const { spec.scatter.spreads.push_back(to_spread(entry)); }
+  void operator()(GoalSlot) const { spec.goals.push_back(to_goal(entry)); }
+  void operator()(TextSlot slot) const { slot(spec) = text(*entry.node); }
+  void operator()(TextsSlot slot) const {
+    if (entry.node->is_string()) {  // a list of one
+      slot(spec) = {text(*entry.node)};
+      return;
+    }
+    const toml::array* array = entry.node->as_array();
+    if (!array || array->empty())
+      refuse(entry, "is not a list of names", "a list with " + allowed_values(*entry.option));
+    slot(spec).clear();
+    for (const toml::node& node : *array) {
+      const std::string name = text(node);
+      if (std::ranges::find(slot(spec), name) != slot(spec).end())
+        refuse(entry, fmt::format("'{}' appears twice", name), "each once");
+      slot(spec).push_back(name);
+    }
+  }
+  double one_number() const {
+    if (entry.node->is_table()) refuse(entry, "takes no axis", allowed_values(*entry.option));
+    return to_number(entry, *entry.node);
+  }
+  std::string text(const toml::node& node) const {
+    const toml::value<std::string>* value = node.as_string();
+    if (!value) refuse(entry, "is not a string", allowed_values(*entry.option));
+    if (entry.option->choices) {
+      if (!is_choice(*entry.option, value->get()))
+        refuse(entry, unknown_choice(*entry.option, value->get()), allowed_values(*entry.option));
+    }
+    return value->get();
+  }
+};
+
+[[noreturn]] void refuse_key(const std::string& place, std::string_view section, std::string_view key) {
+  if (const Option* parameter = find_option("design", key); section == "goal" && parameter)
+    throw InputError(
+        fmt::format("{}: goal.{}: is a parameter; allowed: its bounds in [design], {} = {{ from, to }}",
+                    place, key, key));
+  std::vector<std::string_view> keys;
+  for (const Option& option : spec_options())
+    if ((section.empty() || option.section == section) && std::ranges::find(keys, option.key) == keys.end())
+      keys.push_back(option.key);
+  throw InputError(fmt::format("{}: {}{}{}: unknown key{}; allowed: {}", place, section,
+                               section.empty() ? "" : ".", key, did_you_mean(key, keys),
+                               fmt::join(keys, ", ")));
+}
+
+/// Every key of a file's tables, in the order they were written.
+std::vector<Entry> entries_of(const toml::table& file, const std::string& origin) {
+  std::vector<Entry> entries;
+  for (const auto& [section, node] : file) {
+    const std::string place = fmt::format("{}:{}", origin, node.source().begin.line);
+    const toml::table* table = node.as_table();
+    const bool known = std::ranges::any_of(
+        spec_options(), [&in = section](const Option& o) { return o.section == in.str(); });
+    if (const Option* option = find_option("", section.str()); option && !known)
+      throw InputError(fmt::format("{}: {}: a key stands below its section; allowed: [{}] above it", place,
+                                   section.str(), option->section));
+    if (!known || !table)
+      throw InputError(fmt::format("{}: [{}]: unknown section{}; allowed: [{}]", place, section.str(),
+                                   did_you_mean(section.str(), spec_sections),
+                                   fmt::join(spec_sections, "], [")));
+    for (const auto& [key, value] : *table) {
+      const Option* option = find_option(section.str(), key.str());
+      const auto position = value.source().begin;
+      if (!option) refuse_key(fmt::format("{}:{}", origin, position.line), section.str(), key.str());
+      const auto twice = std::ranges::find(entries, option, &Entry::option);
+      if (twice != entries.end())
+        throw InputError(fmt::format("{}:{}: {} appears twice, also at {}; allowed: once", origin,
+                                     position.line, key.str(), twice->place));
+      entries.push_back({option, fmt::format("{}:{}", origin, position.line), position, &value});
+    }
+  }
+  std::ranges::stable_sort(entries, {},
+                           [](const Entry& e) { return std::pair(e.position.line, e.position.column); });
+  return entries;
+}
+
+/// KEY=VALUE as a table { v = VALUE }; numbers as every flag takes them, a bare word is a string.
+toml::table parse_override(const std::string& text, std::string_view value) {
+  if (const auto number = number_in(value)) {
+    const auto whole = static_cast<std::int64_t>(std::clamp(*number, -1e15, 1e15));
+    if (static_cast<double>(whole) == *number) return toml::table{{"v", whole}};
+    return toml::table{{"v", *number}};
+  }
+  try {
+    toml::table table = toml::parse(fmt::format("v = {}", value));
+    if (table.size() != 1) throw InputError(fmt::format("--set {}: allowed: one KEY=VALUE", text));
+    return table;
+  } catch (const toml::parse_error&) {
+    if (value.find_first_of("{}[]\"'\n") != std::string_view::npos)
+      throw InputError(
+          fmt::format("--set {}: the value is not TOML; allowed: a number, a word, [..] or {{..}}", text));
+    return toml::table{{"v", std::string(value)}};
+  }
+}
+
+/// The same key set twice: the later one holds, at the place of the first, so that overriding an axis keeps
+/// its turn.
+void override_with(std::vector<Entry>& entries, const Entry& entry) {
+  const auto found = std::ranges::find(entries, entry.option, &Entry::option);
+  found == entries.end() ? entries.push_back(entry) : void(*found = entry);
+}
+
+/// Whether a key says no more than its default.
+bool is_default(const Option& option, const Entry& entry) {
+  const auto value = entry.node->value<double>();
+  const auto* of_scene = std::get_if<SceneSlot>(&option.slot);
+  const auto* of_design = std::get_if<ParameterSlot>(&option.slot);
+  if (!value || (!of_scene && !of_design)) return false;
+  return is_usual(*value, of_scene ? Scene{}.*of_scene->member : Design{}.*of_design->member);
+}
+
+/// Nothing given is ignored without a word. A file may spell defaults out.
+void refuse_what_has_no_use(const std::vector<Entry>& entries, const Spec& spec) {
+  for (const Entry& entry : entries)
+    if (!has(spec.scene.friction, entry.option->only_of) &&
+        (entry.place == command_line || !is_default(*entry.option, entry)))
+      refuse(entry, no_use(spec.scene), with_model(*entry.option->only_of));
+}
+
+/// A points file is looked for beside the spec first, then from the working folder.
+std::string find_points(const Spec& spec) {
+  namespace fs = std::filesystem;
+  const fs::path beside = fs::path(spec.origin).parent_path() / spec.points;
+  std::error_code ignored;
+  return fs::exists(beside, ignored) ? beside.string() : spec.points;
+}
+
+}  // namespace
+
+std::string origin_of(const Spec& spec) { return spec.origin.empty() ? "command line" : spec.origin; }
+
+void read_points_of(Spec& spec) {
+  if (spec.points.empty()) return;
+  spec.points =
+      std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
+  spec.list = read_points(spec.points, origin_of(spec));
+  for (const Axis& column : spec.list.columns) {
+    const Option& option = *find_option("design", column.key);
+    if (!has(spec.scene.friction, option.only_of))
+      throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
+                                   no_use(spec.scene), with_model(*option.only_of)));
+    if (const double given = value_of(option, spec.design);
+        !is_usual(given, value_of(option, Design{})) && !std::isnan(given))
+      throw InputError(fmt::format(
+          "{}: {} = {} has no effect beside the column of that name in {}; allowed: one of the two",
+          origin_of(spec), column.key, given, spec.points));
+  }
+}
+
+namespace {
+
+/// A million values of an axis are some 25 MB.
+std::string text_of_spec(const std::string& path) {
+  constexpr std::string_view allowed = "a spec in TOML";
+  TextFile file(path, allowed, std::size_t{1} << 26);
+  refuse_other_form(path, file.peek(4096), allowed);
+  return file.rest();
+}
+
+}  // namespace
+
+Spec read_spec(const std::string& path, const std::vector<std::string>& overrides) {
+  Spec spec = parse_spec(path.empty() ? "" : text_of_spec(path), path, overrides);
+  read_points_of(spec);
+  return spec;
+}
+
+namespace {
+
+/// lenient: what has no effect is let pass.
+Spec parse(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
+           bool lenient) {
+  Spec spec;
+  spec.origin = origin;
+  toml::table file;
+  try {
+    file = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}:{}: not TOML: {}", origin, error.source().begin.line, error.description()));
+  }
+  std::vector<Entry> entries = entries_of(file, origin);
+
+  std::vector<toml::table> values;
+  values.reserve(overrides.size());  // entries point into it
+  for (const std::string& set : overrides) {
+    const std::size_t equals = set.find('=');
+    if (equals == std::string::npos) throw InputError(fmt::format("--set {}: allowed: KEY=VALUE", set));
+    const std::string name = set.substr(0, equals);
+    const std::size_t dot = name.find('.');
+    const std::string section = dot == std::string::npos ? "" : name.substr(0, dot);
+    const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
+    const Option* option = find_option(section, key);
+    if (!option) refuse_key("--set " + set, section, key);
+    values.push_back(parse_override(set, std::string_view(set).substr(equals + 1)));
+    override_with(entries, {option, command_line, {}, values.back().get("v")});
+  }
+
+  const auto given = [&](std::string_view key, bool scattered = false) {
+    return std::ranges::any_of(entries, [&](const Entry& e) {
+      return e.option->key == key && std::holds_alternative<SpreadSlot>(e.option->slot) == scattered;
+    });
+  };
+  for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
+  const bool asks_for_gaits =
+      std::ranges::any_of(entries, [](const Entry& e) { return e.option->section == "gait"; });
+  if ((asks_for_gaits || file.contains("gait")) && !given("settle")) spec.scene.settle = 500;
+  if (!lenient) refuse_what_has_no_use(entries, spec);
+  // Where mu_static varies, mu_kinetic follows it from design to design.
+  const bool varies = std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() ||
+                      !spec.points.empty() || given("mu_static", true);
+  if (!given("mu_kinetic") && !varies) spec.design.mu_kinetic = spec.design.mu_static;
+
+  for (const Entry& entry : entries) {
+    const std::string_view key = entry.option->key;
+    if (entry.option->section == "scatter" && spec.scatter.spreads.empty())
+      refuse(entry, "has no effect without tolerances",
+             "with a parameter in [scatter], for example slope = { normal = \"1 deg\" }");
+    const double set = key == "fixed_step"           ? spec.numerics.fixed_step
+                       : key == "absolute_tolerance" ? spec.numerics.absolute_tolerance
+                                                     : 0.0;
+    if (set > 0.0 && resolved_method(spec.numerics) == "exact")
+      refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method),
+             "with method = \"gsl-...\"");
+  }
+
+  if (!spec.points.empty() && !spec.axes.empty())
+    throw InputError(
+        fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
+                    origin_of(spec), spec.axes.front().key));
+  double designs = 1.0;
+  for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
+  if (designs > most_designs)
+    throw InputError(
+        fmt::format("{}: {:.3g} designs; allowed: at most {:.0e}", origin_of(spec), designs, most_designs));
+  return spec;
+}
+
+}  // namespace
+
+Spec parse_spec(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
+  return parse(text, origin, overrides, false);
+}
+
+Spec parse_map_spec(std::string_view text, const std::string& origin) {
+  return parse(text, origin, {}, true);
+}
+
+}  // namespace leapmap

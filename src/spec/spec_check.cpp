@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Whether a spec filled in by hand is one that a file could hold.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "leapmap/errors.hpp"
+#include "map/layout.hpp"
+#include "map/schema.hpp"
+#include "model/model.hpp"
+#include "spec/options.hpp"
+#include "spec/scatter_check.hpp"
+#include "spec/spacing.hpp"
+#include "support/printable.hpp"
+
+namespace leapmap {
+namespace {
+
+[[noreturn]] void refuse(const Spec& spec, std::string_view key, const std::string& what,
+                         const std::string& allowed) {
+  throw InputError(fmt::format("{}: {} {}; allowed: {}", origin_of(spec), key, what, allowed));
+}
+
+void check_number(const Spec& spec, const Option& option, double value) {
+  if (!in_range(option, value))
+    refuse(spec, option.key, fmt::format("= {} is out of range", value), allowed_values(option));
+}
+
+void check_text(const Spec& spec, const Option& option, const std::string& text) {
+  if (!option.choices) return;
+  if (!is_choice(option, text))
+    refuse(spec, option.key, "= " + unknown_choice(option, text), allowed_values(option));
+}
+
+/// Axes, or the columns of a list.
+void check_values(const Spec& spec, const std::vector<Axis>& axes) {
+  for (const Axis& axis : axes) {
+    const Option* option = find_option("design", axis.key);
+    if (!option || !std::holds_alternative<ParameterSlot>(option->slot))
+      refuse(spec, axis.key, "is not a parameter of a design", "an axis of one");
+    if (std::ranges::count(axes, axis.key, &Axis::key) > 1) refuse(spec, axis.key, "appears twice", "once");
+    if (!has(spec.scene.friction, option->only_of))
+      refuse(spec, axis.key, no_use(spec.scene), with_model(*option->only_of));
+    if (axis.values.empty()) refuse(spec, axis.key, "has no values", "one or more");
+    if (axis.free)
+      refuse(spec, axis.key, "is between bounds: 'count' is missing",
+             "{ from, to, count }, or leapmap design, which chooses between bounds");
+    for (const double value : axis.values) check_number(spec, *option, value);
+  }
+}
+
+/// That nothing is named which only comes of more jumps, or of gaits, than the scene asks for.
+void check_names(const Spec& spec) {
+  const auto look_at = [&](std::string_view key, const std::string& name) {
+    const Field* field = find_field(name);
+    if (!field || has(spec.scene, *field)) return;
+    if (field->of_sequence)
+      refuse(spec, key, fmt::format("'{}' has no effect with scene.jumps = {}", name, spec.scene.jumps),
+             "with scene.jumps at least that number");
+    if (field->of_gait)
+      refuse(spec, key, fmt::format("'{}' has no effect without [gait]", name),
+             "for example with gait.settle = 500");
+  };
+  for (const std::string& name : spec.output.gradients) look_at("gradients", name);
+  for (const std::string& name : spec.output.fields) look_at("fields", name);
+  for (const Goal& goal : spec.goals) look_at("goal", goal.field);
+  for (const std::string& name : spec.maximize) look_at("goal.maximize", name);
+  for (const std::string& name : spec.minimize) look_at("goal.minimize", name);
+}
+
+/// That there is a method that has derivatives, and that the model has what is to be differentiated.
+void check_gradients(const Spec& spec) {
+  const Output& output = spec.output;
+  if (output.gradients.empty() && !output.gradients_by.empty())
+    refuse(spec, "gradients_by", "has no effect without gradients",
+           "for example with gradients = [\"jump_height\"]");
+  if (!output.gradients.empty() && resolved_method(spec.numerics) != "exact")
+    refuse(spec, "gradients", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
+           "with method = \"exact\"");
+  for (const std::string& name : output.gradients)
+    if (const Field* field = find_field(name); field && !has(spec.scene.friction, field->only_of))
+      refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)),
+             with_model(*field->only_of));
+  for (const std::string& name : output.gradients_by)
+    if (const Option* option = find_option("", name); option && !has(spec.scene.friction, option->only_of))
+      refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene)),
+             with_model(*option->only_of));
+}
+
+/// What all designs of the spec have in common.
+void check_common(const Spec& spec) {
+  Design common = spec.design;
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying) {
+      const auto member = member_of(axis.key);
+      common.*member = Design{}.*member;
+    }
+  check_design(common, spec.scene, origin_of(spec));
+}
+
+void check_labels(const Spec& spec) {
+  const std::vector<std::string>& labels = spec.list.labels;
+  if (!labels.empty() && labels.size() != spec.list.count)
+    refuse(spec, label_name, fmt::format("has {} texts", labels.size()),
+           fmt::format("one for each of the {} designs of the list", spec.list.count));
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (labels[i].size() > most_label_bytes || printable(labels[i]) != labels[i])
+      refuse(spec, label_name, fmt::format("of design {} is '{}'", i, printable(labels[i].substr(0, 40))),
+             fmt::format("at most {} bytes of printable UTF-8", most_label_bytes));
+}
+
+void check_axes(const Spec& spec) {
+  for (const Axis& axis : spec.axes) {
+    if (axis.values.size() > static_cast<std::size_t>(most_axis_values))
+      refuse(spec, axis.key, fmt::format("has {} values", axis.values.size()),
+             fmt::format("up to {}", most_axis_values));
+    if (const auto twice = repeated(axis.values))
+      refuse(spec, axis.key, fmt::format("has the value {} twice", *twice), "each once");
+  }
+}
+
+void check_count(const Spec& spec) {
+  if (!spec.axes.empty() && (!spec.list.columns.empty() || !spec.points.empty()))
+    refuse(spec, "points", "and an axis exclude each other", "one of them");
+  if (!spec.points.empty() && spec.list.columns.empty())
+    refuse(spec, "points", "is a file that was not read", "read_spec, which reads it, or the list's columns");
+  if (spec.axes.empty() && spec.list.count == 0) refuse(spec, "list", "has no designs", "one or more");
+  double designs = 1.0;
+  for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
+  if (designs > most_designs)
+    refuse(spec, "axes", fmt::format("make {:.3g} designs", designs), "at most 1e12");
+}
+
+}  // namespace
+
+void check_spec(const Spec& spec) {
+  check_scene(spec.scene);
+  Spec copy;  // as slots are of specs that may be changed; without the designs, which may be many
+  copy.scene = spec.scene, copy.numerics = spec.numerics, copy.output = spec.output,
+  copy.points = spec.points;
+  copy.scatter = spec.scatter, copy.maximize = spec.maximize, copy.minimize = spec.minimize;
+  for (const Option& option : spec_options())
+    std::visit(
+        [&](const auto& slot) {
+          using Slot = std::decay_t<decltype(slot)>;
+          if constexpr (std::is_same_v<Slot, NumberSlot>)
+            check_number(spec, option, slot(copy));
+          else if constexpr (std::is_same_v<Slot, IntegerSlot>)
+            check_number(spec, option, static_cast<double>(slot(copy)));
+          else if constexpr (std::is_same_v<Slot, TextSlot>)
+            check_text(spec, option, slot(copy));
+          else if constexpr (std::is_same_v<Slot, TextsSlot>)
+            for (const std::string& text : slot(copy)) check_text(spec, option, text);
+        },
+        option.slot);
+  if (resolved_method(spec.numerics) == "exact" &&
+      (spec.numerics.fixed_step > 0.0 || spec.numerics.absolute_tolerance > 0.0))
+    refuse(spec, "fixed_step or absolute_tolerance", "has no effect, because exact takes no steps",
+           "with method = \"gsl-...\"");
+  for (const auto& [key, names] : {std::pair{"maximize", &spec.maximize}, {"minimize", &spec.minimize}})
+    if (!names->empty() && spec.list.columns.empty())  // a list may tell what it was found for
+      refuse(spec, key, fmt::format("'{}' has no effect here", names->front()), "with leapmap design");
+  if (spec.scene.settle > 0 && resolved_method(spec.numerics) != "exact")
+    refuse(spec, "settle", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
+           "with method = \"exact\"");
+  check_names(spec);
+  check_gradients(spec);
+  check_scatter(spec);
+  check_count(spec);
+  check_values(spec, spec.axes);
+  check_axes(spec);
+  check_values(spec, spec.list.columns);
+  if (spec.axes.empty())
+    for (const Axis& column : spec.list.columns)
+      if (column.values.size() != spec.list.count)
+        refuse(spec, column.key, fmt::format("has {} values", column.values.size()),
+               fmt::format("one for each of the {} designs of the list", spec.list.count));
+  check_labels(spec);
+  check_common(spec);
+}
+
+}  // namespace leapmap

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What a spec comes to once its defaults and "auto" are settled.
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "leapmap/outcome.hpp"
+#include "model/fields.hpp"
+#include "model/model.hpp"
+#include "spec/options.hpp"
+#include "spec/spacing.hpp"
+#include "spec/spec.hpp"
+
+namespace leapmap {
+namespace {
+
+// A number that TOML reads back as the same float: fmt's shortest form, which may look like an integer.
+std::string number(double value) {
+  std::string digits = fmt::format("{}", value);
+  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
+}
+
+/// spaced: axes by their bounds where those give the same bits.
+std::string text_of(const Spec& original, bool spaced) {
+  Spec spec = original;
+  spec.numerics.method = resolved_method(spec.numerics);
+  std::string text;
+  std::string_view section;
+  const auto line_below = [&](std::string_view header, std::string_view key, const std::string& value) {
+    if (header != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section = header);
+    text += fmt::format("{} = {}\n", key, value);
+  };
+  const auto line = [&](const Option& option, const std::string& value) {
+    line_below(option.section, option.key, value);
+  };
+  const auto string = [](const std::string& value) {
+    std::ostringstream quoted_text;
+    quoted_text << toml::value<std::string>(value);
+    return quoted_text.str();
+  };
+  const auto axes = [&] {  // in spec order, which is the order of the map's dimensions
+    for (const Axis& axis : spec.axes) {
+      if (axis.free) {
+        line_below("design", axis.key,
+                   fmt::format("{{ from = {}, to = {}{} }}", number(axis.values.front()),
+                               number(axis.values.back()), axis.log ? ", scale = \"log\"" : ""));
+        continue;
+      }
+      if (const auto spacing = spaced ? spacing_of(axis.values) : std::nullopt) {
+        line_below("design", axis.key,
+                   fmt::format("{{ from = {}, to = {}, count = {}{} }}", number(spacing->from),
+                               number(spacing->to), spacing->count, spacing->log ? ", scale = \"log\"" : ""));
+        continue;
+      }
+      std::vector<std::string> values;
+      for (const double value : axis.values) values.push_back(number(value));
+      line_below("design", axis.key, fmt::format("{{ values = [{}] }}", fmt::join(values, ", ")));
+    }
+  };
+  for (const Option& option : spec_options()) {
+    if (option.section == "gait" && spec.scene.settle == 0) continue;
+    if (option.key == "points") axes();  // after all numbers of the section
+    const bool parameter = std::holds_alternative<ParameterSlot>(option.slot);
+    if (parameter && std::ranges::find(spec.axes, option.key, &Axis::key) != spec.axes.end()) continue;
+    std::visit(
+        [&](const auto& slot) {
+          using Slot = std::decay_t<decltype(slot)>;
+          if constexpr (std::is_same_v<Slot, ParameterSlot>) {
+            // NaN: follows another parameter, and is left out.
+            if (const double value = spec.design.*slot.member; !std::isnan(value))
+              line(option, number(value));
+          } else if constexpr (std::is_same_v<Slot, SceneSlot>) {
+            line(option, number(spec.scene.*slot.member));
+          } else if constexpr (std::is_same_v<Slot, FrictionSlot>) {
+            line(option, string(std::string(model_of(spec.scene).name)));
+          } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
+            line(option, number(slot(spec)));
+          } else if constexpr (std::is_same_v<Slot, SpreadSlot>) {
+            const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
+            if (spread != spec.scatter.spreads.end()) line(option, leapmap::text_of(*spread));
+          } else if constexpr (std::is_same_v<Slot, GoalSlot>) {
+            const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
+            if (goal != spec.goals.end()) line(option, leapmap::text_of(*goal));
+          } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {
+            if (option.section == "scatter" && spec.scatter.spreads.empty()) return;
+            line(option, fmt::format("{}", slot(spec)));
+          } else if constexpr (std::is_same_v<Slot, TextSlot>) {
+            if (!slot(spec).empty()) line(option, string(slot(spec)));
+          } else if (!slot(spec).empty()) {
+            std::vector<std::string> names;
+            for (const std::string& name : slot(spec)) names.push_back(string(name));
+            line(option, fmt::format("[{}]", fmt::join(names, ", ")));
+          }
+        },
+        option.slot);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const Spread& spread) {
+  return fmt::format("{{ {} = {} }}", spread.law == Spread::Law::normal ? "normal" : "uniform",
+                     spread.percent ? fmt::format("\"{} %\"", spread.width) : number(spread.width));
+}
+
+std::string text_of(const Goal& goal) {
+  const Field& field = *find_field(goal.field);
+  if (std::holds_alternative<Word>(field.source))
+    return fmt::format("{{ is = \"{}\" }}", phase_letters(static_cast<std::uint64_t>(goal.at_least)));
+  const auto* code = std::get_if<Code>(&field.source);
+  if (code && !code->names.empty())
+    return fmt::format("{{ is = \"{}\" }}", code->names[static_cast<std::size_t>(goal.at_least)]);
+  if (goal.at_least == goal.at_most) return fmt::format("{{ is = {} }}", number(goal.at_least));
+  std::vector<std::string> parts;
+  if (std::isfinite(goal.at_least)) parts.push_back("at_least = " + number(goal.at_least));
+  if (std::isfinite(goal.at_most)) parts.push_back("at_most = " + number(goal.at_most));
+  return fmt::format("{{ {} }}", fmt::join(parts, ", "));
+}
+
+std::string resolved_text(const Spec& spec) { return text_of(spec, false); }
+
+std::string readable_text(const Spec& spec) { return text_of(spec, true); }
+
+bool stores(const Output& output, std::string_view field) {
+  return output.fields.empty() || std::ranges::find(output.fields, field) != output.fields.end();
+}
+
+std::string resolved_method(const Numerics& numerics) {
+  return numerics.method == "auto" ? "exact" : numerics.method;
+}
+
+}  // namespace leapmap
