@@ -110,6 +110,18 @@ std::vector<AuditSample> audit_samples(const Spec& spec, const Tiling& tiling, c
   return samples;
 }
 
+namespace {
+
+/// The solver by which failed designs of the map were retried.
+Solver retry_solver(const MapReader& map, const Spec& spec) {
+  Request request = request_of(spec);
+  request.numerics = {.method = hdf5::read_text(map.file(), "retry_method"),
+                      .tolerance = hdf5::read_number(map.file(), "retry_tolerance")};
+  return make_solver(request);
+}
+
+}  // namespace
+
 std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, double share,
                                        const Tiling& tiling, const Tile& tile, const Solver& solve) {
   const std::vector<std::size_t> drawn = audit_draw(share, tiling, tile);
@@ -124,6 +136,11 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
   solve(designs, outcomes);
   std::vector<bool> gave_up;  // the map's method on them: settled since, if they are, without derivatives
   for (const Outcome& outcome : outcomes) gave_up.push_back(outcome.status == Status::failed);
+  if (hdf5::has_attribute(map.file(), "retry_designs")) {
+    const Solver retry = retry_solver(map, spec);  // for what the map does not store of them
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (gave_up[i]) retry({&designs[i], 1}, {&outcomes[i], 1});
+  }
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].outcome = std::move(outcomes[i]);
   const GradientWanted derivatives = derivatives_of(request_of(spec));
   for (const auto of : derivatives.of)

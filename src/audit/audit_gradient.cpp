@@ -42,7 +42,7 @@ bool look_beside(const Design& original, const Scene& scene, double Design::*par
     moved.*parameter = value + (k % 2 == 0 ? 1.0 : -1.0) * (k < 2 ? 1.0 : 2.0) * beside.step;
     const bool kink = (moved.mu_static < moved.mu_kinetic) != (design.mu_static < design.mu_kinetic);
     if (kink || !is_allowed(moved, scene)) return false;
-    beside.outcomes[k] = model_of(scene).refined(moved, scene);
+    beside.outcomes[k] = need(model_of(scene), &Model::refined, "solver in long double")(moved, scene);
     if (!same_flags(beside.outcomes[k], ours)) return false;
   }
   return true;

@@ -26,7 +26,6 @@ struct AuditAttribute {
 };
 using Count = AuditAttribute<std::size_t AuditReport::*>;
 using Error = AuditAttribute<double AuditReport::*>;
-using First = AuditAttribute<std::optional<std::size_t> AuditReport::*>;
 constexpr std::array counts{Count{"audit_designs", &AuditReport::designs, 0},
                             Count{"audit_flag_mismatches", &AuditReport::flag_mismatches, 0},
                             Count{"audit_undecided", &AuditReport::undecided, 1},
@@ -53,38 +52,45 @@ constexpr std::array errors{Error{"audit_max_abs_height_error", &AuditReport::ma
                             Error{"audit_jump_max_error", &AuditReport::jump_max_error, 10},
                             Error{"audit_gait_max_error", &AuditReport::gait_max_error, 10},
                             Error{"audit_multiplier_max_error", &AuditReport::multiplier_max_error, 10}};
-constexpr std::array firsts{First{"audit_first_mismatch", &AuditReport::first_mismatch, 4},
-                            First{"audit_first_inaccurate", &AuditReport::first_inaccurate, 4},
-                            First{"audit_first_overruled", &AuditReport::first_overruled, 5},
-                            First{"audit_first_wrong_gradient", &AuditReport::first_wrong_gradient, 7},
-                            First{"audit_first_wrong_sequence", &AuditReport::first_wrong_sequence, 10},
-                            First{"audit_first_wrong_gait", &AuditReport::first_wrong_gait, 10}};
+/// The lowest design number of a kind of disagreement. sentence: {0} is the second method, {1} the allowed
+/// error.
+struct First : AuditAttribute<std::optional<std::size_t> AuditReport::*> {
+  std::string_view sentence;
+};
+constexpr std::array firsts{
+    First{{"audit_first_mismatch", &AuditReport::first_mismatch, 4},
+          "the stored status, first lift-off, number of lift-offs or phases are not those of {0}"},
+    First{{"audit_first_inaccurate", &AuditReport::first_inaccurate, 4},
+          "the stored numbers differ by more than {1:.1e} from those of {0}"},
+    First{{"audit_first_overruled", &AuditReport::first_overruled, 5},
+          "the reference solver, which integrates the paper's (7) to (9), finds another outcome"},
+    First{{"audit_first_wrong_gradient", &AuditReport::first_wrong_gradient, 7},
+          "a stored derivative differs by more than 1e-6 from differences in long double"},
+    First{{"audit_first_wrong_sequence", &AuditReport::first_wrong_sequence, 10},
+          "the stored later jumps differ from those of {0} by more than errors grow"},
+    First{{"audit_first_wrong_gait", &AuditReport::first_wrong_gait, 10},
+          "integration does not find the stored gait"}};
 
 }  // namespace
 
 void merge(AuditReport& report, const AuditReport& other) {
   for (const auto& row : counts) report.*row.member += other.*row.member;
-  for (const auto& row : errors) report.*row.member = std::max(report.*row.member, other.*row.member);
+  for (const auto& row : errors)
+    if (row.member != &AuditReport::allowed_error)
+      report.*row.member = std::max(report.*row.member, other.*row.member);
   for (const auto& row : firsts)
     if (const std::optional<std::size_t>& first = other.*row.member)
       report.*row.member = std::min((report.*row.member).value_or(*first), *first);
 }
 
 std::vector<std::string> disagreements(const Spec& spec, const AuditReport& report) {
-  const std::string ours = resolved_method(spec.numerics),
-                    both = fmt::format("{} and {}", ours, report.method);
   std::vector<std::string> found;
-  const auto add = [&](const std::optional<std::size_t>& design, const std::string& what) {
-    if (design)
-      found.push_back(fmt::format("design {}: {}; show it: {}", told_design(spec, *design), what,
-                                  hop_command(spec, DesignSpace(spec).at(*design))));
-  };
-  add(report.first_mismatch, both + " disagree on status, the first lift-off or number of lift-offs");
-  add(report.first_inaccurate, fmt::format("{} differ by more than {:.1e}", both, report.allowed_error));
-  add(report.first_wrong_gradient, "a derivative differs by more than 1e-6 from differences in long double");
-  add(report.first_wrong_sequence, both + " disagree on later jumps by more than errors grow");
-  add(report.first_wrong_gait, "integration does not find the gait that is stored");
-  add(report.first_overruled, ours + " and an integration of the paper's (7) to (9) disagree");
+  for (const auto& row : firsts)
+    if (const std::optional<std::size_t>& design = report.*row.member)
+      found.push_back(
+          fmt::format("design {}: {}; show it: {}", told_design(spec, *design),
+                      fmt::format(fmt::runtime(row.sentence), report.method, report.allowed_error),
+                      hop_command(spec, DesignSpace(spec).at(*design))));
   return found;
 }
 
@@ -103,6 +109,7 @@ std::vector<hdf5::Attribute> audit_attributes(const AuditReport& report) {
 AuditReport read_audit(const MapReader& map) {
   AuditReport report;
   report.method = map.attribute("audit_method");
+  if (report.method.empty()) throw BrokenFile("the attribute audit_method is missing");
   const std::vector<std::int64_t> version = hdf5::read_integers(map.file(), "version");
   const auto has = [&](const auto& row) { return version[1] >= row.since; };
   const auto designs = static_cast<std::int64_t>(designs_of(map.shape()));
@@ -112,7 +119,7 @@ AuditReport read_audit(const MapReader& map) {
   for (const auto& row : counts)
     if (has(row)) report.*row.member = static_cast<std::size_t>(count(row.name, 0, designs * row.most));
   for (const auto& row : errors)
-    if (has(row)) report.*row.member = hdf5::read_number(map.file(), row.name, true);
+    report.*row.member = has(row) ? hdf5::read_number(map.file(), row.name, true) : Outcome::none;
   for (const auto& row : firsts)
     if (const std::int64_t design = has(row) ? count(row.name, -1, designs - 1) : -1; design >= 0)
       report.*row.member = static_cast<std::size_t>(design);

@@ -18,7 +18,8 @@ void merge(AuditReport& report, const AuditReport& other);
 /// every method agrees.
 std::vector<std::string> disagreements(const Spec& spec, const AuditReport& report);
 
-/// A report as a map's attributes, and back. The latter throws IoError if they are not there.
+/// A report as a map's attributes, and back. The latter throws IoError if they are
+/// not there; an error that the map's version did not measure is NaN.
 std::vector<hdf5::Attribute> audit_attributes(const AuditReport& report);
 AuditReport read_audit(const MapReader& map);
 

@@ -16,10 +16,11 @@ namespace leapmap {
 namespace {
 
 Solver solver_of(const Scene& scene, const std::string& method, double tolerance) {
-  if (method == "exact") return model_of(scene).exact(scene, tolerance, {});
+  if (method == "exact")
+    return need(model_of(scene), &Model::exact, "semi-analytic solver")(scene, tolerance, {});
   IntegrationOptions options = adaptive(method, tolerance);
   options.max_steps = most_steps(scene);
-  return model_of(scene).integration(scene, options);
+  return need(model_of(scene), &Model::integration, "integration in time")(scene, options);
 }
 
 }  // namespace

@@ -23,30 +23,31 @@ std::string and_some(std::size_t designs, std::string_view what) {
 }  // namespace
 
 void say_audit(const AuditReport& report) {
-  say("check    {} designs by {}: height within {:.1e} diameters, time within {:.1e}, motion within {:.1e}, "
-      "{} "
-      "flags differ{}{}{}\n",
-      grouped(report.designs), printable(report.method), report.max_abs_height_error,
-      report.max_rel_time_error, report.max_rel_motion_error, report.flag_mismatches,
+  const auto error = [](double most) {
+    return std::isnan(most) ? "not measured" : fmt::format("{:.1e}", most);
+  };
+  say("check    {} designs by {}: height within {} diameters, time within {}, motion within {}, {} flags "
+      "differ{}{}{}\n",
+      grouped(report.designs), printable(report.method), error(report.max_abs_height_error),
+      error(report.max_rel_time_error), error(report.max_rel_motion_error), grouped(report.flag_mismatches),
       and_some(report.beyond_tolerance, "beyond the tolerance"), and_some(report.undecided, "inconclusive"),
       and_some(report.failed, "failed, not compared"));
   if (report.refereed > 0)
-    say("referee  {} of them by the independent reference solver: {} wrong, largest error {:.1e}{}\n",
-        grouped(report.refereed), report.overruled, report.referee_max_error,
+    say("referee  {} of them by the independent reference solver: {} wrong, largest error {}{}\n",
+        grouped(report.refereed), grouped(report.overruled), error(report.referee_max_error),
         and_some(report.referee_undecided, "inconclusive"));
   if (report.gradient_designs > 0)
-    say("gradient {} of them by differences in long double: {} wrong, largest error {:.1e}{}\n",
-        grouped(report.gradient_designs), report.gradients_wrong, report.gradient_max_error,
+    say("gradient {} of them by differences in long double: {} wrong, largest error {}{}\n",
+        grouped(report.gradient_designs), grouped(report.gradients_wrong), error(report.gradient_max_error),
         and_some(report.gradient_undecided, "inconclusive"));
   if (report.jumps_compared + report.jumps_beyond + report.sequences_wrong > 0)
-    say("jumps    {} later jumps: {} designs wrong, largest error {:.1e} over its growth{}\n",
-        grouped(report.jumps_compared), report.sequences_wrong, report.jump_max_error,
+    say("jumps    {} later jumps: {} designs wrong, largest error {} over its growth{}\n",
+        grouped(report.jumps_compared), grouped(report.sequences_wrong), error(report.jump_max_error),
         and_some(report.jumps_beyond, "more not compared, because errors grow too much"));
   if (report.gaits > 0)
-    say("gaits    {} by integration over one period: {} wrong, largest error {:.1e}, of a multiplier "
-        "{:.1e}{}\n",
-        grouped(report.gaits), report.gaits_wrong, report.gait_max_error, report.multiplier_max_error,
-        and_some(report.gaits_undecided, "inconclusive"));
+    say("gaits    {} by integration over one period: {} wrong, largest error {}, of a multiplier {}{}\n",
+        grouped(report.gaits), grouped(report.gaits_wrong), error(report.gait_max_error),
+        error(report.multiplier_max_error), and_some(report.gaits_undecided, "inconclusive"));
 }
 
 std::string settled_line(const Outcome& outcome, long settle) {

@@ -241,8 +241,9 @@ void add_boundaries(CommandLine& line, int& status) {
   command.value("-o,--output", arguments->output, "write discontinuities and curves to this HDF5 file")
       .check(named_file());
   command
-      .value("--csv", arguments->csv,
-             "write the curves to this CSV file, a point in a row; where curves meet, a point for each")
+      .value(
+          "--csv", arguments->csv,
+          "write the discontinuities to this CSV file, curve after curve; one on two curves is there twice")
       .check(named_file());
   command.flag("--overwrite", arguments->overwrite, "allow --csv to replace any file");
   command.flag("--quiet", arguments->quiet, "print errors only");

@@ -181,7 +181,7 @@ Json json_of(const Question& question, const FoundDesign& found) {
     json["objectives"][question.objectives[k].name] = found.objectives[k];
   for (const Field* field : fields_of(question.one.scene))
     if (!std::holds_alternative<Word>(field->source))
-      json["fields"][std::string(field->name)] = stored_number(*field, found.outcome);
+      json["fields"][std::string(field->name)] = number_json(*field, found.outcome);
   for (const FieldGradient& gradient : found.gradients)
     for (const FreeParameter& parameter : question.free)
       json["gradients"][gradient.of][parameter.name] = gradient.by.*parameter.member;

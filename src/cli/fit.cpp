@@ -141,7 +141,7 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
   if (fit.outcome.status == Status::jumped)
     say("  jumps {:.4g} diameters high, at {:.4g} s\n", fit.outcome.jump_height, fit.outcome.jump_time);
   else
-    say("  does not jump: {}\n", name_of(fit.outcome.status));
+    say("  status: {}\n", name_of(fit.outcome.status));
   say("  {}\n", hop_command(spec_of(fit), fit.design));
 }
 
@@ -223,8 +223,8 @@ void tell_fitted_anew(const Spec& spec) {
 
 int run(const FitArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
-  const auto only = std::ranges::find(models(), arguments.model, &Model::name);
-  if (only != models().end()) {
+  const Model* only = find_model(arguments.model);
+  if (only) {
     for (const std::string& set : overrides)
       if (set.starts_with("friction=") || set.starts_with("scene.friction="))
         throw InputError(fmt::format("--model {} and --set {}: both set the friction; allowed: one of them",
@@ -238,7 +238,7 @@ int run(const FitArguments& arguments) {
   refuse_same_files(inputs, outputs);
   const Measurements measured = read_measurements(arguments.data, arguments.reading);
   FitOptions options = arguments.options;
-  if (only != models().end()) options.models = {only->friction};
+  if (only) options.models = {only->friction};
   note_signals();
   TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
   options.stop_requested = [] { return noted_signal() != 0; };
@@ -283,7 +283,7 @@ void add_fit(CommandLine& line, int& status) {
              "a spec (TOML) with the hoop, and free parameters { from, to }; default: the paper's hoop")
       .check(named_file());
   std::vector<std::string> names{"both"};
-  for (const Model& model : models()) names.emplace_back(model.name);
+  for (const std::string_view name : model_names()) names.emplace_back(name);
   command.group("Model");
   command.value("--model", arguments->model, "model to fit; default: both, and report which one is preferred")
       .check(one_of(names));

@@ -28,7 +28,6 @@
 #include "request/solver.hpp"
 #include "spec/options.hpp"
 #include "support/output_file.hpp"
-#include "support/printable.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -201,14 +200,12 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
         graze.makes_lift_off() ? "a " : "no ");
 }
 
-/// A field of the outcome under the map's name; codes and words by their names.
+/// A field of the outcome; statuses and phases by their names.
 Json json_of(const Field& field, const Outcome& outcome) {
   if (std::holds_alternative<Word>(field.source)) return phase_letters(outcome.phase_sequence);
   if (field.name == "status") return name_of(outcome.status);
   if (field.name == "sequence_end") return name_of(outcome.sequence_end);
-  const double number = stored_number(field, outcome);
-  if (std::holds_alternative<Code>(field.source) && !std::isnan(number)) return static_cast<int>(number);
-  return number;
+  return number_json(field, outcome);
 }
 
 /// The outcome under the map's names and units, so that a script finds the same words in both.
@@ -227,7 +224,7 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
             {"tolerance", spec.numerics.tolerance}};
   for (const Field* field : fields_of(scene))
     json[std::string(field->name)] = json_of(*field, motion.outcome);
-  Json &lift_offs = json["lift_offs"] = Json::array(), &grazes = json["grazes"] = Json::array();
+  Json lift_offs = Json::array(), grazes = Json::array(), phases = Json::array();
   for (const Candidate& flown : motion.candidates)
     lift_offs.push_back({{"time", flown.t},
                          {"angle", flown.phi},
@@ -243,10 +240,6 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
                       {"normal_force", graze.normal_force},
                       {"extremum", graze.minimum ? "minimum" : "maximum"},
                       {"makes_lift_off", graze.makes_lift_off()}});
-  json["check"] = {{"method", audit_method(spec.numerics)}, {"tolerance", check_tolerance},
-                   {"status", name_of(checked.status)},     {"candidates", checked.candidates},
-                   {"jump_height", checked.jump_height},    {"jump_time", checked.jump_time}};
-  Json& phases = json["phases"] = Json::array();
   for (const PhaseStart& at : motion.phases)
     phases.push_back({{"phase", phase_letters(static_cast<std::uint64_t>(at.phase))},
                       {"direction", at.direction},
@@ -254,6 +247,12 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
                       {"angle", at.phi},
                       {"spin", at.spin * second},
                       {"x", at.x / scene.radius}});
+  json["lift_offs"] = std::move(lift_offs);
+  json["grazes"] = std::move(grazes);
+  json["check"] = {{"method", audit_method(spec.numerics)}, {"tolerance", check_tolerance},
+                   {"status", name_of(checked.status)},     {"candidates", checked.candidates},
+                   {"jump_height", checked.jump_height},    {"jump_time", checked.jump_time}};
+  json["phases"] = std::move(phases);
   return json;
 }
 
@@ -269,8 +268,11 @@ Json json_of(const Motor& motor) {
 void print_hints(const Spec& spec, bool made) {
   if (!model_of(spec.scene).slips)
     say("The contact never slips in this model; for a hoop that you build, add --friction coulomb.\n");
-  if (!made && (!spec.scatter.spreads.empty() || !spec.goals.empty()))
-    say("[scatter] and [goal] are not used here; --scatter reports yields.\n");
+  if (made) return;
+  if (!spec.scatter.spreads.empty())
+    say("[scatter] is not used here; --scatter reports what it makes of the hoop.\n");
+  else if (!spec.goals.empty())
+    say("[goal] is not used here; allowed: with [scatter] and --scatter, or in leapmap design.\n");
 }
 
 void print_json(const Spec& spec, const Motion& motion, const Outcome& checked,

@@ -195,7 +195,11 @@ void print_origin(const MapReader& map, const std::string& path) {
 /// What the cross-check found.
 void print_audit(const MapReader& map) {
   const Told told{map};
-  if (told.has("audit_designs")) say_audit(read_audit(map));
+  if (told.has("audit_designs")) try {
+      say_audit(read_audit(map));
+    } catch (const IoError& error) {
+      say("check    cannot be read: {}\n", printable(error.what()));
+    }
   if (told.has("retry_designs"))
     say("retried  {} failed designs, after the check, by {} at tolerance {}\n", told("retry_designs"),
         told("retry_method"), told("retry_tolerance"));

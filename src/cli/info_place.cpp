@@ -121,7 +121,7 @@ void print_place(const Spec& original, const std::string& at) {
     const double from_here = value - value_of(option, one.design);
     if (option.unit != "rad") return fmt::format("{} {:.8g} ({:+.3g})", option.key, value, from_here);
     constexpr double degree = std::numbers::pi / 180.0;
-    return fmt::format("{} {:.8g} rad = {:.6g} deg ({:+.3g} deg)", option.key, value, value / degree,
+    return fmt::format("{} {:.8g} ({:.6g} deg, {:+.3g} deg)", option.key, value, value / degree,
                        from_here / degree);
   };
   bool none = true;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/json.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -10,7 +13,7 @@
 namespace leapmap::cli {
 namespace {
 
-/// What is not UTF-8, as paths may be, is replaced.
+/// What is not UTF-8 is replaced.
 std::string text_of(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 std::string lines_of(const Json& value) {
@@ -27,6 +30,12 @@ Json design_json(const Spec& spec, const Design& design) {
   for (const Option* parameter : design_parameters(spec))
     json[std::string(parameter->key)] = value_of(*parameter, design);
   return json;
+}
+
+Json number_json(const Field& field, const Outcome& outcome) {
+  const double number = stored_number(field, outcome);
+  if (std::holds_alternative<Code>(field.source) && !std::isnan(number)) return static_cast<int>(number);
+  return number;
 }
 
 void say_json(const Json& object) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "model/fields.hpp"
 #include "spec/spec.hpp"
 
 namespace leapmap::cli {
@@ -14,8 +15,11 @@ using Json = nlohmann::ordered_json;
 /// The parameters of the spec's model, by name; null: follows another one.
 Json design_json(const Spec& spec, const Design& design);
 
-/// Prints the object, a line for each member and for each item of a list of objects. Throws as write_out
-/// does.
+/// A field's number; of a code a whole one; null where it does not apply.
+Json number_json(const Field& field, const Outcome& outcome);
+
+/// Prints the object, a line for each member and for each item of a list of objects or lists. Throws as
+/// write_out does.
 void say_json(const Json& object);
 
 }  // namespace leapmap::cli

@@ -178,13 +178,11 @@ void add_precision(CommandLine& line, int& status) {
       .with_commas()
       .check(one_of(methods));
   std::vector<std::string> frictions;
-  for (const Model& model : models()) frictions.emplace_back(model.name);
+  for (const std::string_view name : model_names()) frictions.emplace_back(name);
   command
       .value(
           "--friction",
-          [arguments](const std::string& word) {
-            arguments->friction = std::ranges::find(models(), word, &Model::name)->friction;
-          },
+          [arguments](const std::string& word) { arguments->friction = find_model(word)->friction; },
           "contact model; coulomb: with random mu_static and mu_kinetic; default: sticking")
       .check(one_of(frictions));
   command.flag("--quick", arguments->options.quick, "fewer designs and settings: within 30 s");

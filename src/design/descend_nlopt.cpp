@@ -94,7 +94,6 @@ class Slope {
   }
 
   Judge& judge_;
-  Spec spec_;
   GradientSolver solver_;
   Gradients gradients_;
   std::vector<Bound> bounds_;

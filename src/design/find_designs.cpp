@@ -260,7 +260,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
   const std::vector<GoalCheck> goals = goal_checks(question.one.goals);
   const bool made = judge.makes_hoops() && !question.one.goals.empty();
   const Spec grid = question.grid();
-  Request all = request_of(question.one);
+  const Request all = request_of(question.one);
   std::vector<FoundDesign> told(places.size());
   std::vector<char> stays(places.size(), 1);
   parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {

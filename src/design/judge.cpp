@@ -29,9 +29,9 @@ bool asks_of_made(const Question& question) {
 /// What goals and objectives of a nominal hoop need.
 Request request_of_nominal(const Question& question) {
   std::vector<const Field*> columns{find_field("status")};
-  for (const Goal& goal : question.one.goals) columns.push_back(find_field(goal.field));
+  for (const Goal& goal : question.one.goals) add_column(columns, find_field(goal.field));
   for (const Objective& objective : question.objectives)
-    if (objective.is_of_drawn()) columns.push_back(objective.field);
+    if (objective.is_of_drawn()) add_column(columns, objective.field);
   return request_of(question.one, columns);
 }
 
@@ -39,7 +39,8 @@ Request request_of_nominal(const Question& question) {
 Request request_of_many(const Question& question) {
   std::vector<const Field*> columns{find_field("yield")};
   for (const Objective& objective : question.objectives)
-    if (objective.is_of_made() && objective.field != columns.front()) columns.push_back(objective.field);
+    if (objective.is_of_made()) add_column(columns, objective.field);
+  for (const Goal& goal : question.made_goals) add_column(columns, find_field(goal.field));
   return request_of(question.one, columns);
 }
 

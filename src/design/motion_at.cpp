@@ -212,7 +212,8 @@ class Walk {
 template <class S>
 std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std::span<const double> times) {
   constexpr double tolerance = 1e-12;
-  const Motion motion = model_of(scene).tell_exactly(design, scene, tolerance, 0.0);
+  const Motion motion =
+      need(model_of(scene), &Model::tell_exactly, "semi-analytic motion")(design, scene, tolerance, 0.0);
   std::vector<MotionAt<S>> taken;
   const Status status = motion.outcome.status;
   if (motion.phases.empty() || status == Status::failed || status == Status::indeterminate) return taken;

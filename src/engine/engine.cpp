@@ -22,7 +22,7 @@ namespace {
 /// with many hoops made after each fewer, so that a stop need not wait long.
 std::size_t piece_of(const Request& request) {
   constexpr std::size_t most = 1024, most_hoops = 1 << 16;
-  if (request.scatter.spreads.empty()) return most;
+  if (!wants_samples(request)) return most;
   return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(request.scatter.samples), 1, most);
 }
 
@@ -44,7 +44,7 @@ BlockSolver::BlockSolver(const Request& request, std::size_t most_designs,
       gradients_(derivatives_of(request)),
       made_(statistics_of(request)),
       outcomes_(most_designs) {
-  if (!request.scatter.spreads.empty()) scatter_.emplace(scatter_solver_of(request, points));
+  if (wants_samples(request)) scatter_.emplace(scatter_solver_of(request, points));
 }
 
 Solved BlockSolver::solve(std::span<const Design> designs) {
@@ -68,9 +68,9 @@ std::function<TileWork()> in_order(TileSink sink) {
   };
 }
 
-std::size_t run_sweep(const Spec& designs, const Request& request, const Tiling& tiling,
+std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& tiling,
                       const EngineOptions& options, const std::function<TileWork()>& make_work) {
-  const DesignSpace space(designs);
+  const DesignSpace space(spec);
   std::size_t delivered = 0;
   OrderedDelivery<Item> delivery(
       options.first_tile,
@@ -82,7 +82,7 @@ std::size_t run_sweep(const Spec& designs, const Request& request, const Tiling&
 
   const std::size_t piece = std::min(piece_of(request), tiling.largest_tile());
   const auto points = points_of(request.scatter);
-  const bool scattered = !request.scatter.spreads.empty();
+  const bool scattered = wants_samples(request);
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
@@ -124,16 +124,16 @@ std::size_t run_sweep(const Spec& designs, const Request& request, const Tiling&
   return delivered;
 }
 
-double seconds_per_design(const Spec& designs, const Request& request, double seconds) {
+double seconds_per_design(const Spec& spec, const Request& request, double seconds) {
   using Clock = std::chrono::steady_clock;
-  const DesignSpace space(designs);
-  const std::size_t count = designs_of(shape_of(designs));
+  const DesignSpace space(spec);
+  const std::size_t count = designs_of(shape_of(spec));
   constexpr std::size_t most = 8192;
   BlockSolver solver(request, most, points_of(request.scatter));
   std::mt19937_64 random(1);
   std::uniform_int_distribution<std::size_t> pick(0, count - 1);
   // Few at a time while it is not known how long one takes: an integration may need seconds.
-  std::vector<Design> some(request.scatter.spreads.empty() ? 8 : 1);
+  std::vector<Design> some(wants_samples(request) ? 1 : 8);
   std::chrono::duration<double> passed{0};
   std::size_t solved = 0;
   while (passed.count() < seconds) {

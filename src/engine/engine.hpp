@@ -80,12 +80,12 @@ std::function<TileWork()> in_order(TileSink sink);
 
 /// Solves every tile from first_tile on; returns the number of designs handed on, all of them unless a stop
 /// was requested. make_work is called once on each thread. What the work or `take` throws ends the sweep and
-/// is thrown on. Outcomes depend on the spec alone, not on threads or timing; memory does not grow with the
-/// number of designs, nor when whoever takes them is slow.
-std::size_t run_sweep(const Spec& designs, const Request& request, const Tiling& tiling,
+/// is thrown on. Outcomes depend on spec and request alone, not on threads or timing; memory does not grow
+/// with the number of designs, nor when whoever takes them is slow.
+std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& tiling,
                       const EngineOptions& options, const std::function<TileWork()>& make_work);
 
 /// Seconds per design on one thread, from a seeded sample solved for about the given time.
-double seconds_per_design(const Spec& designs, const Request& request, double seconds);
+double seconds_per_design(const Spec& spec, const Request& request, double seconds);
 
 }  // namespace leapmap

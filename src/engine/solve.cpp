@@ -33,6 +33,7 @@ Spec spec_of(const Scene& scene, const Options& options) {
   spec.numerics.method = options.method;
   spec.numerics.tolerance = options.tolerance;
   spec.numerics.max_steps = options.max_steps;
+  spec.numerics.audit = 0.0;
   check_spec(spec);
   return spec;
 }

@@ -11,7 +11,8 @@ ErrorGrowth::ErrorGrowth(const Scene& scene, DualJumpSolver duals)
     : scene_(each_jump_alone(scene)), duals_(std::move(duals)) {}
 
 ErrorGrowth::ErrorGrowth(const Scene& scene, double tolerance)
-    : ErrorGrowth(scene, model_of(scene).dual_jumps(each_jump_alone(scene), tolerance)) {}
+    : ErrorGrowth(scene, need(model_of(scene), &Model::dual_jumps, "derivatives of later jumps")(
+                             each_jump_alone(scene), tolerance)) {}
 
 std::vector<double> ErrorGrowth::along(const Design& design, std::size_t most) {
   return along(design, Start::release, released<double>(design), most);

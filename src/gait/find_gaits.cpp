@@ -46,7 +46,7 @@ class Section {
       : design_(design),
         scene_(scene),
         hoop_(derive<double>(design)),
-        duals_(model_of(scene).dual_jumps(scene, tolerance)),
+        duals_(need(model_of(scene), &Model::dual_jumps, "derivatives of later jumps")(scene, tolerance)),
         way_(way),
         returns_(returns) {}
 

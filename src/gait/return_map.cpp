@@ -69,8 +69,9 @@ StateVector between(const Landed& a, const Landed& b) {
 JumpSolvers jump_solvers(const Scene& scene, double tolerance) {
   const Scene alone = each_jump_alone(scene);
   const Model& model = model_of(alone);
-  return {model.jumps(alone, tolerance, untimed), model.jumps(alone, tolerance, {}),
-          model.dual_jumps(alone, tolerance)};
+  const auto jumps = need(model, &Model::jumps, "semi-analytic solver of later jumps");
+  const auto dual_jumps = need(model, &Model::dual_jumps, "derivatives of later jumps");
+  return {jumps(alone, tolerance, untimed), jumps(alone, tolerance, {}), dual_jumps(alone, tolerance)};
 }
 
 void ReturnMap::next(Start start, std::span<const Design> designs, std::span<Landed> states,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -73,7 +74,41 @@ const Kernels& kernels() { return *in_use().kernels(); }
 
 std::span<const Model> models() { return kernels().models; }
 
-const Model& model_of(Friction friction) { return *std::ranges::find(models(), friction, &Model::friction); }
+namespace {
+
+std::deque<Model>& added() {
+  static std::deque<Model> models;
+  return models;
+}
+
+}  // namespace
+
+void add_model(const Model& model) { added().push_back(model); }
+
+const Model* find_model(std::string_view name) {
+  for (const Model& model : models())
+    if (model.name == name) return &model;
+  const auto found = std::ranges::find(added(), name, &Model::name);
+  return found == added().end() ? nullptr : &*found;
+}
+
+std::vector<std::string_view> model_names() {
+  std::vector<std::string_view> names;
+  for (const Model& model : models()) names.push_back(model.name);
+  for (const Model& model : added()) names.push_back(model.name);
+  return names;
+}
+
+const Model& model_of(Friction friction) {
+  for (const Model& model : models())
+    if (model.friction == friction) return model;
+  return *std::ranges::find(added(), friction, &Model::friction);
+}
+
+void refuse_lack(const Model& model, std::string_view what) {
+  throw InputError(fmt::format("scene.friction = \"{}\": this model has no {}; allowed: a model that has",
+                               model.name, what));
+}
 
 std::string instruction_set() { return fmt::format("{}, {} lanes", in_use().name, kernels().lanes); }
 

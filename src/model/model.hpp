@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "leapmap/motion.hpp"
 #include "leapmap/scene.hpp"
@@ -20,7 +21,8 @@ namespace leapmap {
 /// same.
 using DesignEffort = std::function<double(const Design&)>;
 
-/// How designs of a scene are solved: each of these takes the scene it was chosen for.
+/// How designs of a scene are solved: each of these takes the scene it was chosen for. What a model cannot do
+/// is null; who needs it asks by `need`.
 struct Model {
   Friction friction;
   std::string_view name;     ///< in specs: the value of scene.friction
@@ -49,11 +51,29 @@ struct Model {
   DesignEffort (*effort)(const Scene&, bool derivatives);
 };
 
-/// Every model.
+/// The built-in models.
 std::span<const Model> models();
+
+/// Adds a model for the rest of the program; its friction and its name must be its own. Not while designs are
+/// solved. `name` and `meaning` must live as long as the program.
+void add_model(const Model& model);
+
+/// Any model, built in or added; nullptr: none has that name.
+const Model* find_model(std::string_view name);
+std::vector<std::string_view> model_names();
 
 const Model& model_of(Friction friction);
 inline const Model& model_of(const Scene& scene) { return model_of(scene.friction); }
+
+/// Throws InputError: the model has no such thing, for example "derivatives".
+[[noreturn]] void refuse_lack(const Model& model, std::string_view what);
+
+/// What a caller cannot do without. Throws InputError if the model lacks it.
+template <class Capability>
+Capability need(const Model& model, Capability Model::*capability, std::string_view what) {
+  if (!(model.*capability)) refuse_lack(model, what);
+  return model.*capability;
+}
 
 /// More steps than any integration needs that gets anywhere: a long run takes a million; a slide near
 /// Painleve's edge would take any number.

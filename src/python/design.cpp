@@ -236,9 +236,8 @@ py::list fit(const py::object& data, const std::string& path_or_text,
   Interrupts interrupts;
   FitOptions options{.models = {}, .seed = seed, .threads = threads_here(threads)};
   for (const std::string& name : names) {
-    const auto model = std::ranges::find(models(), name, &Model::name);
-    if (model == models().end())
-      throw InputError("model = '" + name + "' is unknown; allowed: sticking, coulomb, both");
+    const Model* model = find_model(name);
+    if (!model) throw InputError("model = '" + name + "' is unknown; allowed: sticking, coulomb, both");
     options.models.push_back(model->friction);
   }
   options.stop_requested = [&] { return interrupts(); };

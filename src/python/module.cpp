@@ -29,13 +29,9 @@ namespace leapmap::python {
 namespace {
 
 Scene scene_of(const std::string& friction) {
-  std::vector<std::string_view> names;
-  for (const Model& model : models()) {
-    if (model.name == friction) return {.friction = model.friction};
-    names.push_back(model.name);
-  }
+  if (const Model* model = find_model(friction)) return {.friction = model->friction};
   throw InputError(
-      fmt::format("friction = '{}' is not a model; allowed: {}", friction, fmt::join(names, ", ")));
+      fmt::format("friction = '{}' is not a model; allowed: {}", friction, fmt::join(model_names(), ", ")));
 }
 
 py::dict solve(const py::dict& given, const std::string& friction, const std::vector<std::string>& fields,

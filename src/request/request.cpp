@@ -40,10 +40,6 @@ bool is_of_later_jumps(const Field* column) {
   return column->of_sequence && !is_statistic(column);
 }
 
-void add_once(std::vector<const Field*>& columns, const Field* column) {
-  if (std::ranges::find(columns, column) == columns.end()) columns.push_back(column);
-}
-
 }  // namespace
 
 std::vector<const Field*> columns_of(const Spec& spec) {
@@ -76,14 +72,20 @@ Request request_of_sample(const Request& request) {
   Request sample = request;
   sample.scatter = {}, sample.goals.clear();
   sample.columns = {find_field("status")};
-  for (const Goal& goal : request.goals) add_once(sample.columns, find_field(goal.field));
-  for (const Field* quantity : quantities_of(statistics_of(request))) add_once(sample.columns, quantity);
+  for (const Goal& goal : request.goals) add_column(sample.columns, find_field(goal.field));
+  for (const Field* quantity : quantities_of(statistics_of(request))) add_column(sample.columns, quantity);
   return sample;
+}
+
+void add_column(std::vector<const Field*>& columns, const Field* column) {
+  if (std::ranges::find(columns, column) == columns.end()) columns.push_back(column);
 }
 
 bool wants(const Request& request, std::string_view field) {
   return std::ranges::find(request.columns, field, &Field::name) != request.columns.end();
 }
+
+bool wants_samples(const Request& request) { return std::ranges::any_of(request.columns, is_statistic); }
 
 bool wants_gaits(const Request& request) {
   return request.scene.settle > 0 && std::ranges::any_of(request.columns, [](const Field* column) {

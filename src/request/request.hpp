@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What is asked of designs. Everything that solves them takes a request; a spec is only what a file says.
+/// What is asked of designs. Solvers are made from a request; a spec is only what a file says.
 #pragma once
 
 #include <string>
@@ -37,7 +37,12 @@ Request request_of_everything(const Spec& spec);
 /// What is asked of each hoop of a manufactured sample: what its goals and statistics need.
 Request request_of_sample(const Request& request);
 
+/// Adds a column that is not there yet.
+void add_column(std::vector<const Field*>& columns, const Field* column);
+
 bool wants(const Request& request, std::string_view field);
+/// Whether hoops are to be manufactured: for statistics.
+bool wants_samples(const Request& request);
 /// Whether the gaits that jumps converge to are to be found.
 bool wants_gaits(const Request& request);
 

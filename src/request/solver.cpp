@@ -20,6 +20,8 @@ IntegrationOptions integration_options(const Numerics& numerics) {
 
 namespace {
 
+constexpr std::string_view semi_analytic = "semi-analytic solver", integrator = "integration in time";
+
 bool is_exact(const Request& request) { return resolved_method(request.numerics) == "exact"; }
 
 Wanted wanted_of(const Request& request) {
@@ -52,8 +54,10 @@ Solver afterwards(const Request& request) {
 Solver make_solver(const Request& request) {
   const Scene scene = scene_asked(request);
   const Model& model = model_of(scene);
-  Solver solver = is_exact(request) ? model.exact(scene, request.numerics.tolerance, wanted_of(request))
-                                    : model.integration(scene, integration_options(request.numerics));
+  Solver solver =
+      is_exact(request)
+          ? need(model, &Model::exact, semi_analytic)(scene, request.numerics.tolerance, wanted_of(request))
+          : need(model, &Model::integration, integrator)(scene, integration_options(request.numerics));
   const Solver after = afterwards(request);
   if (!after) return solver;
   return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes) {
@@ -68,8 +72,8 @@ GradientSolver make_gradient_solver(const Request& request) {
     return [solver = make_solver(request)](std::span<const Design> designs, std::span<Outcome> outcomes,
                                            Gradients&) { solver(designs, outcomes); };
   const Scene scene = scene_asked(request);
-  GradientSolver solver =
-      model_of(scene).gradients(scene, request.numerics.tolerance, wanted_of(request), asked);
+  GradientSolver solver = need(model_of(scene), &Model::gradients, "derivatives")(
+      scene, request.numerics.tolerance, wanted_of(request), asked);
   const Solver after = afterwards(request);
   if (!after) return solver;
   return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes,
@@ -86,10 +90,11 @@ ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const So
 
 Motion tell(const Design& design, const Request& request, double interval) {
   const Model& model = model_of(request.scene);
-  Motion motion =
-      is_exact(request)
-          ? model.tell_exactly(design, request.scene, request.numerics.tolerance, interval)
-          : model.tell_by_integration(design, request.scene, integration_options(request.numerics), interval);
+  Motion motion = is_exact(request)
+                      ? need(model, &Model::tell_exactly, semi_analytic)(design, request.scene,
+                                                                         request.numerics.tolerance, interval)
+                      : need(model, &Model::tell_by_integration, integrator)(
+                            design, request.scene, integration_options(request.numerics), interval);
   if (const Solver after = afterwards(request)) after({&design, 1}, {&motion.outcome, 1});
   return motion;
 }

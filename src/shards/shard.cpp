@@ -40,7 +40,9 @@ struct Sampled {
 DesignEffort effort_of(const Spec& spec) {
   const Request request = request_of(spec);
   const Scene scene = scene_followed(request);
-  return model_of(scene).effort(scene, !derivatives_of(request).of.empty());
+  const Model& model = model_of(scene);
+  if (!model.effort) return [](const Design&) { return 1.0; };
+  return model.effort(scene, !derivatives_of(request).of.empty());
 }
 
 /// Counts the efforts of so many designs of each tile, one of each of as many pieces of it.

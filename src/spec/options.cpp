@@ -20,12 +20,6 @@
 namespace leapmap {
 namespace {
 
-std::vector<std::string_view> frictions() {
-  std::vector<std::string_view> names;
-  for (const Model& model : models()) names.push_back(model.name);
-  return names;
-}
-
 std::vector<std::string_view> methods() {
   std::vector<std::string_view> names{"auto", "exact"};
   for (const GslStepper& stepper : gsl_steppers()) names.push_back(stepper.name);
@@ -76,7 +70,7 @@ const std::array keys{
            "",
            "contact model; sticking: never slips, as in the paper; coulomb: Coulomb friction",
            {},
-           frictions},
+           model_names},
     Option{"scene",
            "jumps",
            IntegerSlot{[](Spec& s) -> long& { return s.scene.jumps; }},

@@ -37,9 +37,7 @@ struct Assign {
   }
   void operator()(SceneSlot slot) const { spec.scene.*slot.member = one_number(); }
   void operator()(NumberSlot slot) const { slot(spec) = one_number(); }
-  void operator()(FrictionSlot) const {
-    spec.scene.friction = std::ranges::find(models(), text(*entry.node), &Model::name)->friction;
-  }
+  void operator()(FrictionSlot) const { spec.scene.friction = find_model(text(*entry.node))->friction; }
   void operator()(IntegerSlot slot) const {
     const auto value = to_whole(*entry.node);
     if (!value) refuse(entry, "is not a whole number", allowed_values(*entry.option));

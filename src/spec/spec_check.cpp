@@ -131,6 +131,29 @@ void check_count(const Spec& spec) {
     refuse(spec, "axes", fmt::format("make {:.3g} designs", designs), "at most 1e12");
 }
 
+/// What the scene's model cannot do.
+void check_capabilities(const Spec& spec) {
+  const Model& model = model_of(spec.scene);
+  const bool exact = resolved_method(spec.numerics) == "exact";
+  const auto refuse_without = [&](bool can, std::string_view key, std::string_view what,
+                                  const std::string& allowed) {
+    if (!can)
+      refuse(spec, key, fmt::format("needs {}, which the model \"{}\" lacks", what, model.name), allowed);
+  };
+  if (exact)
+    refuse_without(model.exact, "method", "a semi-analytic solver", "a stepper, for example \"gsl-rk8pd\"");
+  else
+    refuse_without(model.integration, "method", "an integration in time", "\"exact\"");
+  if (spec.numerics.audit > 0.0)
+    refuse_without(model.exact && model.integration, "audit", "a second method", "0");
+  if (!spec.output.gradients.empty()) refuse_without(model.gradients, "gradients", "derivatives", "none");
+  if (spec.scene.jumps > 1)
+    refuse_without(exact ? model.jumps != nullptr : model.integrated_jumps != nullptr, "jumps",
+                   "jumps that begin at a landing", "1");
+  if (spec.scene.settle > 0)
+    refuse_without(model.jumps && model.dual_jumps, "settle", "derivatives of jumps", "0");
+}
+
 }  // namespace
 
 void check_spec(const Spec& spec) {
@@ -163,6 +186,7 @@ void check_spec(const Spec& spec) {
   if (spec.scene.settle > 0 && resolved_method(spec.numerics) != "exact")
     refuse(spec, "settle", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
            "with method = \"exact\"");
+  check_capabilities(spec);
   check_names(spec);
   check_gradients(spec);
   check_scatter(spec);

@@ -61,7 +61,7 @@ def test_the_audit_tells_of_later_jumps_and_gaits_and_check_sees_a_wrong_one(tmp
     assert "later jumps" in leapmap("info", path).stdout
     assert leapmap("check", path, "--sample", "32").returncode == 0
     shutil.copy(path, path.with_suffix(".right"))
-    for field, words in (("jump_height_3", "later jump"), ("gait_height", "does not find the gait")):
+    for field, words in (("jump_height_3", "later jumps"), ("gait_height", "does not find the stored gait")):
         with h5py.File(path, "r+") as m:
             del m.attrs["tiles_checksum"]
             values = m[field][:]

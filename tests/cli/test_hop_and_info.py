@@ -28,6 +28,14 @@ def test_json_is_nothing_but_data_under_the_maps_names():
     assert stalled["status"] == "stalled" and stalled["jump_height"] is None and stalled["spurious_first_jump"] is None
 
 
+@pytest.mark.parametrize("friction", ["sticking", "coulomb"])
+def test_json_holds_any_number_of_jumps(friction):
+    for jumps in range(1, 21):  # each adds two members to the object
+        hop = json.loads(leapmap("hop", "--friction", friction, "--jumps", jumps, "--set", "gait.settle=10", "--json").stdout)
+        assert len(hop["lift_offs"]) >= 1 and f"jump_height_{max(jumps, 2)}" in hop or jumps == 1
+        assert list(hop)[-3:] == ["grazes", "check", "phases"]
+
+
 def test_every_parameter_has_a_flag_that_beats_the_spec():
     hop = json.loads(leapmap("hop", TOP / "sweeps/paper.toml", "--json", "--slope", "30deg", "--mass-ratio", "3", "--offset-ratio",
                              "0.9", "--inertia-factor", "0.8", "--release-angle", "170 deg", "--release-spin", "0.1", "--drive-torque", "0.2").stdout)

@@ -288,7 +288,7 @@ def test_every_flipped_bit_of_a_finished_map_is_found_and_told(original, tmp_pat
 
 def test_check_finds_wrong_numbers_whose_checksums_are_right(original, tmp_path):
     path = tmp_path / "map.h5"
-    for name, value, told in (("jump_height", 0.7, "differs by more"), ("status", 2, "the number of designs with each status differs"), ("candidates", 9, "another status, flag"),
+    for name, value, told in (("jump_height", 0.7, "differ by more than"), ("status", 2, "the number of designs with each status differs"), ("candidates", 9, "the stored status"),
                               ("jump_height", 2e303, "2e+303"), ("status", 77, "holds 77")):
         shutil.copy(original, path)
         with h5py.File(path, "r+") as m:
