@@ -8,12 +8,14 @@
 function(leapmap_kernel_objects target march entry)
   add_library(${target} OBJECT ${LEAPMAP_KERNEL_SOURCES})
   target_compile_definitions(${target} PRIVATE LEAPMAP_KERNELS=${entry})
-  target_compile_options(${target} PRIVATE $<$<NOT:$<STREQUAL:${march},>>:-march=${march}> -fno-gnu-unique -fno-lto
+  target_compile_options(${target} PRIVATE $<$<NOT:$<STREQUAL:${march},>>:-march=${march}> -fno-gnu-unique
+    -fno-lto
     # What a loop over lanes calls is worth inlining up to some hundred instructions: a call passes its lanes
     # by memory.
     "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param max-inline-insns-auto=200>")
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
-  target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:GSL::gsl,INTERFACE_INCLUDE_DIRECTORIES>)
+  target_include_directories(${target} SYSTEM PRIVATE
+    $<TARGET_PROPERTY:GSL::gsl,INTERFACE_INCLUDE_DIRECTORIES>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:leapmap-options>)
 endfunction()
 

@@ -1,13 +1,16 @@
-# The Python package leapmap: src/python/leapmap with its compiled core, the charts and the page's parts beside it.
+# The Python package leapmap: src/python/leapmap with its compiled core, the charts and the page's parts
+# beside it.
 set(package ${PROJECT_BINARY_DIR}/python/leapmap)
-pybind11_add_module(leapmap-python MODULE NO_EXTRAS src/python/arguments.cpp src/python/design.cpp src/python/module.cpp src/python/results.cpp)
+pybind11_add_module(leapmap-python MODULE NO_EXTRAS src/python/arguments.cpp src/python/design.cpp
+  src/python/module.cpp src/python/results.cpp)
 set_target_properties(leapmap-python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${package}
                                                 CXX_VISIBILITY_PRESET hidden)
 target_link_libraries(leapmap-python PRIVATE leapmap leapmap-options)
 target_compile_options(leapmap-python PRIVATE $<$<CONFIG:Release>:-O1>)
 target_precompile_headers(leapmap-python PRIVATE <pybind11/numpy.h> <pybind11/stl.h> <fmt/format.h>)
 
-file(GLOB modules CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src/python/leapmap ${PROJECT_SOURCE_DIR}/src/python/leapmap/*.py
+file(GLOB modules CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src/python/leapmap
+  ${PROJECT_SOURCE_DIR}/src/python/leapmap/*.py
      ${PROJECT_SOURCE_DIR}/src/python/leapmap/py.typed)
 file(MAKE_DIRECTORY ${package})
 foreach(module ${modules})
@@ -17,7 +20,8 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR}/analysis ${package}/analysis SYMBOLIC)
 
 # Type stubs for editors, from the tables of parameters and fields.
 list(TRANSFORM modules PREPEND ${PROJECT_SOURCE_DIR}/src/python/leapmap/ OUTPUT_VARIABLE sources)
-add_custom_command(OUTPUT ${package}/__init__.pyi DEPENDS leapmap-python src/python/stubs.py ${sources} VERBATIM
+add_custom_command(OUTPUT ${package}/__init__.pyi DEPENDS leapmap-python src/python/stubs.py ${sources}
+  VERBATIM
   COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${PROJECT_BINARY_DIR}/python
           ${Python_EXECUTABLE} -P ${PROJECT_SOURCE_DIR}/src/python/stubs.py ${package}/__init__.pyi
   COMMENT "Type stubs of the Python module")
@@ -27,7 +31,8 @@ add_custom_target(leapmap-stubs ALL DEPENDS ${package}/__init__.pyi)
 set(LEAPMAP_PYTHON_DIR lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/dist-packages CACHE STRING
     "Where the Python package is installed, under the prefix")
 install(TARGETS leapmap-python DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
-install(DIRECTORY src/python/leapmap/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap FILES_MATCHING PATTERN "*.py" PATTERN py.typed
+install(DIRECTORY src/python/leapmap/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap FILES_MATCHING PATTERN "*.py"
+  PATTERN py.typed
         PATTERN __pycache__ EXCLUDE)
 install(FILES ${package}/__init__.pyi DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
 install(DIRECTORY analysis/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap/analysis USE_SOURCE_PERMISSIONS

@@ -46,6 +46,13 @@ def test_includes_point_to_rooms_above_their_own():
     assert includes > 1000 and wrong == []
 
 
+def test_lines_of_cpp_and_cmake_have_at_most_110_columns():
+    files = [*TOP.glob("CMakeLists.txt"), *TOP.glob("cmake/*.cmake"), *TOP.glob("tests/**/CMakeLists.txt"),
+             *TOP.glob("src/**/*.[ch]pp"), *TOP.glob("tests/**/*.[ch]pp")]
+    long = [f"{path}:{number}" for path in files for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > 110]
+    assert len(files) > 300 and long == []
+
+
 def test_ctest_runs_every_test_in_cpp_once():
     build = Path(os.environ["LEAPMAP_BUILD"])
     ours, suite = [], ""
