@@ -20,7 +20,7 @@ bool is_near(double value, double bound) { return std::abs(value - bound) <= nea
 /// Whether the normal force only just falls where the jump lifts off from rolling.
 bool touches(const Design& design, const Outcome& outcome) {
   if (outcome.status != Status::jumped) return false;
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   const Trig<double> phi = trig(outcome.jump_angle);
   const double spin = outcome.jump_spin;
   return std::abs(normal_force_rate(hoop, phi, spin, angular_acceleration(hoop, phi, spin))) < touching;
@@ -28,7 +28,7 @@ bool touches(const Design& design, const Outcome& outcome) {
 
 /// Whether the normal force is zero where the runway ends, either way.
 bool ends_the_runway(const Scene& scene, const Design& design) {
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   const Roll<double> roll = begin_roll(hoop, design.release_angle, design.release_spin);
   const auto touches_at = [&](double angle) {
     const Trig<double> phi = trig(angle);

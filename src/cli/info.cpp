@@ -168,7 +168,7 @@ void print_incomplete(const MapReader& map, const std::string& part) {
 }
 
 /// The map's own words on how it was made.
-struct Told {
+struct Attributes {
   const MapReader& map;
 
   bool has(const char* name) const { return hdf5::has_attribute(map.file(), name); }
@@ -179,7 +179,7 @@ struct Told {
 };
 
 void print_origin(const MapReader& map, const std::string& path) {
-  const Told told{map};
+  const Attributes told{map};
   say("{}\n", told("title"));
   const std::string shards = map.attribute(shards_attribute);
   say("made {} on {} by leapmap {} (git {}), {} threads{}, {} s{}\n", told("date"), told("host"),
@@ -194,7 +194,7 @@ void print_origin(const MapReader& map, const std::string& path) {
 
 /// What the cross-check found.
 void print_audit(const MapReader& map) {
-  const Told told{map};
+  const Attributes told{map};
   if (told.has("audit_designs")) try {
       say_audit(read_audit(map));
     } catch (const IoError& error) {

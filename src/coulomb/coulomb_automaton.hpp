@@ -69,7 +69,7 @@ class PhaseMachine {
                const CoulombObserver& observer)
       : scene_(&scene),
         observer_(&observer),
-        hoop_(derive<S>(design)),
+        hoop_(reduce<S>(design)),
         contact_(contact_of<S>(design, scene)),
         runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
         at_(from) {

@@ -24,7 +24,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
   free_.clear();
   for (std::size_t place = most_on_their_way; place-- > 0;)
     free_.push_back(static_cast<std::uint32_t>(place));
-  const auto settle = [&](std::uint32_t place, const std::optional<NextPhase>& next) {
+  const auto take_up = [&](std::uint32_t place, const std::optional<NextPhase>& next) {
     if (next) return go_on(place, *next);
     auto& [design, machine] = on_their_way_[place];
     outcomes[design] = machine->outcome();
@@ -39,7 +39,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       auto& [design, machine] = on_their_way_[place];
       design = unbegun++;
       machine.emplace(designs[design], states[design], scene, nobody);
-      settle(place, machine->begin(start));
+      take_up(place, machine->begin(start));
     }
     ended_.clear(), flown_.clear();
     for (const std::uint32_t place : rebounding_) {
@@ -54,9 +54,9 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
     else
       rolling_.pass(ended_);
     for (const Flown& flown : flown_)
-      settle(flown.place, on_their_way_[flown.place].machine->after(flown.flight));
+      take_up(flown.place, on_their_way_[flown.place].machine->after(flown.flight));
     for (const EndedPhase<S>& phase : ended_)
-      settle(phase.place, on_their_way_[phase.place].machine->after(phase.end, phase.at));
+      take_up(phase.place, on_their_way_[phase.place].machine->after(phase.end, phase.at));
   }
 }
 

@@ -306,7 +306,7 @@ void CoulombGradients::derive_solved(std::span<const Design> designs, const Scen
     ContactState<double> at = released<double>(designs[i]);
     if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
       continue;
-    Chain(derive(dual_parameters<D>(designs[i])), dual_contact(designs[i], scene), dual_release(designs[i]),
+    Chain(reduce(dual_parameters<D>(designs[i])), dual_contact(designs[i], scene), dual_release(designs[i]),
           time_unit(scene), panels_, time_)
         .run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
           if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
@@ -325,7 +325,7 @@ Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& s
   if (along == Along::state)
     contact = {D(contact.mu_static.value), D(contact.mu_kinetic.value), D(contact.restitution.value),
                contact.rest_speed};
-  Chain chain(derive(parameters_along(design, along)), contact, at, time_unit(scene), panels_, time_);
+  Chain chain(reduce(parameters_along(design, along)), contact, at, time_unit(scene), panels_, time_);
   const bool known =
       chain.run(recorded, outcome, [&](double Outcome::*quantity, const D& value, double unit) {
         if (put) put(quantity, value, unit);

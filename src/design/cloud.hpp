@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "design/climb.hpp"
+#include "design/improve.hpp"
 
 namespace leapmap {
 

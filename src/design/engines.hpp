@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "design/climb.hpp"
+#include "design/improve.hpp"
 
 namespace leapmap {
 

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <utility>
 
-#include "design/climb.hpp"
 #include "design/engines.hpp"
 #include "design/front.hpp"
+#include "design/improve.hpp"
 #include "design/judge.hpp"
 #include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
@@ -27,11 +27,11 @@ namespace {
 
 /// How much is done before the answer, for designs that take so long.
 struct Effort {
-  std::size_t sample;   ///< designs of the first sample, 16 times a whole number
-  std::size_t starts;   ///< places of it that are followed
-  std::size_t climbed;  ///< of these, the best that are followed to the end
-  std::size_t front;    ///< places kept of a front
-  std::size_t told;     ///< of either
+  std::size_t sample;    ///< designs of the first sample, 16 times a whole number
+  std::size_t starts;    ///< places of it that are followed
+  std::size_t improved;  ///< of these, the best that are followed to the end
+  std::size_t front;     ///< places kept of a front
+  std::size_t told;      ///< of either
 };
 
 Effort effort_of(const Judge& judge, const FindOptions& options) {
@@ -46,15 +46,15 @@ Effort effort_of(const Judge& judge, const FindOptions& options) {
     effort.sample = SobolPoints::whole(options.sample);
     // A small sample tells few places apart.
     effort.starts = std::clamp<std::size_t>(effort.sample / 256, 8, effort.starts);
-    effort.climbed = std::clamp<std::size_t>(effort.sample / 1024, 2, effort.climbed);
+    effort.improved = std::clamp<std::size_t>(effort.sample / 1024, 2, effort.improved);
   }
   if (question.objectives.size() == 2) {
     if (options.most > 0) effort.told = options.most;
   } else {
     effort.told = options.most > 0 ? options.most : 8;
-    effort.climbed = std::max(effort.climbed, effort.told);
+    effort.improved = std::max(effort.improved, effort.told);
   }
-  effort.starts = std::max(effort.starts, effort.climbed);
+  effort.starts = std::max(effort.starts, effort.improved);
   return effort;
 }
 
@@ -149,24 +149,24 @@ std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOpt
       const std::uint64_t seed = options.seed * 1000 + i;
       evolve(*own, places[i], seed);
       descend(*own, places[i]);
-      climb(*own, places[i],
-            {.most_rounds = 40,
-             .a_round = std::size_t{own->makes_hoops() ? 8u : 128u},
-             .seed = seed,
-             .widest = 0.03});
+      improve(*own, places[i],
+              {.most_rounds = 40,
+               .a_round = std::size_t{own->makes_hoops() ? 8u : 128u},
+               .seed = seed,
+               .widest = 0.03});
       return true;
     };
   });
   steps.done(places.size());
-  leave_one_a_basin(judge, places, effort.climbed);
+  leave_one_a_basin(judge, places, effort.improved);
   for (Place& place : places) {
-    climb(judge, place,
-          {.most_rounds = std::size_t{judge.makes_hoops() ? 40u : 400u},
-           .a_round = std::size_t{judge.makes_hoops() ? 64u : 512u},
-           .seed = options.seed,
-           .widest = 0.1});
-    slide(judge, place, options.seed);
-    settle(judge, place, options.seed);
+    improve(judge, place,
+            {.most_rounds = std::size_t{judge.makes_hoops() ? 40u : 400u},
+             .a_round = std::size_t{judge.makes_hoops() ? 64u : 512u},
+             .seed = options.seed,
+             .widest = 0.1});
+    follow_boundary(judge, place, options.seed);
+    move_off_boundary(judge, place, options.seed);
     steps.done();
   }
   leave_one_a_basin(judge, places, effort.told);
@@ -179,7 +179,7 @@ std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOp
   Fronts fronts;
   std::vector<Place> best = sampled(judge, effort, options, steps, &fronts);
   if (!best.front().verdict.feasible()) {
-    climb(judge, best.front(), {.seed = options.seed});
+    improve(judge, best.front(), {.seed = options.seed});
     if (!best.front().verdict.feasible()) return best;
     fronts.add(best);
   }
@@ -318,7 +318,7 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
   const StopScope scope(options.stop_requested);
   Judge judge(question, options.threads, options.stop_requested);
   const Effort effort = effort_of(judge, options);
-  Steps steps(options, sample_steps + effort.starts + effort.climbed);
+  Steps steps(options, sample_steps + effort.starts + effort.improved);
   FoundDesigns found;
   found.engines = has_engines();
   const std::vector<Place> places = question.objectives.size() == 2

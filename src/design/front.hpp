@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "design/climb.hpp"
+#include "design/improve.hpp"
 
 namespace leapmap {
 

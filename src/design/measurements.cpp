@@ -178,7 +178,7 @@ void check_held(const Measurements& measured, const Spec& spec, double second) {
   std::size_t leaves = 0;
   while (leaves < film.phi.size() && !(std::abs(film.phi[leaves] - at) > 6.0 * scatter + 1e-3)) ++leaves;
   if (leaves < 2 * first || leaves == film.phi.size()) return;
-  const Hoop<double> hoop = derive<double>(spec.design);
+  const Hoop<double> hoop = reduce<double>(spec.design);
   // Of rolling, or of sliding down with little friction or much: a hoop may slide and hardly turn.
   const Trig<double> phi = trig(at);
   const double rolling = angular_acceleration(hoop, phi, 0.0), way = hoop.sin_slope < 0.0 ? -1.0 : 1.0;

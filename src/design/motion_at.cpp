@@ -92,7 +92,7 @@ template <class S>
 class Walk {
  public:
   Walk(const Design& design, const Scene& scene)
-      : hoop_(derive(parameter<S>(design, design.slope, 0), parameter<S>(design, design.mass_ratio, 1),
+      : hoop_(reduce(parameter<S>(design, design.slope, 0), parameter<S>(design, design.mass_ratio, 1),
                      parameter<S>(design, design.offset_ratio, 2),
                      parameter<S>(design, design.inertia_factor, 3),
                      parameter<S>(design, design.drive_torque, 6))),
@@ -143,10 +143,10 @@ class Walk {
       flown = with_derivatives(flight_time, end.value, end.rate.value);
     }
     const Sample<S> travel = travel_in_flight(hoop_, phi, at_[1], at_[3], flown);
-    const S climb = height_above_plane(hoop_, phi, at_[1], flown, normal_).rate;
+    const S rise = height_above_plane(hoop_, phi, at_[1], flown, normal_).rate;
     at_[2] = at_[2] + travel.value;
     at_[0] = at_[0] + at_[1] * flown;
-    const Landing<S> landing = land(hoop_, trig(at_[0]), {travel.rate - at_[1], climb, at_[1]},
+    const Landing<S> landing = land(hoop_, trig(at_[0]), {travel.rate - at_[1], rise, at_[1]},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
     at_[1] = landing.after.spin, at_[3] = landing.after.slip, normal_ = landing.after.normal;
     late_ = late_ + flown - S(flight_time);

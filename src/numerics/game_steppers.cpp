@@ -12,7 +12,7 @@ void* allocate(std::size_t dimension) { return std::calloc(2 * dimension, sizeof
 int reset(void*, std::size_t) { return GSL_SUCCESS; }
 int set_driver(void*, const gsl_odeiv2_driver*) { return GSL_SUCCESS; }
 
-int derive(const gsl_odeiv2_system* system, double t, const double* y, double* f) {
+int reduce(const gsl_odeiv2_system* system, double t, const double* y, double* f) {
   return system->function(t, y, f, system->params);
 }
 
@@ -21,10 +21,10 @@ template <class Step>
 int apply(void* state, std::size_t dimension, double t, double h, double y[], double error[],
           double dydt_out[], const gsl_odeiv2_system* system, const Step& step) {
   auto* f = static_cast<double*>(state);
-  if (const int status = derive(system, t, y, f); status != GSL_SUCCESS) return status;
+  if (const int status = reduce(system, t, y, f); status != GSL_SUCCESS) return status;
   if (const int status = step(dimension / 2, f, f + dimension); status != GSL_SUCCESS) return status;
   for (std::size_t i = 0; i < dimension; ++i) error[i] = 0.0;
-  return dydt_out ? derive(system, t + h, y, dydt_out) : GSL_SUCCESS;
+  return dydt_out ? reduce(system, t + h, y, dydt_out) : GSL_SUCCESS;
 }
 
 int apply_euler(void* state, std::size_t dimension, double t, double h, double y[], double error[],
@@ -55,7 +55,7 @@ int apply_verlet(void* state, std::size_t dimension, double t, double h, double 
       y[i] += h * (y[n + i] + 0.5 * h * f[n + i]);
       y[n + i] += h * f[n + i];  // predicted, for the acceleration at the end
     }
-    const int status = derive(system, t + h, y, g);
+    const int status = reduce(system, t + h, y, g);
     for (std::size_t i = 0; i < n; ++i) y[n + i] += 0.5 * h * (g[n + i] - f[n + i]);
     return status;
   });

@@ -47,7 +47,7 @@ Hoop<T> mapped(const Hoop<S>& hoop, const F& f) {
 /// sums of non-negative terms: the textbook forms 1 - rho, J0 - rho^2 and J0 + 1 - 2 rho lose every digit for
 /// a mass on the rim (lambda = 1) of a nearly massless hoop.
 template <class T>
-Hoop<T> derive(const T& slope, const T& beta, const T& lambda, const T& kappa, const T& tau) {
+Hoop<T> reduce(const T& slope, const T& beta, const T& lambda, const T& kappa, const T& tau) {
   const T hub = T(1) / (T(1) + beta);  // m / (m + m_p)
   const T alpha = beta * hub;
   const T gap = T(1) - lambda;
@@ -63,8 +63,8 @@ Hoop<T> derive(const T& slope, const T& beta, const T& lambda, const T& kappa, c
 }
 
 template <class T>
-Hoop<T> derive(const Design& design) {
-  return derive(T(design.slope), T(design.mass_ratio), T(design.offset_ratio), T(design.inertia_factor),
+Hoop<T> reduce(const Design& design) {
+  return reduce(T(design.slope), T(design.mass_ratio), T(design.offset_ratio), T(design.inertia_factor),
                 T(design.drive_torque));
 }
 
@@ -74,7 +74,7 @@ Hoop<T> derive_gathered(const F& design_of) {
   const auto parameter = [&](double Design::*member) {
     return gathered<T>([&](std::size_t i) { return design_of(i).*member; });
   };
-  return derive(parameter(&Design::slope), parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
+  return reduce(parameter(&Design::slope), parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
                 parameter(&Design::inertia_factor), parameter(&Design::drive_torque));
 }
 

@@ -28,7 +28,7 @@ void note_time(Outcome& outcome, double Outcome::*time, const S& told) {
 template <class T>
 void ExactSolver<T>::solve(Start start, std::span<const Design> designs,
                            std::span<ContactState<ScalarOf<T>>> states, const Scene& scene,
-                           std::span<Outcome> outcomes, Told* told) {
+                           std::span<Outcome> outcomes, FoundLiftOffs* told) {
   take_off_.told = told;
   for (std::size_t first = 0; first < designs.size(); first += Block<T>::most_designs) {
     const std::size_t count = std::min(Block<T>::most_designs, designs.size() - first);

@@ -30,13 +30,13 @@ class ExactSolver {
   /// Solves designs[i] into outcomes[i]. told, if given, is told the way of the last one: of one design at a
   /// time.
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
-             Told* told = nullptr) {
+             FoundLiftOffs* told = nullptr) {
     solve(Start::release, designs, {}, scene, outcomes, told);
   }
   /// The same from where states[i] have designs[i], which have just landed there or are released; moves each
   /// to just after the landing of its jump.
   void solve(Start start, std::span<const Design> designs, std::span<ContactState<ScalarOf<T>>> states,
-             const Scene& scene, std::span<Outcome> outcomes, Told* told = nullptr);
+             const Scene& scene, std::span<Outcome> outcomes, FoundLiftOffs* told = nullptr);
   /// What the solver knows of the last designs it solved, as many as a block holds.
   const Block<T>& block() const { return block_; }
 

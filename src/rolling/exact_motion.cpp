@@ -33,8 +33,9 @@ std::vector<Leg> legs_of(const ContactState<double>& from, const Hoop<double>& h
 }
 
 /// Every lift-off, timed from one to the next. The jump and the first are the outcome's to the last digit.
-std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, const Told& told, const Outcome& outcome,
-                                     const Scene& scene, const RollingTime<double>& time) {
+std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, const FoundLiftOffs& told,
+                                     const Outcome& outcome, const Scene& scene,
+                                     const RollingTime<double>& time) {
   std::vector<Candidate> candidates;
   std::size_t on = legs.size();
   Roll<double> roll;
@@ -66,7 +67,7 @@ class Teller {
   Teller(const Design& design, const Scene& scene, double tolerance, double interval, Motion& motion)
       : design_(design),
         scene_(scene),
-        hoop_(derive<double>(design)),
+        hoop_(reduce<double>(design)),
         second_(time_unit(scene)),
         samples_(interval > 0.0),
         solver_(tolerance),
@@ -76,7 +77,7 @@ class Teller {
 
   Outcome tell(Start start, ContactState<double>& at) {
     const ContactState<double> from = at;
-    Told told;
+    FoundLiftOffs told;
     Outcome outcome;
     solver_.solve(start, {&design_, 1}, {&at, 1}, scene_, {&outcome, 1}, &told);
     const double way = way_of(hoop_, from.angle, from.spin);

@@ -21,7 +21,7 @@ constexpr double finest = 1e-14;
 /// The roll of a design of these parameters, seen from the side where it goes.
 template <class D>
 Roll<D> dual_roll(const std::array<D, without_slip>& parameter, const D& way = D(1.0)) {
-  return begin_roll(seen(derive(parameter), way), way * parameter[by_release_angle],
+  return begin_roll(seen(reduce(parameter), way), way * parameter[by_release_angle],
                     way * parameter[by_release_spin]);
 }
 
@@ -220,7 +220,7 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
   using S = RollingDual;
   using std::abs;
   const Design& design = lot.designs[number];
-  Told told;
+  FoundLiftOffs told;
   Outcome outcome;
   teller_.solve({&design, 1}, lot.scene, {&outcome, 1}, &told);
   const std::size_t place = lot.first + number;

@@ -15,7 +15,7 @@ namespace leapmap {
 
 /// What is told of a design's way: angle and spin of every lift-off, and where it turned round, in order;
 /// without times.
-struct Told {
+struct FoundLiftOffs {
   std::vector<LiftOff<double>> lift_offs;
   std::vector<std::size_t> legs;  ///< of each lift-off, from 0
   std::vector<double> turns;
@@ -25,7 +25,7 @@ struct Told {
 template <class T>
 struct TakeOff {
   std::vector<SureFall<ScalarOf<T>>> falls;  ///< with one lift-off each, at most one a design
-  Told* told = nullptr;                      ///< told every lift-off, if there
+  FoundLiftOffs* told = nullptr;             ///< told every lift-off, if there
   bool keeps_flights = true;                 ///< for land to go on with
   /// Where the designs landed and went on from; empty: they were released.
   std::span<const ContactState<ScalarOf<T>>> landed;

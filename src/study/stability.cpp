@@ -57,7 +57,7 @@ Expected expected_of(const StabilitySubject& subject) {
 
 double energy_drift(const Design& design, const Outcome& outcome) {
   if (outcome.status != Status::jumped) return nan;
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   const double kinetic = kinetic_energy(hoop, trig(outcome.jump_angle), outcome.jump_spin);
   const double drift = rolling_energy(hoop, outcome.jump_angle, outcome.jump_spin) -
                        rolling_energy(hoop, design.release_angle, design.release_spin);

@@ -42,7 +42,7 @@ StabilityCase release(bool quick) {
       "release", "distance from the unstable equilibrium [rad]", {}, usual_contestants(Friction::sticking)};
   for (int decade = 1; decade <= 12; decade += quick ? 4 : 1) {
     StabilitySubject subject{std::pow(10.0, -decade), {}, {}};
-    const Hoop<long double> hoop = derive<long double>(subject.design);
+    const Hoop<long double> hoop = reduce<long double>(subject.design);
     const long double equilibrium =
         std::numbers::pi_v<long double> - slope_of(hoop) - std::asin(hoop.sin_slope / hoop.rho);
     subject.design.release_angle = static_cast<double>(equilibrium + subject.x);

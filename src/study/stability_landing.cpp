@@ -63,7 +63,7 @@ std::vector<Subject> dipping(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     if (outcomes[i].status != Status::jumped) continue;
     const LiftOff<double> lift_off{0.0, outcomes[i].jump_angle, outcomes[i].jump_spin};
-    subjects.push_back({0.0, derive<double>(designs[i]), lift_off, {}});
+    subjects.push_back({0.0, reduce<double>(designs[i]), lift_off, {}});
   }
   return subjects;
 }
@@ -72,7 +72,7 @@ std::vector<Subject> dipping(std::size_t count) {
 /// y''' > 0.
 std::vector<Subject> triple_roots(int count) {
   std::vector<Subject> subjects;
-  const Hoop<double> hoop = derive<double>(Design{});
+  const Hoop<double> hoop = reduce<double>(Design{});
   for (int i = 0; i < count; ++i) {
     const double angle = std::numbers::pi * (0.5 + 0.48 * (i + 1.0) / count);
     subjects.push_back(

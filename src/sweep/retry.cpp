@@ -86,9 +86,9 @@ void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Faile
   }
 }
 
-/// Settles every failed design of the copy and says so in it. Nothing: a stop was requested.
-std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string& path, const Spec& spec,
-                                      int threads, const std::function<bool()>& stop_requested) {
+/// Solves every failed design of the copy and says so in it. Nothing: a stop was requested.
+std::optional<RetryReport> resolve_all(const hdf5::File& file, const std::string& path, const Spec& spec,
+                                       int threads, const std::function<bool()>& stop_requested) {
   constexpr std::size_t most_at_once = 100'000;
   const MapReader map(path, file);
   if (!map.is_whole()) throw InputError(path + ": is incomplete; allowed: a complete map, by sweep --resume");
@@ -103,7 +103,7 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
                      ": is damaged: its chunks are not what was written; leapmap check shows the place");
   RetryReport report;
   std::vector<Failed> waiting;
-  const auto settle = [&] {
+  const auto resolve = [&] {
     solve(spec, tiling, waiting, threads, stop_requested);
     for (auto first = waiting.begin(); first != waiting.end();) {
       const auto last =
@@ -126,7 +126,7 @@ std::optional<RetryReport> settle_all(const hdf5::File& file, const std::string&
         ++report.statuses[static_cast<std::size_t>(statuses[i])];
       }
     }
-    if (waiting.size() >= most_at_once || t + 1 == tiling.size()) settle();
+    if (waiting.size() >= most_at_once || t + 1 == tiling.size()) resolve();
     if (stop_requested && stop_requested()) return std::nullopt;
   }
   report.still_failed = static_cast<std::size_t>(report.statuses[static_cast<std::size_t>(Status::failed)]);
@@ -160,7 +160,7 @@ std::optional<RetryReport> retry_with(const std::string& path, const Spec& spec,
       hdf5::File::copy(original, path + ".retry", map_filetype, locking, stop_requested);
   if (!file) return std::nullopt;
   try {
-    auto report = settle_all(*file, path, spec, threads, stop_requested);
+    auto report = resolve_all(*file, path, spec, threads, stop_requested);
     if (!report || report->retried == 0) {
       file->discard();
       return report;

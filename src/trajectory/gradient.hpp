@@ -44,8 +44,8 @@ std::array<D, without_slip> dual_parameters(const Design& design) {
 
 /// The hoop of those parameters.
 template <class D>
-Hoop<D> derive(const std::array<D, without_slip>& p) {
-  return derive(p[0], p[1], p[2], p[3], p[6]);
+Hoop<D> reduce(const std::array<D, without_slip>& p) {
+  return reduce(p[0], p[1], p[2], p[3], p[6]);
 }
 
 /// Whether mu_kinetic is what mu_static is, and goes where that goes.

@@ -26,14 +26,14 @@ constexpr std::array lift_off_names{"time",      "angle",       "spin", "height"
 constexpr std::array tells{rolling::tell_exactly, coulomb::tell_exactly};
 
 /// The last solve's.
-struct Told {
+struct SolvedHoop {
   Outcome outcome;
   std::string text;
   std::vector<std::array<double, column_names.size()>> points;
   std::vector<std::array<double, lift_off_names.size()>> lift_offs;
   std::vector<double> gradient;  // by each of parameters
 };
-Told told;
+SolvedHoop told;
 
 template <std::size_t n>
 const char* name_in(const std::array<const char*, n>& names, int i) {

@@ -73,7 +73,7 @@ int some_ulps(std::mt19937_64& random) { return std::uniform_int_distribution<in
 Design at_stick_limit(std::mt19937_64& random) {
   Design design = some_design(random);
   design.release_spin = uniform(random, 0.0, 1.5);
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   const Trig<double> phi = trig(design.release_angle);
   const double a = angular_acceleration(hoop, phi, design.release_spin);
   const double mu = std::abs(friction_force(hoop, phi, design.release_spin, a) /
@@ -86,7 +86,7 @@ Design at_stick_limit(std::mt19937_64& random) {
 /// Released where n0 vanishes.
 Design at_free_fall(std::mt19937_64& random) {
   Design design = some_design(random);
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   const double cosine = std::min(std::cos(design.release_angle), -0.05);
   design.release_spin = nudged(std::sqrt(-hoop.cos_slope / (hoop.rho * cosine)), some_ulps(random));
   return design;
@@ -113,7 +113,7 @@ Design near_painleve(std::mt19937_64& random) {
 /// A kinetic friction with which the pivot just touches zero at an angle.
 Design touching_painleve(std::mt19937_64& random) {
   Design design = near_painleve(random);
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   double least = HUGE_VAL;
   for (int k = 1; k < 1000; ++k) {
     const Trig<double> phi = trig(std::numbers::pi * k / 1000);
@@ -320,7 +320,7 @@ TEST(AimedCoulomb, ReleasedWhereItWouldRollOnItRollsOn) {
                        .release_angle = 2.60498,
                        .release_spin = 1.29,
                        .mu_static = 0.844};
-  const Hoop<double> hoop = derive<double>(earlier);
+  const Hoop<double> hoop = reduce<double>(earlier);
   const Roll<double> roll = begin_roll(hoop, earlier.release_angle, earlier.release_spin);
   Design later = earlier;
   later.release_angle = 2.63498;
@@ -340,7 +340,7 @@ TEST(Painleve, ThePivotNearItsEdgeKeepsItsDigits) {
   int met = 0;
   for (int i = 0; i < 300; ++i) {
     const Design design = near_painleve(random);
-    const auto hoop = derive<long double>(design);
+    const auto hoop = reduce<long double>(design);
     const long double friction = design.mu_kinetic * (i % 2 == 0 ? 1.0L : -1.0L);
     if (!(sliding_coefficients(hoop, trig(3.0L), friction).pivot > 0.0L)) continue;
     for (const long double way : {1.0L, -1.0L}) {
@@ -353,7 +353,7 @@ TEST(Painleve, ThePivotNearItsEdgeKeepsItsDigits) {
       const PainleveEdge<long double> finer{trig(there), trig(2 * there), way};
       const double rate = std::abs(static_cast<double>(pivot_by_angle(hoop, trig(there), friction).rate));
       for (const double x : {1e-12, 1e-6, 1e-3, 0.1}) {
-        const double pivot = edge.pivot(derive<double>(design), static_cast<double>(friction), x);
+        const double pivot = edge.pivot(reduce<double>(design), static_cast<double>(friction), x);
         EXPECT_NEAR(pivot, static_cast<double>(finer.pivot(hoop, friction, static_cast<long double>(x))),
                     1e-13 * x)
             << "some roundings of terms of size x";

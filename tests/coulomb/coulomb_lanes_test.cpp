@@ -84,7 +84,7 @@ TEST(CoulombLanes, AnOutcomeDependsOnTheDesignAlone) {
 std::optional<Design> about_to_lift_off(std::mt19937_64& random, double left) {
   Design design = testing::either_way(random);
   design.mu_static = testing::uniform(random, 0.05, 0.9);
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   const Trig<double> phi = trig(design.release_angle);
   const double at_rest = free_normal_force(hoop, phi, 0.0),
                by_spin = free_normal_force(hoop, phi, 1.0) - at_rest;

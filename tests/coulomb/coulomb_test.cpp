@@ -189,7 +189,7 @@ TEST(Coulomb, EnergyIsKeptByRollingAndFlightAndNeverRises) {
 #endif
   for (int i = 0; i < many; ++i) {
     const Design design = any_design(random);
-    const Hoop<double> hoop = derive<double>(design);
+    const Hoop<double> hoop = reduce<double>(design);
     double energy = HUGE_VAL;
     Phase before = Phase::sliding;
     CoulombObserver observer;
@@ -209,7 +209,7 @@ TEST(Coulomb, EnergyIsKeptByRollingAndFlightAndNeverRises) {
 TEST(Coulomb, LandingNeverPullsNorLeavesTheFrictionConeNorGainsEnergy) {
   std::mt19937_64 random(14);
   for (int i = 0; i < 20000; ++i) {
-    const Hoop<double> hoop = derive<double>(any_design(random));
+    const Hoop<double> hoop = reduce<double>(any_design(random));
     const Trig<double> phi = trig(testing::uniform(random, 0.0, 6.3));
     const ContactVelocity<double> before{testing::uniform(random, -3.0, 3.0),
                                          testing::uniform(random, -3.0, 0.0),
@@ -235,7 +235,7 @@ TEST(Coulomb, AFrictionlessFlatPlaneKeepsEnergyAndTheCentreOfMassFallsStraight) 
   Design design = with_friction({}, 0.0, 1.0);
   design.slope = 0.0;
   design.release_angle = 2.0;
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   double energy = NAN;
   CoulombObserver observer;
   observer.phase = [&](Phase, const ContactState<double>& at, int) {
@@ -284,13 +284,13 @@ TEST(Coulomb, PainleveIsAStatusNotANumber) {
 
 TEST(Coulomb, AThinHoopWithItsMassOnTheRimNeverGetsThereBelowACertainFriction) {
   // sqrt(1 - rho^2) / rho, 0.994 for the paper's hoop
-  const double rho = derive<double>(Design{}).rho, limit = std::sqrt(1.0 - rho * rho) / rho;
+  const double rho = reduce<double>(Design{}).rho, limit = std::sqrt(1.0 - rho * rho) / rho;
   EXPECT_NEAR(limit, 0.994, 5e-4);
   const auto least_pivot = [](double mu) {
     double least = HUGE_VAL;
     for (int k = 0; k < 100000; ++k)
       least = std::min(least,
-                       sliding_coefficients(derive<double>(Design{}), trig(6.2831853 * k / 1e5), mu).pivot);
+                       sliding_coefficients(reduce<double>(Design{}), trig(6.2831853 * k / 1e5), mu).pivot);
     return least;
   };
   EXPECT_GT(least_pivot(0.999 * limit), 0.0);

@@ -27,7 +27,7 @@ std::array<Complex, 2> pivot_at(const Hoop<double>& hoop, double m, const Comple
 struct Slides {
   std::mt19937_64 random{7};
   double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); }
-  Hoop<double> hoop() { return derive(0.3, uniform(0.2, 20.0), uniform(0.1, 1.0), uniform(0.1, 1.0), 0.0); }
+  Hoop<double> hoop() { return reduce(0.3, uniform(0.2, 20.0), uniform(0.1, 1.0), uniform(0.1, 1.0), 0.0); }
 };
 
 TEST(PivotZeros, AreWhereThePivotVanishes) {

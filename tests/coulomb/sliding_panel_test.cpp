@@ -21,7 +21,7 @@ Hoop<double> random_hoop(std::mt19937_64& random) {
   design.mass_ratio = std::pow(10.0, uniform(random, -1.0, 2.0));
   design.offset_ratio = uniform(random, 0.1, 1.0);
   design.inertia_factor = uniform(random, 0.5, 1.0);
-  return derive<double>(design);
+  return reduce<double>(design);
 }
 
 TEST(Painleve, WhatIsSaidToKeepOffItsEdgeHasAPivotAboveZeroAtEveryAngle) {

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "design/climb.hpp"
 #include "design/front.hpp"
+#include "design/improve.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/leapmap.hpp"
 #include "spec/spec.hpp"

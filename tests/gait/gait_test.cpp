@@ -174,7 +174,7 @@ TEST(Gaits, LoseWhatTheSlopeAndTheMotorGive) {
   EXPECT_NEAR(same->multiplier, outcome.gait_multiplier, 1e-9);
   EXPECT_NEAR(same->energy_lost, outcome.gait_energy_lost, 1e-10);
   // What the landings take, one by one.
-  const Hoop<double> h = derive<double>(hoop);
+  const Hoop<double> h = reduce<double>(hoop);
   double lost = 0.0;
   for (const Jump& jump : same->jumps) {
     const ContactState<double> touch =
@@ -242,7 +242,7 @@ TEST(Gaits, ReturnToThemselvesStableOrNot) {
   for (const Gait& gait : found.gaits) {
     unstable += !gait.is_stable();
     const Jump& last = gait.jumps.back();
-    const Hoop<double> h = derive<double>(hoop);
+    const Hoop<double> h = reduce<double>(hoop);
     const ContactState<double> touch =
         after_flight(h, ContactState<double>{.angle = last.angle, .spin = last.spin}, last.flight_time);
     State at{.angle = touch.angle, .spin = last.landing_spin};

@@ -35,7 +35,7 @@ TEST(Motion, SamplesEveryIntervalFromReleaseToLanding) {
 }
 
 TEST(Motion, RollingPointsObeyTheConstraintsAndConserveEnergy) {
-  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  const Hoop<double> hoop = reduce<double>(testing::paper_hoop());
   for (const MotionPoint& point : paper_motion().points) {
     if (point.phase != Phase::rolling) continue;
     EXPECT_EQ(point.y, 0.0);
@@ -156,7 +156,7 @@ TEST(Motion, TheExactMotionHoldsWhereRollingIsHard) {
   balanced.slope = 0.2;
   // A little past the unstable equilibrium, where rho sin(theta + phi) = sin(theta); the start's rounding
   // grows by as much.
-  const Hoop<double> hoop = derive<double>(balanced);
+  const Hoop<double> hoop = reduce<double>(balanced);
   balanced.release_angle = std::numbers::pi - std::asin(hoop.sin_slope / hoop.rho) - balanced.slope + 1e-6;
   EXPECT_TRUE(expect_the_same_motion(balanced, testing::unit_scene(), "beside the equilibrium", 1e3));
 }
@@ -192,7 +192,7 @@ TEST(Motion, AHoopThatRocksIsShownUntilItRepeatsItself) {
   // The last sample is less than 0.05 before it is back, at a spin below 0.4.
   EXPECT_NEAR(motion.points.back().phi, 1.0, 0.05 * 0.4);
   EXPECT_NEAR(motion.points.back().spin, 0.3, 0.05);
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   const double energy = rolling_energy(hoop, 1.0, 0.3);
   for (const MotionPoint& point : motion.points)
     ASSERT_NEAR(rolling_energy(hoop, point.phi, point.spin), energy, 1e-12) << point.t;

@@ -150,7 +150,7 @@ TEST(Sequences, LoseWhatTheirLandingsTake) {
   const Scene scene = sequence_scene(Friction::sticking, 6);
   const Outcome outcome = solve(hoop, scene);
   ASSERT_GE(outcome.jumps(), 3u);
-  const Hoop<double> h = derive<double>(hoop);
+  const Hoop<double> h = reduce<double>(hoop);
   Jump before = outcome.later_jumps[0];
   for (std::size_t k = 0; k < outcome.later_jumps.size(); ++k) {
     const Jump& jump = outcome.later_jumps[k];

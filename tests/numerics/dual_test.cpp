@@ -94,7 +94,7 @@ TEST(Dual, EquationsOnDualsGiveTheTablesDerivativesOfHeights) {
     ASSERT_EQ(outcome.status, Status::jumped);
     std::array<D, 7> p;
     for (std::size_t k = 0; k < p.size(); ++k) p[k] = D::parameter(row.number(names[k]), k);
-    const Hoop<D> hoop = derive(p[0], p[1], p[2], p[3], p[6]);
+    const Hoop<D> hoop = reduce(p[0], p[1], p[2], p[3], p[6]);
     const Roll<D> roll = begin_roll(hoop, p[4], p[5]);
     const auto at_root = [](const auto& f, double x) {
       const auto sample = f(D(x));

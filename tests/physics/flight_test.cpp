@@ -47,7 +47,7 @@ std::vector<RandomJump> random_jumps(int count) {
 TEST(Flight, HeightEqualsTheFormulaAsWritten) {
   std::mt19937_64 random(6);
   for (int i = 0; i < 1000; ++i) {
-    const Hoop<double> hoop = derive<double>(testing::random_design(random));
+    const Hoop<double> hoop = reduce<double>(testing::random_design(random));
     const double angle = testing::uniform(random, 0.0, 30.0), spin = testing::uniform(random, 0.5, 4.0);
     const double t = testing::uniform(random, 0.0, 4.0);
     const double y = -hoop.rho * std::cos(angle) + hoop.rho * std::sin(angle) * spin * t -
@@ -60,7 +60,7 @@ TEST(Flight, HeightEqualsTheFormulaAsWritten) {
 TEST(Flight, HeightIsAccurateRightAfterLiftOff) {
   // The leading term at a lift-off from rolling is y'' t^2 / 2; the formula as written has lost it at t =
   // 1e-8.
-  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  const Hoop<double> hoop = reduce<double>(testing::paper_hoop());
   const double angle = 13.948749008421659, spin = 2.3312558443174480, t = 1e-8;
   const double leading = (-hoop.rho * spin * spin * std::cos(angle) - hoop.cos_slope) * t * t / 2;
   EXPECT_NEAR(height_above_plane(hoop, trig(angle), spin, t).value / leading, 1.0,
@@ -69,7 +69,7 @@ TEST(Flight, HeightIsAccurateRightAfterLiftOff) {
 
 TEST(Flight, ClosedFormEqualsIntegrationOfThePapersEquations) {
   for (const RandomJump& jump : random_jumps(50)) {
-    Hoop<double> hoop = derive<double>(jump.design);
+    Hoop<double> hoop = reduce<double>(jump.design);
     const Flight<double> flight = fly(hoop, jump.lift_off);
     const auto [time, angle, spin] = jump.lift_off;
     GslIntegrator<6> integrator(*find_gsl_stepper("gsl-rk8pd"), {1e-13, 1e-13, 0.0},
@@ -101,7 +101,7 @@ TEST(Flight, ClosedFormEqualsIntegrationOfThePapersEquations) {
 
 TEST(Flight, ApexAndLandingAreWhereTheyShouldBe) {
   for (const RandomJump& jump : random_jumps(200)) {
-    const Hoop<double> hoop = derive<double>(jump.design);
+    const Hoop<double> hoop = reduce<double>(jump.design);
     const Flight<double> flight = fly(hoop, jump.lift_off);
     const auto at = [&](double t) {
       return height_above_plane(hoop, trig(jump.lift_off.angle), jump.lift_off.spin, t);
@@ -123,14 +123,14 @@ TEST(Flight, ApexAndLandingAreWhereTheyShouldBe) {
 }
 
 TEST(Flight, ThePapersJumpDipsBelowThePlaneBeforeItRises) {
-  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  const Hoop<double> hoop = reduce<double>(testing::paper_hoop());
   const Flight<double> flight = fly<double>(hoop, {0.0, 13.948749008421659, 2.3312558443174480});
   EXPECT_NEAR(flight.dip, -0.0188531, 1e-7);               // 1.9 % of a diameter
   EXPECT_NEAR(flight.height, 0.98280096607011718, 1e-12);  // the spin above is good to 1e-13
 }
 
 TEST(Flight, ALiftOffThatGravityWinsFromTheStartHasNoHeight) {
-  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  const Hoop<double> hoop = reduce<double>(testing::paper_hoop());
   for (const double spin : {0.0, 0.5, 0.99 * std::sqrt(hoop.cos_slope / hoop.rho)}) {
     const Flight<double> flight = fly<double>(hoop, {0.0, 4.0, spin});
     EXPECT_EQ(flight.height, 0.0);
@@ -142,7 +142,7 @@ TEST(Flight, ALiftOffThatGravityWinsFromTheStartHasNoHeight) {
 TEST(Flight, ATripleRootAtTheStartIsNotALanding) {
   // After sliding y, y' and y'' vanish together: cos(phi) = -cos(theta) / (rho w^2). The hoop rises if y''' >
   // 0.
-  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  const Hoop<double> hoop = reduce<double>(testing::paper_hoop());
   for (const double spin : {1.5, 2.0, 3.0, 5.0}) {
     const double angle = std::acos(-hoop.cos_slope / (hoop.rho * spin * spin));
     for (const int nudge : {-1, 0, 1}) {  // one rounding to either side of the exact triple root
@@ -156,7 +156,7 @@ TEST(Flight, ATripleRootAtTheStartIsNotALanding) {
 }
 
 TEST(Flight, AFastSpinsThousandTurnsAreLeaptOverWithoutMissingApexOrLanding) {
-  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  const Hoop<double> hoop = reduce<double>(testing::paper_hoop());
   for (const double spin : {30.0, 300.0, 2e4}) {
     for (const double angle : {1.7, 2.5, 3.1, 3.3, 5.0}) {
       const Flight<double> flight = fly<double>(hoop, {0.0, angle, spin});
@@ -183,7 +183,7 @@ TEST(Flight, LanesFlyAsOneTossDoesThroughOneClimbOrMany) {
   for (std::size_t round = 0; round < 4000 / width; ++round) {
     LaneArray<Batch> angles, spins;
     Design design = testing::random_design(random);
-    const Hoop<double> hoop = derive<double>(design);
+    const Hoop<double> hoop = reduce<double>(design);
     for (std::size_t i = 0; i < width; ++i) {
       angles[i] = testing::uniform(random, 0.0, 20.0);
       spins[i] = std::exp(testing::uniform(random, -0.5, 3.0));
@@ -210,7 +210,7 @@ TEST(Flight, LanesFlyAsOneTossDoesThroughOneClimbOrMany) {
 }
 
 TEST(Flight, BackwardSpinFliesTheMirrorImage) {
-  const Hoop<double> hoop = derive<double>(testing::paper_hoop());
+  const Hoop<double> hoop = reduce<double>(testing::paper_hoop());
   const Flight<double> forward = fly<double>(hoop, {0.0, 1.4, 2.3}),
                        backward = fly<double>(hoop, {0.0, -1.4, -2.3});
   EXPECT_GT(forward.height, 0.1);

@@ -14,7 +14,7 @@ TEST(Parameters, DerivedGroupsEqualTheirDefinitions) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 1000; ++i) {
     const Design d = testing::random_design(random);
-    const Hoop<long double> hoop = derive<long double>(d);
+    const Hoop<long double> hoop = reduce<long double>(d);
     const long double beta = d.mass_ratio, lambda = d.offset_ratio, kappa = d.inertia_factor;
     const long double alpha = beta / (1 + beta), rho = alpha * lambda;
     const long double J0 = kappa / (1 + beta) + alpha * lambda * lambda;
@@ -30,7 +30,7 @@ TEST(Parameters, DerivedGroupsEqualTheirDefinitions) {
 TEST(Parameters, LeastInertiaKeepsItsDigitsForAMassOnTheRimOfANearlyMasslessHoop) {
   Design design;
   design.mass_ratio = 1e9;
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   // (kappa + 1) / (1 + beta), exactly, when the mass is on the rim; two roundings.
   EXPECT_NEAR(hoop.J_min / (2.0 / (1.0 + 1e9)), 1.0, 4e-16);
   EXPECT_NEAR(hoop.Ic / ((1.0 + 1e9 / (1.0 + 1e9)) / (1.0 + 1e9)), 1.0, 4e-16);
@@ -39,7 +39,7 @@ TEST(Parameters, LeastInertiaKeepsItsDigitsForAMassOnTheRimOfANearlyMasslessHoop
 TEST(Parameters, WithoutAPointMassTheHoopIsSymmetric) {
   Design design;
   design.mass_ratio = 0.0;
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   EXPECT_EQ(hoop.rho, 0.0);
   EXPECT_EQ(hoop.Ic, 1.0);
   EXPECT_EQ(hoop.J_min, 2.0);

@@ -57,7 +57,7 @@ TEST(Rolling, AccelerationAndBothForcesEqualThePapersThreeCoordinateLagrangeEqua
     const double rate = std::sqrt(h.g / h.R), weight = (h.m + h.m_p) * h.g;
 
     const auto expected = lagrange_solution(hoop, angle, spin * rate);
-    const Hoop<double> groups = derive<double>(design);
+    const Hoop<double> groups = reduce<double>(design);
     const Trig<double> phi = trig(angle);
     const double acceleration = angular_acceleration(groups, phi, spin);
     // The saddle-point system's condition is below 1e4 here; forces reach some tens of weights.
@@ -71,7 +71,7 @@ TEST(Rolling, AccelerationAndBothForcesEqualThePapersThreeCoordinateLagrangeEqua
 TEST(Rolling, EnergyDoesNotChangeAlongTheMotion) {
   std::mt19937_64 random(3);
   for (int i = 0; i < 1000; ++i) {
-    const Hoop<long double> hoop = derive<long double>(testing::random_design(random));
+    const Hoop<long double> hoop = reduce<long double>(testing::random_design(random));
     const long double angle = testing::uniform(random, 0.0, 30.0), spin = testing::uniform(random, 0.0, 3.0);
     const long double a = angular_acceleration(hoop, trig(angle), spin);
     const long double h = 1e-5L;
@@ -88,7 +88,7 @@ TEST(Rolling, EnergyDoesNotChangeAlongTheMotion) {
 TEST(Rolling, GradientAndForceRateEqualDifferenceQuotients) {
   std::mt19937_64 random(4);
   for (int i = 0; i < 1000; ++i) {
-    const Hoop<long double> hoop = derive<long double>(testing::random_design(random));
+    const Hoop<long double> hoop = reduce<long double>(testing::random_design(random));
     const long double angle = testing::uniform(random, 0.0, 30.0), spin = testing::uniform(random, 0.0, 3.0);
     const auto acceleration_at = [&](long double p, long double w) {
       return angular_acceleration(hoop, trig(p), w);
@@ -115,7 +115,7 @@ TEST(Rolling, GradientAndForceRateEqualDifferenceQuotients) {
 TEST(Rolling, ASymmetricHoopRollsWithHalfTheSlopesGravityAndNeverLifts) {
   Design design;
   design.mass_ratio = 0.0;
-  const Hoop<double> hoop = derive<double>(design);
+  const Hoop<double> hoop = reduce<double>(design);
   for (const double spin : {0.0, 1.0, 10.0}) {
     const double a = angular_acceleration(hoop, trig(1.0), spin);
     EXPECT_DOUBLE_EQ(a, std::sin(design.slope) / 2.0);
@@ -133,7 +133,7 @@ TEST(Rolling, FrictionKeepsItsDigitsWhereTheMassIsOnTheRimOfNearlyNothing) {
   Design design{.slope = 0.4, .mass_ratio = 1e12, .offset_ratio = 1.0};
   for (const double angle : {1e-7, 1e-6, 1e-4, 0.1}) {
     const auto force = [&]<class T>(T) {
-      const Hoop<T> hoop = derive<T>(design);
+      const Hoop<T> hoop = reduce<T>(design);
       const Trig<T> phi = trig(T(angle));
       const T spin = std::sqrt(T(0.8) / contact_inertia(hoop, phi)),
               acceleration = angular_acceleration(hoop, phi, spin);
@@ -152,7 +152,7 @@ TEST(Rolling, TheRateOfFrictionIsThatOfItsDifferences) {
   std::mt19937_64 random(5);
   for (int i = 0; i < 500; ++i) {
     const Hoop<long double> hoop =
-        derive<long double>(Design{.slope = testing::uniform(random, 0.1, 0.8),
+        reduce<long double>(Design{.slope = testing::uniform(random, 0.1, 0.8),
                                    .mass_ratio = testing::uniform(random, 0.5, 10.0),
                                    .offset_ratio = testing::uniform(random, 0.3, 1.0)});
     const long double angle = testing::uniform(random, 0.0, 6.0), spin = testing::uniform(random, -3.0, 3.0);

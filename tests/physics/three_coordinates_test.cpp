@@ -12,7 +12,7 @@ namespace {
 TEST(ThreeCoordinates, AtEitherReferencePointTheySayWhatOneCoordinateSays) {
   std::mt19937_64 random(5);
   for (int i = 0; i < 2000; ++i) {
-    const Hoop<double> hoop = derive<double>(testing::random_design(random));
+    const Hoop<double> hoop = reduce<double>(testing::random_design(random));
     const double angle = testing::uniform(random, -10.0, 30.0), spin = testing::uniform(random, -3.0, 3.0);
     const Trig<double> phi = trig(angle);
     const double acceleration = angular_acceleration(hoop, phi, spin);
@@ -35,7 +35,7 @@ TEST(ThreeCoordinates, AtEitherReferencePointTheySayWhatOneCoordinateSays) {
 TEST(ThreeCoordinates, ProjectionTakesADriftAwayAndLeavesWhatDidNotDrift) {
   std::mt19937_64 random(6);
   for (int i = 0; i < 500; ++i) {
-    const Hoop<double> hoop = derive<double>(testing::random_design(random));
+    const Hoop<double> hoop = reduce<double>(testing::random_design(random));
     const ThreeCoordinates model{hoop, hoop.rho};
     const ThreeState rolling =
         model.rolling(testing::uniform(random, 0.0, 12.0), testing::uniform(random, 0.0, 3.0));

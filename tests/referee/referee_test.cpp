@@ -117,7 +117,7 @@ TEST(Referee, LandsAsTheSolversDoAndSlidesIntoTheSameEdge) {
   for (int i = 0; i < 300; ++i) {
     const Design design{.mass_ratio = uniform(random, 0.5, 20.0), .offset_ratio = uniform(random, 0.3, 1.0)};
     const Body body = body_of(design, scene);
-    const Hoop<double> hoop = derive<double>(design);
+    const Hoop<double> hoop = reduce<double>(design);
     const Motion before = any_motion(random, body);
     const double mu = uniform(random, 0.0, 1.5), restitution = uniform(random, 0.0, 0.9);
     const Motion after = after_landing(body, before, mu, restitution, 0.0);

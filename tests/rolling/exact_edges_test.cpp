@@ -68,7 +68,7 @@ TEST(ExactSolver, TwoFallsWithoutARiseBetweenThemAreOneLiftOff) {
                       .offset_ratio = 0.31454737851461906,
                       .release_angle = 3.5031155950809674,
                       .release_spin = 1.1867380068603381};
-  Told told;
+  FoundLiftOffs told;
   Outcome outcome;
   ExactSolver<double>(1e-12).solve({&design, 1}, {}, {&outcome, 1}, &told);
   EXPECT_EQ(outcome.status, Status::jumped);

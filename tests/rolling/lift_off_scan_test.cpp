@@ -18,7 +18,7 @@ Roll<double> random_roll(std::mt19937_64& random) {
   design.mass_ratio = std::exp(testing::uniform(random, -3.0, 9.0));
   design.offset_ratio = testing::uniform(random, 0.0, 1.0) < 0.3 ? 1.0 : testing::uniform(random, 0.0, 1.0);
   design.inertia_factor = testing::uniform(random, 0.0, 1.5);
-  return begin_roll(derive<double>(design), testing::uniform(random, -10.0, 10.0),
+  return begin_roll(reduce<double>(design), testing::uniform(random, -10.0, 10.0),
                     testing::uniform(random, 0.0, 3.0));
 }
 
@@ -198,7 +198,7 @@ TEST(Scan, SignsAtNodesJoinRevolutionsAndTellFalls) {
 
 TEST(Scan, SeesThatAMassOnTheRimOfAMasslessHoopIsHeldAtTheBottom) {
   for (const double mass_ratio : {1e6, 1e12, 1e16}) {
-    const Roll<double> roll = begin_roll(derive<double>({.mass_ratio = mass_ratio}), std::numbers::pi, 0.0);
+    const Roll<double> roll = begin_roll(reduce<double>({.mass_ratio = mass_ratio}), std::numbers::pi, 0.0);
     ScanFlags flags;
     scan_turns(scan_nodes<double>(), roll, 0.0, turns_a_scan, 0, &flags);
     for (std::size_t t = 0; t < turns_a_scan; ++t) EXPECT_TRUE(flags.above[t] & 1u) << mass_ratio;

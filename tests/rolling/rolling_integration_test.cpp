@@ -90,7 +90,7 @@ TEST(RollingIntegration, EnergyAtTheLiftOffIsThatOfTheRelease) {
     const Outcome outcome = rolling.solve(design, {});
     if (outcome.status != Status::jumped) continue;
     ++jumps;
-    const Hoop<double> hoop = derive<double>(design);
+    const Hoop<double> hoop = reduce<double>(design);
     EXPECT_NEAR(rolling_energy(hoop, outcome.jump_angle, outcome.jump_spin),
                 rolling_energy(hoop, design.release_angle, design.release_spin),
                 1e-10);  // some hundred steps of 1e-12
@@ -203,7 +203,7 @@ TEST(RollingIntegration, LooseTolerancesAndLongStepsFailOrStayTrueNeverAbsurd) {
         const Design design = testing::random_design(random);
         const Outcome outcome = rolling.solve(design, {});
         if (outcome.status != Status::jumped) continue;
-        const Hoop<double> hoop = derive<double>(design);
+        const Hoop<double> hoop = reduce<double>(design);
         const Trig<double> phi = trig(outcome.jump_angle);
         const double force =
             normal_force(hoop, phi, outcome.jump_spin, angular_acceleration(hoop, phi, outcome.jump_spin));

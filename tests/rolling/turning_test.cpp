@@ -264,7 +264,7 @@ TEST(Drive, AMotorOnLevelGroundIsASlopeToTheEnergyAndToNothingElse) {
   level.slope = 0.0, level.drive_torque = std::sin(slope.slope);
   level.release_angle += slope.slope;
   const auto roll_of = [](const Design& design) {
-    return begin_roll(derive<double>(design), design.release_angle, design.release_spin);
+    return begin_roll(reduce<double>(design), design.release_angle, design.release_spin);
   };
   for (const double x : {0.1, 1.0, 3.0, 10.0, 25.0})
     EXPECT_NEAR(vis_viva_past_release(roll_of(slope), x), vis_viva_past_release(roll_of(level), x), 1e-13)
@@ -278,10 +278,10 @@ TEST(Drive, AMotorOnLevelGroundIsASlopeToTheEnergyAndToNothingElse) {
 
   // Where energy alone decides they are equal: how far a hoop rolls up before it turns round.
   for (Design* design : {&slope, &level}) design->release_angle += 2.0;
-  Told told[2];
+  FoundLiftOffs told[2];
   for (int i = 0; i < 2; ++i) {
     Design uphill = i == 0 ? slope : level;
-    const Hoop<double> hoop = derive<double>(uphill);
+    const Hoop<double> hoop = reduce<double>(uphill);
     uphill.release_spin = -std::sqrt(0.5 / contact_inertia(hoop, trig(uphill.release_angle)));
     Outcome outcome;
     ExactSolver<double>(1e-12).solve({&uphill, 1}, unit_scene(), {&outcome, 1}, &told[i]);
@@ -298,7 +298,7 @@ TEST(Drive, TheMotorsWorkIsInTheEnergy) {
   int looked_at = 0;
   for (int i = 0; i < 60; ++i) {
     const Design design = either_way(random);
-    const Hoop<double> hoop = derive<double>(design);
+    const Hoop<double> hoop = reduce<double>(design);
     const Motion motion = rolling::tell_exactly(design, unit_scene(), 1e-12, 0.5);
     if (motion.points.empty()) continue;
     const double energy = rolling_energy(hoop, design.release_angle, design.release_spin);

@@ -46,7 +46,7 @@ inline std::optional<Design> aimed_at_a_node(std::mt19937_64& random) {
   const double angle = at_release ? design.release_angle : (release_node + whole(1, 100)) * step;
 
   // G = P J + rho K E = 0 tells E there, and the energy integral the spin at release, all in long double.
-  const Hoop<long double> hoop = derive<long double>(design);
+  const Hoop<long double> hoop = reduce<long double>(design);
   const Roll<long double> rest = begin_roll(hoop, static_cast<long double>(design.release_angle), 0.0L);
   const CurvedSample<long double> at_rest = lift(rest, static_cast<long double>(angle));
   Roll<long double> more = rest;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "design/climb.hpp"
+#include "design/improve.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 /// Steps by chance: a shape that is learnt, and a length that is good.
 class Steps {
  public:
-  Steps(std::size_t dimensions, const ClimbOptions& options)
+  Steps(std::size_t dimensions, const ImproveOptions& options)
       : dimensions_(static_cast<Eigen::Index>(dimensions)),
         random_(options.seed),
         widest_(options.widest),
@@ -64,7 +64,7 @@ bool is_gain(const Verdict& before, const Verdict& after) {
 
 }  // namespace
 
-void climb(Judge& judge, Place& place, const ClimbOptions& options) {
+void improve(Judge& judge, Place& place, const ImproveOptions& options) {
   Steps steps(judge.dimensions(), options);
   Cloud cloud(judge, options.a_round);
   constexpr int patience = 12;
@@ -121,7 +121,7 @@ std::vector<bool> are_settled(Judge& judge, const std::vector<Place>& places) {
 
 }  // namespace
 
-void settle(Judge& judge, Place& place, std::uint64_t seed) {
+void move_off_boundary(Judge& judge, Place& place, std::uint64_t seed) {
   if (!place.verdict.feasible() || are_settled(judge, {place})[0]) return;
   const std::size_t count = judge.makes_hoops() ? 64 : 2048, tried = count / 16;
   Cloud cloud(judge, count);

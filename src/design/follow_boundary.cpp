@@ -3,13 +3,13 @@
 #include <cmath>
 #include <random>
 
-#include "design/climb.hpp"
 #include "design/cloud.hpp"
+#include "design/improve.hpp"
 
 namespace leapmap {
 namespace {
 
-/// Random numbers of one slide.
+/// Random numbers of one call.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : random_(seed) {}
@@ -95,7 +95,7 @@ Place best_aside(Judge& judge, const Place& place, const Vector& up, double leng
 
 }  // namespace
 
-void slide(Judge& judge, Place& place, std::uint64_t seed) {
+void follow_boundary(Judge& judge, Place& place, std::uint64_t seed) {
   if (!place.verdict.feasible() || judge.makes_hoops()) return;  // a yield has steps, and no way up
   Chance chance(seed);
   constexpr double longest = 1e-2, shortest = 1e-10;
