@@ -80,11 +80,11 @@ std::vector<Table> tables_of(const Boundaries& found) {
   for (const auto& [side, which] :
        {std::pair{std::string("below"), &Cliff::below}, {"above", &Cliff::above}}) {
     add_numbers(side + "_status", "status " + side + ", as in maps",
-                [which](const Cliff& cliff) { return (cliff.*which).status; });
+                [which = which](const Cliff& cliff) { return (cliff.*which).status; });
     add_numbers(side + "_jumps_on", "number of the lift-off that is the jump " + side + "; 0: none",
-                [which](const Cliff& cliff) { return (cliff.*which).jumps_on; });
+                [which = which](const Cliff& cliff) { return (cliff.*which).jumps_on; });
     add_numbers(side + "_spurious_first_jump", "as in maps, " + side + "; 255: no lift-off",
-                [which](const Cliff& cliff) { return (cliff.*which).spurious_first_jump; });
+                [which = which](const Cliff& cliff) { return (cliff.*which).spurious_first_jump; });
   }
   if (std::ranges::any_of(found.cliffs, [](const Cliff& cliff) {
         return cliff.below.phase_sequence != cliff.above.phase_sequence;
