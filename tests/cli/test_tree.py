@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What no compiler tells of the sources as a whole."""
+import importlib.util
 import json
 import os
 import re
@@ -51,6 +52,15 @@ def test_lines_of_cpp_and_cmake_have_at_most_110_columns():
              *TOP.glob("src/**/*.[ch]pp"), *TOP.glob("tests/**/*.[ch]pp")]
     long = [f"{path}:{number}" for path in files for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > 110]
     assert len(files) > 300 and long == []
+
+
+def test_every_error_that_is_planted_has_its_place():
+    """The errors themselves are planted in the second tier, which takes a quarter of an hour."""
+    spec = importlib.util.spec_from_file_location("mutate", TOP / "tests/mutation/mutate.py")
+    mutate = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(mutate)
+    places = {name: mutate.header_of(TOP / "src", file).read_text().count(old) for name, (file, old, _) in mutate.MUTATIONS.items()}
+    assert len(places) > 40 and {name: count for name, count in places.items() if count != 1} == {}
 
 
 def test_ctest_runs_every_test_in_cpp_once():

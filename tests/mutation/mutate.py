@@ -42,14 +42,14 @@ MUTATIONS = {
     "energy's slope": ("rolling_by_angle", "return hoop.thrust - hoop.rho * sin_from", f"return hoop.thrust - {OFF} * hoop.rho * sin_from"),
     "G, rest": ("rolling_by_angle", "h.cos_slope * (h.Ic + q * q)", f"h.cos_slope * ({OFF} * h.Ic + q * q)"),
     "G, energy": ("rolling_by_angle", ".K = h.J_min * c - h.rho", f".K = {OFF} * h.J_min * c - h.rho"),
-    "stick, F": ("stick", "const T pull = t.q * tau - h.sin_slope * t.J", f"const T pull = t.q * tau - {OFF} * h.sin_slope * t.J"),
+    "stick, F": ("stick", "const T pull = t.q * push - h.sin_slope * t.J", f"const T pull = t.q * push - {OFF} * h.sin_slope * t.J"),
     "thrust": ("parameters", ".thrust = direction.sin + tau", f".thrust = direction.sin + {OFF} * tau"),
     "G, motor": ("rolling_by_angle", "h.rho * s * (h.sin_slope * q + h.drive)", f"h.rho * s * (h.sin_slope * q + {OFF} * h.drive)"),
     "slide, motor": ("sliding", "at.turn * n0 + hoop.drive", f"at.turn * n0 + {OFF} * hoop.drive"),
     "seen from behind": ("parameters", "seen.drive = way * hoop.drive", f"seen.drive = {OFF} * way * hoop.drive"),
     "slide, lever": ("sliding", "return hoop.rho * phi.sin - friction", f"return {OFF} * hoop.rho * phi.sin - friction"),
     "slide, pivot": ("sliding", "pivot = hoop.Ic + hoop.rho", f"pivot = {OFF} * hoop.Ic + hoop.rho"),
-    "slide, N": ("sliding", "phi, friction) / pivot, hoop.Ic / pivot", f"phi, friction) / pivot, {OFF} * hoop.Ic / pivot"),
+    "slide, N": ("sliding", "phi, friction) * inverse, hoop.Ic * inverse", f"phi, friction) * inverse, {OFF} * hoop.Ic * inverse"),
     "slide, n0": ("sliding", "return hoop.cos_slope + hoop.rho * (phi.cos", f"return hoop.cos_slope + {OFF} * hoop.rho * (phi.cos"),
     "slide, F": ("sliding", "F = -friction * N", f"F = -{OFF} * friction * N"),
     "slide, v'": ("sliding", "F + hoop.sin_slope - arm * angular", f"F + {OFF} * hoop.sin_slope - arm * angular"),
@@ -82,13 +82,17 @@ def stands_alone():
     return True
 
 
+def header_of(sources, file):
+    return (sources / "physics" / f"{file}.hpp").resolve()
+
+
 def judged(name, folder, library):
     """The judge's words on a library with that error planted; empty: it finds nothing."""
     include = folder / "src"
     shutil.copytree(ROOT / "src", include)
     if name:
         file, old, new = MUTATIONS[name]
-        header = (include / "physics" / f"{file}.hpp").resolve()
+        header = header_of(include, file)
         text = header.read_text()
         if text.count(old) != 1:
             return f"BROKEN: \"{old}\" stands {text.count(old)} times in {file}.hpp"
@@ -110,9 +114,12 @@ def judged(name, folder, library):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.parse_args()
+    parser.add_argument("names", nargs="*", metavar="NAME", help="errors to plant; default: all")
+    asked = parser.parse_args().names
+    if unknown := [name for name in asked if name not in MUTATIONS]:
+        parser.error(f"{unknown[0]} is unknown; allowed: {', '.join(MUTATIONS)}")
     library = pathlib.Path(os.environ.get("LEAPMAP_BUILD", ROOT / "build/release")) / "libleapmap.a"
-    names = [None, *MUTATIONS]
+    names = [None, *(asked or MUTATIONS)]
     if not stands_alone():
         sys.exit(1)
     missed = 0
