@@ -2,7 +2,7 @@
 /// What commands print for programs. A number that does not apply, NaN, is null in JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>  // the whole takes seconds to compile: for files that make JSON
 
 #include "model/fields.hpp"
 #include "spec/spec.hpp"

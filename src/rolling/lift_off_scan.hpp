@@ -121,7 +121,7 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
                 std::size_t from, ScanFlags* flags) {
   using std::abs;
   using S = ScalarOf<T>;
-  using Word = typename Lanes<T>::Word;
+  using LaneWord = typename Lanes<T>::Word;
   constexpr std::size_t group = 8;
   constexpr S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn), square = step * step;
   const LiftHarmonics<T> harmonics = lift_harmonics(roll.hoop);
@@ -132,14 +132,15 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
     const T margin = bounds.second * T(square / S(8)), margin4 = T(4) * margin, margin5 = T(5) * margin,
             fine = bounds.fourth * T(square * square);
     const std::size_t begin = u == 0 ? from / group * group : 0;
-    Word above(0), plain(0);
+    LaneWord above(0), plain(0);
     for (std::size_t k = begin; k < nodes_a_turn; k += group) {
       std::array<T, group + 1> values;
       values[0] = G(u, k);
       T least = values[0];
       for (std::size_t j = 1; j <= group; ++j) values[j] = G(u, k + j), least = smaller(least, values[j]);
       if (all(least > margin5)) {  // the plane pushes well, as on most of the way
-        above = above | Word(std::uint64_t{0x1ff} << k), plain = plain | Word(std::uint64_t{0xff} << k);
+        above = above | LaneWord(std::uint64_t{0x1ff} << k),
+        plain = plain | LaneWord(std::uint64_t{0xff} << k);
         continue;
       }
       std::array<T, group> contrast;  // plain above margin4
@@ -152,7 +153,7 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
       }
       above = Lanes<T>::marked(above, values[group] > T(0), std::uint64_t{1} << (k + group));
       if (all(worst > margin4)) {
-        plain = plain | Word(std::uint64_t{0xff} << k);
+        plain = plain | LaneWord(std::uint64_t{0xff} << k);
         continue;
       }
       for (std::size_t j = 0; j < group; ++j) {
@@ -164,11 +165,11 @@ void scan_turns(const ScanNodes<ScalarOf<T>>& nodes, const Roll<T>& roll, const 
         plain = Lanes<T>::marked(plain, is_plain, std::uint64_t{1} << (k + j));
       }
     }
-    const Word scanned((std::uint64_t{1} << nodes_a_turn) - (std::uint64_t{1} << begin));
-    const Word sinks = above & ~(above >> 1) & scanned, falls = sinks & plain,
-               looks = (~plain & scanned) | sinks;
+    const LaneWord scanned((std::uint64_t{1} << nodes_a_turn) - (std::uint64_t{1} << begin));
+    const LaneWord sinks = above & ~(above >> 1) & scanned, falls = sinks & plain,
+                   looks = (~plain & scanned) | sinks;
     std::array<std::uint64_t, Lanes<T>::count> lanes;
-    const auto tell = [&](const Word& word, NodeBits ScanFlags::*bits) {
+    const auto tell = [&](const LaneWord& word, NodeBits ScanFlags::*bits) {
       Lanes<T>::store(word, lanes.data());
       for (std::size_t i = 0; i < lanes.size(); ++i) (flags[i].*bits)[u] = lanes[i];
     };
