@@ -30,7 +30,7 @@ def test_json_is_nothing_but_data_under_the_maps_names():
 
 @pytest.mark.parametrize("friction", ["sticking", "coulomb"])
 def test_json_holds_any_number_of_jumps(friction):
-    for jumps in range(1, 21):  # each adds two members to the object
+    for jumps in (1, 2, 4, 18, 20):  # each adds two members to the object
         hop = json.loads(leapmap("hop", "--friction", friction, "--jumps", jumps, "--set", "gait.settle=10", "--json").stdout)
         assert len(hop["lift_offs"]) >= 1 and f"jump_height_{max(jumps, 2)}" in hop or jumps == 1
         assert list(hop)[-3:] == ["grazes", "check", "phases"]
