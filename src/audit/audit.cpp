@@ -136,7 +136,9 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
   solve(designs, outcomes);
   std::vector<bool> gave_up;  // the map's method on them: settled since, if they are, without derivatives
   for (const Outcome& outcome : outcomes) gave_up.push_back(outcome.status == Status::failed);
-  if (hdf5::has_attribute(map.file(), "retry_designs")) {
+  const bool retried =
+      std::ranges::find(gave_up, true) != gave_up.end() && hdf5::has_attribute(map.file(), "retry_designs");
+  if (retried) {
     const Solver retry = retry_solver(map, spec);  // for what the map does not store of them
     for (std::size_t i = 0; i < samples.size(); ++i)
       if (gave_up[i]) retry({&designs[i], 1}, {&outcomes[i], 1});
@@ -150,7 +152,7 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
           map.read(std::string(find_gradient(of, differentiable[by])->name), tile);
       for (std::size_t i = 0; i < samples.size(); ++i) samples[i].gradient.push_back(values[drawn[i]]);
     }
-  if (hdf5::has_attribute(map.file(), "retry_designs"))
+  if (retried)
     for (std::size_t i = 0; i < samples.size(); ++i)
       if (gave_up[i]) samples[i].gradient.clear();
   for (const Field* each : fields_of(spec.scene)) {

@@ -254,8 +254,8 @@ void add_boundaries(CommandLine& line, int& status) {
   add_no_lock(command, arguments->locking);
   command.footer(
       "Neighbours of the grid with different outcomes (status, sub-threshold first lift-off, number of the "
-      "lift-off that "
-      "jumps) have a discontinuity between them. It is bisected until no number is left between.\n"
+      "lift-off that jumps) have a discontinuity between them. It is bisected until no number is left "
+      "between.\n"
       "\n"
       "Kinds of discontinuities:\n"
       "  threshold    a lift-off's height crosses hop_height\n"

@@ -179,30 +179,30 @@ struct Attributes {
 };
 
 void print_origin(const MapReader& map, const std::string& path) {
-  const Attributes told{map};
-  say("{}\n", told("title"));
+  const Attributes attribute{map};
+  say("{}\n", attribute("title"));
   const std::string shards = map.attribute(shards_attribute);
-  say("made {} on {} by leapmap {} (git {}), {} threads{}, {} s{}\n", told("date"), told("host"),
-      told("program_version"), told("git_revision"), told("threads"), shards.empty() ? "" : " at most",
-      told("wall_time", "{:.3g}"),
+  say("made {} on {} by leapmap {} (git {}), {} threads{}, {} s{}\n", attribute("date"), attribute("host"),
+      attribute("program_version"), attribute("git_revision"), attribute("threads"),
+      shards.empty() ? "" : " at most", attribute("wall_time", "{:.3g}"),
       shards.empty() ? ""
                      : fmt::format(" in all, in {} shards{}", printable(shards),
                                    map.shards().empty() ? "" : ", which hold its values and lie beside it"));
   if (!map.is_whole()) print_incomplete(map, path);
-  say("method {}, tolerance {}\n", told("method"), told("tolerance"));
+  say("method {}, tolerance {}\n", attribute("method"), attribute("tolerance"));
 }
 
 /// What the cross-check found.
 void print_audit(const MapReader& map) {
-  const Attributes told{map};
-  if (told.has("audit_designs")) try {
+  const Attributes attribute{map};
+  if (attribute.has("audit_designs")) try {
       say_audit(read_audit(map));
     } catch (const IoError& error) {
       say("check    cannot be read: {}\n", printable(error.what()));
     }
-  if (told.has("retry_designs"))
-    say("retried  {} failed designs, after the check, by {} at tolerance {}\n", told("retry_designs"),
-        told("retry_method"), told("retry_tolerance"));
+  if (attribute.has("retry_designs"))
+    say("retried  {} failed designs, after the check, by {} at tolerance {}\n", attribute("retry_designs"),
+        attribute("retry_method"), attribute("retry_tolerance"));
 }
 
 void print_dimensions(const MapReader& map) {

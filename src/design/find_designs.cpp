@@ -242,9 +242,7 @@ Estimate yield_of(const Question& question, const Design& design) {
 std::vector<const Field*> quantities_of(const Question& question) {
   std::vector<const Field*> fields;
   const auto add = [&](const Field* field) {
-    if (field && std::holds_alternative<Quantity>(field->source) &&
-        std::ranges::find(fields, field) == fields.end())
-      fields.push_back(field);
+    if (field && std::holds_alternative<Quantity>(field->source)) add_column(fields, field);
   };
   for (const Objective& objective : question.objectives) add(objective.field);
   for (const Goal& goal : question.one.goals) add(find_field(goal.field));
