@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Solves designs by Boost.odeint's dopri5 with dense output, as a user of Boost would write it: a program that shares no
-/// line with leapmap, to compare with. analysis/rivals.py compiles and runs it:
+/// Solves designs by Boost.odeint's dopri5 with dense output, as a user of Boost would write it: a program
+/// that shares no line with leapmap, to compare with. analysis/rivals.py compiles and runs it:
 ///   boost_rival TOLERANCE REPEATS < designs.txt    a line each: slope, mass ratio, offset ratio
-/// A design is a thin hoop released from rest with its mass on top, which rolls up to four turns; a jump is a lift-off that
-/// reaches 0.05 diameters. Prints a line a design (status, spurious, candidates, height, time), then the seconds of one run.
+/// A design is a thin hoop released from rest with its mass on top, which rolls up to four turns; a jump is a
+/// lift-off that reaches 0.05 diameters. Prints a line a design (status, spurious, candidates, height, time),
+/// then the seconds of one run.
 #include <algorithm>
 #include <array>
 #include <boost/numeric/odeint.hpp>
@@ -120,7 +121,8 @@ int main(int argc, char** argv) {
   double slope, beta, lambda;
   while (std::scanf("%lf %lf %lf", &slope, &beta, &lambda) == 3) {
     const double alpha = beta / (1 + beta);
-    hoops.push_back({std::sin(slope), std::cos(slope), alpha * lambda, 1 / (1 + beta) + alpha * lambda * lambda});
+    hoops.push_back(
+        {std::sin(slope), std::cos(slope), alpha * lambda, 1 / (1 + beta) + alpha * lambda * lambda});
   }
   std::vector<Answer> answers(hoops.size());
   double least = HUGE_VAL;

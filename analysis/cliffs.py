@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Discontinuities that `leapmap boundaries` found, over a map's planes: as curves, and as edges that nothing is drawn across.
+"""Discontinuities that `leapmap boundaries` found, over a map's planes: as curves, and as edges that nothing
+is drawn across.
 
     leapmap boundaries MAP.h5 -o MAP.cliffs.h5    # charts of MAP.h5 then draw them
 """
@@ -29,8 +30,9 @@ MOST_PIXELS = 900  # along a panel's side
 
 
 def add_options(parser):
-    parser.add_argument("--cliffs", metavar="FILE", help="what leapmap boundaries found of the map (default: MAP.cliffs.h5 "
-                        "beside MAP.h5, if it is there); 'none': draw cells, with stairs")
+    parser.add_argument(
+        "--cliffs", metavar="FILE", help="what leapmap boundaries found of the map (default: MAP.cliffs.h5 "
+        "beside MAP.h5, if it is there); 'none': draw cells, with stairs")
 
 
 def run(doc, example, suffix, chart):
@@ -50,20 +52,24 @@ def beside(path):
 
 
 def read_cliffs(m, asked):
-    """The curves of a map, or None: {"kind": ..., axis: values, ...} each. Raises NotAMap for cliffs of another map."""
+    """The curves of a map, or None: {"kind": ..., axis: values, ...} each. Raises NotAMap for cliffs of
+    another map."""
     path = asked or beside(m.path)
     if asked == "none" or (not asked and not os.path.exists(path)):
         return None
     table = read_table(path, "leapmap cliffs")
-    of_other = f"{path}: holds other designs than {m.path}; make it again: leapmap boundaries {m.path} -o {path}"
-    if not isinstance(table.attributes.get("spec"), str) or _designs(table.attributes["spec"]) != _designs(m.attributes["spec"]):
+    of_other = (f"{path}: holds other designs than {m.path}; make it again: leapmap boundaries {m.path} -o "
+                f"{path}")
+    if not isinstance(table.attributes.get("spec"),
+                      str) or _designs(table.attributes["spec"]) != _designs(m.attributes["spec"]):
         raise NotAMap(of_other)
     if "curve" not in table.fields:
         return []
     columns = {n: np.asarray(table.fields[f"curve_{n}"]) for n in m.dims}
     numbers, kinds = np.asarray(table.fields["curve"]), np.asarray(table.fields["curve_kind"])
-    if any(len(v) != len(numbers) or v.dtype.kind != "f" or not np.isfinite(v).all() for v in columns.values()) or \
-            not set(kinds.tolist()) <= set(range(len(KINDS))):
+    are_places = all(len(v) == len(numbers) and v.dtype.kind == "f" and np.isfinite(v).all()
+                     for v in columns.values())
+    if not are_places or not set(kinds.tolist()) <= set(range(len(KINDS))):
         raise NotAMap(f"{path}: is damaged: its curves are no places along the axes")
     ends = np.flatnonzero(np.diff(numbers)) + 1
     return [{"kind": list(KINDS)[int(kinds[part[0]])], **{n: v[part] for n, v in columns.items()}}
@@ -79,8 +85,8 @@ def _designs(spec):
 class Panel:
     """One panel of planes.Planes with its curves; without any it is the map's cells as they are.
 
-    Between designs values are linear, within the curves that go through a cell: a pixel takes part in what those corners of its
-    cell have that no curve hides from it."""
+    Between designs values are linear, within the curves that go through a cell: a pixel takes part in what
+    those corners of its cell have that no curve hides from it."""
 
     def __init__(self, grid, panel, curves):
         self.grid, self.curves = grid, []
@@ -107,7 +113,8 @@ class Panel:
         """Of each pixel the four corners of its cell, as rows and columns, and their shares."""
         n = self.fine
         v, u = ((np.arange(size * n) + 0.5) / n - 0.5 for size in shape)
-        rows, columns = (np.clip(np.floor(w), 0, max(size - 2, 0)).astype(int) for w, size in zip((v, u), shape))
+        rows, columns = (np.clip(np.floor(w), 0, max(size - 2, 0)).astype(int)
+                         for w, size in zip((v, u), shape))
         self.row, self.column = rows[:, None], columns[None, :]
         fv, fu = np.clip(v - rows, 0, 1)[:, None], np.clip(u - columns, 0, 1)[None, :]
         if n == 1:
@@ -131,7 +138,8 @@ class Panel:
             seen = np.ones(pu.shape, bool)
             for segment in segments:
                 seen &= ~_crosses(pu, pv, column + du, row + dv, *segment)
-            share = np.maximum(self.shares[k][here], 1e-9)  # of a corner on the cell's other side, if it is all there is
+            # of a corner on the cell's other side, if it is all there is
+            share = np.maximum(self.shares[k][here], 1e-9)
             self.shares[k][here] = np.where(seen, share, 0.0)
         for x1, y1, x2, y2 in segments:
             length2 = max((x2 - x1) ** 2 + (y2 - y1) ** 2, 1e-300)
@@ -140,8 +148,12 @@ class Panel:
             self.torn[here] |= near
 
     def _corners(self, plane):
-        below, right = np.minimum(self.row + 1, plane.shape[0] - 1), np.minimum(self.column + 1, plane.shape[1] - 1)
-        return np.stack([plane[self.row, self.column], plane[self.row, right], plane[below, self.column], plane[below, right]])
+        below, right = np.minimum(self.row + 1, plane.shape[0] - 1), np.minimum(
+            self.column + 1, plane.shape[1] - 1)
+        return np.stack([
+            plane[self.row, self.column], plane[self.row, right], plane[below, self.column], plane[below,
+                                                                                                   right]
+        ])
 
     def field(self, plane):
         """A quantity pixel by pixel; NaN where the design most near has none."""
@@ -166,15 +178,23 @@ class Panel:
 
     def centres(self, name):
         edges = self.edges(name)
-        return np.sqrt(edges[1:] * edges[:-1]) if looks.is_log(self.grid.values(name)) else (edges[1:] + edges[:-1]) / 2
+        return np.sqrt(edges[1:] *
+                       edges[:-1]) if looks.is_log(self.grid.values(name)) else (edges[1:] + edges[:-1]) / 2
 
     def draw(self, axis, halo="white"):
         """The curves, each kind in its dashes. Returns the kinds."""
         for kind, x, y in self.curves:
             dashes, colour, _ = KINDS[kind]
-            places = [np.interp(at, np.arange(len(self.grid.values(n))), np.log(v) if looks.is_log(v) else v)
-                      for n, at, v in ((n, at, self.grid.values(n)) for n, at in ((self.grid.x, x), (self.grid.y, y)))]
-            places = [np.exp(at) if looks.is_log(self.grid.values(n)) else at for n, at in zip((self.grid.x, self.grid.y), places)]
+            places = [
+                np.interp(at, np.arange(len(self.grid.values(n))),
+                          np.log(v) if looks.is_log(v) else v)
+                for n, at, v in ((n, at, self.grid.values(n))
+                                 for n, at in ((self.grid.x, x), (self.grid.y, y)))
+            ]
+            places = [
+                np.exp(at) if looks.is_log(self.grid.values(n)) else at
+                for n, at in zip((self.grid.x, self.grid.y), places)
+            ]
             axis.plot(*places, linestyle=dashes, color=colour, linewidth=1.0,
                       path_effects=[patheffects.withStroke(linewidth=1.8, foreground=halo, alpha=0.6)])
         return {kind for kind, _, _ in self.curves}
@@ -183,7 +203,8 @@ class Panel:
 def _crosses(pu, pv, qu, qv, x1, y1, x2, y2):
     """Whether the way from each p to q crosses the segment."""
     side = lambda ax, ay, bx, by, cx, cy: (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-    return (side(x1, y1, x2, y2, pu, pv) * side(x1, y1, x2, y2, qu, qv) < 0) & (side(pu, pv, qu, qv, x1, y1) * side(pu, pv, qu, qv, x2, y2) <= 0)
+    return (side(x1, y1, x2, y2, pu, pv) * side(x1, y1, x2, y2, qu, qv) <
+            0) & (side(pu, pv, qu, qv, x1, y1) * side(pu, pv, qu, qv, x2, y2) <= 0)
 
 
 def handles(kinds):

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the design charts of a map: jump height, time and agility over two axes, one panel for each value of the others.
+"""Draw the design charts of a map: jump height, time and agility over two axes, one panel for each value of
+the others.
 
-Isolines are labelled. Hatched: first lift-off below the threshold. Lines: discontinuities, if leapmap boundaries has found them; without
-them, one cell for each design. Other colours: no jump, by the reason. A star marks the paper's hoop.
-Agility is the jump's height over the time from release to its apex; the colour bar marks published jumpers.
-Agility needs jump_height, jump_time and apex_time. spurious_first_jump, jump_angle and status are drawn if the map has them.
-"""
+Isolines are labelled. Hatched: first lift-off below the threshold. Lines: discontinuities, if leapmap
+boundaries has found them; without them, one cell for each design. Other colours: no jump, by the reason. A
+star marks the paper's hoop. Agility is the jump's height over the time from release to its apex; the colour
+bar marks published jumpers. Agility needs jump_height, jump_time and apex_time. spurious_first_jump,
+jump_angle and status are drawn if the map has them."""
 import sys
 
 import numpy as np
@@ -51,7 +52,8 @@ def scale_of(look, levels, values):
 
 
 def draw_panel(axis, crisp, plane, flags, course, told, scale, ink):
-    """One panel: what happened where there is no jump, the field, its isolines, and hatching where spurious."""
+    """One panel: what happened where there is no jump, the field, its isolines, and hatching where
+    spurious."""
     colours, norm, levels = scale
     grid = crisp.grid
     codes = list(looks.STATUSES)
@@ -59,22 +61,26 @@ def draw_panel(axis, crisp, plane, flags, course, told, scale, ink):
     for i, code in enumerate(codes):
         background[told[code]] = i
     if crisp.crisp:
-        x, y, cells = (crisp.centres(grid.x), crisp.centres(grid.y), (crisp.edges(grid.x), crisp.edges(grid.y)))
+        x, y, cells = (crisp.centres(grid.x), crisp.centres(grid.y), (crisp.edges(grid.x), crisp.edges(
+            grid.y)))
         torn = np.where(crisp.torn, np.nan, crisp.field(plane))
         plane, background, flags = crisp.field(plane), crisp.code(background), crisp.code(flags)
     else:
         x, y, cells = grid.values(grid.x), grid.values(grid.y), (grid.edges(grid.x), grid.edges(grid.y))
         torn = without_cliffs(plane, course)
-    axis.pcolormesh(*cells, background, shading="flat", norm=BoundaryNorm(np.arange(len(codes) + 1) - 0.5, len(codes)),
+    axis.pcolormesh(*cells, background, shading="flat", norm=BoundaryNorm(
+        np.arange(len(codes) + 1) - 0.5, len(codes)),
                     cmap=ListedColormap([looks.STATUSES[c][0] for c in codes]), rasterized=True)
     # Cells or pixels, no filled contours: those would reach across cliffs, and miss a lone design.
-    axis.pcolormesh(*cells, np.maximum(plane, norm.vmin), shading="flat", cmap=colours, norm=norm, rasterized=True)
+    axis.pcolormesh(*cells, np.maximum(plane, norm.vmin), shading="flat", cmap=colours, norm=norm,
+                    rasterized=True)
     if not np.isfinite(plane).any():
         return
     present = [v for v in levels if np.isfinite(torn).any() and np.nanmin(torn) < v < np.nanmax(torn)]
     if present:
         lines = axis.contour(x, y, np.ma.masked_invalid(torn), levels=present, colors=ink, linewidths=0.8)
-        style.halo(axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7), "white" if ink == "black" else "#303030")
+        style.halo(axis.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=7),
+                   "white" if ink == "black" else "#303030")
     hatched = np.ma.masked_where(~np.isfinite(plane), (flags == 1) * 1.0)
     if hatched.max() > 0:
         corners = (x, y)
@@ -94,22 +100,25 @@ def chart(grid, name, panels_of):
     if not any(np.isfinite(p).any() for p in panels):
         raise NotAMap(f"{m.path}: no design in it jumps, so there is no {name} to draw")
     scale = scale_of(look, looks.levels_of(look, values), values)
-    # What a map was not asked to store is not drawn: hatching, gaps of isolines at cliffs, reasons why there is no jump.
+    # What a map was not asked to store is not drawn: hatching, gaps of isolines at cliffs, reasons why there
+    # is no jump.
     flags, courses = (grid.cut(array) if array is not None else [np.zeros(p.shape) for p in panels]
                       for array in (m.fields.get("spurious_first_jump"), looks.course(m)))
     told = grid.told()
     figure, axes = grid.figure()
     starred, kinds = False, set()
     for i, axis in enumerate(axes):
-        draw_panel(axis, panels_of[i], panels[i], flags[i], courses[i], {c: t[i] for c, t in told.items()}, scale, look.ink)
+        draw_panel(axis, panels_of[i], panels[i], flags[i], courses[i], {c: t[i] for c, t in told.items()},
+                   scale, look.ink)
         kinds |= panels_of[i].draw(axis)
         if place := grid.paper(grid.panels[i]):
             starred = True
             style.draw_star(axis, place, look.star)
     colours, norm, levels = scale
     # A bar of its own scale, whatever the panels hold.
-    bar = figure.colorbar(ScalarMappable(norm, colours), ax=axes, extend="max" if look.exponent != 1.0 else "both", label=look.title,
-                          ticks=levels, shrink=0.9, pad=0.015)
+    bar = figure.colorbar(ScalarMappable(norm,
+                                         colours), ax=axes, extend="max" if look.exponent != 1.0 else "both",
+                          label=look.title, ticks=levels, shrink=0.9, pad=0.015)
     bar.ax.set_yticks(levels, [f"{v:g}" for v in levels])
     bar.ax.minorticks_off()
     if look.log or look.exponent != 1.0:
@@ -117,17 +126,20 @@ def chart(grid, name, panels_of):
     if name == "agility":
         beyond = [f"{jumper} {agility:g}" for jumper, agility in looks.JUMPERS.items() if agility > norm.vmax]
         if beyond:  # the scale is of the map; what is beyond it is told
-            bar.ax.annotate("beyond:\n" + "\n".join(beyond), (0.5, 0.0), xycoords="axes fraction", xytext=(0, -18), textcoords="offset points",
-                            ha="center", va="top", fontsize=7, color=style.MARK, annotation_clip=False)
+            bar.ax.annotate("beyond:\n" + "\n".join(beyond), (0.5, 0.0), xycoords="axes fraction",
+                            xytext=(0, -18), textcoords="offset points", ha="center", va="top", fontsize=7,
+                            color=style.MARK, annotation_clip=False)
         for jumper, agility in looks.JUMPERS.items():
             if agility > norm.vmax:
                 continue
             bar.ax.axhline(agility, color=style.MARK, linewidth=1.5)
-            bar.ax.annotate(f"{jumper} {agility:g}", (0.0, agility), xycoords=("axes fraction", "data"), xytext=(-3, 0),
-                            textcoords="offset points", ha="right", va="center", fontsize=7, color=style.MARK, annotation_clip=False)
+            bar.ax.annotate(f"{jumper} {agility:g}", (0.0, agility), xycoords=("axes fraction", "data"),
+                            xytext=(-3, 0), textcoords="offset points", ha="right", va="center", fontsize=7,
+                            color=style.MARK, annotation_clip=False)
     handles = []
     if any((f == 1).any() for f in flags):
-        handles.append(style.swatch("white", "first lift-off below the threshold", edgecolor=style.EDGE, hatch="///"))
+        handles.append(
+            style.swatch("white", "first lift-off below the threshold", edgecolor=style.EDGE, hatch="///"))
     for code, (colour, words) in looks.STATUSES.items():
         if any(t.any() for t in told[code]):
             handles.append(style.swatch(colour, words))
@@ -136,7 +148,9 @@ def chart(grid, name, panels_of):
         handles.append(style.star_handle(look.star))
     if name == "agility":
         drawn = any(agility <= norm.vmax for agility in looks.JUMPERS.values())
-        handles.append(plt.Line2D([], [], color=style.MARK, linestyle="-" if drawn else "none", label=f"published jumpers ({looks.JUMPERS_SOURCE})"))
+        handles.append(
+            plt.Line2D([], [], color=style.MARK, linestyle="-" if drawn else "none",
+                       label=f"published jumpers ({looks.JUMPERS_SOURCE})"))
     style.legend_above(figure, handles)
     return figure
 
@@ -152,7 +166,10 @@ def main():
         raise NotAMap(f"{m.path}: has no jump_height or jump_time; a design chart wants one of them")
     grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)
     if not m.whole:
-        print(f"{m.path}: INCOMPLETE, {m.computed().mean():.0%} of its designs are computed; the others are left white", file=sys.stderr)
+        print(
+            f"{m.path}: INCOMPLETE, {m.computed().mean():.0%} of its designs are computed; the others are "
+            "left white",
+            file=sys.stderr)
     curves = cliffs.read_cliffs(m, arguments.cliffs)
     panels_of = [cliffs.Panel(grid, panel, curves) for panel in grid.panels]
     for name in drawn:

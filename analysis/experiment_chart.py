@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the paper's hoop with Coulomb friction over release angle and friction, and the region that agrees with the measurements.
+"""Draw the paper's hoop with Coulomb friction over release angle and friction, and the region that agrees
+with the measurements.
 
-Left: the jump's height, with lines at the measured apex time (0.129 s), flight time (0.198 s) and height (one diameter). Right: the
-number of small hops before the jump. Hatched: apex and flight within 2 % and height within 10 % of the measurements.
-"""
+Left: the jump's height, with lines at the measured apex time (0.129 s), flight time (0.198 s) and height (one
+diameter). Right: the number of small hops before the jump. Hatched: apex and flight within 2 % and height
+within 10 % of the measurements."""
 import numpy as np
 
 import looks
@@ -25,24 +26,38 @@ def chart(m):
     height = fields["jump_height"]
     filled = left.contourf(angle, mu, height, levels=np.arange(0.0, 1.25, 0.1), cmap="viridis")
     figure.colorbar(filled, ax=left, label="jump height [hoop diameters]")
-    fits = (np.abs(fields["apex_time"] / APEX - 1) < 0.02) & (np.abs(fields["flight_time"] / FLIGHT - 1) < 0.02) & (np.abs(height - HEIGHT) < 0.1)
+    fits = (np.abs(fields["apex_time"] / APEX - 1) < 0.02) & (np.abs(fields["flight_time"] / FLIGHT - 1) <
+                                                              0.02) & (np.abs(height - HEIGHT) < 0.1)
     if fits.any():
         left.contourf(angle, mu, fits, levels=[0.5, 1.5], colors="none", hatches=["xxx"])
     handles = []
-    for name, level, colour, words in (("apex_time", APEX, "white", "apex after 0.129 s"), ("flight_time", FLIGHT, style.MARK, "flight of 0.198 s"),
+    for name, level, colour, words in (("apex_time", APEX, "white", "apex after 0.129 s"),
+                                       ("flight_time", FLIGHT, style.MARK, "flight of 0.198 s"),
                                        ("jump_height", HEIGHT, "black", "height of one diameter")):
         least, most = np.nanmin(fields[name]), np.nanmax(fields[name])
         there = least <= level <= most
-        bound = "" if there else f": nowhere, {'at most' if most < level else 'at least'} {most if most < level else least:.3g}"
-        handles.append(plt.Line2D([], [], color="#9aa4ae" if colour == "white" else colour, linestyle="-" if there else ":", label=words + bound))
+        bound = "" if there else (f": nowhere, {'at most' if most < level else 'at least'} "
+                                  f"{most if most < level else least:.3g}")
+        handles.append(
+            plt.Line2D([], [], color="#9aa4ae" if colour == "white" else colour,
+                       linestyle="-" if there else ":", label=words + bound))
         if not there:
             continue
         lines = left.contour(angle, mu, fields[name], levels=[level], colors=[colour], linewidths=1.4)
-        left.clabel(lines, fmt={level: {"apex_time": "apex 0.129 s", "flight_time": "flight 0.198 s", "jump_height": "1 diameter"}[name]}, fontsize=7)
+        left.clabel(
+            lines, fmt={
+                level: {
+                    "apex_time": "apex 0.129 s", "flight_time": "flight 0.198 s", "jump_height": "1 diameter"
+                }[name]
+            }, fontsize=7)
     left.plot(190, 0.4, "*", markersize=11, color=style.MARK, markeredgecolor="white")
-    left.set_title(f"hatched: apex and flight within 2 %, height within 10 % ({100 * fits.mean():.0f} % of these designs); star: 190°, μ 0.4", fontsize=8)
+    left.set_title(
+        f"hatched: apex and flight within 2 %, height within 10 % ({100 * fits.mean():.0f} % of these "
+        "designs); star: 190°, μ 0.4",
+        fontsize=8)
     hops = np.where(height > 0, fields["candidates"].astype(float) - 1, np.nan)
-    drawn = right.pcolormesh(angle, mu, np.minimum(hops, 3), cmap=plt.get_cmap("Blues", 4), vmin=-0.5, vmax=3.5, shading="nearest", rasterized=True)
+    drawn = right.pcolormesh(angle, mu, np.minimum(hops, 3), cmap=plt.get_cmap("Blues", 4), vmin=-0.5,
+                             vmax=3.5, shading="nearest", rasterized=True)
     bar = figure.colorbar(drawn, ax=right, ticks=[0, 1, 2, 3], label="small hops before the jump")
     bar.ax.set_yticklabels(["none", "1", "2", "3 or more"])
     for axis in (left, right):

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw a fit, from the table of leapmap fit DATA.csv --csv FIT.csv: measurements and models over time, and residuals.
+"""Draw a fit, from the table of leapmap fit DATA.csv --csv FIT.csv: measurements and models over time, and
+residuals.
 
 Residuals are over their errors. Events have one bar each.
 """
@@ -14,7 +15,10 @@ from style import plt
 
 COLOURS = {"sticking": "#d95f02", "coulomb": "#1f4e79"}
 WORDS = {"sticking": "no slip", "coulomb": "Coulomb friction"}
-SHOWN = {"phi": "φ [rad]", "x_P": "x of the mass [m]", "y_P": "y of the mass [m]", "x_O": "x of the centre [m]", "y_O": "y of the centre [m]"}
+SHOWN = {
+    "phi": "φ [rad]", "x_P": "x of the mass [m]", "y_P": "y of the mass [m]", "x_O": "x of the centre [m]",
+    "y_O": "y of the centre [m]"
+}
 
 
 def read(path):
@@ -26,22 +30,25 @@ def read(path):
         raise NotAMap(f"{path}: is not what leapmap fit --csv writes")
     numbers = lambda name: np.array([float(row[name]) if row[name] else np.nan for row in rows])
     try:
-        return np.array([row["quantity"] for row in rows]), models, {n: numbers(n) for n in rows[0] if n != "quantity"}
+        return np.array(
+            [row["quantity"] for row in rows]), models, {n: numbers(n) for n in rows[0] if n != "quantity"}
     except (TypeError, ValueError):
         raise NotAMap(f"{path}: is not what leapmap fit --csv writes") from None
 
 
 def film(quantities, models, of):
     names = list(dict.fromkeys(quantities))
-    figure, axes = plt.subplots(2 * len(names), 1, sharex=True, figsize=(7.2, 2.6 * len(names) + 1.4), layout="constrained",
-                                gridspec_kw={"height_ratios": [2, 1] * len(names)}, squeeze=False)
+    figure, axes = plt.subplots(2 * len(names), 1, sharex=True, figsize=(7.2, 2.6 * len(names) + 1.4),
+                                layout="constrained", gridspec_kw={"height_ratios": [2, 1] * len(names)},
+                                squeeze=False)
     for k, name in enumerate(names):
         here = quantities == name
         above, below = axes[2 * k, 0], axes[2 * k + 1, 0]
         above.plot(of["t"][here], of["measured"][here], ".", markersize=2, color="#606060", label="measured")
         for model in reversed(models):
             residuals = of[f"residual_{model}"][here]
-            above.plot(of["t"][here], of[f"model_{model}"][here], linewidth=1.2, color=COLOURS.get(model), label=f"{WORDS.get(model, model)}")
+            above.plot(of["t"][here], of[f"model_{model}"][here], linewidth=1.2, color=COLOURS.get(model),
+                       label=f"{WORDS.get(model, model)}")
             below.plot(of["t"][here], residuals, ".", markersize=2, color=COLOURS.get(model))
         best = of[f"residual_{models[0]}"][here]
         below.set_ylim(*(1.3 * max(4.0, np.nanmax(np.abs(best))) * np.array([-1, 1])))
@@ -57,7 +64,8 @@ def events(quantities, models, of):
     figure, axis = plt.subplots(figsize=(6.4, 1.2 + 0.6 * len(quantities)), layout="constrained")
     places = np.arange(len(quantities))
     for k, model in enumerate(models):
-        axis.barh(places + 0.36 * (k - 0.5 * (len(models) - 1)), of[f"residual_{model}"], 0.32, color=COLOURS.get(model), label=f"{WORDS.get(model, model)}")
+        axis.barh(places + 0.36 * (k - 0.5 * (len(models) - 1)), of[f"residual_{model}"], 0.32,
+                  color=COLOURS.get(model), label=f"{WORDS.get(model, model)}")
     axis.axvline(0, color=style.EDGE, linewidth=0.8)
     axis.axvspan(-1, 1, color="#e8e8e8", zorder=0)
     axis.set_yticks(places, [f"{q} {v:g}" for q, v in zip(quantities, of["measured"])])

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the Pareto front of a design problem with two objectives, and a cloud of designs that it dominates.
 
-Colours show the number of the lift-off that jumps. Three designs are marked, each with the hoop in its jump. A gap: neighbours on the
-front are far apart within the bounds, or another lift-off jumps. Needs leapmap's Python module.
-"""
+Colours show the number of the lift-off that jumps. Three designs are marked, each with the hoop in its jump.
+A gap: neighbours on the front are far apart within the bounds, or another lift-off jumps. Needs leapmap's
+Python module."""
 import textwrap
 
 import numpy as np
@@ -25,7 +25,8 @@ def shown(name, values):
 
 
 def label(name):
-    return planes.axis_label(name) if name in looks.PARAMETERS else planes.field_label(name).replace("\n", " ") if name in looks.LOOKS else name.replace("_", " ")
+    return planes.axis_label(name) if name in looks.PARAMETERS else planes.field_label(name).replace(
+        "\n", " ") if name in looks.LOOKS else name.replace("_", " ")
 
 
 def called_out(x, y):
@@ -56,7 +57,9 @@ def draw_hoop(axis, leapmap, design, fixed, colour):
         x, y, phi = (np.interp(moment, t, np.asarray(v)) for v in (motion.x, motion.y, motion.phi))
         centre = (x - x0) / radius * down + (1 + y / radius) * up
         mass = centre + size * (-np.sin(phi) * down - np.cos(phi) * up)
-        axis.add_patch(plt.Circle(centre, 1.0, fill=False, color=colour, linewidth=1.0, alpha=0.35 + 0.65 * (moment - start) / (end - start)))
+        axis.add_patch(
+            plt.Circle(centre, 1.0, fill=False, color=colour, linewidth=1.0,
+                       alpha=0.35 + 0.65 * (moment - start) / (end - start)))
         axis.plot(*mass, "o", color=colour, markersize=4)
     reach = (np.interp(end, t, motion.x) - x0) / radius + 1.5
     axis.plot(*np.stack([-1.5 * down, reach * down]).T, color=style.EDGE, linewidth=1.0)
@@ -71,12 +74,16 @@ def chart(path, seed):
         raise NotAMap(f"{path}: has {len(problem.objectives)} objectives; allowed: two")
     found = leapmap.design(path, seed=seed)
     if not found.reached:
-        raise NotAMap(f"{path}: no design within the bounds reaches the goals; leapmap design shows the nearest miss")
+        raise NotAMap(
+            f"{path}: no design within the bounds reaches the goals; leapmap design shows the nearest miss")
     first, second = problem.objectives
     x, y = shown(second, found.objectives[second]), shown(first, found.objectives[first])
     low, high = np.array(problem.bounds).T
     costs, violations = problem.judge(low + (high - low) * np.random.default_rng(1).random((CLOUD, len(low))))
-    signs = np.array([np.sign(np.nanmedian(costs[:, k])) * np.sign(np.nanmedian(found.objectives[n])) for k, n in enumerate(problem.objectives)])
+    signs = np.array([
+        np.sign(np.nanmedian(costs[:, k])) * np.sign(np.nanmedian(found.objectives[n]))
+        for k, n in enumerate(problem.objectives)
+    ])
     cloud = (costs * np.where(signs == 0, 1, signs))[violations == 0][:SHOWN]
 
     spec = problem.fixed
@@ -86,29 +93,37 @@ def chart(path, seed):
     axis.plot(shown(second, cloud[:, 1]), shown(first, cloud[:, 0]), ",", color="#b8b8b8", rasterized=True)
     for piece in pieces(problem, found):
         number = int(found.outcomes.candidates[piece.start])
-        axis.plot(x[piece], y[piece], ".-", markersize=2, linewidth=1.4, color=plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3))
+        axis.plot(x[piece], y[piece], ".-", markersize=2, linewidth=1.4,
+                  color=plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3))
     for number in sorted({int(c) for c in found.outcomes.candidates}):
-        axis.plot([], [], color=plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3), label=f"lift-off {number} is the jump")
+        axis.plot([], [], color=plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3),
+                  label=f"lift-off {number} is the jump")
     axis.plot([], [], "o", markersize=3, color="#b8b8b8", label="designs by chance")
     for k, i in enumerate(called_out(x, y)):
-        axis.annotate(str(k + 1), (x[i], y[i]), xytext=(7, 5), textcoords="offset points", color=NUMBERS[k], weight="bold", fontsize=11)
+        axis.annotate(str(k + 1), (x[i], y[i]), xytext=(7, 5), textcoords="offset points", color=NUMBERS[k],
+                      weight="bold", fontsize=11)
         axis.plot(x[i], y[i], "o", color=NUMBERS[k], markersize=6, markeredgecolor="white")
         design = {n: float(found.parameters[n][i]) for n in problem.names}
         beside = figure.add_subplot(grid[k, 1])
         if found.outcomes.jump_height[i] > 0:
             draw_hoop(beside, leapmap, design, spec, NUMBERS[k])
-        words = ", ".join(f"{planes.axis_label(n)} {shown(n, v):.4g}" for n, v in design.items() if n not in problem.objectives)
-        beside.set_title(textwrap.fill(f"{k + 1}: {words}; {label(first)} {y[i]:.4g}, {label(second)} {x[i]:.4g}", 52), fontsize=7.5, color=NUMBERS[k])
+        words = ", ".join(f"{planes.axis_label(n)} {shown(n, v):.4g}" for n, v in design.items()
+                          if n not in problem.objectives)
+        beside.set_title(
+            textwrap.fill(f"{k + 1}: {words}; {label(first)} {y[i]:.4g}, {label(second)} {x[i]:.4g}", 52),
+            fontsize=7.5, color=NUMBERS[k])
     axis.set_xlabel(label(second))
     axis.set_ylabel(label(first))
     axis.margins(0.04)
     axis.legend(loc="best")
-    axis.set_title(f"{len(found):,} designs; improving one objective makes the other worse; gaps: discontinuities")
+    axis.set_title(
+        f"{len(found):,} designs; improving one objective makes the other worse; gaps: discontinuities")
     return figure
 
 
 def main():
-    p = style.parser(__doc__, "a spec of two objectives, for example sweeps/questions/height_against_time.toml", "_front")
+    p = style.parser(
+        __doc__, "a spec of two objectives, for example sweeps/questions/height_against_time.toml", "_front")
     p.add_argument("--seed", type=int, default=1)
     arguments = p.parse_args()
     try:

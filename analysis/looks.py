@@ -52,11 +52,16 @@ HEIGHTS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 LOOKS = {
     "jump_height": Look("jump height", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "jump_time": Look("time from release to the jump", "s", "cividis_r", ink="black"),
-    "yield": Look("yield: fraction of manufactured hoops that reach every goal", "", "cividis", levels=(0.5, 0.9, 0.99)),
-    "jump_height_q05": Look("5 % quantile of the jump height, manufactured", "hoop diameters", exponent=0.6, levels=HEIGHTS),
-    "jump_height_q50": Look("median jump height, manufactured", "hoop diameters", exponent=0.6, levels=HEIGHTS),
-    "jump_height_q95": Look("95 % quantile of the jump height, manufactured", "hoop diameters", exponent=0.6, levels=HEIGHTS),
-    "jump_height_mean": Look("mean jump height, manufactured", "hoop diameters", exponent=0.6, levels=HEIGHTS),
+    "yield": Look("yield: fraction of manufactured hoops that reach every goal", "", "cividis",
+                  levels=(0.5, 0.9, 0.99)),
+    "jump_height_q05": Look("5 % quantile of the jump height, manufactured", "hoop diameters", exponent=0.6,
+                            levels=HEIGHTS),
+    "jump_height_q50": Look("median jump height, manufactured", "hoop diameters", exponent=0.6,
+                            levels=HEIGHTS),
+    "jump_height_q95": Look("95 % quantile of the jump height, manufactured", "hoop diameters", exponent=0.6,
+                            levels=HEIGHTS),
+    "jump_height_mean": Look("mean jump height, manufactured", "hoop diameters", exponent=0.6,
+                             levels=HEIGHTS),
     "jump_height_sd": Look("standard deviation of the jump height, manufactured", "hoop diameters", "magma"),
     "jump_time_mean": Look("mean jump time, manufactured", "s", "cividis_r", ink="black"),
     "jump_time_sd": Look("standard deviation of the jump time, manufactured", "s", "magma"),
@@ -65,8 +70,10 @@ LOOKS = {
     "jump_time_q95": Look("95 % quantile of the jump time, manufactured", "s", "cividis_r", ink="black"),
     "agility": Look("agility: height over time from release to apex", "m/s", "plasma", log=True, star="black",
                     levels=(0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0)),
-    "first_jump_height": Look("height of the first lift-off", "hoop diameters", exponent=0.6, levels=()),  # it has cliffs of its own
-    "first_jump_time": Look("time from release to the first lift-off", "s", "cividis_r", ink="black", levels=()),
+    # it has cliffs of its own
+    "first_jump_height": Look("height of the first lift-off", "hoop diameters", exponent=0.6, levels=()),
+    "first_jump_time": Look("time from release to the first lift-off", "s", "cividis_r", ink="black",
+                            levels=()),
     "jump_angle": Look("angle at the jump's lift-off", "rad"),
     "jump_spin": Look("spin at the jump's lift-off", "√(g/R)"),
     "apex_time": Look("time from lift-off to apex", "s"),
@@ -85,8 +92,8 @@ LOOKS = {
     "gait_speed": Look("speed of the gait", "m/s"),
     "gait_energy_lost": Look("energy lost per jump of the gait", "(m + mₚ) g R"),
 }
-# Vertical jumping agility of published jumpers [m/s]: Haldane, Plecnik, Yim and Fearing, "Robotic vertical jumping agility via
-# series-elastic power modulation", Science Robotics 1 (2016) eaag2048.
+# Vertical jumping agility of published jumpers [m/s]: Haldane, Plecnik, Yim and Fearing, "Robotic vertical
+# jumping agility via series-elastic power modulation", Science Robotics 1 (2016) eaag2048.
 JUMPERS = {"Salto": 1.75, "galago": 2.24}
 JUMPERS_SOURCE = "Haldane et al., Science Robotics 1 (2016) eaag2048"
 
@@ -107,7 +114,8 @@ def is_of_gait(name):
 
 
 def quantity(m, name):
-    """A field of the map, or what follows from several; NaN where it does not apply. None if the map cannot tell."""
+    """A field of the map, or what follows from several; NaN where it does not apply. None if the map cannot
+    tell."""
     if name == "agility":
         parts = [m.fields.get(k) for k in ("jump_height", "jump_time", "apex_time")]
         if any(p is None for p in parts):
@@ -156,13 +164,15 @@ def titled(name, value):
 
 def spread(name, law, width, percent):
     """How a parameter of hoops as made differs from the drawing, in words."""
-    return f"{parameter(name)[0].split(' [')[0]} {'±' if law == 'uniform' else 'σ ='} " + (f"{width:g} %" if percent else shown(name, width))
+    return f"{parameter(name)[0].split(' [')[0]} {'±' if law == 'uniform' else 'σ ='} " + (
+        f"{width:g} %" if percent else shown(name, width))
 
 
 def made_words(m):
     """How hoops of a map are made and what they must do, in words; [] of a map without [scatter]."""
     scatter = [spread(name, *law) for name, law in m.scatter().items()]
-    return ["manufactured hoops: " + ", ".join(scatter), *(f"goal: {word}" for word in goal_words(m))] if scatter else []
+    return ["manufactured hoops: " +
+            ", ".join(scatter), *(f"goal: {word}" for word in goal_words(m))] if scatter else []
 
 
 def goal_words(m):
@@ -172,23 +182,33 @@ def goal_words(m):
         if least == most:
             words.append(f"{name} is {least}")
         else:
-            words.append(name + (f" at least {least:g}" if least is not None else "") + (f" at most {most:g}" if most is not None else ""))
+            words.append(name + (f" at least {least:g}" if least is not None else "") +
+                         (f" at most {most:g}" if most is not None else ""))
     return words
 
 
 def words_of(m, fixed):
-    """What a picture's axes do not tell: the parameters of `fixed`, {name: value}, the model and the scene."""
+    """What a picture's axes do not tell: the parameters of `fixed`, {name: value}, the model and the
+    scene."""
     contact = ("mu_static", "mu_kinetic", "restitution")
-    told = [k for k in PARAMETERS if k in fixed and (k not in contact or m.slips) and (k != "drive_torque" or fixed[k] != 0)]
+    told = [
+        k for k in PARAMETERS
+        if k in fixed and (k not in contact or m.slips) and (k != "drive_torque" or fixed[k] != 0)
+    ]
     numbers = m.numbers()
-    return [*(titled(k, fixed[k]) for k in told), "Coulomb friction" if m.slips else "no slip", f"rolling limit {numbers['runway']:g} revolutions",
-            f"jump from {numbers['hop_height']:g} diameters", f"R = {1e3 * numbers['radius']:g} mm"]
+    return [
+        *(titled(k, fixed[k]) for k in told), "Coulomb friction" if m.slips else "no slip",
+        f"rolling limit {numbers['runway']:g} revolutions", f"jump from {numbers['hop_height']:g} diameters",
+        f"R = {1e3 * numbers['radius']:g} mm"
+    ]
 
 
 def fixed_numbers(m):
     """{parameter: value} of those that neither an axis nor a column of the map varies."""
     listed = {k: m.fields[k][0] for k in PARAMETERS if k in m.fields and len(set(m.fields[k].tolist())) == 1}
-    return {k: v for k, v in m.numbers().items() if k in PARAMETERS and k not in m.dims and k not in m.fields} | listed
+    return {
+        k: v for k, v in m.numbers().items() if k in PARAMETERS and k not in m.dims and k not in m.fields
+    } | listed
 
 
 def is_log(values):
@@ -196,13 +216,14 @@ def is_log(values):
     if not (values[0] > 0 and values[-1] / values[0] > 10):
         return False
     middle, ends = values[len(values) // 2], (values[0] + values[-1]) / 2
-    return len(values) > 2 and abs(math.log(middle / math.sqrt(values[0] * values[-1]))) < abs(math.log(middle / ends))
+    return len(values) > 2 and abs(math.log(middle / math.sqrt(values[0] * values[-1]))) < abs(
+        math.log(middle / ends))
 
 
 def course(m):
-    """A complex number for each jump, either part of which changes by more than 1 from a design to the next only where the jump passes
-    to another lift-off, an angle of more than 1 rad away, or its apex to another maximum of its flight, in time by a quarter. None if
-    the map cannot tell."""
+    """A complex number for each jump, either part of which changes by more than 1 from a design to the next
+    only where the jump passes to another lift-off, an angle of more than 1 rad away, or its apex to another
+    maximum of its flight, in time by a quarter. None if the map cannot tell."""
     if "jump_angle" not in m.fields:
         return None
     apex = np.asarray(m.fields["apex_time"], float) if "apex_time" in m.fields else 1.0

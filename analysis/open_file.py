@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Open leapmap's files as h5py does, and refuse anything that no such file holds before reading it.
 
-A file from another person may refer to other files of the machine, or demand more memory than it has bytes for. An interrupted sweep
-may leave a journal at the end of its .part: writes that HDF5 itself cannot see."""
+A file from another person may refer to other files of the machine, or demand more memory than it has bytes
+for. An interrupted sweep may leave a journal at the end of its .part: writes that HDF5 itself cannot see."""
 import contextlib
 import fcntl
 import io
@@ -11,7 +11,8 @@ import stat
 import struct
 import zlib
 
-os.environ.setdefault("HDF5_PLUGIN_PRELOAD", "::")  # no file makes HDF5 run other code; read as the library is loaded
+# no file makes HDF5 run other code; read as the library is loaded
+os.environ.setdefault("HDF5_PLUGIN_PRELOAD", "::")
 import h5py  # noqa: E402
 
 FILTERS = [h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_FLETCHER32]
@@ -38,7 +39,8 @@ def _bytes_at(file, begin, count):
 
 
 class Watched(io.RawIOBase):
-    """A file for HDF5, which must not be thrown at: where reading fails zeros stand, and the reason is kept."""
+    """A file for HDF5, which must not be thrown at: where reading fails zeros stand, and the reason is
+    kept."""
 
     def __init__(self, file):
         super().__init__()
@@ -96,7 +98,8 @@ class WithJournal(io.RawIOBase):
                 raise Refused("is damaged: its journal makes no sense")
             offset, length = HEAD.unpack_from(journal, at)
             at += HEAD.size
-            if not 0 < length <= len(journal) - at or len(self.writes) >= MOST_WRITES or offset + length > begin:
+            if not 0 < length <= len(journal) - at or len(
+                    self.writes) >= MOST_WRITES or offset + length > begin:
                 raise Refused("is damaged: its journal makes no sense")
             self.writes.append((offset, journal[at:at + length]))
             at += length
@@ -149,15 +152,18 @@ def _refusal(dataset, file_size, texts):
     """What is wrong with a dataset, before any of its values is read; empty: nothing."""
     creation = dataset.id.get_create_plist()
     if creation.get_layout() == h5py.h5d.VIRTUAL:
-        return "is a virtual dataset, made of other files, which charts do not follow; leapmap join without --virtual copies them"
+        return ("is a virtual dataset, made of other files, which charts do not follow; leapmap join "
+                "without --virtual copies them")
     if creation.get_external_count():
         return "has its values in another file"
     if dataset.id.get_type().detect_class(h5py.h5t.REFERENCE):
         return "holds references"
-    if not texts and h5py.check_vlen_dtype(dataset.dtype) or h5py.check_string_dtype(dataset.dtype) and not texts:
+    if not texts and h5py.check_vlen_dtype(dataset.dtype) or h5py.check_string_dtype(
+            dataset.dtype) and not texts:
         return "holds texts, or rows of any length"
     filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
-    if filters != [f for f in FILTERS if f in filters]:  # each once, in our order: deflated twice, a few bytes would take any memory
+    # each once, in our order: deflated twice, a few bytes would take any memory
+    if filters != [f for f in FILTERS if f in filters]:
         return "is packed by a filter that leapmap does not use"
     if dataset.id.get_storage_size() > file_size:
         return "says that it is larger than the file"
@@ -182,10 +188,11 @@ def _claimed(dataset):
 
 
 def names_in(group):
-    """The names of a group's links. Not by h5py's own loop: HDF5 would gather a sorted table first, and free what it never set
-    where the disk fails meanwhile."""
+    """The names of a group's links. Not by h5py's own loop: HDF5 would gather a sorted table first, and free
+    what it never set where the disk fails meanwhile."""
     names = []
-    group.id.links.iterate(lambda name: names.append(name.decode(errors="replace")), order=h5py.h5.ITER_NATIVE)
+    group.id.links.iterate(lambda name: names.append(name.decode(errors="replace")),
+                           order=h5py.h5.ITER_NATIVE)
     return sorted(names)
 
 
@@ -221,13 +228,14 @@ def _refuse_foreign_parts(file, file_size, texts):
             else:
                 claimed += _claimed(thing)
                 if claimed > holes:
-                    raise Refused(f"is refused: {place} says that it holds more values than the file has bytes for")
+                    raise Refused(
+                        f"is refused: {place} says that it holds more values than the file has bytes for")
 
 
 @contextlib.contextmanager
 def opened(path, filetype, texts=()):
-    """A file of that type as h5py has it, for reading; texts: names of the datasets that may hold texts, or True for all. Raises
-    Refused or OSError."""
+    """A file of that type as h5py has it, for reading; texts: names of the datasets that may hold texts, or
+    True for all. Raises Refused or OSError."""
     with contextlib.ExitStack() as stack:
         # Not blocking: to open a pipe would wait for whoever writes to it.
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -239,13 +247,16 @@ def opened(path, filetype, texts=()):
         except BlockingIOError:
             raise Refused("a sweep is writing it; wait until that has ended") from None
         except OSError:
-            pass  # a file system without locks: nothing is written here, and HDF5 itself refuses what it cannot lock
+            # a file system without locks: nothing is written here, and HDF5 itself refuses what it cannot
+            # lock
+            pass
         content = Watched(_with_journal(raw))
         try:
             h5 = stack.enter_context(h5py.File(content, "r"))
             told = h5.attrs.get("filetype")
             if not isinstance(told, str) or told != filetype:
-                raise Refused(f"is not a {filetype} (its attribute filetype is {' '.join(repr(told).split())[:80]})")
+                raise Refused(
+                    f"is not a {filetype} (its attribute filetype is {' '.join(repr(told).split())[:80]})")
             _refuse_foreign_parts(h5, os.fstat(descriptor).st_size, texts)
             yield h5
         finally:

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the number of the lift-off that jumps, over two axes, one panel for each value of the others.
 
-Grey: no jump. Lines: discontinuities, if leapmap boundaries has found them; the legend names them. A star marks the paper's hoop.
-Needs status and candidates.
-"""
+Grey: no jump. Lines: discontinuities, if leapmap boundaries has found them; the legend names them. A star
+marks the paper's hoop. Needs status and candidates."""
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
@@ -58,14 +57,18 @@ def chart(grid, curves):
             if (pixels == k).mean() < 0.01:
                 continue
             row, column = middle_of(pixels == k)
-            axis.text(crisp.centres(grid.x)[column], crisp.centres(grid.y)[row], ordinal(k), ha="center", va="center", fontsize=10,
-                      color="white" if k > 2 else style.EDGE)
+            axis.text(
+                crisp.centres(grid.x)[column],
+                crisp.centres(grid.y)[row], ordinal(k), ha="center", va="center", fontsize=10,
+                color="white" if k > 2 else style.EDGE)
         if place := grid.paper(panel):
             style.draw_star(axis, place)
     handles = [style.swatch(COLOURS[0], "no jump")] if 0 in present else []
     for k in range(1, MOST + 1):
         if k in present:
-            handles.append(style.swatch(COLOURS[k], f"jumps on the {ordinal(k)} lift-off{' or a later one' if k == MOST else ''}"))
+            handles.append(
+                style.swatch(COLOURS[k],
+                             f"jumps on the {ordinal(k)} lift-off{' or a later one' if k == MOST else ''}"))
     handles += cliffs.handles(kinds)
     if any(grid.paper(p) for p in grid.panels):
         handles.append(style.star_handle())

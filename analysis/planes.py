@@ -15,8 +15,10 @@ FIELDS = ("jump_height", "jump_time", "agility")  # drawn unless others are aske
 
 def add_options(parser):
     """The options of every chart over two axes."""
-    parser.add_argument("-x", metavar="AXIS", help="the axis drawn to the right (default: slope, or the map's first)")
-    parser.add_argument("-y", metavar="AXIS", help="the axis drawn upwards (default: mass_ratio, or the map's next)")
+    parser.add_argument("-x", metavar="AXIS",
+                        help="the axis drawn to the right (default: slope, or the map's first)")
+    parser.add_argument("-y", metavar="AXIS",
+                        help="the axis drawn upwards (default: mass_ratio, or the map's next)")
     add_at(parser)
 
 
@@ -36,12 +38,14 @@ def fields_of(arguments):
 
 def field_label(field):
     """A quantity and its unit in two short lines, for an axis upwards."""
-    return "\n[".join(looks.LOOKS[field].title.replace(": height over time from release to apex", "").split(" ["))
+    return "\n[".join(looks.LOOKS[field].title.replace(": height over time from release to apex",
+                                                       "").split(" ["))
 
 
 def add_at(parser):
-    parser.add_argument("--at", metavar="AXIS=VALUE", action="append", default=[],
-                        help="keep only the designs nearest to this value (angles in degrees); may be given again")
+    parser.add_argument(
+        "--at", metavar="AXIS=VALUE", action="append", default=[],
+        help="keep only the designs nearest to this value (angles in degrees); may be given again")
 
 
 def fixed_at(m, wanted, option="--at"):
@@ -58,9 +62,13 @@ def fixed_at(m, wanted, option="--at"):
         if looks.is_angle(name):
             number = math.radians(number)
         values = m.dims[name]
-        slack = 0.5 * np.ptp(values) / max(1, len(values) - 1) + 1e-3 * np.abs(values).max()  # half a cell, and labels' rounding
+        # half a cell, and labels' rounding
+        slack = 0.5 * np.ptp(values) / max(1, len(values) - 1) + 1e-3 * np.abs(values).max()
         if not values.min() - slack <= number <= values.max() + slack:
-            raise NotAMap(f"{m.path}: {option} {text}: lies beyond the map; allowed: {looks.shown(name, values.min())} to {looks.shown(name, values.max())}")
+            raise NotAMap(
+                f"{m.path}: {option} {text}: lies beyond the map; allowed: {looks.shown(name, values.min())} "
+                f"to {looks.shown(name, values.max())}"
+            )
         found[name] = int(np.argmin(np.abs(values - number)))
     return found
 
@@ -71,17 +79,27 @@ class Planes:
     def __init__(self, m, x=None, y=None, at=()):
         self.map = m
         if "design" in m.dims or len(m.dims) < 2:
-            raise NotAMap(f"{m.path}: has fewer than two axes; allowed: a map of a sweep over two axes, for example slope and mass_ratio")
+            raise NotAMap(
+                f"{m.path}: has fewer than two axes; allowed: a map of a sweep over two axes, for example "
+                "slope and mass_ratio"
+            )
         self.index = fixed_at(m, at)
         free = [n for n in m.dims if n not in self.index]
-        rest = lambda taken, wish: wish if wish in free and wish != taken else next((n for n in free if n != taken), None)
+        rest = lambda taken, wish: wish if wish in free and wish != taken else next(
+            (n for n in free if n != taken), None)
         self.x = x or rest(y, "slope")
         self.y = y or rest(self.x, "mass_ratio")
         if len(free) < 2:
-            raise NotAMap(f"{m.path}: --at fixes all axes but {free[0] if free else 'none'}; leave two free to draw over")
+            raise NotAMap(
+                f"{m.path}: --at fixes all axes but {free[0] if free else 'none'}; leave two free to draw "
+                "over"
+            )
         for name in (self.x, self.y):
             if name not in free:
-                raise NotAMap(f"{m.path}: has no axis {name} to draw; it has {', '.join(free) or 'none that --at does not fix'}")
+                raise NotAMap(
+                    f"{m.path}: has no axis {name} to draw; it has "
+                    f"{', '.join(free) or 'none that --at does not fix'}"
+                )
             if len(m.dims[name]) < 2:
                 raise NotAMap(f"{m.path}: has one {name} only; such a chart wants at least two")
         if self.x == self.y:
@@ -107,7 +125,8 @@ class Planes:
         for name in sorted(self.index, key=names.index, reverse=True):
             array = np.take(array, self.index[name], axis=names.index(name))
         names = [n for n in names if n not in self.index]
-        array = np.moveaxis(array, [names.index(n) for n in (*self.others, self.y, self.x)], range(array.ndim))
+        array = np.moveaxis(array, [names.index(n) for n in (*self.others, self.y, self.x)],
+                            range(array.ndim))
         return [array[p][np.ix_(self.order[self.y], self.order[self.x])] for p in self.panels]
 
     def where(self, panel):
@@ -123,14 +142,19 @@ class Planes:
         some = next(iter(m.fields.values()))
         missing = np.isnan(some) if some.dtype.kind == "f" else np.zeros(some.shape, bool)
         nothing = np.zeros(some.shape, bool)
-        return {c: self.cut(missing & done if c == "no_jump" else ~done if c == "not_computed" else nothing) for c in looks.STATUSES}
+        return {
+            c: self.cut(missing & done if c == "no_jump" else ~done if c == "not_computed" else nothing)
+            for c in looks.STATUSES
+        }
 
     def figure(self, extra_height=0.95):
-        """A figure with a panel each, titled, with its scales and labels; and the axes in use, in the panels' order."""
+        """A figure with a panel each, titled, with its scales and labels; and the axes in use, in the panels'
+        order."""
         columns = min(4, len(self.panels))
         rows = math.ceil(len(self.panels) / columns)
         width, height = (3.0, 2.75) if len(self.panels) > 1 else (6.0, 4.6)
-        figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, layout="constrained",
+        figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True,
+                                    layout="constrained",
                                     figsize=(width * columns + 0.9, height * rows + extra_height))
         for axis, panel in zip(axes.flat, self.panels):
             axis.set_title("\n".join(looks.titled(k, v) for k, v in self.where(panel).items()))
@@ -143,7 +167,9 @@ class Planes:
         figure.supxlabel(f"{axis_label(self.x)}\n{style.wrapped(self.caption(), figure)}", fontsize=9)
         figure.supylabel(axis_label(self.y), fontsize=9)
         if not self.map.whole:
-            figure.text(0.01, 0.01, f"INCOMPLETE: {self.map.computed().mean():.0%} of the designs are computed", color="#d62728", fontsize=9)
+            figure.text(0.01, 0.01,
+                        f"INCOMPLETE: {self.map.computed().mean():.0%} of the designs are computed",
+                        color="#d62728", fontsize=9)
         return figure, list(axes.flat[:len(self.panels)])
 
     def fixed(self):
@@ -159,7 +185,9 @@ class Planes:
         """Where the paper's hoop is in a panel, as drawn: (x, y), or None if it does not belong there."""
         here = {**self.fixed(), **self.where(panel)}
         other = [k for k in looks.PAPER if k not in (self.x, self.y)]
-        if self.map.slips or not all(math.isclose(here.get(k, math.nan), looks.PAPER[k], rel_tol=1e-6, abs_tol=1e-9) for k in other):
+        if self.map.slips or not all(
+                math.isclose(here.get(k, math.nan), looks.PAPER[k], rel_tol=1e-6, abs_tol=1e-9)
+                for k in other):
             return None
         place = []
         for name in (self.x, self.y):

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw speed against accuracy, from the table that leapmap precision writes: five charts.
 
-OUTPUT_time, OUTPUT_work: error of the jump's height against time and work for one design, one line for each method; lower left is
-better. Rings: some designs are silently wrong at that setting. Crosses: some designs failed. The error is that of the others.
-OUTPUT_wrong: fraction of wrong designs against the tolerance.
+OUTPUT_time, OUTPUT_work: error of the jump's height against time and work for one design, one line for each
+method; lower left is better. Rings: some designs are silently wrong at that setting. Crosses: some designs
+failed. The error is that of the others. OUTPUT_wrong: fraction of wrong designs against the tolerance.
 OUTPUT_order: error of the time against the fixed step, with the fitted and the theoretical order.
-OUTPUT_model: cost of models with more coordinates than rolling needs, and the drift of their constraints.
-"""
+OUTPUT_model: cost of models with more coordinates than rolling needs, and the drift of their constraints."""
 import textwrap
 
 import numpy as np
@@ -18,9 +17,11 @@ from style import plt
 
 FLOOR = 1e-17  # where an error of exactly 0 is drawn
 COLOURS = {
-    "exact": "#000000", "gsl-rk8pd": "#1f77b4", "gsl-rkck": "#17becf", "gsl-rkf45": "#2ca02c", "gsl-rk4": "#bcbd22", "gsl-rk2": "#ff7f0e",
-    "gsl-msadams": "#8c564b", "gsl-msbdf": "#c49c94", "gsl-bsimp": "#9467bd", "gsl-rk4imp": "#e377c2", "gsl-rk2imp": "#f7b6d2",
-    "gsl-rk1imp": "#c5b0d5", "euler": "#7f7f7f", "semi-implicit-euler": "#556b2f", "velocity-verlet": "#b8860b"}
+    "exact": "#000000", "gsl-rk8pd": "#1f77b4", "gsl-rkck": "#17becf", "gsl-rkf45": "#2ca02c",
+    "gsl-rk4": "#bcbd22", "gsl-rk2": "#ff7f0e", "gsl-msadams": "#8c564b", "gsl-msbdf": "#c49c94",
+    "gsl-bsimp": "#9467bd", "gsl-rk4imp": "#e377c2", "gsl-rk2imp": "#f7b6d2", "gsl-rk1imp": "#c5b0d5",
+    "euler": "#7f7f7f", "semi-implicit-euler": "#556b2f", "velocity-verlet": "#b8860b"
+}
 
 
 LEAST = ("energy integral", "one coordinate")  # models no larger than rolling needs
@@ -28,7 +29,8 @@ LEAST = ("energy integral", "one coordinate")  # models no larger than rolling n
 
 def series(t, designs, control):
     """(method, its rows in the table's order), of those designs and that control, on the least models."""
-    here = (t.fields["designs"] == designs) & (t.fields["control"] == control) & np.isin(t.fields["model"], LEAST)
+    here = (t.fields["designs"] == designs) & (t.fields["control"] == control) & np.isin(
+        t.fields["model"], LEAST)
     for method in dict.fromkeys(t.fields["method"][here]):
         yield method, np.flatnonzero(here & (t.fields["method"] == method))
 
@@ -45,11 +47,13 @@ def draw_methods(axis, t, designs, across, control):
     if control == "step":
         drawn = [row for row in series(t, designs, "tolerance") if row[0] == "exact"] + drawn
     for method, rows in drawn:
-        axis.plot(x[rows], error[rows], linestyle="-" if method == "exact" else line, marker=marker, markersize=3.5, linewidth=2.4 if method == "exact" else 1.3,
-                  color=COLOURS.get(method, "#444444"), label=method)
+        axis.plot(x[rows], error[rows], linestyle="-" if method == "exact" else line, marker=marker,
+                  markersize=3.5, linewidth=2.4 if method == "exact" else 1.3, color=COLOURS.get(
+                      method, "#444444"), label=method)
         for mark, share, size in (("o", "wrong", 9), ("x", "failed", 8)):
             bad = rows[(t.fields[share][rows] > 0) & np.isfinite(error[rows])]
-            axis.plot(x[bad], error[bad], mark, markersize=size, markerfacecolor="none", color=style.MARK, markeredgewidth=0.9)
+            axis.plot(x[bad], error[bad], mark, markersize=size, markerfacecolor="none", color=style.MARK,
+                      markeredgewidth=0.9)
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.grid(alpha=0.25)
@@ -58,22 +62,29 @@ def draw_methods(axis, t, designs, across, control):
 
 
 def methods_chart(t, across, label):
-    """A row for methods whose steps a tolerance sets and one for fixed steps, so that each has a dozen lines at most."""
-    titles = {"random": f"{t.attributes['random_designs']} random designs (seed {t.attributes['seed']})", "paper": "the paper's hoop",
-              "given": "the designs given"}
+    """A row for methods whose steps a tolerance sets and one for fixed steps, so that each has a dozen lines
+    at most."""
+    titles = {
+        "random": f"{t.attributes['random_designs']} random designs (seed {t.attributes['seed']})",
+        "paper": "the paper's hoop", "given": "the designs given"
+    }
     sets = list(dict.fromkeys(t.fields["designs"]))
     controls = [control for control in CONTROLS if (t.fields["control"] == control).any()]
     figure, axes = plt.subplots(len(controls), len(sets), sharex="col", sharey=True, squeeze=False,
-                                figsize=(3.4 + 4.8 * len(sets), 1.0 + 4.3 * len(controls)), layout="constrained")
+                                figsize=(3.4 + 4.8 * len(sets), 1.0 + 4.3 * len(controls)),
+                                layout="constrained")
     for k, control in enumerate(controls):
         for axis, designs in zip(axes[k], sets):
             draw_methods(axis, t, designs, across, control)
             axis.set_title(f"{titles[designs]}: {CONTROLS[control][2]}")
         handles, labels = axes[k, 0].get_legend_handles_labels()
-        handles += [plt.Line2D([], [], marker="o", linestyle="", markersize=9, markerfacecolor="none", color=style.MARK),
-                    plt.Line2D([], [], marker="x", linestyle="", markersize=8, color=style.MARK)]
-        axes[k, -1].legend(handles, labels + ["some designs silently wrong", "some designs failed"], loc="center left",
-                           bbox_to_anchor=(1.02, 0.5), frameon=False)
+        handles += [
+            plt.Line2D([], [], marker="o", linestyle="", markersize=9, markerfacecolor="none",
+                       color=style.MARK),
+            plt.Line2D([], [], marker="x", linestyle="", markersize=8, color=style.MARK)
+        ]
+        axes[k, -1].legend(handles, labels + ["some designs silently wrong", "some designs failed"],
+                           loc="center left", bbox_to_anchor=(1.02, 0.5), frameon=False)
     figure.supxlabel(label, fontsize=9)
     figure.supylabel("largest error of the jump's height [hoop diameters]", fontsize=9)
     return figure
@@ -88,12 +99,16 @@ def wrong_chart(t):
             nothing_wrong.append(method)
             continue
         colour = COLOURS.get(method, "#444444")
-        axis.plot(t.fields["setting"][rows], wrong, "-o", markersize=4, color=colour, label=f"{method}, silently wrong")
-        axis.plot(t.fields["setting"][rows], failed, ":x", markersize=5, color=colour, label=f"{method}, failed")
+        axis.plot(t.fields["setting"][rows], wrong, "-o", markersize=4, color=colour,
+                  label=f"{method}, silently wrong")
+        axis.plot(t.fields["setting"][rows], failed, ":x", markersize=5, color=colour,
+                  label=f"{method}, failed")
     axis.set_xscale("log")
     axis.set_xlabel("tolerance")
     axis.set_ylabel("designs [%]")
-    axis.set_title(textwrap.fill("no design wrong or failed at any tolerance: " + (", ".join(nothing_wrong) or "none"), 90))
+    axis.set_title(
+        textwrap.fill("no design wrong or failed at any tolerance: " + (", ".join(nothing_wrong) or "none"),
+                      90))
     axis.grid(alpha=0.25)
     if axis.lines:
         axis.legend(frameon=False)
@@ -101,7 +116,8 @@ def wrong_chart(t):
 
 
 def fitted_order(steps, errors):
-    """Slope of the log-log line through the three smallest steps whose errors rounding does not reach; NaN without two."""
+    """Slope of the log-log line through the three smallest steps whose errors rounding does not reach; NaN
+    without two."""
     use = np.flatnonzero(np.isfinite(errors) & (errors > 1e-12))[-3:]  # the table's steps become smaller
     return np.polyfit(np.log(steps[use]), np.log(errors[use]), 1)[0] if len(use) > 1 else np.nan
 
@@ -118,7 +134,9 @@ def order_chart(t):
     axis.set_yscale("log")
     axis.set_xlabel("step [√(R/g)]; a gap: the method failed there")
     axis.set_ylabel("relative error of the jump's time")
-    axis.set_title(f"designs: {t.fields['designs'][-1]}; fixed steps, orders fitted to the three smallest above rounding")
+    axis.set_title(
+        f"designs: {t.fields['designs'][-1]}; fixed steps, orders fitted to the three smallest above rounding"
+    )
     axis.grid(alpha=0.25)
     axis.legend(frameon=False, loc="lower right")
     return figure
@@ -139,10 +157,11 @@ def model_chart(t):
         t.fields["designs"] == t.fields["designs"][0])
     for model, (colour, label) in MODELS.items():
         rows = np.flatnonzero(best & (t.fields["model"] == model))
-        errors.plot(1e6 * t.fields["seconds"][rows], np.maximum(t.fields["max_height_error"][rows], FLOOR), "-o", markersize=4, color=colour,
-                    label=label)
+        errors.plot(1e6 * t.fields["seconds"][rows], np.maximum(t.fields["max_height_error"][rows], FLOOR),
+                    "-o", markersize=4, color=colour, label=label)
         if np.isfinite(t.fields["drift"][rows]).any():
-            drifts.plot(t.fields["setting"][rows], np.maximum(t.fields["drift"][rows], FLOOR), "-o", markersize=4, color=colour, label=label)
+            drifts.plot(t.fields["setting"][rows], np.maximum(t.fields["drift"][rows], FLOOR), "-o",
+                        markersize=4, color=colour, label=label)
     for axis in (errors, drifts):
         axis.set_xscale("log")
         axis.set_yscale("log")
@@ -164,7 +183,10 @@ def main():
     output = style.stem(arguments.output)
     style.save(methods_chart(t, "seconds", "time for one design on one thread [µs]"), f"{output}_time")
     if np.isfinite(t.fields["evaluations"]).any():
-        style.save(methods_chart(t, "evaluations", "right-hand sides for one design (exact asks for none, and is not here)"), f"{output}_work")
+        style.save(
+            methods_chart(t, "evaluations",
+                          "right-hand sides for one design (exact asks for none, and is not here)"),
+            f"{output}_work")
     if not np.isin(t.fields["model"], LEAST).all():
         style.save(model_chart(t), f"{output}_model")
     style.save(wrong_chart(t), f"{output}_wrong")

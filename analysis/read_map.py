@@ -56,22 +56,26 @@ class Map:
 
     @property
     def whole(self):
-        """False for the .part that a stopped sweep left: designs not computed are holes, status not_computed."""
+        """False for the .part that a stopped sweep left: designs not computed are holes, status
+        not_computed."""
         return "tiles_done" not in self.attributes
 
     @property
     def slips(self):
         """Whether its contact slips by Coulomb's law."""
-        return any(line.startswith("friction") and "coulomb" in line for line in self.attributes["spec"].splitlines())
+        return any(
+            line.startswith("friction") and "coulomb" in line
+            for line in self.attributes["spec"].splitlines())
 
     def computed(self):
-        """Where designs are computed, as a boolean array; in a whole map, everywhere. Fields without status hold the same
-        values where a design does not jump and where it was not computed yet."""
+        """Where designs are computed, as a boolean array; in a whole map, everywhere. Fields without status
+        hold the same values where a design does not jump and where it was not computed yet."""
         shape = [len(v) for v in self.dims.values()]
         if self.whole:
             return np.ones(shape, bool)
         tiles = [-(-n // k) for n, k in zip(shape, self.tile)]
-        done = (np.arange(np.prod(tiles)) < self.attributes["tiles_done"]).reshape(tiles)  # tiles come in C order
+        # tiles come in C order
+        done = (np.arange(np.prod(tiles)) < self.attributes["tiles_done"]).reshape(tiles)
         for axis, k in enumerate(self.tile):
             done = np.repeat(done, k, axis)
         return done[tuple(slice(n) for n in shape)]
@@ -80,7 +84,8 @@ class Map:
         """{meaning: value} of a code."""
         about = self.about[name]
         words, values = about.get("flag_meanings"), np.atleast_1d(about.get("flag_values", []))
-        if not isinstance(words, str) or len(words.split()) != len(values) or values.dtype.kind not in "iu" or (values > 255).any():
+        if not isinstance(words, str) or len(
+                words.split()) != len(values) or values.dtype.kind not in "iu" or (values > 255).any():
             raise NotAMap(f"{self.path}: {name} does not say what its codes mean")
         return dict(zip(words.split(), values.tolist()))
 
@@ -96,7 +101,8 @@ class Map:
             raise NotAMap(f"{self.path}: is damaged: its spec is not TOML") from None
 
     def scatter(self):
-        """How hoops of the map are made: {parameter: (law, width, whether that is in per cent)}; {}: they are as drawn."""
+        """How hoops of the map are made: {parameter: (law, width, whether that is in per cent)}; {}: they are
+        as drawn."""
         made = {}
         for name, law in self.spec().get("scatter", {}).items():
             if name in ("samples", "seed"):
@@ -113,16 +119,26 @@ class Map:
         """How many hoops are made after each design, and the seed of the points they are made by."""
         told = self.spec().get("scatter", {})
         numbers = [told.get(key, usual) for key, usual in (("samples", 1024), ("seed", 1))]
-        if not all(isinstance(number, int) and 0 <= number <= most for number, most in zip(numbers, (1 << 20, 10**15))):
+        if not all(
+                isinstance(number, int) and 0 <= number <= most
+                for number, most in zip(numbers, (1 << 20, 10**15))):
             raise NotAMap(f"{self.path}: is damaged: its spec says scatter.samples, scatter.seed = {numbers}")
         return numbers
 
     def goals(self):
-        """What hoops of the map must do: {field: (at least, at most)}, None: no bound, or a phase_sequence's letters twice."""
-        goals = {field: goal for field, goal in self.spec().get("goal", {}).items() if field not in ("maximize", "minimize")}
+        """What hoops of the map must do: {field: (at least, at most)}, None: no bound, or a phase_sequence's
+        letters twice."""
+        goals = {
+            field: goal
+            for field, goal in self.spec().get("goal", {}).items()
+            if field not in ("maximize", "minimize")
+        }
         if not all(isinstance(goal, dict) for goal in goals.values()):
             raise NotAMap(f"{self.path}: is damaged: its spec says goal = {goals}")
-        return {field: (goal.get("at_least", goal.get("is")), goal.get("at_most", goal.get("is"))) for field, goal in goals.items()}
+        return {
+            field: (goal.get("at_least", goal.get("is")), goal.get("at_most", goal.get("is")))
+            for field, goal in goals.items()
+        }
 
     def objectives(self):
         """What the designs of a list were found for: [(field or parameter, whether it is to be large)]."""
@@ -159,7 +175,8 @@ def _read(path, filetype, most_designs=math.inf, texts=()):
             raise Unreadable(error.errno, f"{path}: cannot be read ({error.strerror})") from None
         raise NotAMap(f"{path}: cannot be read as HDF5 ({error})") from None
     except (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError) as error:
-        raise NotAMap(f"{path}: is damaged, or not written by leapmap ({' '.join(str(error).split())})") from None
+        raise NotAMap(
+            f"{path}: is damaged, or not written by leapmap ({' '.join(str(error).split())})") from None
 
 
 def _read_open(path, file, most_designs):
@@ -168,20 +185,26 @@ def _read_open(path, file, most_designs):
     if version.shape != (2,) or version.dtype.kind not in "iu" or version[0] < 1 or version[1] < 0:
         raise ValueError("its version is no pair of whole numbers")
     if version[0] > FORMAT_MAJOR:
-        raise NotAMap(f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
-                      "use a newer leapmap")
+        raise NotAMap(
+            f"{path}: has format {attributes['version'][0]}, this reader knows up to {FORMAT_MAJOR}: "
+            "use a newer leapmap")
     result = Map(str(path), attributes, fields=Fields(str(path)))
-    datasets = {name: file[name] for name in names_in(file) if isinstance(file.get(name), h5py.Dataset)}  # the group is for viewers
+    # the group is for viewers
+    datasets = {name: file[name] for name in names_in(file) if isinstance(file.get(name), h5py.Dataset)}
     for name, dataset in datasets.items():
         if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name):
             raise NotAMap(f"{path}: is damaged: it has a dataset of the name {name!r}")
         if dataset.size > most_designs:
-            raise NotAMap(f"{path}: holds {dataset.size} designs, too many for this (at most {most_designs}); sweep fewer")
+            raise NotAMap(
+                f"{path}: holds {dataset.size} designs, too many for this (at most {most_designs}); sweep "
+                "fewer"
+            )
     for name, dataset in datasets.items():
         result.about[name] = _attributes_of(dataset)
         if h5py.h5ds.is_scale(dataset.id):
             continue
-        result.fields[name] = _texts_of(dataset) if h5py.check_string_dtype(dataset.dtype) else _values_of(dataset)
+        result.fields[name] = _texts_of(dataset) if h5py.check_string_dtype(
+            dataset.dtype) else _values_of(dataset)
         result.tile = dataset.chunks or result.tile
         for axis in _axes_of(file, dataset):  # the order of dimensions is the fields' own
             result.dims.setdefault(axis, _values_of(datasets[axis]))
@@ -192,11 +215,13 @@ MOST_ATTRIBUTE = 2**24  # bytes of an attribute's numbers; texts have one each
 
 
 def _attributes_of(thing):
-    """All attributes. What no file of ours has is refused: a list of texts may take far more memory than its file."""
+    """All attributes. What no file of ours has is refused: a list of texts may take far more memory than its
+    file."""
     found = {}
     for name in thing.attrs:
         attribute = thing.attrs.get_id(name)
-        is_list_of_texts = h5py.check_string_dtype(attribute.dtype) and attribute.get_space().get_simple_extent_npoints() > 1
+        is_list_of_texts = h5py.check_string_dtype(
+            attribute.dtype) and attribute.get_space().get_simple_extent_npoints() > 1
         if is_list_of_texts or attribute.get_storage_size() > MOST_ATTRIBUTE:
             raise ValueError(f"its attribute {name!r} is larger than any of leapmap's")
         found[name] = thing.attrs[name]
@@ -204,7 +229,8 @@ def _attributes_of(thing):
 
 
 def _values_of(dataset):
-    """A dataset's values. A chunk that inflates to more than its values is refused, as HDF5 would take all the memory it needs."""
+    """A dataset's values. A chunk that inflates to more than its values is refused, as HDF5 would take all
+    the memory it needs."""
     if dataset.chunks and dataset.compression == "gzip":
         size = math.prod(dataset.chunks) * dataset.dtype.itemsize
         plan = dataset.id.get_create_plist()
@@ -213,9 +239,11 @@ def _values_of(dataset):
             chunk = dataset.id.get_chunk_info(i)
             if chunk.size > size + size // 1000 + 64:
                 raise ValueError(f"a chunk of {dataset.name} inflates to more than its values")
-            if chunk.size * 1032 > 2**27:  # zlib packs no more into a byte; what cannot be large is left to HDF5
+            # zlib packs no more into a byte; what cannot be large is left to HDF5
+            if chunk.size * 1032 > 2**27:
                 raw = dataset.id.read_direct_chunk(chunk.chunk_offset)[1]
-                if not chunk.filter_mask >> deflate & 1 and len(zlib.decompressobj().decompress(raw, size + 1)) > size:
+                if not chunk.filter_mask >> deflate & 1 and len(zlib.decompressobj().decompress(
+                        raw, size + 1)) > size:
                     raise ValueError(f"a chunk of {dataset.name} inflates to more than its values")
     return dataset[()]
 
@@ -232,10 +260,12 @@ def _texts_of(dataset, most=2**26):
 
 
 def _axes_of(file, dataset):
-    """The names of a dataset's dimension scales. h5py's own way through HDF5 crashes where the attribute is another."""
+    """The names of a dataset's dimension scales. h5py's own way through HDF5 crashes where the attribute is
+    another."""
     attribute = h5py.h5a.open(dataset.id, b"DIMENSION_LIST")
     element = h5py.check_vlen_dtype(attribute.dtype)
-    if element is None or h5py.check_ref_dtype(element) is not h5py.Reference or attribute.shape != (dataset.ndim,):
+    if element is None or h5py.check_ref_dtype(element) is not h5py.Reference or attribute.shape != (
+            dataset.ndim, ):
         raise ValueError(f"{dataset.name} does not say what its dimensions are")
     return [file[scales[0]].name.lstrip("/") for scales in dataset.attrs["DIMENSION_LIST"]]
 
@@ -260,14 +290,15 @@ def _check_scene(m):
     for key, value in numbers.items():
         if not abs(value) < BEYOND_SPEC:
             raise NotAMap(f"{m.path}: is damaged: its spec says {key} = {value}")
-    for key, least in (("radius", 0.0), ("gravity", 0.0), ("runway", 0.0), ("tolerance", 0.0), ("hop_height", -1e-300)):
+    for key, least in (("radius", 0.0), ("gravity", 0.0), ("runway", 0.0), ("tolerance", 0.0), ("hop_height",
+                                                                                                -1e-300)):
         if not least < numbers.get(key, np.nan) < np.inf:
             raise NotAMap(f"{m.path}: is damaged: its spec says {key} = {numbers.get(key, 'nothing')}")
 
 
 def read_map(path, most_designs=math.inf):
-    """A map, as `leapmap sweep` writes it. Raises NotAMap with one clear line for anything else, and for a map of more than
-    most_designs before it is read."""
+    """A map, as `leapmap sweep` writes it. Raises NotAMap with one clear line for anything else, and for a
+    map of more than most_designs before it is read."""
     m = _read(path, "leapmap map", most_designs, ("label",))
     m.labels = m.fields.pop("label", None)
     _check_scene(m)
@@ -278,10 +309,13 @@ def read_map(path, most_designs=math.inf):
     for name, values in m.fields.items():
         _check_numbers(m, name, values, len(m.dims))
         if values.shape != tuple(len(v) for v in m.dims.values()):
-            raise NotAMap(f"{m.path}: is damaged: {name} has the shape {values.shape}, which is not that of its axes")
-    if m.labels is not None and (m.labels.dtype.kind != "O" or m.labels.shape != (len(m.dims.get("design", ())),)):
+            raise NotAMap(
+                f"{m.path}: is damaged: {name} has the shape {values.shape}, which is not that of its axes")
+    if m.labels is not None and (m.labels.dtype.kind != "O" or m.labels.shape !=
+                                 (len(m.dims.get("design", ())), )):
         raise NotAMap(f"{m.path}: is damaged: it has not a label for each design of a list")
-    if not m.whole and not (isinstance(m.attributes["tiles_done"], np.integer) and len(m.tile) == len(m.dims)):
+    if not m.whole and not (isinstance(m.attributes["tiles_done"], np.integer)
+                            and len(m.tile) == len(m.dims)):
         raise NotAMap(f"{m.path}: is damaged: it does not say which of its tiles are done")
     return m
 
@@ -290,13 +324,15 @@ def read_trace(path):
     """One design's motion, as `leapmap hop --trace` writes it. Raises NotAMap likewise."""
     trace = _read(path, "leapmap trace")
     _check_scene(trace)
-    for key in ("slope", "mass_ratio", "offset_ratio", "release_angle", "release_spin", "mu_static", "restitution"):
+    for key in ("slope", "mass_ratio", "offset_ratio", "release_angle", "release_spin", "mu_static",
+                "restitution"):
         if not np.isfinite(trace.numbers().get(key, np.nan)):
             raise NotAMap(f"{trace.path}: is damaged: its spec does not say the {key}")
     if not isinstance(trace.attributes.get("status"), str):
         raise NotAMap(f"{trace.path}: is damaged: its attribute status is no text")
     columns = ("phi", "spin", "x", "y", "normal_force", "friction", "phase")
-    for name in (*columns, "candidate_time", "candidate_height", *(["candidate_is_jump"] if "candidate_is_jump" in trace.fields else [])):
+    for name in (*columns, "candidate_time", "candidate_height",
+                 *(["candidate_is_jump"] if "candidate_is_jump" in trace.fields else [])):
         along = trace.dims.get("t" if name in columns else "candidate", np.zeros(0))
         _check_numbers(trace, name, trace.fields[name], 1)
         if len(trace.fields[name]) != len(along):
@@ -306,8 +342,10 @@ def read_trace(path):
     if "candidate_is_jump" in trace.fields:
         trace.fields["candidate_is_jump"] = np.asarray(trace.fields["candidate_is_jump"]) == 1
     else:
-        trace.fields["candidate_is_jump"] = (np.arange(len(times)) == len(times) - 1) & (trace.attributes["status"] == "jumped")
-    if trace.attributes["status"] == "jumped" and not (trace.fields["candidate_is_jump"].any() and len(trace.fields["candidate_time"]) and trace.code("phase", "flight").any()):
+        trace.fields["candidate_is_jump"] = (np.arange(len(times))
+                                             == len(times) - 1) & (trace.attributes["status"] == "jumped")
+    if trace.attributes["status"] == "jumped" and not (trace.fields["candidate_is_jump"].any() and len(
+            trace.fields["candidate_time"]) and trace.code("phase", "flight").any()):
         raise NotAMap(f"{trace.path}: is damaged: it says that the hoop jumped, but holds no flight")
     return trace
 

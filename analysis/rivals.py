@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compare leapmap with other programs, on the same designs in the same run.
 
-The others are scipy's DOP853 with events, and Boost.odeint's dopri5 with dense output (analysis/boost_rival.cpp, compiled here).
-OUTPUT.h5 is the table. OUTPUT_time is the chart: error of the jump's height against time for one design on one thread. The reference
-is leapmap's exact method at 1e-13. Needs Debian's python3-scipy, libboost-dev and g++.
-"""
+The others are scipy's DOP853 with events, and Boost.odeint's dopri5 with dense output
+(analysis/boost_rival.cpp, compiled here). OUTPUT.h5 is the table. OUTPUT_time is the chart: error of the
+jump's height against time for one design on one thread. The reference is leapmap's exact method at 1e-13.
+Needs Debian's python3-scipy, libboost-dev and g++."""
 import argparse
 import os
 import subprocess
@@ -44,7 +44,9 @@ def run(*command, text=None):
     try:
         done = subprocess.run([str(word) for word in command], input=text, capture_output=True, text=True)
     except FileNotFoundError:
-        raise NotThere(f"{command[0]}: is not there; build leapmap, and install g++, libboost-dev and python3-scipy") from None
+        raise NotThere(
+            f"{command[0]}: is not there; build leapmap, and install g++, libboost-dev and python3-scipy"
+        ) from None
     if done.returncode:
         raise NotThere(f"{command[0]}: {done.stderr.strip()}")
     return done.stdout
@@ -65,12 +67,14 @@ def flight_height(rho, cos_slope, phi, w):
     landed = np.flatnonzero(heights[above[0]:] <= 0)
     end = above[0] + landed[0] if len(landed) else len(t)
     top = above[0] + np.argmax(heights[above[0]:end])
-    best = optimize.minimize_scalar(lambda s: -y(s), bounds=(t[top] - t[0], t[top] + t[0]), method="bounded", options={"xatol": 1e-10})
+    best = optimize.minimize_scalar(lambda s: -y(s), bounds=(t[top] - t[0], t[top] + t[0]), method="bounded",
+                                    options={"xatol": 1e-10})
     return 0.5 * max(heights[top], -best.fun)
 
 
 def solve_by_scipy(slope, beta, lam, tolerance):
-    """(status, spurious, candidates, height, time): rolls from lift-off to lift-off, each a terminal event."""
+    """(status, spurious, candidates, height, time): rolls from lift-off to lift-off, each a terminal
+    event."""
     alpha = beta / (1 + beta)
     rho, J0, sn, cs = alpha * lam, 1 / (1 + beta) + alpha * lam**2, np.sin(slope), np.cos(slope)
 
@@ -93,7 +97,8 @@ def solve_by_scipy(slope, beta, lam, tolerance):
     force.direction = stall.direction = -1
     t, y, candidates, spurious = 0.0, (np.pi, 0.0), 0, 255
     while True:
-        part = integrate.solve_ivp(rhs, (t, 1e4), y, method="DOP853", rtol=max(tolerance, 3e-14), atol=tolerance, events=(force, runway, stall))
+        part = integrate.solve_ivp(rhs, (t, 1e4), y, method="DOP853", rtol=max(tolerance, 3e-14),
+                                   atol=tolerance, events=(force, runway, stall))
         if part.status != 1:
             return FAILED, spurious, candidates, np.nan, np.nan
         if not len(part.t_events[0]):
@@ -124,25 +129,32 @@ def errors(answers, truth):
 def measure(designs, folder, quick):
     """Rows of method, setting, seconds, errors of height and time, shares wrong and failed."""
     tolerances = TOLERANCES[::3] if quick else TOLERANCES
-    np.savetxt(folder / "designs.csv", designs, delimiter=",", header="slope,mass_ratio,offset_ratio", comments="", fmt="%.17g")
+    np.savetxt(folder / "designs.csv", designs, delimiter=",", header="slope,mass_ratio,offset_ratio",
+               comments="", fmt="%.17g")
     import leapmap  # here: only a measurement needs it
 
     slope, mass_ratio, offset_ratio = designs.T
-    o = leapmap.solve(slope=slope, mass_ratio=mass_ratio, offset_ratio=offset_ratio, runway=RUNWAY, tolerance=1e-13, radius=1, gravity=1)
-    truth = np.stack([o.status, o.spurious_first_jump, o.candidates, o.jump_height, o.jump_time], axis=1).astype(float)
+    o = leapmap.solve(slope=slope, mass_ratio=mass_ratio, offset_ratio=offset_ratio, runway=RUNWAY,
+                      tolerance=1e-13, radius=1, gravity=1)
+    truth = np.stack([o.status, o.spurious_first_jump, o.candidates, o.jump_height, o.jump_time],
+                     axis=1).astype(float)
 
-    run(PROGRAM, "precision", "--points", folder / "designs.csv", "--methods", "exact,gsl-rk8pd,gsl-rkck", "-o", folder / "precision.h5",
-        *(["--quick"] if quick else []))
+    run(PROGRAM, "precision", "--points", folder / "designs.csv", "--methods", "exact,gsl-rk8pd,gsl-rkck",
+        "-o", folder / "precision.h5", *(["--quick"] if quick else []))
     ours = read_table(folder / "precision.h5", "leapmap precision").fields
-    rows = [(f"leapmap, {NAMES.get(m, m)}", s, t, h, e, w, f) for m, c, s, t, h, e, w, f in zip(*(ours[k] for k in (
-        "method", "control", "setting", "seconds", "max_height_error", "max_time_error", "wrong", "failed"))) if c == "tolerance"]
+    rows = [(f"leapmap, {NAMES.get(m, m)}", s, t, h, e, w, f)
+            for m, c, s, t, h, e, w, f in zip(*(ours[k] for k in ("method", "control", "setting", "seconds",
+                                                                  "max_height_error", "max_time_error",
+                                                                  "wrong", "failed")))
+            if c == "tolerance"]
 
     run("g++", "-std=c++17", "-O3", "-march=native", "-o", folder / "boost_rival", FOLDER / "boost_rival.cpp")
     text = "\n".join(" ".join(f"{value:.17g}" for value in design) for design in designs)
     for tolerance in tolerances:
         lines = run(folder / "boost_rival", repr(float(tolerance)), REPEATS, text=text).split("\n")
         answers = [[float(word) for word in line.split()] for line in lines[:len(designs)]]
-        rows.append(("Boost.odeint, dopri5", tolerance, float(lines[len(designs)]) / len(designs), *errors(answers, truth)))
+        rows.append(("Boost.odeint, dopri5", tolerance, float(lines[len(designs)]) / len(designs),
+                     *errors(answers, truth)))
     solve_by_scipy(*designs[0], 1e-6)  # warm
     for tolerance in tolerances:
         least = np.inf
@@ -157,11 +169,15 @@ def measure(designs, folder, quick):
 def write(rows, path, count, seed):
     texts, numbers = [r[0] for r in rows], np.array([r[1:] for r in rows], float)
     with h5py.File(path, "w") as table:
-        table.attrs.update(filetype="leapmap rivals", title="leapmap beside scipy and Boost.odeint", designs=count, seed=seed)
+        table.attrs.update(filetype="leapmap rivals", title="leapmap beside scipy and Boost.odeint",
+                           designs=count, seed=seed)
         table.create_dataset("method", data=texts, dtype=h5py.string_dtype())
         for column, (name, about) in enumerate({
-                "setting": "tolerance", "seconds": "for one design on one thread", "max_height_error": "of the jump's height, in hoop diameters",
-                "max_time_error": "of jump_time, relative", "wrong": "fraction of designs that are silently wrong", "failed": "fraction that failed"}.items()):
+                "setting": "tolerance", "seconds": "for one design on one thread",
+                "max_height_error": "of the jump's height, in hoop diameters",
+                "max_time_error": "of jump_time, relative",
+                "wrong": "fraction of designs that are silently wrong", "failed": "fraction that failed"
+        }.items()):
             table[name] = numbers[:, column]
             table[name].attrs["long_name"] = about
 
@@ -171,7 +187,8 @@ def chart(path):
         fields = {k: (v.asstr()[()] if k == "method" else v[()]) for k, v in table.items()}
         count = table.attrs["designs"]
     figure, axis = plt.subplots(figsize=(9.0, 5.4), layout="constrained")
-    colours = dict(zip(dict.fromkeys(fields["method"]), ("#000000", "#17becf", "#1f77b4", "#2ca02c", "#ff7f0e")))
+    colours = dict(
+        zip(dict.fromkeys(fields["method"]), ("#000000", "#17becf", "#1f77b4", "#2ca02c", "#ff7f0e")))
     for method, colour in colours.items():
         rows = fields["method"] == method
         x, y = 1e6 * fields["seconds"][rows], np.maximum(fields["max_height_error"][rows], FLOOR)
@@ -184,14 +201,18 @@ def chart(path):
     axis.grid(alpha=0.25)
     axis.set_xlabel("time for one design on one thread [µs]; better: left and down")
     axis.set_ylabel("largest error of the jump's height [hoop diameters]")
-    axis.set_title(f"{count} random designs, tolerances from 1e-3 on; rings: some designs silently wrong, crosses: some failed")
+    axis.set_title(
+        f"{count} random designs, tolerances from 1e-3 on; rings: some designs silently wrong, crosses: some "
+        "failed"
+    )
     axis.legend(frameon=False)
     return figure
 
 
 def main():
     p = argparse.ArgumentParser(description=__doc__)
-    p.add_argument("-o", "--output", default="maps/rivals", help="file name without ending (default: %(default)s)")
+    p.add_argument("-o", "--output", default="maps/rivals",
+                   help="file name without ending (default: %(default)s)")
     p.add_argument("--designs", type=int, default=40, help="random ones (default: %(default)s)")
     p.add_argument("--seed", type=int, default=1, help="of the designs (default: %(default)s)")
     p.add_argument("--quick", action="store_true", help="fewer tolerances")
@@ -202,10 +223,14 @@ def main():
     os.makedirs(os.path.dirname(output) or ".", exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         rows = measure(designs, Path(folder), arguments.quick)
-    print("program, method          tolerance   for one design  largest errors: height [diameters], time [relative]")
+    print(
+        "program, method          tolerance   for one design  largest errors: height [diameters], time "
+        "[relative]"
+    )
     for row in rows:
-        print("{:<24} {:>8.0e} {:>12.1f} us  height {:>8.1e}  time {:>8.1e}  wrong {:>5.1f}%  failed {:>5.1f}%".format(
-            row[0], row[1], 1e6 * row[2], row[3], row[4], 100 * row[5], 100 * row[6]))
+        print(
+            "{:<24} {:>8.0e} {:>12.1f} us  height {:>8.1e}  time {:>8.1e}  wrong {:>5.1f}%  failed {:>5.1f}%".
+            format(row[0], row[1], 1e6 * row[2], row[3], row[4], 100 * row[5], 100 * row[6]))
     write(rows, output + ".h5", arguments.designs, arguments.seed)
     print(output + ".h5")
     style.save(chart(output + ".h5"), output + "_time")

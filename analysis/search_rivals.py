@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compare leapmap design with brute force and with scipy, on the same design problems.
 
-A grid over the same bounds has --grid designs (with friction --slipping, of manufactured hoops --made); numpy evaluates the goals.
-scipy's differential evolution and dual annealing solve one design at a time, through leapmap.DesignProblem. "short" is the difference
-to the best result of all. Two objectives: the volume that the front dominates, against that of --random designs.
-Exit status 1: another method found a better design or front.
-"""
+A grid over the same bounds has --grid designs (with friction --slipping, of manufactured hoops --made); numpy
+evaluates the goals. scipy's differential evolution and dual annealing solve one design at a time, through
+leapmap.DesignProblem. "short" is the difference to the best result of all. Two objectives: the volume that
+the front dominates, against that of --random designs. Exit status 1: another method found a better design or
+front."""
 import argparse
 import sys
 import time
@@ -23,7 +23,10 @@ BLOCK = 1 << 20
 def grid_of(problem, logs, count):
     """Axes of a grid of about so many designs."""
     each = round(count ** (1 / len(problem.names)))
-    return [np.geomspace(*bounds, each) if log else np.linspace(*bounds, each) for bounds, log in zip(problem.bounds, logs)]
+    return [
+        np.geomspace(*bounds, each) if log else np.linspace(*bounds, each)
+        for bounds, log in zip(problem.bounds, logs)
+    ]
 
 
 def blocks(axes):
@@ -47,7 +50,8 @@ def reached(outcomes, goals):
 def brute_force(spec, problem, logs, count):
     """The best objective over a grid, its sign turned if it is to be large; how many designs that took."""
     goals = {k: v for k, v in spec["goal"].items() if k not in ("maximize", "minimize")}
-    name, sign = (spec["goal"]["maximize"][0], -1) if "maximize" in spec["goal"] else (spec["goal"]["minimize"][0], 1)
+    name, sign = (spec["goal"]["maximize"][0],
+                  -1) if "maximize" in spec["goal"] else (spec["goal"]["minimize"][0], 1)
     fixed = {k: v for k, v in {**spec.get("scene", {}), **spec["design"]}.items() if not isinstance(v, dict)}
     best, solved = np.inf, 0
     for columns in blocks(grid_of(problem, logs, count)):
@@ -84,13 +88,16 @@ def rivals(path, arguments):
 
     def design():
         found = leapmap.design(path, seed=arguments.seed)
-        return (sign * found.objectives[problem.objectives[0]][0] if found.reached else np.inf), found.evaluations
+        return (sign *
+                found.objectives[problem.objectives[0]][0] if found.reached else np.inf), found.evaluations
 
-    count = arguments.made if "scatter" in spec else arguments.slipping if spec.get("scene", {}).get("friction") == "coulomb" else arguments.grid
+    count = arguments.made if "scatter" in spec else arguments.slipping if spec.get(
+        "scene", {}).get("friction") == "coulomb" else arguments.grid
     return problem.objectives[0], sign, {
         "leapmap design": timed(design),
         "grid": timed(lambda: brute_force(spec, problem, logs, count)),
-        "differential evolution": timed(lambda: scipys(path, optimize.differential_evolution, arguments.seed)),
+        "differential evolution": timed(
+            lambda: scipys(path, optimize.differential_evolution, arguments.seed)),
         "dual annealing": timed(lambda: scipys(path, optimize.dual_annealing, arguments.seed)),
     }
 
@@ -113,7 +120,11 @@ def random_front(problem, logs, count):
     low, high = np.array(problem.bounds).T
     for first in range(0, int(count), BLOCK):
         share = random.random((min(BLOCK, int(count) - first), len(low)))
-        places = np.where(logs, np.exp(np.log(np.where(logs, low, 1)) + share * np.log(np.where(logs, high / np.where(logs, low, 1), 1))), low + share * (high - low))
+        places = np.where(
+            logs,
+            np.exp(
+                np.log(np.where(logs, low, 1)) +
+                share * np.log(np.where(logs, high / np.where(logs, low, 1), 1))), low + share * (high - low))
         costs, violations = problem.judge(np.clip(places, low, high))
         best = front_of(np.concatenate((best, costs[violations == 0])))
     return best, int(count)
@@ -125,13 +136,23 @@ def fronts(path, arguments):
 
     def design():
         found = leapmap.design(path, seed=arguments.seed)
-        signs = [-1 if name in tomllib.loads(path.read_text())["goal"].get("maximize", []) else 1 for name in problem.objectives]
-        return np.stack([sign * found.objectives[name] for sign, name in zip(signs, problem.objectives)], axis=1), found.evaluations
+        signs = [
+            -1 if name in tomllib.loads(path.read_text())["goal"].get("maximize", []) else 1
+            for name in problem.objectives
+        ]
+        return np.stack([sign * found.objectives[name] for sign, name in zip(signs, problem.objectives)],
+                        axis=1), found.evaluations
 
-    found = {"leapmap design": timed(design), "random": timed(lambda: random_front(problem, logs_of(path, problem), arguments.random))}
+    found = {
+        "leapmap design": timed(design),
+        "random": timed(lambda: random_front(problem, logs_of(path, problem), arguments.random))
+    }
     every = np.concatenate([front for front, _, _ in found.values()])
     corner, span = every.max(axis=0), np.ptp(every, axis=0).prod()
-    return {by: (volume(front_of(front), corner) / span, len(front), solved, seconds) for by, (front, solved, seconds) in found.items()}
+    return {
+        by: (volume(front_of(front), corner) / span, len(front), solved, seconds)
+        for by, (front, solved, seconds) in found.items()
+    }
 
 
 def logs_of(path, problem):
@@ -150,21 +171,29 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     folder = Path(__file__).resolve().parent.parent / "sweeps" / "questions"
-    print("| question | by | found | short; of a front: volume | designs | seconds |\n|---|---|---|---|---|---|")
+    print(
+        "| question | by | found | short; of a front: volume | designs | seconds |\n|---|---|---|---|---|---|"
+    )
     beaten = False
     for path in arguments.questions or sorted(folder.glob("*.toml")):
         goal = tomllib.loads(path.read_text())["goal"]
         if len(goal.get("maximize", [])) + len(goal.get("minimize", [])) == 2:
             found = fronts(path, arguments)
             for by, (share, size, solved, seconds) in found.items():
-                print(f"| {path.stem} | {by} | {size:,} on the front | {100 * share:.4f} % | {solved:,} | {seconds:.1f} |", flush=True)
+                print(
+                    f"| {path.stem} | {by} | {size:,} on the front | {100 * share:.4f} % | {solved:,} | "
+                    f"{seconds:.1f} |",
+                    flush=True)
             beaten |= found["leapmap design"][0] < found["random"][0]
             continue
         objective, sign, found = rivals(path, arguments)
         best = min(cost for cost, _, _ in found.values())
         for by, (cost, solved, seconds) in found.items():
             told = f"{objective} {sign * cost:.10g}" if cost < 1e29 else "none"
-            print(f"| {path.stem} | {by} | {told} | {'-' if cost >= 1e29 else f'{cost - best:.1e}'} | {solved:,} | {seconds:.1f} |", flush=True)
+            print(
+                f"| {path.stem} | {by} | {told} | {'-' if cost >= 1e29 else f'{cost - best:.1e}'} | "
+                f"{solved:,} | {seconds:.1f} |",
+                flush=True)
         beaten |= found["leapmap design"][0] > best + 1e-11 * (1 + abs(best))
     sys.exit(1 if beaten else 0)
 

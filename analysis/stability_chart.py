@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw the cases in which methods fail, from the table that leapmap stability writes: one chart for each case, and a summary.
+"""Draw the cases in which methods fail, from the table that leapmap stability writes: one chart for each
+case, and a summary.
 
-OUTPUT_CASE: left, the error along the case, one line for each method with its verdict; rings are silently wrong answers, crosses
-reported failures, grey the effect of an ulp of the inputs. Right: work, energy drift, condition or fraction of wrong designs.
-OUTPUT: the verdict of every method in every case.
-"""
+OUTPUT_CASE: left, the error along the case, one line for each method with its verdict; rings are silently
+wrong answers, crosses reported failures, grey the effect of an ulp of the inputs. Right: work, energy drift,
+condition or fraction of wrong designs. OUTPUT: the verdict of every method in every case."""
 import numpy as np
 
 import style
@@ -28,12 +28,21 @@ TITLES = {
     "stick": "with friction: friction barely holds",
     "bounces": "with friction: ever more rebounds",
 }
-BESIDE = {"needle": "evaluations", "release": "condition", "graze": "condition", "long": "energy_drift", "step": "share", "tolerance": "evaluations", "chaos": "condition",
-          "painleve": "evaluations", "slow": "evaluations", "dip": "condition", "stick": "condition", "bounces": "evaluations"}
-LABELS = {"evaluations": "right-hand sides per design", "condition": "condition: relative change of the answer over that of the inputs",
-          "energy_drift": "energy drift at the jump, over 1 + kinetic energy", "share": "designs wrong (solid) or failed (dotted) [%]"}
+BESIDE = {
+    "needle": "evaluations", "release": "condition", "graze": "condition", "long": "energy_drift",
+    "step": "share", "tolerance": "evaluations", "chaos": "condition", "painleve": "evaluations",
+    "slow": "evaluations", "dip": "condition", "stick": "condition", "bounces": "evaluations"
+}
+LABELS = {
+    "evaluations": "right-hand sides per design",
+    "condition": "condition: relative change of the answer over that of the inputs",
+    "energy_drift": "energy drift at the jump, over 1 + kinetic energy",
+    "share": "designs wrong (solid) or failed (dotted) [%]"
+}
 VERDICTS = {  # from best to worst
-    "fine": "#2ca02c", "loses digits": "#bcbd22", "reports failure": "#9ecae1", "breaks down": "#7f7f7f", "silently wrong": "#d62728"}
+    "fine": "#2ca02c", "loses digits": "#bcbd22", "reports failure": "#9ecae1", "breaks down": "#7f7f7f",
+    "silently wrong": "#d62728"
+}
 EPSILON = np.finfo(float).eps
 
 
@@ -48,7 +57,8 @@ def series(t, study):
 
 def look(name):
     method, _, fixed = name.partition(",")
-    return dict(color=COLOURS.get(method, "#444444"), linestyle=":" if fixed else "-", linewidth=2.2 if method == "exact" else 1.1)
+    return dict(color=COLOURS.get(method, "#444444"), linestyle=":" if fixed else "-",
+                linewidth=2.2 if method == "exact" else 1.1)
 
 
 def along(x, values, summary):
@@ -89,36 +99,46 @@ def case_chart(t, study):
         left.plot(places, error, label=f"{name}: {verdict}", marker=".", markersize=4, **look(name))
         wrong = finding == "wrong"
         if wrong.any():
-            at = np.where(np.isfinite(t.fields["error"][rows]), t.fields["error"][rows], 1.0)  # flags wrong: no error to draw
-            left.plot(x[wrong], np.clip(at[wrong], FLOOR, 1.0), "o", markersize=9, markerfacecolor=look(name)["color"], alpha=0.9,
-                      markeredgecolor=style.MARK, markeredgewidth=1.2)
+            # flags wrong: no error to draw
+            at = np.where(np.isfinite(t.fields["error"][rows]), t.fields["error"][rows], 1.0)
+            left.plot(x[wrong], np.clip(at[wrong], FLOOR,
+                                        1.0), "o", markersize=9, markerfacecolor=look(name)["color"],
+                      alpha=0.9, markeredgecolor=style.MARK, markeredgewidth=1.2)
         failed = np.unique(x[finding == "failed"])
         if len(failed):
-            left.plot(failed, np.full(len(failed), crosses), "x", markersize=5, color=look(name)["color"], markeredgewidth=1.1)
+            left.plot(failed, np.full(len(failed), crosses), "x", markersize=5, color=look(name)["color"],
+                      markeredgewidth=1.1)
             crosses *= 2.5
         if beside == "share":
             for which, line in (("wrong", "-"), ("failed", ":")):
-                right.plot(*along(x, 100.0 * (finding == which), np.mean), line, marker=".", markersize=4, color=look(name)["color"])
+                right.plot(*along(x, 100.0 * (finding == which), np.mean), line, marker=".", markersize=4,
+                           color=look(name)["color"])
         elif beside != "condition":
             places, value = along(x, t.fields[beside][rows], middle)
             right.plot(places, np.maximum(value, FLOOR), marker=".", markersize=4, **look(name))
     everything = np.array(everything)
     places, condition = along(t.fields["x"][everything], t.fields["condition"][everything], middle)
-    left.plot(places, EPSILON * (1.0 + condition), color="#bbbbbb", linewidth=5, zorder=0, label="what an ulp of the inputs does")
+    left.plot(places, EPSILON * (1.0 + condition), color="#bbbbbb", linewidth=5, zorder=0,
+              label="what an ulp of the inputs does")
     if beside == "condition":
         right.plot(places, np.maximum(condition, 1e-1), "-o", color=style.EDGE, markersize=4)
-        right.set_title("how ill-conditioned the question itself is, whatever the method; 0.1: not at all" if study == "graze" else
-                        "how ill-conditioned the question itself is, whatever the method")
+        right.set_title(
+            "how ill-conditioned the question itself is, whatever the method; 0.1: not at all" if study ==
+            "graze" else "how ill-conditioned the question itself is, whatever the method")
     left.set_yscale("log")
     right.set_yscale("linear" if beside == "share" else "log")
     left.set_ylim(top=2.0 * crosses)
     left.set_ylabel("error of height [diameters] or time [relative]")
-    left.set_title("red rings: silently wrong (at the top: flags wrong); crosses: reported failures, one row for each method")
+    left.set_title(
+        "red rings: silently wrong (at the top: flags wrong); crosses: reported failures, one row for each "
+        "method"
+    )
     right.set_ylabel(LABELS[beside])
     for axis in (left, right):
         scale(axis, t, everything)
     figure.suptitle(f"{study}: {TITLES[study]}", fontsize=11)
-    right.legend(*left.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(1.02, 0.5), frameon=False)
+    right.legend(*left.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(1.02, 0.5),
+                 frameon=False)
     return figure
 
 
@@ -130,7 +150,8 @@ def landing_chart(t):
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.axhline(0.05, color=style.MARK, linewidth=0.8)
-    axis.set_xlabel(t.fields["abscissa"][t.fields["study"] == "landing"][0] + "; 1e-9: none, lift-offs out of sliding, a triple root")
+    axis.set_xlabel(t.fields["abscissa"][t.fields["study"] == "landing"][0] +
+                    "; 1e-9: none, lift-offs out of sliding, a triple root")
     axis.set_ylabel("error of height [diameters] or duration [relative]")
     axis.set_title(f"landing: {TITLES['landing']}; above the red line the jump is lost or invented")
     axis.grid(alpha=0.25)
@@ -150,13 +171,15 @@ def overview(t):
             if name not in names:
                 names.append(name)
             verdicts[name, study] = verdict
-    figure, axis = plt.subplots(figsize=(2.4 + 0.98 * len(studies), 0.27 * len(names) + 1.6), layout="constrained")
+    figure, axis = plt.subplots(figsize=(2.4 + 0.98 * len(studies), 0.27 * len(names) + 1.6),
+                                layout="constrained")
     for row, name in enumerate(names):
         for column, study in enumerate(studies):
             verdict = verdicts.get((name, study))
             if verdict:
                 axis.barh(row, 0.96, left=column - 0.48, height=0.9, color=VERDICTS[verdict])
-                short = {"silently wrong": "wrong, silent", "reports failure": "reports"}.get(verdict, verdict)
+                short = {"silently wrong": "wrong, silent", "reports failure": "reports"}.get(
+                    verdict, verdict)
                 axis.text(column, row, short, ha="center", va="center", fontsize=7)
     axis.set_yticks(range(len(names)), names)
     axis.set_xticks(range(len(studies)), studies)
@@ -164,8 +187,10 @@ def overview(t):
     axis.set_xlim(-0.52, len(studies) - 0.48)
     axis.set_ylim(len(names) - 0.45, -0.55)
     axis.tick_params(length=0)
-    figure.suptitle("each method's worst in each case" + ("; a quick run, which leaves out places" if t.attributes["quick"] else "") +
-                    "; empty: not asked", fontsize=9)
+    figure.suptitle(
+        "each method's worst in each case" +
+        ("; a quick run, which leaves out places" if t.attributes["quick"] else "") + "; empty: not asked",
+        fontsize=9)
     for side in axis.spines.values():
         side.set_visible(False)
     return figure

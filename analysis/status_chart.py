@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw how designs end, over two axes, one panel for each value of the others.
 
-Colours: a jump at the first lift-off, a jump after a spurious one, or the reason why there is no jump. A star marks the paper's hoop.
-Needs status.
-"""
+Colours: a jump at the first lift-off, a jump after a spurious one, or the reason why there is no jump. A star
+marks the paper's hoop. Needs status."""
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
@@ -13,8 +12,8 @@ import looks
 import style
 from read_map import NotAMap
 
-JUMPS = [("#1b7837", "jumps at its first lift-off"), ("#fdae61", "jumps after a sub-threshold first lift-off"),
-         ("#5aae61", "jumps (lift-off unknown)")]
+JUMPS = [("#1b7837", "jumps at its first lift-off"),
+         ("#fdae61", "jumps after a sub-threshold first lift-off"), ("#5aae61", "jumps (lift-off unknown)")]
 NONE_SPURIOUS = ("#dfc27d", "no jump: all lift-offs below the jump threshold")
 
 
@@ -38,12 +37,15 @@ def chart(grid, curves):
     drawn = set()
     for axis, panel, plane in zip(axes, grid.panels, panels):
         crisp = cliffs.Panel(grid, panel, curves)
-        axis.pcolormesh(crisp.edges(grid.x), crisp.edges(grid.y), crisp.code(plane), shading="flat", rasterized=True,
-                        norm=BoundaryNorm(np.arange(len(kinds) + 1) - 0.5, len(kinds)), cmap=ListedColormap([c for c, _ in kinds]))
+        axis.pcolormesh(crisp.edges(grid.x), crisp.edges(
+            grid.y), crisp.code(plane), shading="flat", rasterized=True, norm=BoundaryNorm(
+                np.arange(len(kinds) + 1) - 0.5, len(kinds)), cmap=ListedColormap([c for c, _ in kinds]))
         drawn |= crisp.draw(axis)
         if place := grid.paper(panel):
             style.draw_star(axis, place)
-    shares = np.bincount(np.concatenate([p.ravel() for p in panels]), minlength=len(kinds)) / sum(p.size for p in panels)
+    shares = np.bincount(np.concatenate([p.ravel()
+                                         for p in panels]), minlength=len(kinds)) / sum(p.size
+                                                                                        for p in panels)
     handles = [style.swatch(colour, f"{words}: {100 * share:.3g} %")
                for (colour, words), share in zip(kinds, shares) if share > 0] + cliffs.handles(drawn)
     if any(grid.paper(p) for p in grid.panels):
@@ -53,4 +55,5 @@ def chart(grid, curves):
 
 
 if __name__ == "__main__":
-    style.run(lambda: cliffs.run(__doc__, "maps/slope_mass_ratio_offset.h5", "_status", chart), NotAMap, OSError)
+    style.run(lambda: cliffs.run(__doc__, "maps/slope_mass_ratio_offset.h5", "_status", chart), NotAMap,
+              OSError)

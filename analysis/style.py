@@ -30,7 +30,9 @@ def leapmap_module():
     try:
         import leapmap
     except ImportError as error:
-        raise OSError(f"needs leapmap's Python module ({error}); allowed: with PYTHONPATH=build/release/python") from None
+        raise OSError(
+            f"needs leapmap's Python module ({error}); allowed: with PYTHONPATH=build/release/python"
+        ) from None
     return leapmap
 
 
@@ -45,13 +47,17 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _filled(text):
-    """A script's description in lines of at most 80 columns; examples, which are indented, stay as they are."""
+    """A script's description in lines of at most 80 columns; examples, which are indented, stay as they
+    are."""
     blocks = re.split(r"\n\s*\n", text.strip())
     return "\n\n".join(block if block.startswith("    ") else textwrap.fill(block, 79) for block in blocks)
 
 
-def parser(description, source, suffix, output="file name without ending; PNG, SVG and PDF are written (default: FILE's name{})", needs_source=True):
-    """The command line every chart shares. suffix: what the default output adds to FILE's name, or None; output: what -o means."""
+def parser(description, source, suffix,
+           output="file name without ending; PNG, SVG and PDF are written (default: FILE's name{})",
+           needs_source=True):
+    """The command line every chart shares. suffix: what the default output adds to FILE's name, or None;
+    output: what -o means."""
     p = _Parser(description=_filled(description), formatter_class=argparse.RawDescriptionHelpFormatter)
     p.suffix = suffix
     p.add_argument("source", metavar="FILE", help=source, nargs=None if needs_source else "?")
@@ -60,7 +66,8 @@ def parser(description, source, suffix, output="file name without ending; PNG, S
 
 
 def halo(texts, colour):
-    """Texts on a patch of that colour, so that they can be read on any ground. No path effects: these make SVG's texts outlines."""
+    """Texts on a patch of that colour, so that they can be read on any ground. No path effects: these make
+    SVG's texts outlines."""
     for text in texts:
         text.set_bbox({"facecolor": colour, "alpha": 0.55, "edgecolor": "none", "pad": 0.4})
 
@@ -71,8 +78,8 @@ def stem(output):
 
 
 def replace_file(path, content):
-    """Writes bytes to a file, in a folder made if need be. An older file, also one behind a link, is replaced once the new one is
-    on disk; whatever fails before that leaves it as it was. Raises OSError."""
+    """Writes bytes to a file, in a folder made if need be. An older file, also one behind a link, is replaced
+    once the new one is on disk; whatever fails before that leaves it as it was. Raises OSError."""
     path = os.path.realpath(path)
     if os.path.exists(path) and not os.path.isfile(path):
         raise OSError(f"{path}: is a folder, a device or a pipe; allowed: a file's name")
@@ -81,7 +88,8 @@ def replace_file(path, content):
     umask = os.umask(0)
     os.umask(umask)
     mode = os.stat(path).st_mode & 0o7777 if os.path.exists(path) else 0o666 & ~umask
-    descriptor, unfinished = tempfile.mkstemp(dir=folder, prefix=os.path.basename(path)[:100] + ".", suffix=".part")
+    descriptor, unfinished = tempfile.mkstemp(dir=folder, prefix=os.path.basename(path)[:100] + ".",
+                                              suffix=".part")
     try:
         with open(descriptor, "wb", buffering=0) as file:
             os.fchmod(descriptor, mode)
@@ -115,7 +123,8 @@ def save(figure, output):
 
 
 def log_scale(axis):
-    """Makes an x or y axis logarithmic, its numbers written out; within two decades also some between powers of ten."""
+    """Makes an x or y axis logarithmic, its numbers written out; within two decades also some between powers
+    of ten."""
     getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
     axis.set_major_formatter(lambda v, _: f"{v:g}")
     axis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.4)))
@@ -127,13 +136,14 @@ def draw_star(axis, place, colour=MARK):
 
 
 def star_handle(colour=MARK):
-    return plt.Line2D([], [], marker="*", color="none", markerfacecolor=colour, markeredgecolor="white", markersize=12,
-                      label="the paper's hoop")
+    return plt.Line2D([], [], marker="*", color="none", markerfacecolor=colour, markeredgecolor="white",
+                      markersize=12, label="the paper's hoop")
 
 
 def swatch(colour, words, **more):
     """An entry of a legend for cells of a colour."""
-    return plt.Rectangle((0, 0), 1, 1, **{"facecolor": colour, "edgecolor": "#808080", "label": words, **more})
+    return plt.Rectangle((0, 0), 1, 1,
+                         **{"facecolor": colour, "edgecolor": "#808080", "label": words, **more})
 
 
 def wrapped(words, figure, size=9):
@@ -160,7 +170,8 @@ def legend_above(figure, handles):
 
 
 def run(main, *errors):
-    """Runs a chart's main; the errors named end it with one line and status 2, a lack of memory with status 1."""
+    """Runs a chart's main; the errors named end it with one line and status 2, a lack of memory with status
+    1."""
     try:
         main()
         sys.stdout.flush()
@@ -170,7 +181,8 @@ def run(main, *errors):
         status, text = 1, "out of memory"
     else:
         return
-    text = "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)  # no text gives a terminal orders
+    # no text gives a terminal orders
+    text = "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
     with contextlib.suppress(OSError, AttributeError):  # a stream that is full, or closed
         print(f"{os.path.basename(sys.argv[0])}: {text}", file=sys.stderr, flush=True)
     os._exit(status)  # and not by HDF5's handler at exit, which crashes on a file that it could not close

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check a built site: every link within it leads somewhere, and no page exceeds 1,500 words but the reference.
+"""Check a built site: every link within it leads somewhere, and no page exceeds 1,500 words but the
+reference.
 
     docs/check_site.py FOLDER
 """

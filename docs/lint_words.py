@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check the words that a user meets: pages, help, messages, docstrings, public headers, the texts of the page.
+"""Check the words that a user meets: pages, help, messages, docstrings, public headers, the texts of the
+page.
 
     docs/lint_words.py            every text of the repository; exit status 1 if something is found
     docs/lint_words.py FILE ...   these files only

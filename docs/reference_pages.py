@@ -72,11 +72,12 @@ def parameters():
         for row in _core.parameters()
     ]
     return (
-        "# Parameters\n\nOne design is a value of each of these. All take an axis in a spec but those of the scene\n"
-        "(`rest_speed`, `runway`, `hop_height`, `radius`, `gravity`), which are the same for all designs. Angles are\n"
-        'in radians, or written `"30 deg"`.\n\n'
-        + table(("name", "meaning", "unit", "allowed", "default"), rows)
-    )
+        "# Parameters\n\nOne design is a value of each of these. All take an axis in a spec but those of the "
+        "scene\n"
+        "(`rest_speed`, `runway`, `hop_height`, `radius`, `gravity`), which are the same for all designs. "
+        "Angles are\n"
+        'in radians, or written `"30 deg"`.\n\n' + table(
+            ("name", "meaning", "unit", "allowed", "default"), rows))
 
 
 def fields():
@@ -101,15 +102,17 @@ def fields():
         [(str(int(status)), f"`{status.name}`", STATUSES[status.name]) for status in leapmap.Status],
     )
     return (
-        "# Fields and statuses\n\nThe outcome of a design. A quantity that does not apply is NaN, and `status` says why.\n"
+        "# Fields and statuses\n\nThe outcome of a design. A quantity that does not apply is NaN, and "
+        "`status` says why.\n"
         "Times are in seconds. A pure number has "
-        "no unit\nhere; its meaning names what it is measured in.\n\n"
-        + table(("name", "meaning", "unit", "type"), rows)
-        + "\nWith `scene.jumps` there are also `jump_height_2`, `jump_time_2` and so on; with `output.gradients`\n"
-        "derivatives such as `jump_height_by_slope`; with `[scatter]` `yield`, `cut_off`, `unsolved` and statistics\n"
+        "no unit\nhere; its meaning names what it is measured in.\n\n" + table(
+            ("name", "meaning", "unit", "type"), rows) +
+        "\nWith `scene.jumps` there are also `jump_height_2`, `jump_time_2` and so on; with "
+        "`output.gradients`\n"
+        "derivatives such as `jump_height_by_slope`; with `[scatter]` `yield`, `cut_off`, `unsolved` and "
+        "statistics\n"
         "such as `jump_height_q05`. See\n"
-        "[](file_format.md).\n\n## Statuses\n\n" + statuses
-    )
+        "[](file_format.md).\n\n## Statuses\n\n" + statuses)
 
 
 STATUSES = {
@@ -118,7 +121,8 @@ STATUSES = {
     "no_jump": "It reaches the rolling limit first.",
     "stalled": "It is trapped: it rocks between two turning points, or rests in an equilibrium.",
     "airborne_at_release": "The normal force is negative at the release.",
-    "indeterminate": "The equations of rigid bodies have no solution or two: Painlevé's paradox, or a motor that "
+    "indeterminate": "The equations of rigid bodies have no solution or two: Painlevé's paradox, or a motor "
+                     "that "
     "alone would lift the hoop.",
     "failed": "The method could not solve it.",
 }
@@ -136,10 +140,10 @@ SECTIONS = {
 
 def spec():
     text = (
-        "# The spec\n\nA spec is a TOML file. Every key has a default, the paper's hoop; an unknown key is an error.\n"
+        "# The spec\n\nA spec is a TOML file. Every key has a default, the paper's hoop; an unknown key is "
+        "an error.\n"
         "On the command line\n"
-        "`--set KEY=VALUE` overrides a key.\n\n## Axes\n\n"
-        + table(
+        "`--set KEY=VALUE` overrides a key.\n\n## Axes\n\n" + table(
             ("written", "meaning"),
             [
                 ('`slope = 0.4`, `slope = "20 deg"`', "one value"),
@@ -152,12 +156,13 @@ def spec():
                     "bounds of a free parameter, for `leapmap design` and `fit`",
                 ),
             ],
-        )
-        + '\nA list of designs instead of axes: `points = "designs.csv"`, a file whose header names parameters, one\n'
-        "design in a row. A column `label` names them. Parameters that it leaves out come from the spec. Numbers are in\n"
+        ) +
+        '\nA list of designs instead of axes: `points = "designs.csv"`, a file whose header names '
+        'parameters, one\n'
+        "design in a row. A column `label` names them. Parameters that it leaves out come from the spec. "
+        "Numbers are in\n"
         "the parameter's unit (angles in rad); `30deg` is allowed too:\n"
-        "\n```text\nlabel,slope,mass_ratio\nprototype,22.9deg,2.44\nlight,0.35,1.8\n```\n"
-    )
+        "\n```text\nlabel,slope,mass_ratio\nprototype,22.9deg,2.44\nlight,0.35,1.8\n```\n")
     for section, about in SECTIONS.items():
         rows = [
             (
@@ -209,10 +214,11 @@ def command_line():
 
 def charts():
     text = (
-        "# Charts\n\n`python3 -m leapmap.charts NAME FILE` draws a chart as PNG, SVG and PDF. From a clone the scripts run\n"
-        "by themselves, `analysis/design_chart.py MAP`. `-o` names the output without its ending; `-x` and `-y` choose\n"
-        "axes; `--at AXIS=VALUE` fixes others.\n"
-    )
+        "# Charts\n\n`python3 -m leapmap.charts NAME FILE` draws a chart as PNG, SVG and PDF. From a clone "
+        "the scripts run\n"
+        "by themselves, `analysis/design_chart.py MAP`. `-o` names the output without its ending; `-x` and "
+        "`-y` choose\n"
+        "axes; `--at AXIS=VALUE` fixes others.\n")
     for name, script in sorted(CHARTS.items()):
         about = re.search(r'"""(.*?)"""', (TOP / "analysis" / script).read_text(), re.S)[1]
         text += (

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run what pages show: commands, Python, C++ and specs; compare the output that they print.
 
-    docs/run_blocks.py PAGE ...             check pages; exit status 1 if a block fails
-    docs/run_blocks.py PAGE ... --update    write the output of their commands into the pages
-    docs/run_blocks.py PAGE ... --pictures  run all of their blocks; replace the pictures that they draw and show
+    docs/run_blocks.py PAGE ...             check pages; exit status 1 if a block fails docs/run_blocks.py
+    PAGE ... --update    write the output of their commands into the pages docs/run_blocks.py PAGE ...
+    --pictures  run all of their blocks; replace the pictures that they draw and show
 
 Blocks of a page run in order, in a folder of its own with the folders sweeps and analysis and an empty maps.
 
@@ -188,7 +188,8 @@ def replace_pictures(page, folder):
 
 
 def run_page(page, slow=False, compare=True, pictures=False):
-    """Runs the blocks of a page, those of the second tier only if slow; returns the outputs of its commands."""
+    """Runs the blocks of a page, those of the second tier only if slow; returns the outputs of its
+    commands."""
     outputs, before = [], ""
     with tempfile.TemporaryDirectory(prefix="leapmap-page-") as name:
         folder = Path(name)

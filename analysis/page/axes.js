@@ -1,27 +1,33 @@
-// What the views of a map share: colours, a frame with ticks, names with units, and how designs are pointed at.
+// What the views of a map share: colours, a frame with ticks, names with units, and how designs are pointed
+// at.
 
 /** Whether cliffs and flags of the first jump are a field's own: not of hoops as made, nor of gaits. */
 const isOfFirstJump = (field) => !field.made && !field.gait;
 
-/** The canvas at the screen's own resolution and the frame in it, or null while it is not shown; right, above: what is free there [of the font's size]. */
+/** The canvas at the screen's own resolution and the frame in it, or null while it is not shown; right,
+    above: what is free there [of the font's size]. */
 function fitted(canvas, right, above = 0.8) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect(), font = 13 * ratio;
   if (!(box.width > 0)) return null;
   canvas.width = Math.round(box.width * ratio);
   canvas.height = Math.round(box.height * ratio);
-  return { left: 4.6 * font, top: above * font, right: canvas.width - right * font, bottom: canvas.height - 3.4 * font, font, ratio };
+  return { left: 4.6 * font, top: above * font, right: canvas.width - right * font,
+    bottom: canvas.height - 3.4 * font, font, ratio };
 }
 
 /**
- * Points at designs and picks them, by mouse, finger and keys; view holds index and picked. pointAt(event): points there, if there is a
- * design; goBack(): to the one picked, if that is shown; step(key, by): moves on, if that is a key to move by. Returns {point, pick}.
+ * Points at designs and picks them, by mouse, finger and keys; view holds index and picked. pointAt(event):
+ * points there, if there is a design; goBack(): to the one picked, if that is shown; step(key, by): moves on,
+ * if that is a key to move by. Returns {point, pick}.
  */
 function pointing(canvas, view, { pointAt, goBack, step, paintCursor, onPoint, onPick }) {
   const point = () => { paintCursor(); onPoint(view.index); };
   const pick = (byHand = false) => { view.picked = [...view.index]; point(); onPick(view.index, byHand); };
-  canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch" && pointAt(event)) point(); });
+  canvas.addEventListener("pointermove", (event) =>
+    { if (event.pointerType !== "touch" && pointAt(event)) point(); });
   canvas.addEventListener("click", (event) => { if (pointAt(event)) pick(true); });
-  canvas.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch" && view.picked && goBack()) point(); });
+  canvas.addEventListener("pointerleave", (event) =>
+    { if (event.pointerType !== "touch" && view.picked && goBack()) point(); });
   canvas.addEventListener("keydown", (event) => {
     if (step(event.key, event.shiftKey ? 10 : 1)) point();
     else if (event.key === "Enter" || event.key === " ") pick();
@@ -33,7 +39,8 @@ function pointing(canvas, view, { pointAt, goBack, step, paintCursor, onPoint, o
 
 const clamped = (value, most) => Math.min(most, Math.max(0, value));
 
-const labelOf = (axis) => axis.label + (axis.unit === "°" ? " [degrees]" : axis.unit ? ` [${axis.unit}]` : "");
+const labelOf = (axis) =>
+  axis.label + (axis.unit === "°" ? " [degrees]" : axis.unit ? ` [${axis.unit}]` : "");
 
 /** A frame with ticks and names on a canvas; sx, sy: pixel(value), ticks(). */
 function paintAxes(context, frame, sx, sy, nameX, nameY) {
@@ -51,7 +58,8 @@ function paintAxes(context, frame, sx, sy, nameX, nameY) {
     const p = sx.pixel(tick), text = textsAlong[i], width = context.measureText(text).width;
     context.moveTo(p, bottom);
     context.lineTo(p, bottom + 0.35 * font);
-    if (p - width / 2 > last) { context.fillText(text, p, bottom + 0.5 * font); last = p + width / 2 + 0.4 * font; }
+    if (p - width / 2 > last) { context.fillText(text, p, bottom + 0.5 * font);
+        last = p + width / 2 + 0.4 * font; }
   }
   context.textAlign = "right";
   context.textBaseline = "middle";

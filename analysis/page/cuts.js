@@ -1,15 +1,21 @@
-// Cuts through the design pointed at: the quantity shown along both axes of the map, broken at cliffs, dashed where the first lift-off is below the threshold.
+// Cuts through the design pointed at: the quantity shown along both axes of the map, broken at cliffs, dashed
+// where the first lift-off is below the threshold.
 
 /** Draws one cut. offset(index): a design's place among the values; axis: along which. */
 function drawCut(canvas, map, view, axis, offset) {
   const frame = fitted(canvas, 1), [factor] = shownIn(view.field.unit, map.fixed);
   if (!frame) return;
-  const context = canvas.getContext("2d"), { left, right, top, bottom, ratio } = frame, { field } = view, row = map.axes[axis];
-  const own = isOfFirstJump(field), flags = own ? map.codes.spurious_first_jump?.values : undefined, torn = own ? map.codes.cliffs?.values : undefined, n = row.values.length;
+  const context = canvas.getContext("2d"), { left, right, top, bottom, ratio } = frame, { field } = view,
+    row = map.axes[axis];
+  const own = isOfFirstJump(field), flags = own ? map.codes.spurious_first_jump?.values : undefined,
+    torn = own ? map.codes.cliffs?.values : undefined, n = row.values.length;
   const places = Array.from({ length: n }, (_, i) => offset(view.index.map((k, a) => (a === axis ? i : k))));
-  const sx = axisScale(row, left, right), span = field.high - field.low || 1, low = Math.min(field.low, ...places.map((k) => field.values[k]).filter((v) => v === v)),
-    high = Math.max(field.low + 1e-12, ...places.map((k) => field.values[k]).filter((v) => v === v)) + 0.04 * span;
-  const sy = { pixel: (v) => bottom - (bottom - top) * (v - low) / (high - low || 1), ticks: () => linearTicks(low * factor, high * factor, 4) }, shownY = { ...sy, pixel: (v) => sy.pixel(v / factor) };
+  const sx = axisScale(row, left, right), span = field.high - field.low || 1,
+    low = Math.min(field.low, ...places.map((k) => field.values[k]).filter((v) => v === v)),
+    high = Math.max(field.low + 1e-12, ...places.map((k) => field.values[k]).filter((v) => v === v))
+      + 0.04 * span;
+  const sy = { pixel: (v) => bottom - (bottom - top) * (v - low) / (high - low || 1), ticks: () =>
+    linearTicks(low * factor, high * factor, 4) }, shownY = { ...sy, pixel: (v) => sy.pixel(v / factor) };
   context.fillStyle = tones.ground;
   context.fillRect(0, 0, canvas.width, canvas.height);
   context.lineWidth = 1.8 * ratio;
@@ -21,13 +27,15 @@ function drawCut(canvas, map, view, axis, offset) {
     places.forEach((k, i) => {
       const v = field.values[k], here = v === v && (flags?.[k] === 1) === spurious, x = sx.centre(i);
       if (!here) { drawing = false; return; }
-      if (drawing) context.lineTo(x, sy.pixel(v)); else { context.moveTo(x - ratio, sy.pixel(v)); context.lineTo(x, sy.pixel(v)); }
+      if (drawing) context.lineTo(x, sy.pixel(v));
+      else { context.moveTo(x - ratio, sy.pixel(v)); context.lineTo(x, sy.pixel(v)); }
       drawing = !(torn && (torn[k] >> axis & 1));
     });
     context.stroke();
   }
   context.setLineDash([]);
-  paintAxes(context, frame, sx, shownY, labelOf(row), fieldLabel(field, map.fixed, field.label.split(":")[0].split(" of the ")[0]));
+  paintAxes(context, frame, sx, shownY, labelOf(row),
+    fieldLabel(field, map.fixed, field.label.split(":")[0].split(" of the ")[0]));
   const here = sx.centre(view.index[axis]), value = field.values[places[view.index[axis]]];
   context.strokeStyle = tones.mark;
   context.lineWidth = 1.2 * ratio;
@@ -47,10 +55,14 @@ function drawCut(canvas, map, view, axis, offset) {
 /** Returns draw(), for whenever something else is pointed at or shown. */
 function cutsPart(map, view) {
   const part = element("cuts"), canvases = [element("cut-x"), element("cut-y")];
-  const draw = () => { if (part.open) [view.view.x, view.view.y].forEach((axis, k) => drawCut(canvases[k], map, view.view, axis, view.offset)); };
+  const draw = () => { if (part.open)
+    [view.view.x, view.view.y].forEach((axis, k) => drawCut(canvases[k], map, view.view, axis, view.offset));
+    };
   part.addEventListener("toggle", draw);
   for (const [k, name] of ["cut-x", "cut-y"].entries())
-    saveButtons(name, canvases[k], () => `${view.view.field.name}_over_${map.axes[[view.view.x, view.view.y][k]].name}`, (like) => drawCut(like, map, view.view, [view.view.x, view.view.y][k], view.offset));
+    saveButtons(name, canvases[k],
+      () => `${view.view.field.name}_over_${map.axes[[view.view.x, view.view.y][k]].name}`,
+      (like) => drawCut(like, map, view.view, [view.view.x, view.view.y][k], view.offset));
   new ResizeObserver(draw).observe(canvases[0]);
   return draw;
 }

@@ -16,7 +16,8 @@ function addUp(counts, shape, axis) {
 /** A field's values along all axes, NaN where there is none. */
 async function quantity(field, shape, differenced) {
   const bytes = await unpacked(field.data), n = shape.reduce((a, b) => a * b, 1);
-  if (bytes.length !== 2 * n) throw new Error(`the field ${field.name} holds ${bytes.length / 2} values, the axes say ${n}`);
+  if (bytes.length !== 2 * n)
+    throw new Error(`the field ${field.name} holds ${bytes.length / 2} values, the axes say ${n}`);
   const counts = new Uint16Array(n);
   for (let i = 0; i < n; ++i) counts[i] = bytes[i] | (bytes[n + i] << 8);
   for (const axis of differenced) addUp(counts, shape, axis);

@@ -22,17 +22,21 @@ function saveSvg(canvas, name, draw) {
   saveAs(new Blob([like.text()], { type: "image/svg+xml" }), name);
 }
 
-/** The two buttons that save a picture: as it stands, and as draw(canvas) draws it anew; name(): of the file. */
+/** The two buttons that save a picture: as it stands, and as draw(canvas) draws it anew; name(): of the file.
+    */
 function saveButtons(id, canvas, name, draw) {
   element(`${id}-png`).addEventListener("click", () => savePicture(canvas, `${name()}.png`));
   element(`${id}-svg`).addEventListener("click", () => saveSvg(canvas, `${name()}.svg`, draw));
 }
 
-/** Records a canvas while play() runs, until the promise that it returns is kept. Returns the film, or null where the browser has no recorder. */
+/** Records a canvas while play() runs, until the promise that it returns is kept. Returns the film, or null
+    where the browser has no recorder. */
 async function recorded(canvas, play) {
-  const type = ["video/webm;codecs=vp8", "video/webm;codecs=vp9", "video/webm"].find((each) => window.MediaRecorder?.isTypeSupported(each));
+  const type = ["video/webm;codecs=vp8", "video/webm;codecs=vp9", "video/webm"].find((each) =>
+    window.MediaRecorder?.isTypeSupported(each));
   if (!type || !canvas.captureStream) return null;
-  const recorder = new MediaRecorder(canvas.captureStream(60), { mimeType: type, videoBitsPerSecond: 8e6 }), parts = [];
+  const recorder = new MediaRecorder(canvas.captureStream(60), { mimeType: type, videoBitsPerSecond: 8e6 }),
+    parts = [];
   recorder.ondataavailable = ({ data }) => { if (data.size > 0) parts.push(data); };
   const stopped = new Promise((keep) => { recorder.onstop = keep; });
   recorder.start();

@@ -1,16 +1,20 @@
 // Questions to a map: only designs that reach every goal are shown in full, and the best of them is marked.
 
-const LOWER_IS_BETTER = ["jump_time", "first_jump_time", "jump_distance", "energy_lost", "slip_distance", "candidates", "gait_energy_lost", "sequence_condition",
+const LOWER_IS_BETTER = ["jump_time", "first_jump_time", "jump_distance", "energy_lost", "slip_distance",
+  "candidates", "gait_energy_lost", "sequence_condition",
   "jump_time_mean", "jump_time_q05", "jump_time_q50", "jump_time_q95", "jump_time_sd", "jump_height_sd"];
 
-/** Builds the goals' part; changed(): another picture is due, best(index): the best design left is to be shown. */
+/** Builds the goals' part; changed(): another picture is due, best(index): the best design left is to be
+    shown. */
 function filtersPart(map, view, changed, best) {
   const list = element("goals"), told = element("goals-told"), goals = [];  // bounds in the fields' own units
   const real = element("goal-real"), find = element("goal-best");
 
-  /** Whether a hoop as made can be asked to reach a goal of it: agility is none of the solver's, and some are of the other model. */
+  /** Whether a hoop as made can be asked to reach a goal of it: agility is none of the solver's, and some are
+      of the other model. */
   const isOfHoop = (field) => !field.made && field.name !== "agility" && applies(map, field);
-  /** Of a live map's yield the goals of a hoop are a part: it is shown whether the hoop as drawn reaches them or not. */
+  /** Of a live map's yield the goals of a hoop are a part: it is shown whether the hoop as drawn reaches them
+      or not. */
   const isInYield = () => map.live && view.view.field.name === "yield";
 
   function keeps(k) {
@@ -33,24 +37,33 @@ function filtersPart(map, view, changed, best) {
 
   // Of multipliers the least by size is the most stable.
   const isMultiplier = () => view.view.field.name === "gait_multiplier";
-  const better = (a, b) => (isMultiplier() ? Math.abs(a) < Math.abs(b) : LOWER_IS_BETTER.includes(view.view.field.name) ? a < b : a > b);
+  const better = (a, b) =>
+    (isMultiplier() ? Math.abs(a) < Math.abs(b) : LOWER_IS_BETTER.includes(view.view.field.name) ? a < b
+    : a > b);
 
   function tell() {
     for (const { show } of goals) show();
-    find.textContent = `show the ${isMultiplier() ? "most stable" : better(0, 1) ? "lowest" : "highest"} remaining design`;
+    find.textContent = `show the ${isMultiplier() ? "most stable" : better(0, 1) ? "lowest" : "highest"} ` +
+      `remaining design`;
     if (!map.keeps) { told.textContent = ""; return; }
     const n = map.fields[0].values.length;
     let left = 0;
     for (let k = 0; k < n; ++k) if (keeps(k)) ++left;
-    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field))) ? "; goals are part of the yield and do not dim designs" : "";
-    const others = map.asked.made ? goals.filter(({ field }) => !field.made && !isOfHoop(field)).map(({ field }) => field.label.split(":")[0]) : [];
-    const without = others.length > 0 ? `; not a goal for manufactured hoops: ${[...new Set(others)].join(", ")}` : "";
-    told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs remain${inYield}${without}`;
+    const inYield = isInYield() && (real.checked || goals.some(({ field }) => isOfHoop(field)))
+      ? "; goals are part of the yield and do not dim designs" : "";
+    const others = map.asked.made ? goals.filter(({ field }) => !field.made && !isOfHoop(field))
+      .map(({ field }) => field.label.split(":")[0]) : [];
+    const without = others.length > 0
+      ? `; not a goal for manufactured hoops: ${[...new Set(others)].join(", ")}` : "";
+    told.textContent = `${left.toLocaleString("en")} of ${n.toLocaleString("en")} designs ` +
+      `remain${inYield}${without}`;
   }
 
   function row(asked = {}) {
-    const item = document.createElement("li"), select = document.createElement("select"), sign = document.createElement("select"), number = document.createElement("input"),
-      away = document.createElement("button"), goal = { field: view.view.field, sign: "least", bound: NaN, ...asked };
+    const item = document.createElement("li"), select = document.createElement("select"),
+      sign = document.createElement("select"), number = document.createElement("input"),
+      away = document.createElement("button"),
+      goal = { field: view.view.field, sign: "least", bound: NaN, ...asked };
     map.fields.forEach((field, k) => option(select, k, ""));
     select.value = map.fields.indexOf(goal.field);
     const factor = () => shownIn(goal.field.unit, map.fixed)[0];
@@ -63,7 +76,8 @@ function filtersPart(map, view, changed, best) {
     option(sign, "most", "at most");
     number.type = "number";
     number.step = "any";
-    if (Number.isNaN(goal.bound)) goal.bound = Number((factor() * (goal.field.low + goal.field.high) / 2).toPrecision(2)) / factor();
+    if (Number.isNaN(goal.bound))
+      goal.bound = Number((factor() * (goal.field.low + goal.field.high) / 2).toPrecision(2)) / factor();
     sign.value = goal.sign;
     away.type = "button";
     away.textContent = "×";
@@ -74,7 +88,8 @@ function filtersPart(map, view, changed, best) {
     select.addEventListener("change", () => { goal.field = map.fields[select.value]; update(); });
     sign.addEventListener("change", () => { goal.sign = sign.value; update(); });
     stepsOf(number, () => factor() * (goal.field.high - goal.field.low || 1));
-    number.addEventListener("input", () => { if (number.value !== "") { goal.bound = Number(number.value) / factor(); update(); } });
+    number.addEventListener("input",
+      () => { if (number.value !== "") { goal.bound = Number(number.value) / factor(); update(); } });
     away.addEventListener("click", () => { goals.splice(goals.indexOf(goal), 1); item.remove(); update(); });
     item.append(select, sign, number, away);
     list.append(item);
@@ -86,23 +101,30 @@ function filtersPart(map, view, changed, best) {
   find.addEventListener("click", () => {
     const { field } = view.view, n = field.values.length;
     let at = -1;
-    for (let k = 0; k < n; ++k) if (keeps(k) && field.values[k] === field.values[k] && (at < 0 || better(field.values[k], field.values[at]))) at = k;
+    for (let k = 0; k < n; ++k)
+      if (keeps(k) && field.values[k] === field.values[k]
+        && (at < 0 || better(field.values[k], field.values[at]))) at = k;
     if (at < 0) { told.textContent = "no design solved on this map reaches every goal"; return; }
     const index = [];
-    for (let k = map.axes.length - 1, rest = at; k >= 0; --k) { const length = map.axes[k].values.length; index[k] = rest % length; rest = Math.floor(rest / length); }
+    for (let k = map.axes.length - 1, rest = at; k >= 0; --k) { const length = map.axes[k].values.length;
+        index[k] = rest % length; rest = Math.floor(rest / length); }
     best(index);
   });
   return {
     tell,
     /** What a hoop as made is to reach; to jump, too, as some goals are reached without. */
     ofHoops() {
-      const all = [...goals.filter(({ field, bound }) => isOfHoop(field) && Number.isFinite(bound)).map(({ field, sign, bound }) => ({ field: field.name, least: sign === "least" ? bound : null, most: sign === "most" ? bound : null })),
+      const all = [...goals.filter(({ field, bound }) => isOfHoop(field) && Number.isFinite(bound))
+        .map(({ field, sign, bound }) =>
+        ({ field: field.name, least: sign === "least" ? bound : null, most: sign === "most" ? bound
+        : null })),
         ...(real.checked ? [{ field: "spurious_first_jump", least: 0, most: 0 }] : [])];
       return all.length > 0 ? [...all, jumping(map)] : [];
     },
     fields: () => goals.map(({ field }) => field),
     write(words) {
-      for (const { field, sign, bound } of goals) words.append("goal", `${field.name}:${sign}:${Number(bound.toPrecision(12))}`);
+      for (const { field, sign, bound } of goals)
+        words.append("goal", `${field.name}:${sign}:${Number(bound.toPrecision(12))}`);
       if (real.checked) words.set("real", "");
     },
     read(words) {
@@ -112,10 +134,13 @@ function filtersPart(map, view, changed, best) {
       const unknown = [];
       for (const [name, sign, bound] of words.getAll("goal").map((text) => text.split(":"))) {
         const field = map.fields.find((each) => each.name === name);
-        if (field && ["least", "most"].includes(sign) && bound !== "" && Number.isFinite(Number(bound))) row({ field, sign, bound: Number(bound) });
+        if (field && ["least", "most"].includes(sign) && bound !== "" && Number.isFinite(Number(bound)))
+          row({ field, sign, bound: Number(bound) });
         else unknown.push(name);
       }
-      if (unknown.length > 0) notice(`The address asks for goals that this map cannot have; it leaves them out: ${unknown.join(", ")}`);
+      if (unknown.length > 0)
+        notice(`The address asks for goals that this map cannot have; it leaves them out: ` +
+          `${unknown.join(", ")}`);
       if (goals.length > 0 || real.checked) element("filters").open = true;
       update();
     },

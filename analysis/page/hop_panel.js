@@ -3,17 +3,21 @@
 const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20 g
 
 /**
- * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in other units. ofItsOwn(title, outcome, design):
- * a hoop is shown that is none of the map's designs; otherUnits(): everything is to be told anew; pinned(): other designs are; followed():
- * a live map's hoops are followed for another number of jumps; teller: tells of hoops as made; toldMore(outcome): more is known of the hoop that
- * is none of the map's.
+ * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in
+ * other units. ofItsOwn(title, outcome, design): a hoop is shown that is none of the map's designs;
+ * otherUnits(): everything is to be told anew; pinned(): other designs are; followed(): a live map's hoops
+ * are followed for another number of jumps; teller: tells of hoops as made; toldMore(outcome): more is known
+ * of the hoop that is none of the map's.
  */
 function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller, toldMore }) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-  const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"), clock = element("clock");
-  const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0], command = element("command");
+  const scene = element("scene"), plots = element("plots"), play = element("play"), scrub = element("scrub"),
+    clock = element("clock");
+  const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0],
+    command = element("command");
   // source: where the design is from, "design" of the map, "paper" or "hoop" as typed, and which.
-  const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0, frame: 0, timeAt: null, recording: false, haunting: 0 };
+  const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0,
+    frame: 0, timeAt: null, recording: false, haunting: 0 };
   const firstJumps = map.jumps;
   const chosen = { radius: map.fixed.radius, mass: PAPER_MASS / 1000, jumps: map.jumps };  // m; kg
   units.mass = chosen.mass;
@@ -25,32 +29,42 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
 
   const showGaits = gaitsPart(map, solver, (name, value) => {
     const { label, unit } = map.parameters[name];
-    typed({ ...now.design, [name]: value }, `One hoop: ${label.toLowerCase()} ${withUnit(short(unit === "°" ? value * 180 / Math.PI : value), unit)}`);
+    typed({ ...now.design, [name]: value },
+      `One hoop: ${label.toLowerCase()} ` +
+      `${withUnit(short(unit === "°" ? value * 180 / Math.PI : value), unit)}`);
   });
-  const showInputs = hoopInputs(map, solver, (design) => typed(design)), showGradient = gradientPart(map, solver);
+  const showInputs = hoopInputs(map, solver, (design) => typed(design)),
+    showGradient = gradientPart(map, solver);
 
-  const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "), () => { if (now.story) haunt(); pinned(); noteAddress(); });
+  const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "),
+    () => { if (now.story) haunt(); pinned(); noteAddress(); });
   element("pin").addEventListener("click", () => { if (now.story) pins.pin(now.design); });
   element("pins-along").addEventListener("change", () => { if (now.story) haunt(); });
 
   const GHOSTS = 20, ghosts = element("ghosts");
   // How one looks at the hoop, by the address's words: what turns it, and how it stands at first.
-  const ways = [["speed", element("speed")], ["close", element("follow")], ["forces", element("forces")], ["along", element("pins-along")], ["as_made", ghosts]]
+  const ways = [["speed", element("speed")], ["close", element("follow")], ["forces", element("forces")],
+    ["along", element("pins-along")], ["as_made", ghosts]]
     .map(([name, input]) => [name, input, input.type === "checkbox" ? input.checked : input.value]);
   for (const [, input] of ways) input.addEventListener("change", noteAddress);
   element("ghosts-label").hidden = map.spreads.length === 0 && !map.live;
 
-  const end = () => Math.max(now.story?.motion.t.at(-1) ?? 0, ...now.ghosts.map(({ story }) => story.motion.t.at(-1) ?? 0));
+  const end = () => Math.max(now.story?.motion.t.at(-1) ?? 0,
+    ...now.ghosts.map(({ story }) => story.motion.t.at(-1) ?? 0));
 
-  const plotOn = (canvas) => drawPlots(canvas, now.story, now.ghosts.filter(({ pin }) => pin !== undefined), now.time, end(), measuresOf(now.design, chosen.mass).plots, now.design.radius);
+  const plotOn = (canvas) =>
+    drawPlots(canvas, now.story, now.ghosts.filter(({ pin }) => pin !== undefined), now.time, end(),
+    measuresOf(now.design, chosen.mass).plots, now.design.radius);
 
   function draw() {
     if (!now.story || now.story.motion.t.length === 0) {
-      for (const canvas of [scene, plots]) canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
+      for (const canvas of [scene, plots])
+        canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
       clock.textContent = "it does not move";
       return;
     }
-    drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts, element("forces").checked);
+    drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts,
+      element("forces").checked);
     now.timeAt = plotOn(plots);
     const measured = measuresOf(now.design, chosen.mass).plots.t;
     clock.textContent = `${(now.time * measured[0]).toFixed(3)} ${measured[1]}`;
@@ -60,7 +74,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   function tick(stamp) {
     if (!now.playing) return;
     // A tab that was away goes on where it was; a film keeps the clock's time even where frames come late.
-    const since = now.last ? (stamp - now.last) / 1000 : 0, passed = now.recording ? since : Math.min(0.1, since);
+    const since = now.last ? (stamp - now.last) / 1000 : 0, passed = now.recording ? since
+      : Math.min(0.1, since);
     now.last = stamp;
     now.time += passed * Number(element("speed").value);
     if (now.time >= end()) { now.time = end(); run(false); }
@@ -76,7 +91,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     if (now.playing) now.frame = requestAnimationFrame(tick);
   }
 
-  const stopAt = (time) => { now.time = Math.min(Math.max(0, time), end()); run(false); draw(); noteAddress(); };
+  const stopAt = (time) =>
+    { now.time = Math.min(Math.max(0, time), end()); run(false); draw(); noteAddress(); };
 
   function tell() {
     table.replaceChildren(...numberRows(now.story, now.design, chosen, map.slips));
@@ -92,7 +108,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   /** Of a hoop that is none of the map's, what the map's readout tells. */
   function ownOutcome() {
     const { design, story: { outcome } } = now;
-    return { ...outcome, ...now.asMade, agility: 2 * design.radius * outcome.jump_height / (outcome.jump_time + outcome.apex_time) };
+    return { ...outcome, ...now.asMade,
+      agility: 2 * design.radius * outcome.jump_height / (outcome.jump_time + outcome.apex_time) };
   }
   const tellOwn = () => ofItsOwn(element("hop-title").textContent, ownOutcome(), now.design);
 
@@ -101,7 +118,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     const { made } = map.asked;
     if (!made || !toldFields(map).some((field) => field.made)) return;
     const places = Float64Array.of(design.slope, design.mass_ratio);
-    teller.tell({ design, slips: map.slips, tolerance: map.tolerance, first: "slope", second: "mass_ratio", places, made }, (row) => {
+    teller.tell({ design, slips: map.slips, tolerance: map.tolerance, first: "slope", second: "mass_ratio",
+      places, made }, (row) => {
       now.asMade = Object.fromEntries(made.fields.map((name, k) => [name, row ? row[k] : NaN]));
       toldMore(ownOutcome());
     });
@@ -109,13 +127,15 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
 
   /** Solves the design anew, its motion from the start. */
   function solve() {
-    try { solved(); } catch (error) { now.story = null; notice(`This hoop cannot be shown: ${error.message ?? error}`); }
+    try { solved(); } catch (error) { now.story = null;
+      notice(`This hoop cannot be shown: ${error.message ?? error}`); }
   }
   function solved() {
     const { design } = now;
     if (map.live) chosen.radius = map.fixed.radius;
     design.radius = chosen.radius;
-    element("radius-note").textContent = design.radius === map.fixed.radius ? "" : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
+    element("radius-note").textContent = design.radius === map.fixed.radius ? ""
+      : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.asked = { ...map.asked, jumps: chosen.jumps };
     now.story = solver.solve(design, map.slips, map.tolerance, 0, now.asked);
     now.asMade = {};
@@ -131,24 +151,33 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
 
   const goalsOfHoops = () => (map.live ? map.hoopGoals() : map.goals);
   /** What hoops that jump along are asked, so that goals can be told of. */
-  const ghostsAsked = () => { const { jumps, settle, growth } = madeAsked(map, goalsOfHoops()); return { jumps: Math.max(jumps, chosen.jumps), settle, growth }; };
+  const ghostsAsked = () =>
+    { const { jumps, settle, growth } = madeAsked(map, goalsOfHoops());
+    return { jumps: Math.max(jumps, chosen.jumps), settle, growth }; };
   const ghostsKey = () => JSON.stringify([ghostsAsked(), map.spreads]);
   function countGhosts() {
-    const outcomes = now.ghosts.filter(({ pin }) => pin === undefined).map(({ story }) => story.outcome), goals = goalsOfHoops();
+    const outcomes = now.ghosts.filter(({ pin }) => pin === undefined).map(({ story }) => story.outcome),
+      goals = goalsOfHoops();
     if (outcomes.length === 0) return;
-    const jump = outcomes.filter((o) => o.status === "jumped").length, reach = outcomes.filter((o) => reachesAll(o, goals, solver.codes)).length;
-    element("ghosts-told").textContent = `: ${jump} of ${GHOSTS} jump` + (goals.length ? `, ${reach} reach every goal` : "");
+    const jump = outcomes.filter((o) => o.status === "jumped").length,
+      reach = outcomes.filter((o) => reachesAll(o, goals, solver.codes)).length;
+    element("ghosts-told").textContent = `: ${jump} of ${GHOSTS} jump`
+      + (goals.length ? `, ${reach} reach every goal` : "");
   }
-  /** Goals are others: hoops that jump along are counted anew, and solved anew if more has to be known of them. */
+  /** Goals are others: hoops that jump along are counted anew, and solved anew if more has to be known of
+      them. */
   function recount() {
     if (!now.story || !ghosts.checked) return;
     if (ghostsKey() === now.ghostsKey) countGhosts(); else haunt();
   }
 
-  /** Draws the hoop, and solves those that jump along: those pinned, and as made, of which it says how many jump. A slice at a time, as friction takes its time. */
+  /** Draws the hoop, and solves those that jump along: those pinned, and as made, of which it says how many
+      jump. A slice at a time, as friction takes its time. */
   async function haunt() {
-    const mine = ++now.haunting, made = ghosts.checked ? madeAfter(now.design, map.spreads, solver.ranges, GHOSTS) : [];
-    const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin })) : []), ...made.map((design) => ({ design }))], found = [];
+    const mine = ++now.haunting, made = ghosts.checked
+      ? madeAfter(now.design, map.spreads, solver.ranges, GHOSTS) : [];
+    const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin }))
+      : []), ...made.map((design) => ({ design }))], found = [];
     now.ghosts = [];
     now.ghostsKey = ghostsKey();
     element("ghosts-told").textContent = made.length > 0 ? ": solving" : "";
@@ -157,7 +186,9 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     if (wanted.length === 0) return;
     let begun = performance.now();
     for (const each of wanted) {
-      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, ghostsAsked()) }); } catch (error) { element("ghosts-told").textContent = ""; notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
+      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, ghostsAsked())
+        }); } catch (error) { element("ghosts-told").textContent = "";
+        notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
       if (performance.now() - begun < SLICE) continue;
       await new Promise((go) => { setTimeout(go); });
       if (mine !== now.haunting) return;  // others are wanted by now
@@ -190,7 +221,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     now.recording = false;
     film.disabled = false;
     film.textContent = "save as WebM";
-    if (blob) { film.dataset.bytes = blob.size; saveAs(blob, "hoop.webm"); } else notice("This browser cannot record films.");
+    if (blob) { film.dataset.bytes = blob.size; saveAs(blob, "hoop.webm");
+        } else notice("This browser cannot record films.");
   });
   scrub.addEventListener("input", () => stopAt(Number(scrub.value)));
   for (const id of ["follow", "forces"]) element(id).addEventListener("change", draw);
@@ -227,7 +259,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     if (now.design) { solve(); run(!still && now.story !== null); }
   });
   choose(mass, "mass", () => { units.mass = chosen.mass; otherUnits(); });
-  const seek = (event) => { if (now.timeAt && (event.type === "click" || event.buttons === 1)) stopAt(now.timeAt(event.clientX)); };
+  const seek = (event) =>
+    { if (now.timeAt && (event.type === "click" || event.buttons === 1)) stopAt(now.timeAt(event.clientX)); };
   plots.addEventListener("click", seek);
   plots.addEventListener("pointermove", seek);
   element("copy").addEventListener("click", async () => {
@@ -255,41 +288,59 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     else run(!still && now.story !== null);
     noteAddress();
   };
-  /** A hoop of numbers that were typed, of which only those that differ from the map's go into the address. */
-  const typed = (design, title = "One hoop: edited") => begin(design, title, ["hoop", wordsOf(design, Object.keys(map.parameters).filter((name) => name in solver.defaults && name !== "radius" && (map.slips || !SLIPPING.includes(name))))]);
+  /** A hoop of numbers that were typed, of which only those that differ from the map's go into the address.
+      */
+  const typed = (design, title = "One hoop: edited") =>
+    begin(design, title,
+    ["hoop", wordsOf(design, Object.keys(map.parameters)
+    .filter((name) => name in solver.defaults && name !== "radius"
+    && (map.slips || !SLIPPING.includes(name))))]);
   const PAPERS = "One hoop: the paper's, from rest with its mass on top";
   // In a model that slips it is a hoop of numbers: the paper's has no friction to name.
-  const paper = (goesOn = false) => (map.slips ? typed({ ...map.fixed, ...map.paper }, PAPERS) : begin({ ...map.fixed, ...map.paper }, PAPERS, ["paper", ""], goesOn));
+  const paper = (goesOn = false) =>
+    (map.slips ? typed({ ...map.fixed, ...map.paper }, PAPERS)
+    : begin({ ...map.fixed, ...map.paper }, PAPERS, ["paper", ""], goesOn));
   element("paper").hidden = map.slips;
   element("paper").addEventListener("click", () => paper());
   const show = (index, byHand, goesOn = false) => {
     // On a phone the hoop is further down.
     const part = element("hop-part");
-    if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight) part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
+    if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight)
+      part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
     begin(designAt(map, index), `One hoop: ${placeText(map, index)}`, ["design", index.join(",")], goesOn);
   };
   addressPart({
     write(words) {
       const [key, value] = now.source;
       if (key) words.set(key, value);
-      for (const [name, input, fallback] of [["jumps", jumps, firstJumps], ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]])
-        if (Number(input.value) !== fallback && !(name === "radius" && map.live)) words.set(name === "radius" ? "hoop_radius" : name, input.value);
-      for (const [name, input, fallback] of ways) if (input.type === "checkbox" ? input.checked !== fallback : input.value !== fallback) words.set(name, input.type === "checkbox" ? Number(input.checked) : input.value);
-      if (now.story && !now.playing && now.time > 0 && now.time < end()) words.set("time", Number(now.time.toPrecision(6)));
+      for (const [name, input, fallback] of [["jumps", jumps, firstJumps],
+          ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]])
+        if (Number(input.value) !== fallback && !(name === "radius" && map.live))
+          words.set(name === "radius" ? "hoop_radius" : name, input.value);
+      for (const [name, input, fallback] of ways)
+        if (input.type === "checkbox" ? input.checked !== fallback : input.value !== fallback)
+          words.set(name, input.type === "checkbox" ? Number(input.checked) : input.value);
+      if (now.story && !now.playing && now.time > 0 && now.time < end())
+        words.set("time", Number(now.time.toPrecision(6)));
       pins.write(words);
     },
     read(words) {
-      for (const [name, input, fallback] of [["jumps", jumps, firstJumps], ["hoop_radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]]) {
+      for (const [name, input, fallback] of [["jumps", jumps, firstJumps],
+          ["hoop_radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]]) {
         const value = Number(words.get(name) ?? fallback);
         if (value > 0 && value <= Number(input.max)) input.value = value;
       }
       units.mass = Number(mass.value) / 1000;
-      Object.assign(chosen, { radius: Number(radius.value) / 1000, mass: Number(mass.value) / 1000, jumps: Math.round(Number(jumps.value)) });
+      Object.assign(chosen,
+        { radius: Number(radius.value) / 1000, mass: Number(mass.value) / 1000,
+        jumps: Math.round(Number(jumps.value)) });
       followOn();
       for (const [name, input, fallback] of ways) {
         const word = words.get(name);
         if (input.type === "checkbox") input.checked = word === null ? fallback : word === "1";
-        else input.value = word !== null && (input.tagName !== "SELECT" || [...input.options].some(({ value }) => value === word)) ? word : fallback;
+        else input.value = word !== null
+          && (input.tagName !== "SELECT" || [...input.options].some(({ value }) => value === word)) ? word
+          : fallback;
         if (input.value === "" || !input.checkValidity()) input.value = fallback;
       }
       pins.read(words);
@@ -300,29 +351,42 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
       else if (words.has("hoop")) notice("The address describes a hoop that is not possible.");
     },
   });
-  /** The model is another: a hoop that is none of the map's, and what is pinned, are solved anew; the map's own follow the map. */
+  /** The model is another: a hoop that is none of the map's, and what is pinned, are solved anew; the map's
+      own follow the map. */
   const remodel = () => {
     pins.show();
     if (!now.design || now.source[0] === "design") return;
     const title = element("hop-title").textContent;
     title === PAPERS ? paper() : typed(now.design, title);
   };
-  /** The scene is another, or something else is asked: the paper's hoop is in that scene, one of numbers has its own but for the radius. */
+  /** The scene is another, or something else is asked: the paper's hoop is in that scene, one of numbers has
+      its own but for the radius. */
   const follow = () => {
-    const { source, design } = now, other = now.story && Object.keys(map.asked).some((what) => what !== "jumps" && map.asked[what] !== now.asked[what]);
-    if (source[0] === "paper" && (other || NO_LIVE_AXIS.some((name) => design[name] !== map.fixed[name]))) paper(true);
-    else if (source[0] === "hoop" && (other || design.radius !== map.fixed.radius)) begin(design, element("hop-title").textContent, source, true);
+    const { source, design } = now, other = now.story && Object.keys(map.asked)
+      .some((what) => what !== "jumps" && map.asked[what] !== now.asked[what]);
+    if (source[0] === "paper" && (other || NO_LIVE_AXIS.some((name) => design[name] !== map.fixed[name])))
+      paper(true);
+    else if (source[0] === "hoop" && (other || design.radius !== map.fixed.radius))
+      begin(design, element("hop-title").textContent, source, true);
   };
-  return { show, stopAt, remodel, retell: () => { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } }, isOfMap: () => now.source[0] === "design", follow, recount, haunt: () => { if (now.story) haunt(); } };
+  return { show, stopAt, remodel, retell: () =>
+    { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } },
+    isOfMap: () => now.source[0] === "design", follow, recount, haunt: () => { if (now.story) haunt(); } };
 }
 
-/** Numbers of a design as an address has them, name:value,name:value; kinetic friction that follows the static has none. */
-const wordsOf = (design, names) => names.filter((name) => name === "mu_kinetic" || Number.isFinite(design[name])).map((name) => `${name}:${Number.isFinite(design[name]) ? design[name] : "static"}`).join(",");
+/** Numbers of a design as an address has them, name:value,name:value; kinetic friction that follows the
+    static has none. */
+const wordsOf = (design, names) =>
+  names.filter((name) => name === "mu_kinetic" || Number.isFinite(design[name]))
+  .map((name) => `${name}:${Number.isFinite(design[name]) ? design[name] : "static"}`).join(",");
 
 /** And back; null if any of it is none. */
 function designOf(text, ranges) {
   if (text === null) return null;
-  const pairs = text === "" ? [] : text.split(",").map((word) => word.split(":")), follows = ([name, value]) => name === "mu_kinetic" && value === "static";
-  const good = ([name, value]) => name in ranges && value !== "" && Number(value) >= ranges[name][0] && Number(value) <= ranges[name][1];
-  return pairs.every((pair) => follows(pair) || good(pair)) ? Object.fromEntries(pairs.map((pair) => [pair[0], follows(pair) ? NaN : Number(pair[1])])) : null;
+  const pairs = text === "" ? [] : text.split(",").map((word) => word.split(":")),
+    follows = ([name, value]) => name === "mu_kinetic" && value === "static";
+  const good = ([name, value]) => name in ranges && value !== "" && Number(value) >= ranges[name][0]
+    && Number(value) <= ranges[name][1];
+  return pairs.every((pair) => follows(pair) || good(pair))
+    ? Object.fromEntries(pairs.map((pair) => [pair[0], follows(pair) ? NaN : Number(pair[1])])) : null;
 }

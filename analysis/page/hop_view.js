@@ -20,15 +20,19 @@ function valueAt(motion, name, time) {
   return motion[name][low] + (motion[name][high] - motion[name][low]) * part;
 }
 
-/** Hoops beside the one drawn at a time, each on its own slope, drawn along this one: as made, faint, and pinned ones in their colours, numbered. */
+/** Hoops beside the one drawn at a time, each on its own slope, drawn along this one: as made, faint, and
+    pinned ones in their colours, numbered. */
 function drawGhosts(context, ghosts, time, turned, px, scale) {
   for (const { design, story, pin } of ghosts) {
     if (story.motion.t.length === 0) continue;
     const R = design.radius;
     context.globalAlpha = pin === undefined ? 0.3 : 0.9;
     context.lineWidth = Math.max(1, 0.03 * R * scale);
-    const [x, y, phi] = ["x", "y", "phi"].map((name) => valueAt(story.motion, name, time)), L = design.offset_ratio * R;
-    context.strokeStyle = pin === undefined ? tones[(PHASES[story.motion.phase[sampleAt(story.motion, time).low]] ?? PHASES[1])[1]] : PIN_COLOURS[pin];
+    const [x, y, phi] = ["x", "y", "phi"].map((name) => valueAt(story.motion, name, time)),
+      L = design.offset_ratio * R;
+    context.strokeStyle = pin === undefined
+      ? tones[(PHASES[story.motion.phase[sampleAt(story.motion, time).low]] ?? PHASES[1])[1]]
+      : PIN_COLOURS[pin];
     context.beginPath();
     context.arc(...px(turned(x, y + R)), R * scale, 0, 2 * Math.PI);
     context.stroke();
@@ -39,22 +43,30 @@ function drawGhosts(context, ghosts, time, turned, px, scale) {
       context.fillText(String(pin + 1), u, v);
     }
     context.beginPath();
-    context.arc(...px(turned(x - L * Math.sin(phi), y + R - L * Math.cos(phi))), Math.max(2, 0.1 * R * scale), 0, 2 * Math.PI);
+    context.arc(...px(turned(x - L * Math.sin(phi), y + R - L * Math.cos(phi))), Math.max(2, 0.1 * R * scale),
+      0, 2 * Math.PI);
     context.fillStyle = pin === undefined ? tones.weight : PIN_COLOURS[pin];
     context.fill();
   }
   context.globalAlpha = 1;
 }
 
-/** Arrows of the plane's push and friction at the contact and of the weight at the centre of mass, in one scale: lengths as the square roots of forces, so that small ones are seen beside large. */
+/** Arrows of the plane's push and friction at the contact and of the weight at the centre of mass, in one
+    scale: lengths as the square roots of forces, so that small ones are seen beside large. */
 function drawForces(context, design, motion, time, turned, px, scale) {
-  const R = design.radius, x = valueAt(motion, "x", time), y = valueAt(motion, "y", time), phi = valueAt(motion, "phi", time), { low } = sampleAt(motion, time);
-  const most = motion.normal_force.reduce((a, b) => Math.max(a, b), 1), length = Math.min(0.9 * R, 2.4 * R / Math.sqrt(most)), along = (force) => length * Math.sign(force) * Math.sqrt(Math.abs(force));  // 1: a weight
-  const arm = design.offset_ratio * R * design.mass_ratio / (1 + design.mass_ratio), onPlane = motion.phase[low] !== 3;
+  const R = design.radius, x = valueAt(motion, "x", time), y = valueAt(motion, "y", time),
+    phi = valueAt(motion, "phi", time), { low } = sampleAt(motion, time);
+  // 1: a weight
+  const most = motion.normal_force.reduce((a, b) => Math.max(a, b), 1),
+    length = Math.min(0.9 * R, 2.4 * R / Math.sqrt(most)), along = (force) =>
+    length * Math.sign(force) * Math.sqrt(Math.abs(force));
+  const arm = design.offset_ratio * R * design.mass_ratio / (1 + design.mass_ratio),
+    onPlane = motion.phase[low] !== 3;
   const arrow = ([x0, y0], [dx, dy], tone, words) => {
     const size = Math.hypot(dx, dy) * scale;
     if (!(size > 2)) return;
-    const [ax, ay] = px(turned(x0, y0)), [bx, by] = px(turned(x0 + dx, y0 + dy)), head = Math.min(size, 0.2 * R * scale), u = (bx - ax) / size, v = (by - ay) / size;
+    const [ax, ay] = px(turned(x0, y0)), [bx, by] = px(turned(x0 + dx, y0 + dy)),
+      head = Math.min(size, 0.2 * R * scale), u = (bx - ax) / size, v = (by - ay) / size;
     context.strokeStyle = context.fillStyle = tones[tone];
     context.lineWidth = Math.max(2, 0.05 * R * scale);
     context.beginPath();
@@ -75,12 +87,14 @@ function drawForces(context, design, motion, time, turned, px, scale) {
     arrow([x, y], [along(motion.friction[low]), 0], "slide", "F");
   }
   // Straight down on the screen, whatever the slope.
-  arrow([x - arm * Math.sin(phi), y + R - arm * Math.cos(phi)], [length * Math.sin(design.slope), -length * Math.cos(design.slope)], "ink", "W");
+  arrow([x - arm * Math.sin(phi), y + R - arm * Math.cos(phi)],
+    [length * Math.sin(design.slope), -length * Math.cos(design.slope)], "ink", "W");
 }
 
 /**
- * Draws the hoop at a time, with ghosts beside it. design: {slope, offset_ratio, mass_ratio, radius}; closeUp: follows the hoop; forces: with arrows of them. x goes down the slope and y away
- * from it, on the screen turned by the slope; the point mass is at angle phi from the line to the plane, clockwise.
+ * Draws the hoop at a time, with ghosts beside it. design: {slope, offset_ratio, mass_ratio, radius};
+ * closeUp: follows the hoop; forces: with arrows of them. x goes down the slope and y away from it, on the
+ * screen turned by the slope; the point mass is at angle phi from the line to the plane, clockwise.
  */
 function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = false) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
@@ -101,7 +115,9 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = f
   const [cu, cv] = turned(x, y + R);
   if (closeUp) [left, right, top, bottom] = [cu - 4.5 * R, cu + 4.5 * R, cv - 2.2 * R, cv + 2.2 * R];
   const scale = Math.min(canvas.width / (right - left), canvas.height / (bottom - top));
-  const px = ([u, v]) => [(u - (left + right) / 2) * scale + canvas.width / 2, (v - (top + bottom) / 2) * scale + canvas.height / 2];
+  const px = ([u, v]) =>
+    [(u - (left + right) / 2) * scale + canvas.width / 2, (v - (top + bottom) / 2) * scale
+    + canvas.height / 2];
 
   context.fillStyle = tones.scene;
   context.fillRect(0, 0, canvas.width, canvas.height);
@@ -174,10 +190,13 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = f
   context.moveTo(ruler[0], ruler[1]);
   context.lineTo(ruler[0] + length * unit * scale, ruler[1]);
   context.stroke();
-  context.fillText(units.pure ? `${length} R` : length >= 1 ? `${length} m` : length >= 0.01 ? `${short(100 * length)} cm` : `${short(1000 * length)} mm`, ruler[0], ruler[1] - 0.5 * font);
+  context.fillText(units.pure ? `${length} R` : length >= 1 ? `${length} m` : length >= 0.01
+    ? `${short(100 * length)} cm` : `${short(1000 * length)} mm`, ruler[0], ruler[1] - 0.5 * font);
   context.textAlign = "right";
   context.fillStyle = tones[phase[1]];
-  context.fillText(`${phase[0]}${y > 1e-9 * R ? `, ${units.pure ? `${short(y / R, 3)} R` : `${short(1000 * y, 3)} mm`} above the plane` : ""}`, canvas.width - 0.8 * font, 1.5 * font);
+  const altitude = units.pure ? `${short(y / R, 3)} R` : `${short(1000 * y, 3)} mm`;
+  context.fillText(phase[0] + (y > 1e-9 * R ? `, ${altitude} above the plane` : ""),
+    canvas.width - 0.8 * font, 1.5 * font);
   context.textAlign = "left";
 }
 

@@ -2,11 +2,16 @@
 
 const BLOCK = 16;  // squares a side
 
-/** A plane's values at(i, j), with the least and the largest of each block of squares, by which isolines pass over most of it. */
+/** A plane's values at(i, j), with the least and the largest of each block of squares, by which isolines pass
+    over most of it. */
 function planeOf(at, nx, ny) {
-  const values = new Float64Array(nx * ny), across = Math.ceil((nx - 1) / BLOCK), up = Math.ceil((ny - 1) / BLOCK);
-  const low = new Float64Array(across * up).fill(Infinity), high = new Float64Array(across * up).fill(-Infinity);
-  const blocks = (i, count) => [Math.max(0, Math.floor((i - 1) / BLOCK)), Math.min(count - 1, Math.floor(i / BLOCK))];  // a corner may be of two
+  const values = new Float64Array(nx * ny), across = Math.ceil((nx - 1) / BLOCK),
+    up = Math.ceil((ny - 1) / BLOCK);
+  const low = new Float64Array(across * up).fill(Infinity), high = new Float64Array(across * up)
+    .fill(-Infinity);
+  // a corner may be of two
+  const blocks = (i, count) =>
+    [Math.max(0, Math.floor((i - 1) / BLOCK)), Math.min(count - 1, Math.floor(i / BLOCK))];
   for (let j = 0; j < ny; ++j)
     for (let i = 0; i < nx; ++i) {
       const v = values[j * nx + i] = at(i, j);
@@ -23,13 +28,14 @@ function planeOf(at, nx, ny) {
 }
 
 /**
- * Chains of points, [x, y, x, y, ...], where a plane equals level. Squares with a missing corner, and those that
- * `torn(i, j)` says a cliff runs through, have none.
+ * Chains of points, [x, y, x, y, ...], where a plane equals level. Squares with a missing corner, and those
+ * that `torn(i, j)` says a cliff runs through, have none.
  */
 function isolines(plane, level, px, py, torn) {
   const segments = [];
   for (let block = 0; block < plane.low.length; ++block)
-    if (plane.low[block] <= level && level <= plane.high[block]) blockLines(plane, block, level, px, py, torn, segments);
+    if (plane.low[block] <= level && level <= plane.high[block])
+      blockLines(plane, block, level, px, py, torn, segments);
   return chained(segments);
 }
 
@@ -37,7 +43,8 @@ function blockLines({ values, nx, ny, across }, block, level, px, py, torn, segm
   const i0 = BLOCK * (block % across), j0 = BLOCK * Math.floor(block / across);
   for (let j = j0; j < Math.min(ny - 1, j0 + BLOCK); ++j)
     for (let i = i0; i < Math.min(nx - 1, i0 + BLOCK); ++i) {
-      const at = j * nx + i, a = values[at] - level, b = values[at + 1] - level, c = values[at + nx + 1] - level, d = values[at + nx] - level;
+      const at = j * nx + i, a = values[at] - level, b = values[at + 1] - level,
+        c = values[at + nx + 1] - level, d = values[at + nx] - level;
       if (!(a - a + b - b + c - c + d - d === 0) || torn(i, j)) continue;
       if (a > 0 === b > 0 && b > 0 === c > 0 && c > 0 === d > 0) continue;
       const sides = [];  // crossings in order around the square: bottom, right, top, left
@@ -53,7 +60,8 @@ function blockLines({ values, nx, ny, across }, block, level, px, py, torn, segm
       if (sides.length === 2) segments.push([sides[0], sides[1]]);
       if (sides.length === 4) {  // a saddle: its middle tells which corners belong together
         const together = a + b + c + d > 0 === a > 0;
-        segments.push(together ? [sides[0], sides[1]] : [sides[0], sides[3]], together ? [sides[2], sides[3]] : [sides[1], sides[2]]);
+        segments.push(together ? [sides[0], sides[1]] : [sides[0], sides[3]], together ? [sides[2], sides[3]]
+          : [sides[1], sides[2]]);
       }
     }
 }

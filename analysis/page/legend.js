@@ -10,16 +10,23 @@ function showLegend(map, view) {
     return item;
   };
   const items = [];
-  const { field } = view.view, showsSpurious = isOfFirstJump(field) && map.codes.spurious_first_jump?.values.includes(1);
-  if (showsSpurious && !map.columns) items.push(entry("first lift-off below the threshold", "", `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+  const { field } = view.view, showsSpurious = isOfFirstJump(field)
+    && map.codes.spurious_first_jump?.values.includes(1);
+  if (showsSpurious && !map.columns)
+    items.push(entry("first lift-off below the threshold", "",
+      `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
   // Of hoops as made a number stands wherever there are some.
-  const bare = field.made && new Set(map.codes.status?.values.filter((_, k) => Number.isNaN(field.values[k])));
+  const bare = field.made
+    && new Set(map.codes.status?.values.filter((_, k) => Number.isNaN(field.values[k])));
   map.codes.status?.shown.forEach(({ colour, words }, k) => {
     const jumped = map.codes.status.meanings[k] === "jumped";
-    if (!jumped && (bare ? bare.has(k) : map.codes.status.values.includes(k))) items.push(entry(words, colour));
-    if (jumped && bare && bare.has(k)) items.push(entry("unknown: more than half of a tolerance is outside its domain", "#ffffff"));
+    if (!jumped && (bare ? bare.has(k) : map.codes.status.values.includes(k)))
+      items.push(entry(words, colour));
+    if (jumped && bare && bare.has(k))
+      items.push(entry("unknown: more than half of a tolerance is outside its domain", "#ffffff"));
   });
-  if (field.gait) items.push(entry(field.name === "gait_period" ? "no gait found" : "no gait: none found, or the jumps end", "#ffffff"));
+  if (field.gait) items.push(entry(field.name === "gait_period" ? "no gait found"
+      : "no gait: none found, or the jumps end", "#ffffff"));
   const symbol = (words, sign, colour) => {
     const item = document.createElement("li"), mark = document.createElement("span");
     mark.textContent = sign;

@@ -10,10 +10,13 @@ function listView(canvas, map, onPoint, onPick) {
 
   /** From values to pixels; a twentieth is free on either side. */
   function scale(values, log, from, to) {
-    const at = log ? Math.log : (v) => v, finite = values.filter((v) => Number.isFinite(v) && (!log || v > 0));
-    const low = finite.reduce((a, b) => Math.min(a, b), Infinity), high = finite.reduce((a, b) => Math.max(a, b), -Infinity);
+    const at = log ? Math.log : (v) => v,
+      finite = values.filter((v) => Number.isFinite(v) && (!log || v > 0));
+    const low = finite.reduce((a, b) => Math.min(a, b), Infinity),
+      high = finite.reduce((a, b) => Math.max(a, b), -Infinity);
     const span = at(high) - at(low) || 1, first = at(low) - 0.05 * span, factor = (to - from) / (1.1 * span);
-    return { pixel: (v) => from + (at(v) - first) * factor, ticks: () => (log && high > low ? logTicks(low, high) : linearTicks(low, high)) };
+    return { pixel: (v) => from + (at(v) - first) * factor, ticks: () =>
+      (log && high > low ? logTicks(low, high) : linearTicks(low, high)) };
   }
 
   function paint() {
@@ -28,9 +31,13 @@ function listView(canvas, map, onPoint, onPick) {
 
   function paintOn(context) {
     const column = map.columns[view.x], { log } = view.field, { font, ratio } = frame;
-    const [factor] = shownIn(view.field.unit, map.fixed), values = Float64Array.from(view.field.values, (v) => v * factor), [across, acrossUnit] = column.quantity ? shownIn(column.unit, map.fixed) : [1, column.unit];
-    const shown = column.values.map((v) => (v === null ? NaN : column.quantity ? v * across : inShownUnit(column, v)));
-    const sx = scale(shown, column.log, frame.left, frame.right), sy = scale([...values], log, frame.bottom - 1.5 * font, frame.top);
+    const [factor] = shownIn(view.field.unit, map.fixed),
+      values = Float64Array.from(view.field.values, (v) => v * factor), [across, acrossUnit] = column.quantity
+      ? shownIn(column.unit, map.fixed) : [1, column.unit];
+    const shown = column.values.map((v) =>
+      (v === null ? NaN : column.quantity ? v * across : inShownUnit(column, v)));
+    const sx = scale(shown, column.log, frame.left, frame.right),
+      sy = scale([...values], log, frame.bottom - 1.5 * font, frame.top);
     context.fillStyle = tones.ground;
     context.fillRect(0, 0, canvas.width, canvas.height);
     dots = shown.map((x, i) => {
@@ -39,14 +46,17 @@ function listView(canvas, map, onPoint, onPick) {
     });
     context.lineWidth = 1.4 * ratio;
     dots.forEach(([x, y, there], i) => {
-      context.strokeStyle = context.fillStyle = there ? tones.data : status?.shown[status.values[i]]?.colour ?? tones.faint;
+      context.strokeStyle = context.fillStyle = there ? tones.data : status?.shown[status.values[i]]?.colour
+        ?? tones.faint;
       context.beginPath();
       if (there) context.arc(x, y, 0.3 * font, 0, 2 * Math.PI);
-      else for (const s of [-1, 1]) { context.moveTo(x - 0.25 * font, y - s * 0.25 * font); context.lineTo(x + 0.25 * font, y + s * 0.25 * font); }
+      else for (const s of [-1, 1]) { context.moveTo(x - 0.25 * font, y - s * 0.25 * font);
+        context.lineTo(x + 0.25 * font, y + s * 0.25 * font); }
       if (there && !(flags?.values[i] === 1 && isOfFirstJump(view.field))) context.fill();
       context.stroke();
     });
-    paintAxes(context, frame, sx, sy, labelOf({ ...column, unit: acrossUnit }), fieldLabel(view.field, map.fixed));
+    paintAxes(context, frame, sx, sy, labelOf({ ...column, unit: acrossUnit }),
+      fieldLabel(view.field, map.fixed));
   }
 
   function paintCursor() {
@@ -67,8 +77,10 @@ function listView(canvas, map, onPoint, onPick) {
   function pointAt(event) {
     if (!frame) return false;
     const box = canvas.getBoundingClientRect();
-    const x = (event.clientX - box.left) * canvas.width / box.width, y = (event.clientY - box.top) * canvas.height / box.height;
-    const away = dots.map(([u, v]) => Math.hypot(u - x, v - y)), least = away.reduce((a, b) => Math.min(a, b), Infinity);
+    const x = (event.clientX - box.left) * canvas.width / box.width,
+      y = (event.clientY - box.top) * canvas.height / box.height;
+    const away = dots.map(([u, v]) => Math.hypot(u - x, v - y)),
+      least = away.reduce((a, b) => Math.min(a, b), Infinity);
     if (!(least < 3 * frame.font)) return false;
     view.index = [away.indexOf(least)];
     return true;
@@ -93,7 +105,8 @@ function listView(canvas, map, onPoint, onPick) {
     /** Where a design's dot is on the screen, for tests. */
     placeOf(index) {
       const box = canvas.getBoundingClientRect();
-      return [box.left + dots[index[0]][0] * box.width / canvas.width, box.top + dots[index[0]][1] * box.height / canvas.height];
+      return [box.left + dots[index[0]][0] * box.width / canvas.width,
+        box.top + dots[index[0]][1] * box.height / canvas.height];
     },
   };
 }

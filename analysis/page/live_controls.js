@@ -1,12 +1,16 @@
-// What one may turn on a live map: axes with their bounds, the model, and a slider with a number for every other parameter.
+// What one may turn on a live map: axes with their bounds, the model, and a slider with a number for every
+// other parameter.
 
-/** State as the address has it, x=slope:0.1:0.8&y=mass_ratio:0.5:10&friction=coulomb&mu_static=0.4, with what is missing by default. */
+/** State as the address has it, x=slope:0.1:0.8&y=mass_ratio:0.5:10&friction=coulomb&mu_static=0.4, with what
+    is missing by default. */
 function liveState(words, solver) {
   const state = { slips: words.get("friction") === "coulomb", fixed: {} };
   const numbers = (text) => (text ?? "").split(":").map((word, i) => (i === 0 ? word : Number(word)));
-  const refuse = (key) => notice(`The address asks for ${key}=${words.get(key)}, which is not possible and is ignored.`);
+  const refuse = (key) =>
+    notice(`The address asks for ${key}=${words.get(key)}, which is not possible and is ignored.`);
   const axis = (key, fallback, count) => {
-    const [name, from, to] = numbers(words.get(key)), known = name in LIVE_RANGES && !NO_LIVE_AXIS.includes(name), [least, most] = known ? solver.ranges[name] : [NaN, NaN];
+    const [name, from, to] = numbers(words.get(key)), known = name in LIVE_RANGES
+      && !NO_LIVE_AXIS.includes(name), [least, most] = known ? solver.ranges[name] : [NaN, NaN];
     const good = known && from >= least && to <= most && from < to;
     if (!good && words.has(key)) refuse(key);
     return good ? { name, from, to, count } : { ...fallback, count };
@@ -14,7 +18,9 @@ function liveState(words, solver) {
   state.x = axis("x", { name: "slope", from: 2 * Math.PI / 180, to: 50 * Math.PI / 180 }, LIVE_SHAPE[0]);
   state.y = axis("y", { name: "mass_ratio", from: 0.1, to: 12 }, LIVE_SHAPE[1]);
   if (state.x.name === state.y.name && words.has("y")) refuse("y");
-  if (state.x.name === state.y.name) state.y = { name: state.x.name === "slope" ? "mass_ratio" : "slope", from: 0.1, to: 0.8, count: LIVE_SHAPE[1] };
+  if (state.x.name === state.y.name)
+    state.y = { name: state.x.name === "slope" ? "mass_ratio" : "slope", from: 0.1, to: 0.8,
+      count: LIVE_SHAPE[1] };
   for (const name of Object.keys(solver.defaults)) {
     if (!words.has(name)) continue;
     const value = Number(words.get(name)), [least, most] = solver.ranges[name];
@@ -32,19 +38,24 @@ function writeLive(words, map, defaults) {
   words.set("y", axisText(map.axes[1]));
   if (map.slips) words.set("friction", "coulomb");
   for (const [name, value] of Object.entries(map.fixed))
-    if (value !== defaults[name] && Number.isFinite(value) && !map.axes.some((axis) => axis.name === name)) words.set(name, String(value));
+    if (value !== defaults[name] && Number.isFinite(value) && !map.axes.some((axis) => axis.name === name))
+      words.set(name, String(value));
 }
 
 /** The parameters that a live map's model has, and those of them that are of the design itself. */
-const liveParameters = (map) => Object.keys(LIVE_RANGES).filter((name) => name in map.parameters && (map.slips || !SLIPPING.includes(name)));
+const liveParameters = (map) => Object.keys(LIVE_RANGES)
+  .filter((name) => name in map.parameters && (map.slips || !SLIPPING.includes(name)));
 const designParameters = (map) => liveParameters(map).filter((name) => !NO_LIVE_AXIS.includes(name));
 
-/** Builds the controls. changed(what): "map" if the map is another, "model" if the model is. Returns what the address wants of them. */
+/** Builds the controls. changed(what): "map" if the map is another, "model" if the model is. Returns what the
+    address wants of them. */
 function liveControls(map, solver, changed) {
   const box = element("live-controls"), sliders = element("live-sliders"), model = element("live-model");
-  const axisInputs = ["x", "y"].map((key) => ({ name: element(`live-${key}`), from: element(`live-${key}-from`), to: element(`live-${key}-to`) }));
+  const axisInputs = ["x", "y"].map((key) =>
+    ({ name: element(`live-${key}`), from: element(`live-${key}-from`), to: element(`live-${key}-to`) }));
   box.hidden = false;
-  const unitOf = (name) => map.parameters[name].unit, factor = (name) => (unitOf(name) === "°" ? 180 / Math.PI : 1);
+  const unitOf = (name) => map.parameters[name].unit, factor = (name) =>
+    (unitOf(name) === "°" ? 180 / Math.PI : 1);
 
   function showAxes() {
     axisInputs.forEach((inputs, k) => {
@@ -59,10 +70,13 @@ function liveControls(map, solver, changed) {
 
   /** Takes the axes as they stand in the inputs; says so if they cannot be. */
   function takeAxes(k) {
-    const inputs = axisInputs[k], name = inputs.name.value, [from, to] = [inputs.from, inputs.to].map((input) => (input.value === "" ? NaN : Number(input.value) / factor(name)));
+    const inputs = axisInputs[k], name = inputs.name.value,
+      [from, to] = [inputs.from, inputs.to].map((input) =>
+      (input.value === "" ? NaN : Number(input.value) / factor(name)));
     const [least, most] = solver.ranges[name], good = from < to && from >= least && to <= most;
     for (const input of [inputs.from, inputs.to]) input.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `${map.parameters[name].label}: from must be below to, both between ${short(least * factor(name))} and ${short(most * factor(name))}.`);
+    notice(good ? "" : `${map.parameters[name].label}: from must be below to, both between ` +
+      `${short(least * factor(name))} and ${short(most * factor(name))}.`);
     if (!good) return;
     Object.assign(map.axes[k], liveAxis(map, { name, from, to, count: LIVE_SHAPE[k] }));
     changed("map");
@@ -70,7 +84,8 @@ function liveControls(map, solver, changed) {
   axisInputs.forEach((inputs, k) => {
     inputs.name.addEventListener("change", () => {
       const other = map.axes[1 - k], before = { ...map.axes[k] }, name = inputs.name.value;
-      if (name === other.name) Object.assign(map.axes[1 - k], liveAxis(map, { ...before, count: LIVE_SHAPE[1 - k] }));
+      if (name === other.name)
+        Object.assign(map.axes[1 - k], liveAxis(map, { ...before, count: LIVE_SHAPE[1 - k] }));
       else map.fixed[before.name] = (before.from + before.to) / 2;
       const [from, to] = name === other.name ? [other.from, other.to] : LIVE_RANGES[name];
       Object.assign(map.axes[k], liveAxis(map, { name, from, to, count: LIVE_SHAPE[k] }));
@@ -80,14 +95,18 @@ function liveControls(map, solver, changed) {
     });
     for (const input of [inputs.from, inputs.to]) {
       input.addEventListener("change", () => takeAxes(k));
-      stepsOf(input, () => { const name = inputs.name.value, [low, high] = LIVE_RANGES[name]; return (high - low) * factor(name); });
+      stepsOf(input, () =>
+        { const name = inputs.name.value, [low, high] = LIVE_RANGES[name]; return (high - low) * factor(name);
+        });
     }
   });
 
   function showSliders() {
-    const rows = liveParameters(map).filter((name) => !map.axes.some((axis) => axis.name === name)).map((name) => {
+    const rows = liveParameters(map).filter((name) => !map.axes.some((axis) => axis.name === name))
+      .map((name) => {
       const { label, unit } = map.parameters[name], [low, high] = LIVE_RANGES[name];
-      const row = document.createElement("label"), words = document.createElement("span"), slider = document.createElement("input"), number = document.createElement("input");
+      const row = document.createElement("label"), words = document.createElement("span"),
+        slider = document.createElement("input"), number = document.createElement("input");
       words.textContent = withUnit(label.split(" [")[0], unit ? `[${unit}]` : "");
       row.title = label;
       slider.type = "range";
@@ -107,14 +126,19 @@ function liveControls(map, solver, changed) {
         const [least, most] = solver.ranges[name], follows = name === "mu_kinetic" && number.value === "";
         const good = follows || (Number.isFinite(value) && value >= least && value <= most);
         number.setAttribute("aria-invalid", String(!good));
-        notice(good ? "" : `${label} must be between ${short(least * factor(name))} and ${short(most * factor(name))}.`);
+        notice(good ? "" : `${label} must be between ${short(least * factor(name))} and ` +
+          `${short(most * factor(name))}.`);
         if (!good) return;
         map.fixed[name] = follows ? NaN : value;
         changed("map");
       };
-      slider.addEventListener("input", () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6)); slider.setAttribute("aria-valuetext", withUnit(number.value, unit)); take(Number(slider.value)); });
+      slider.addEventListener("input",
+        () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6));
+        slider.setAttribute("aria-valuetext", withUnit(number.value, unit)); take(Number(slider.value)); });
       stepsOf(number, () => (high - low) * factor(name));
-      number.addEventListener("change", () => { take(number.value === "" ? NaN : Number(number.value) / factor(name)); if (number.getAttribute("aria-invalid") !== "true") show(); });
+      number.addEventListener("change",
+        () => { take(number.value === "" ? NaN : Number(number.value) / factor(name));
+        if (number.getAttribute("aria-invalid") !== "true") show(); });
       show();
       row.append(words, slider, number);
       return row;
@@ -127,7 +151,8 @@ function liveControls(map, solver, changed) {
     map.slips = model.value === "coulomb";
     map.axes.forEach((axis, k) => {
       if (map.slips || !SLIPPING.includes(axis.name)) return;
-      const free = ["slope", "mass_ratio", "offset_ratio"].find((name) => !map.axes.some((a) => a.name === name));
+      const free = ["slope", "mass_ratio", "offset_ratio"].find((name) =>
+        !map.axes.some((a) => a.name === name));
       const [from, to] = LIVE_RANGES[free];
       Object.assign(axis, liveAxis(map, { name: free, from, to, count: LIVE_SHAPE[k] }));
     });
@@ -152,13 +177,16 @@ function liveControls(map, solver, changed) {
   };
 }
 
-/** A whole number that the map, its input and the address's word call alike; what: what it counts, changed(): it is another. */
+/** A whole number that the map, its input and the address's word call alike; what: what it counts, changed():
+    it is another. */
 function countPart(map, name, what, changed) {
   const input = element(name), usual = map[name];
   input.addEventListener("change", () => {
     const good = input.value !== "" && input.checkValidity();
     input.setAttribute("aria-invalid", String(!good));
-    notice(good ? "" : `${what} must be ${input.step > 1 ? `a multiple of ${input.step}` : "a whole number"} from ${input.min} to ${input.max}.`);
+    notice(good ? "" : `${what} must be ` +
+      `${input.step > 1 ? `a multiple of ${input.step}` : "a whole number"} from ${input.min} to ` +
+      `${input.max}.`);
     if (!good) return;
     map[name] = Number(input.value);
     changed();
@@ -169,11 +197,13 @@ function countPart(map, name, what, changed) {
     read(words) {
       input.value = words.get(name) ?? usual;
       input.setAttribute("aria-invalid", "false");
-      if (input.value === "" || !input.checkValidity()) { input.value = usual; notice(`The address asks for ${name}=${words.get(name)}, which is not possible and is ignored.`); }
+      if (input.value === "" || !input.checkValidity()) { input.value = usual;
+          notice(`The address asks for ${name}=${words.get(name)}, which is not possible and is ignored.`); }
       map[name] = Number(input.value);
     },
   };
 }
 
 /** How many jumps a live map lets go by before it looks for gaits. */
-const settlePart = (map) => countPart(map, "settle", "The transient before a gait is searched for", () => map.refresh());
+const settlePart = (map) =>
+  countPart(map, "settle", "The transient before a gait is searched for", () => map.refresh());

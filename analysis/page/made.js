@@ -1,4 +1,5 @@
-// Hoops as made after a drawing, for a picture: plain random numbers, of which leapmap's own statistics need none.
+// Hoops as made after a drawing, for a picture: plain random numbers, of which leapmap's own statistics need
+// none.
 
 /** A generator of numbers inside (0, 1), the same for the same seed (mulberry32). */
 function randomNumbers(seed) {
@@ -11,7 +12,8 @@ function randomNumbers(seed) {
   };
 }
 
-/** Designs that were made after one, by scatter: [{name, law, width, percent}]. ranges: {name: [least, most]}, in which they lie. */
+/** Designs that were made after one, by scatter: [{name, law, width, percent}]. ranges: {name: [least,
+    most]}, in which they lie. */
 function madeAfter(design, scatter, ranges, count, seed = 1) {
   const random = randomNumbers(seed), made = [];
   const normal = () => Math.sqrt(-2 * Math.log(random())) * Math.cos(2 * Math.PI * random());
@@ -19,7 +21,8 @@ function madeAfter(design, scatter, ranges, count, seed = 1) {
   for (let i = 0; i < count; ++i) {
     const hoop = { ...design };
     for (const { name, law, width, percent } of scatter) {
-      const [least, most] = ranges[name], about = drawn(name), scale = percent ? 0.01 * width * Math.abs(about) : width;
+      const [least, most] = ranges[name], about = drawn(name), scale = percent
+        ? 0.01 * width * Math.abs(about) : width;
       for (let tries = 0; tries < 1000; ++tries) {
         const value = about + scale * (law === "normal" ? normal() : 2 * random() - 1);
         if (value >= least && value <= most) { hoop[name] = value; break; }
@@ -30,10 +33,12 @@ function madeAfter(design, scatter, ranges, count, seed = 1) {
   return made;
 }
 
-/** Whether an outcome reaches every goal: [{field, least, most}]; codes: {field: names in the order of its codes}. */
+/** Whether an outcome reaches every goal: [{field, least, most}]; codes: {field: names in the order of its
+    codes}. */
 function reachesAll(outcome, goals, codes) {
   return goals.every(({ field, least, most }) => {
-    const number = (value) => (Object.hasOwn(codes, field) && codes[field].includes(value) ? codes[field].indexOf(value) : value);
+    const number = (value) =>
+      (Object.hasOwn(codes, field) && codes[field].includes(value) ? codes[field].indexOf(value) : value);
     const value = number(outcome[field]);
     return (least === null || value >= number(least)) && (most === null || value <= number(most));
   });

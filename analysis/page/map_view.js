@@ -2,15 +2,17 @@
 
 /** What a scene is told by. */
 const SCENE_WORDS = {
-  radius: (v) => `R ${v} m`, gravity: (v) => `g ${v} m/s²`, runway: (v) => `rolling limit ${v} revolutions`, hop_height: (v) => `jump threshold ${v} diameters`, rest_speed: (v) => `rebounds above ${v} √(g R)`,
+  radius: (v) => `R ${v} m`, gravity: (v) => `g ${v} m/s²`, runway: (v) => `rolling limit ${v} revolutions`,
+  hop_height: (v) => `jump threshold ${v} diameters`, rest_speed: (v) => `rebounds above ${v} √(g R)`,
 };
 
 /** Of the lines of cliffs, by what happens there. */
-const DASHES = { fold: [4, 2], runway: [1, 2], turn: [5, 2, 1, 2], release: [1, 1], phase: [3, 1, 1, 1], unresolved: [1, 2] };
+const DASHES = { fold: [4, 2], runway: [1, 2], turn: [5, 2, 1, 2], release: [1, 1], phase: [3, 1, 1, 1],
+  unresolved: [1, 2] };
 
 /**
- * Draws into a canvas; `map` holds axes, fields with their values, codes. Calls onPoint(index) for the design pointed at,
- * onPick(index) for the one clicked; index: along each axis of the map.
+ * Draws into a canvas; `map` holds axes, fields with their values, codes. Calls onPoint(index) for the design
+ * pointed at, onPick(index) for the one clicked; index: along each axis of the map.
  */
 function mapView(canvas, map, onPoint, onPick) {
   const shape = map.axes.map((a) => a.values.length);
@@ -26,7 +28,8 @@ function mapView(canvas, map, onPoint, onPick) {
     return at;
   };
 
-  /** Everything but the cursor, at the screen's own resolution. rough: without isolines, of a map that is about to be another. */
+  /** Everything but the cursor, at the screen's own resolution. rough: without isolines, of a map that is
+      about to be another. */
   function paint(rough = false) {
     const fresh = fitted(canvas, 7, 2);
     if (!fresh) return;
@@ -56,7 +59,8 @@ function mapView(canvas, map, onPoint, onPick) {
     paintPins(context);
   }
 
-  /** The curves of the plane drawn, as pixels; undefined where its axes are not those that cliffs were looked for along, or a gait is shown, which has none of them. */
+  /** The curves of the plane drawn, as pixels; undefined where its axes are not those that cliffs were looked
+      for along, or a gait is shown, which has none of them. */
   function chainsHere() {
     if (view.field.gait) return undefined;
     const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1), chains = [];
@@ -67,43 +71,62 @@ function mapView(canvas, map, onPoint, onPick) {
       looked = true;
       if (Object.entries(curve.at).some(([k, i]) => view.index[k] !== i)) continue;
       const [us, vs] = swapped ? [curve.y, curve.x] : [curve.x, curve.y];
-      chains.push({ kind: curve.kind, places: us.flatMap((u, k) => [sx.pixel(u * unit(map.axes[view.x])), sy.pixel(vs[k] * unit(map.axes[view.y]))]) });
+      chains.push({ kind: curve.kind,
+        places: us.flatMap((u, k) =>
+        [sx.pixel(u * unit(map.axes[view.x])), sy.pixel(vs[k] * unit(map.axes[view.y]))]) });
     }
     return looked ? chains : undefined;
   }
 
-  /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where the lines of sub-threshold lift-offs run. */
+  /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where
+      the lines of sub-threshold lift-offs run. */
   function colouring() {
-    const { table, place } = view.field, own = isOfFirstJump(view.field), back = rgbOf(tones.ground);  // which what fails is dimmed towards
-    const word = (rgb, dark, dim) => rgb.map((v, at) => back[at] + (v * dark - back[at]) * dim).reduceRight((all, v) => all << 8 | v, 255) >>> 0;
-    const shades = [1, 0.2].map((dim) => [1, 0.45].map((dark) => Uint32Array.from({ length: 256 }, (_, c) => word([...table.subarray(3 * c, 3 * c + 3)], dark, dim))));
-    const others = [1, 0.2].map((dim) => ({ grey: word([217, 217, 217], 1, dim), white: word([255, 255, 255], 1, dim), statuses: status?.rgb.map((rgb) => word(rgb, 1, dim)) }));
+    // which what fails is dimmed towards
+    const { table, place } = view.field, own = isOfFirstJump(view.field), back = rgbOf(tones.ground);
+    const word = (rgb, dark, dim) => rgb.map((v, at) => back[at] + (v * dark - back[at]) * dim)
+      .reduceRight((all, v) => all << 8 | v, 255) >>> 0;
+    const shades = [1, 0.2].map((dim) =>
+      [1, 0.45].map((dark) =>
+      Uint32Array.from({ length: 256 }, (_, c) => word([...table.subarray(3 * c, 3 * c + 3)], dark, dim))));
+    const others = [1, 0.2].map((dim) =>
+      ({ grey: word([217, 217, 217], 1, dim), white: word([255, 255, 255], 1, dim),
+      statuses: status?.rgb.map((rgb) => word(rgb, 1, dim)) }));
     return (value, k, hatched) => {
       const dimmed = map.keeps && !map.keeps(k) ? 1 : 0;
-      if (value === value) return shades[dimmed][hatched && flags && own && flags.values[k] === 1 ? 1 : 0][Math.round(255 * place(value))];
+      if (value === value)
+        return shades[dimmed][hatched && flags && own && flags.values[k] === 1 ? 1
+          : 0][Math.round(255 * place(value))];
       return status ? others[dimmed].statuses[status.values[k]] ?? others[dimmed].white : others[dimmed].grey;
     };
   }
 
   /** Fills the frame; pixels is then what every pixel shows: within the curves of its cell, or its cell's. */
   function paintCells(context) {
-    const { x0, y0, w, h } = box, image = context.createImageData(w, h), data = new Uint32Array(image.data.buffer), { values } = view.field;
+    const { x0, y0, w, h } = box, image = context.createImageData(w, h),
+      data = new Uint32Array(image.data.buffer), { values } = view.field;
     const colourOf = colouring();
     const period = Math.round(9 * frame.ratio), line = Math.max(1, Math.round(frame.ratio * 0.8));
     if (isCrisp) {
       // Of hoops as made values are smooth across the cliffs of hoops as drawn.
-      pixels = crispPlane(values, offset, sx, sy, box, view.field.made ? [] : chains.map((chain) => chain.places));
+      pixels = crispPlane(values, offset, sx, sy, box, view.field.made ? []
+        : chains.map((chain) => chain.places));
       for (let q = 0, pixel = 0; q < h; ++q)
-        for (let p = 0; p < w; ++p, ++pixel) data[pixel] = colourOf(pixels.value[pixel], pixels.design[pixel], (p + q) % period < line);
+        for (let p = 0; p < w; ++p, ++pixel)
+          data[pixel] = colourOf(pixels.value[pixel], pixels.design[pixel], (p + q) % period < line);
     } else {
       // One colour a design, of which there are fewer than pixels.
-      const design = new Int32Array(w * h), columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5)), plain = new Uint32Array(sx.n), hatched = new Uint32Array(sx.n);
-      const at = new Int32Array(sx.n), [r, g, b] = rgbOf(tones.ground), none = (255 << 24 | b << 16 | g << 8 | r) >>> 0;
+      const design = new Int32Array(w * h),
+        columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5)),
+        plain = new Uint32Array(sx.n), hatched = new Uint32Array(sx.n);
+      const at = new Int32Array(sx.n), [r, g, b] = rgbOf(tones.ground),
+        none = (255 << 24 | b << 16 | g << 8 | r) >>> 0;
       let done = -1;
       for (let q = 0, pixel = 0; q < h; ++q) {
         const j = sy.index(y0 + q + 0.5);
         if (j >= 0 && j !== done) {
-          for (let i = 0; i < sx.n; ++i) { at[i] = offset(i, j); plain[i] = colourOf(values[at[i]], at[i], false); hatched[i] = colourOf(values[at[i]], at[i], true); }
+          for (let i = 0; i < sx.n; ++i) { at[i] = offset(i, j);
+              plain[i] = colourOf(values[at[i]], at[i], false);
+              hatched[i] = colourOf(values[at[i]], at[i], true); }
           done = j;
         }
         for (let p = 0; p < w; ++p, ++pixel) {
@@ -117,18 +140,22 @@ function mapView(canvas, map, onPoint, onPick) {
     context.putImageData(image, x0, y0);
   }
 
-  /** Isolines: at(level), each [x, y, x, y, ...] in pixels; between designs, or, within curves, between every other pixel. */
+  /** Isolines: at(level), each [x, y, x, y, ...] in pixels; between designs, or, within curves, between every
+      other pixel. */
   function isolinesHere() {
     if (isCrisp) {
       const step = 2, { x0, y0, w, h } = box, at = (i, j) => step * j * w + step * i;
-      const near = (i, j) => pixels.torn[at(i, j)] | pixels.torn[at(i + 1, j)] | pixels.torn[at(i, j + 1)] | pixels.torn[at(i + 1, j + 1)];
+      const near = (i, j) =>
+        pixels.torn[at(i, j)] | pixels.torn[at(i + 1, j)] | pixels.torn[at(i, j + 1)] | pixels.torn[at(i + 1,
+        j + 1)];
       const centre = (first) => (i) => first + step * i + 0.5;
       const plane = planeOf((i, j) => pixels.value[at(i, j)], Math.ceil(w / step), Math.ceil(h / step));
       return (level) => isolines(plane, level, centre(x0), centre(y0), near);
     }
     const bitX = 1 << view.x, bitY = 1 << view.y;
     const torn = (i, j) => cliffs !== undefined && isOfFirstJump(view.field) &&
-      ((cliffs.values[offset(i, j)] & (bitX | bitY)) !== 0 || (cliffs.values[offset(i + 1, j)] & bitY) !== 0 || (cliffs.values[offset(i, j + 1)] & bitX) !== 0);
+      ((cliffs.values[offset(i, j)] & (bitX | bitY)) !== 0 || (cliffs.values[offset(i + 1, j)] & bitY)
+        !== 0 || (cliffs.values[offset(i, j + 1)] & bitX) !== 0);
     const plane = planeOf((i, j) => view.field.values[offset(i, j)], sx.n, sy.n);
     return (level) => isolines(plane, level, sx.centre, sy.centre, torn);
   }
@@ -145,7 +172,8 @@ function mapView(canvas, map, onPoint, onPick) {
       for (const chain of linesAt(value)) {
         const room = context.measureText(text).width + 0.4 * font;
         let length = 0;
-        for (let k = 2; k < chain.length; k += 2) length += Math.hypot(chain[k] - chain[k - 2], chain[k + 1] - chain[k - 1]);
+        for (let k = 2; k < chain.length; k += 2)
+          length += Math.hypot(chain[k] - chain[k - 2], chain[k + 1] - chain[k - 1]);
         // A label in the middle of a line long enough for it, away from others.
         let label = null;
         if (length > 4 * room) {
@@ -159,7 +187,8 @@ function mapView(canvas, map, onPoint, onPick) {
         }
         context.beginPath();
         for (let k = 0; k < chain.length; k += 2) {
-          const hidden = label !== null && Math.hypot(chain[k] - label[0], chain[k + 1] - label[1]) < 0.55 * room;
+          const hidden = label !== null
+            && Math.hypot(chain[k] - label[0], chain[k + 1] - label[1]) < 0.55 * room;
           if (hidden || k === 0) context.moveTo(chain[k], chain[k + 1]);
           else context.lineTo(chain[k], chain[k + 1]);
         }
@@ -218,9 +247,12 @@ function mapView(canvas, map, onPoint, onPick) {
       context.stroke();
       context.fillText(text, x + w + 0.3 * font, p);
     };
-    const [factor, unit] = shownIn(field.unit, map.fixed), told = (value, digits = 3) => ({ value, text: short(value * factor, digits) });
-    const marks = field.levels.length > 0 ? shownLevels(field, map.fixed) : linearTicks(field.low * factor, field.high * factor).map((v) => told(v / factor, 4));
-    for (const { value, text } of [told(field.low), ...marks.filter((m) => m.value > field.low && m.value < field.high), told(field.high)]) {
+    const [factor, unit] = shownIn(field.unit, map.fixed), told = (value, digits = 3) =>
+      ({ value, text: short(value * factor, digits) });
+    const marks = field.levels.length > 0 ? shownLevels(field, map.fixed)
+      : linearTicks(field.low * factor, field.high * factor).map((v) => told(v / factor, 4));
+    for (const { value, text } of [told(field.low),
+        ...marks.filter((m) => m.value > field.low && m.value < field.high), told(field.high)]) {
       const p = placeOf(value);
       if (last - p < 0.95 * font && value !== field.low) continue;
       if (jumpers.some(([, v]) => Math.abs(placeOf(v) - p) < 0.9 * font)) continue;
@@ -228,9 +260,13 @@ function mapView(canvas, map, onPoint, onPick) {
       mark(value, (value === field.high && field.most > field.high ? "≥ " : "") + text, tones.ink);
     }
     const beyond = jumpers.filter(([, value]) => value > field.high);
-    for (const [name, value] of jumpers) if (value <= field.high) mark(value, `${name} ${short(value * factor)}`, tones.mark);
-    // What is beyond the map's own scale is told below it, and how colours go with values, where it is not evenly.
-    const notes = [...(unit ? [unit] : []), ...beyond.map(([name, value]) => `${name} ${short(value * factor)} ↑`), ...(field.log ? ["log scale"] : field.exponent !== 1 ? [`power ${field.exponent}`] : [])];
+    for (const [name, value] of jumpers) if (value <= field.high)
+      mark(value, `${name} ${short(value * factor)}`, tones.mark);
+    // What is beyond the map's own scale is told below it, and how colours go with values, where it is not
+    // evenly.
+    const notes = [...(unit ? [unit] : []),
+      ...beyond.map(([name, value]) => `${name} ${short(value * factor)} ↑`),
+      ...(field.log ? ["log scale"] : field.exponent !== 1 ? [`power ${field.exponent}`] : [])];
     context.fillStyle = tones.ink;
     notes.forEach((note, k) => context.fillText(note, x, bottom + (1 + k) * font));
   }
@@ -239,15 +275,23 @@ function mapView(canvas, map, onPoint, onPick) {
   function paintTitle(context) {
     const { left, top, right, font } = frame, drawn = [map.axes[view.x].name, map.axes[view.y].name];
     const values = designAt(map, view.index);
-    const told = Object.entries(map.parameters).filter(([name]) => !drawn.includes(name) && Number.isFinite(values[name]) && (map.slips || !SLIPPING.includes(name)) && !NO_LIVE_AXIS.includes(name))
+    const told = Object.entries(map.parameters)
+      .filter(([name]) => !drawn.includes(name) && Number.isFinite(values[name])
+      && (map.slips || !SLIPPING.includes(name)) && !NO_LIVE_AXIS.includes(name))
       .map(([name, row]) => `${row.symbol} ${withUnit(short(inShownUnit(row, values[name])), row.unit)}`);
-    const scene = Object.entries(SCENE_WORDS).filter(([name]) => name === "radius" || values[name] !== map.defaults[name]).filter(([name]) => map.slips || !SLIPPING.includes(name)).map(([name, tell]) => tell(short(values[name])));
-    const text = `${fieldLabel(view.field, map.fixed)}: ${[...told, ...scene, map.slips ? "Coulomb friction" : "no slip"].join(", ")}`, size = (part) => `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
+    const scene = Object.entries(SCENE_WORDS)
+      .filter(([name]) => name === "radius" || values[name] !== map.defaults[name])
+      .filter(([name]) => map.slips || !SLIPPING.includes(name))
+      .map(([name, tell]) => tell(short(values[name])));
+    const text = `${fieldLabel(view.field, map.fixed)}: ` +
+      `${[...told, ...scene, map.slips ? "Coulomb friction" : "no slip"].join(", ")}`, size = (part) =>
+      `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
     context.fillStyle = tones.ink;
     context.textAlign = "left";
     context.textBaseline = "alphabetic";
     context.font = size(0.85);
-    context.font = size(Math.max(0.5, Math.min(0.85, 0.85 * (right + 6 * font - left) / context.measureText(text).width)));
+    context.font = size(Math.max(0.5,
+      Math.min(0.85, 0.85 * (right + 6 * font - left) / context.measureText(text).width)));
     context.fillText(text, left, top - 0.6 * font);
   }
 
@@ -256,9 +300,11 @@ function mapView(canvas, map, onPoint, onPick) {
     if (map.slips || !frame) return null;
     const near = (a, b) => Math.abs(a - b) <= 1e-6 * Math.max(1, Math.abs(b));
     const here = designAt(map, view.index), drawn = [map.axes[view.x].name, map.axes[view.y].name];
-    if (!drawn.every((name) => name in map.paper) || Object.entries(map.paper).some(([k, v]) => !drawn.includes(k) && !near(here[k], v))) return null;
+    if (!drawn.every((name) => name in map.paper) || Object.entries(map.paper)
+        .some(([k, v]) => !drawn.includes(k) && !near(here[k], v))) return null;
     const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1);
-    const x = sx.pixel(map.paper[drawn[0]] * unit(map.axes[view.x])), y = sy.pixel(map.paper[drawn[1]] * unit(map.axes[view.y]));
+    const x = sx.pixel(map.paper[drawn[0]] * unit(map.axes[view.x])),
+      y = sy.pixel(map.paper[drawn[1]] * unit(map.axes[view.y]));
     return x > frame.left && x < frame.right && y > frame.top && y < frame.bottom ? [x, y] : null;
   }
 
@@ -281,11 +327,14 @@ function mapView(canvas, map, onPoint, onPick) {
 
   /** Pinned designs with their numbers; faint where anything but the two axes drawn is another. */
   function paintPins(context) {
-    const { font, ratio } = frame, drawn = [map.axes[view.x], map.axes[view.y]], unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1), here = designAt(map, view.index);
+    const { font, ratio } = frame, drawn = [map.axes[view.x], map.axes[view.y]], unit = (axis) =>
+      (axis.unit === "°" ? 180 / Math.PI : 1), here = designAt(map, view.index);
     map.pins?.forEach((design, i) => {
       const [x, y] = [sx, sy].map((scale, k) => scale.pixel(design[drawn[k].name] * unit(drawn[k])));
       if (!(x >= frame.left && x <= frame.right && y >= frame.top && y <= frame.bottom)) return;
-      context.globalAlpha = Object.keys(here).every((name) => drawn.some((axis) => axis.name === name) || !(Math.abs(here[name] - design[name]) > 1e-9 * Math.abs(here[name]))) ? 1 : 0.45;
+      context.globalAlpha = Object.keys(here)
+        .every((name) => drawn.some((axis) => axis.name === name)
+        || !(Math.abs(here[name] - design[name]) > 1e-9 * Math.abs(here[name]))) ? 1 : 0.45;
       context.beginPath();
       context.arc(x, y, 0.62 * font, 0, 2 * Math.PI);
       context.fillStyle = PIN_COLOURS[i];
@@ -329,7 +378,8 @@ function mapView(canvas, map, onPoint, onPick) {
   function pointAt(event) {
     const box = canvas.getBoundingClientRect();
     if (!frame) return false;
-    const i = sx.index((event.clientX - box.left) * canvas.width / box.width), j = sy.index((event.clientY - box.top) * canvas.height / box.height);
+    const i = sx.index((event.clientX - box.left) * canvas.width / box.width),
+      j = sy.index((event.clientY - box.top) * canvas.height / box.height);
     if (i < 0 || j < 0) return false;
     view.index[view.x] = i;
     view.index[view.y] = j;
@@ -344,7 +394,8 @@ function mapView(canvas, map, onPoint, onPick) {
       return true;
     },
     step(key, by) {
-      const move = { ArrowLeft: [view.x, -by], ArrowRight: [view.x, by], ArrowDown: [view.y, -by], ArrowUp: [view.y, by] }[key];
+      const move = { ArrowLeft: [view.x, -by], ArrowRight: [view.x, by], ArrowDown: [view.y, -by],
+        ArrowUp: [view.y, by] }[key];
       if (!move) return false;
       view.index[move[0]] = clamped(view.index[move[0]] + move[1], shape[move[0]] - 1);
       return true;
@@ -353,16 +404,20 @@ function mapView(canvas, map, onPoint, onPick) {
   new ResizeObserver(() => paint()).observe(canvas);
 
   return {
-    view, paint, paintOn, overlayCliffs, pick, point, showsPaper: () => paperPlace() !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
-    /** What the map's pixels are, for tests: the design whose codes each shows, and where its centre lies along the axes. */
+    view, paint, paintOn, overlayCliffs, pick, point, showsPaper: () => paperPlace()
+      !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
+    /** What the map's pixels are, for tests: the design whose codes each shows, and where its centre lies
+        along the axes. */
     shown() {
-      const { x0, y0, w, h } = box, places = (scale, first, count) => Array.from({ length: count }, (_, p) => scale.value(first + p + 0.5));
+      const { x0, y0, w, h } = box, places = (scale, first, count) =>
+        Array.from({ length: count }, (_, p) => scale.value(first + p + 0.5));
       return { design: [...pixels.design], x: places(sx, x0, w), y: places(sy, y0, h) };
     },
     /** Where a design's cell is on the screen, for tests. */
     placeOf(index) {
       const box = canvas.getBoundingClientRect();
-      return [box.left + sx.centre(index[view.x]) * box.width / canvas.width, box.top + sy.centre(index[view.y]) * box.height / canvas.height];
+      return [box.left + sx.centre(index[view.x]) * box.width / canvas.width,
+        box.top + sy.centre(index[view.y]) * box.height / canvas.height];
     },
   };
 }

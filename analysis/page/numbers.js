@@ -1,7 +1,8 @@
 // The table of one hoop's numbers, and the command that tells the same.
 
 function numberRow(name, words, text, value) {
-  const tr = document.createElement("tr"), th = document.createElement("th"), td = document.createElement("td");
+  const tr = document.createElement("tr"), th = document.createElement("th"),
+    td = document.createElement("td");
   th.scope = "row";
   th.textContent = words;
   td.textContent = text;
@@ -13,39 +14,49 @@ function numberRow(name, words, text, value) {
 
 /** Rows of what a story of a design tells; chosen: {mass, jumps}. */
 function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
-  const R = design.radius, second = Math.sqrt(R / design.gravity), measure = measuresOf(design, chosen.mass), jumped = outcome.status === "jumped", rows = [];
+  const R = design.radius, second = Math.sqrt(R / design.gravity), measure = measuresOf(design, chosen.mass),
+    jumped = outcome.status === "jumped", rows = [];
   const add = (name, words, text, value = outcome[name]) => rows.push(numberRow(name, words, text, value));
   add("status", "outcome", outcome.status.replaceAll("_", " "));
   if (jumped) {
     const metres = 2 * R * outcome.jump_height, agility = metres / (outcome.jump_time + outcome.apex_time);
-    add("jump_height", "jump height", `${measure.length(metres)} = ${short(outcome.jump_height, 5)} diameters`);
+    add("jump_height", "jump height",
+      `${measure.length(metres)} = ${short(outcome.jump_height, 5)} diameters`);
     add("jump_time", "lift-off after", measure.time(outcome.jump_time, 5));
     add("agility", "agility", measure.speed(agility), agility);
-    add("apex_time", "apex, landing after lift-off", `${measure.time(outcome.apex_time)}, ${measure.time(outcome.flight_time)}`);
+    add("apex_time", "apex, landing after lift-off",
+      `${measure.time(outcome.apex_time)}, ${measure.time(outcome.flight_time)}`);
     add("jump_spin", "spin at lift-off", measure.spin(outcome.jump_spin / second));
     add("jump_angle", "angle at lift-off", `${short(outcome.jump_angle * 180 / Math.PI, 5)}°`);
-    add("jump_distance", slips ? "travelled until lift-off" : "rolled until lift-off", measure.length(outcome.jump_distance * R));
+    add("jump_distance", slips ? "travelled until lift-off" : "rolled until lift-off",
+      measure.length(outcome.jump_distance * R));
     if (!slips) add("dip", "penetration depth", measure.length(-2 * R * outcome.dip, 3));
   }
-  if (jumped && chosen.jumps > 1)
-    add("jumps", "number of jumps", `${outcome.jumps} of ${chosen.jumps}: ${[...liftOffs.height].filter((_, i) => liftOffs.is_jump[i] === 1).map((h) => measure.length(2 * R * h)).join(", ")}`);
+  if (jumped && chosen.jumps > 1) {
+    const heights = [...liftOffs.height].filter((_, i) => liftOffs.is_jump[i] === 1);
+    add("jumps", "number of jumps", `${outcome.jumps} of ${chosen.jumps}: ` +
+      heights.map((h) => measure.length(2 * R * h)).join(", "));
+  }
   if (outcome.candidates > 0) {
     const after = measure.time(outcome.first_jump_time);
     add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"
-      : outcome.first_jump_height > 0 ? `below the threshold: ${measure.length(2 * R * outcome.first_jump_height, 3)} high, after ${after}`
+      : outcome.first_jump_height > 0
+        ? `below the threshold: ${measure.length(2 * R * outcome.first_jump_height, 3)} high, after ${after}`
       : `sinks at once, after ${after}: the normal force is negative`);
     add("candidates", "number of lift-offs", String(outcome.candidates));
   }
   if (slips) {
     add("phase_sequence", "phases", `${outcome.phase_sequence} (R rolls, S slides, F flies)`);
-    if (Number.isFinite(outcome.slip_distance)) add("slip_distance", "slid", measure.length(R * outcome.slip_distance));
+    if (Number.isFinite(outcome.slip_distance))
+      add("slip_distance", "slid", measure.length(R * outcome.slip_distance));
     if (jumped) add("landing_spin", "spin after landing", measure.spin(outcome.landing_spin / second));
     if (jumped) add("energy_lost", "energy lost until the jump", measure.energy(outcome.energy_lost));
   }
   const pushes = motion.normal_force;
   if (pushes.length > 0) {
     const most = pushes.reduce((a, b) => Math.max(a, b), 0);
-    add("most_normal_force", "largest normal force", measure.force(most), most * chosen.mass * design.gravity);
+    add("most_normal_force", "largest normal force", measure.force(most),
+      most * chosen.mass * design.gravity);
   }
   return rows;
 }
@@ -53,8 +64,10 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
 /** The command line that tells the same hoop, in pieces. jumps: followed. */
 function hopCommand(design, map, defaults, jumps) {
   const contact = ["mu_static", "mu_kinetic", "restitution"];
-  const flags = ["slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin", "drive_torque", ...(map.slips ? contact : [])];
-  const words = ["leapmap hop", ...flags.filter((k) => Number.isFinite(design[k])).map((k) => `--${k.replaceAll("_", "-")} ${design[k]}`)];
+  const flags = ["slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin",
+    "drive_torque", ...(map.slips ? contact : [])];
+  const words = ["leapmap hop", ...flags.filter((k) => Number.isFinite(design[k]))
+    .map((k) => `--${k.replaceAll("_", "-")} ${design[k]}`)];
   if (map.slips) words.push("--set friction=coulomb", `--set rest_speed=${design.rest_speed}`);
   for (const key of ["runway", "hop_height", "radius", "gravity"])
     if (design[key] !== defaults[key]) words.push(`--set ${key}=${design[key]}`);

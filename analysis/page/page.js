@@ -9,11 +9,14 @@ function notice(text) {
 }
 const complain = (error) => notice(`This page cannot be shown: ${error.message ?? error}`);
 
-/** Sets a field's colours and isolines for values from low to high. A few extreme designs do not set the scale: isolines that are given do. */
+/** Sets a field's colours and isolines for values from low to high. A few extreme designs do not set the
+    scale: isolines that are given do. */
 function scaleField(field, low, high, levels) {
   const most = high, given = levels.filter((l) => l >= low && l <= high);
   if (field.log && given.length > 2) low = Math.max(low, given[0]);
-  if (!field.log && given.length > 2) [low, high] = [Math.max(low, Math.min(given[0], low + 0.02 * (high - low))), Math.min(high, levels.find((l) => l >= high) ?? levels.at(-1))];
+  if (!field.log && given.length > 2)
+    [low, high] = [Math.max(low, Math.min(given[0], low + 0.02 * (high - low))),
+      Math.min(high, levels.find((l) => l >= high) ?? levels.at(-1))];
   Object.assign(field, { low, high, most, levels });
   field.place = colourScale(field, low, high);
 }
@@ -21,13 +24,15 @@ function scaleField(field, low, high, levels) {
 /** The map as the explorer wrote it, with its numbers unpacked. */
 async function readMap() {
   const map = JSON.parse(element("data").textContent);
-  if (!Array.isArray(map.axes) || !Array.isArray(map.fields) || map.fields.length === 0) throw new Error("it holds no map");
+  if (!Array.isArray(map.axes) || !Array.isArray(map.fields) || map.fields.length === 0)
+    throw new Error("it holds no map");
   const shape = map.axes.map((a) => a.values.length);
   for (const field of map.fields) {
     field.values = await quantity(field, shape, map.differenced);
     field.table = Uint8Array.from(atob(field.colours), (c) => c.charCodeAt(0));
     let low = Infinity, high = -Infinity;
-    for (const v of field.values) if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
+    for (const v of field.values)
+      if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
     scaleField(field, low, high, field.levels);
   }
   for (const code of Object.values(map.codes)) code.values = await codes(code, shape);
@@ -45,17 +50,24 @@ function option(select, value, text) {
 
 const withUnit = (text, unit) => (unit === "°" ? `${text}°` : unit ? `${text} ${unit}` : text);
 /** A design's parameters that vary over the map: their rows, each with the value. */
-const parametersAt = (map, index) => (map.columns ? map.columns.filter((c) => c.name !== "design" && !c.quantity).map((c) => [c, c.values[index[0]]]) : map.axes.map((axis, k) => [axis, axis.values[index[k]]]));
-const designAt = (map, index) => ({ ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value])) });
+const parametersAt = (map, index) =>
+  (map.columns ? map.columns.filter((c) => c.name !== "design" && !c.quantity)
+  .map((c) => [c, c.values[index[0]]]) : map.axes.map((axis, k) => [axis, axis.values[index[k]]]));
+const designAt = (map, index) =>
+  ({ ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value]))
+  });
 const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : "") +
-  parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1).map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");
+  parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1)
+    .map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");
 const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI : value);
 
 /** Quantities that only hoops that may slip have, or only those that never do. */
 const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
-const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name) && !(["jumps", "sequence_condition"].includes(name) && map.live && map.jumps === 1);
+const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name)
+  && !(["jumps", "sequence_condition"].includes(name) && map.live && map.jumps === 1);
 
-const LIVE_SUBTITLE = "Change any parameter: the map follows. Click a design to see it jump. The address stores the view.";
+const LIVE_SUBTITLE =
+  "Change any parameter: the map follows. Click a design to see it jump. The address stores the view.";
 
 const NOTHING_YET = { coarse: "false", whole: "false", cliffs: "false" };
 
@@ -66,15 +78,20 @@ function startLive(given, module, solver) {
   let page = null, settled = 0, again = false;
   const engine = liveEngine(map, module, element("worker").textContent, (what) => {
     const { dataset } = element("map");
-    if (what === "none" || what === "cleared") { Object.assign(dataset, NOTHING_YET); page?.begun(what === "cleared"); return; }
+    if (what === "none" || what === "cleared") { Object.assign(dataset, NOTHING_YET);
+        page?.begun(what === "cleared"); return; }
     dataset.coarse = "true";
     if (!page) page = start(map, solver, teller);  // which may begin anew, by what the address wants
     if (what === "coarse discontinuities") page.view.overlayCliffs(); else page.repaint(what === "part");
-    Object.assign(dataset, { whole: String(what === "whole" || what === "cliffs"), cliffs: String(what === "cliffs"), generation: String(Number(dataset.generation ?? 0) + 1) });
+    Object.assign(dataset,
+      { whole: String(what === "whole" || what === "cliffs"), cliffs: String(what === "cliffs"),
+      generation: String(Number(dataset.generation ?? 0) + 1) });
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
   }, (share, left) => {
-    element("subtitle").textContent = Number.isNaN(share) ? "Solving has stopped" : share < 1 ? `${(100 * share).toFixed(0)} % of the designs are solved; ${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
+    element("subtitle").textContent = Number.isNaN(share) ? "Solving has stopped" : share < 1
+      ? `${(100 * share).toFixed(0)} % of the designs are solved; ` +
+      `${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
   });
   const begin = map.refresh = () => { Object.assign(element("map").dataset, NOTHING_YET); engine.begin(); };
   settleMap(map);
@@ -102,18 +119,28 @@ function start(map, solver, teller) {
   const canvas = element("map");
   document.title = `${map.name}: leapmap explorer`;
   element("title").textContent = map.title || map.name;
-  element("subtitle").textContent = map.live ? LIVE_SUBTITLE : `${map.name}: ${map.designs.toLocaleString("en")} designs` +
+  element("subtitle").textContent = map.live ? LIVE_SUBTITLE
+    : `${map.name}: ${map.designs.toLocaleString("en")} designs` +
     (map.computed < 1 ? `, INCOMPLETE: ${(100 * map.computed).toFixed(0)} % of them computed` : "") +
     `; ${map.about.join(", ")}`;
-  element("footer").textContent = (map.live ? "Every number is computed by leapmap in this page" : `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as shown`) +
+  element("footer").textContent =
+    (map.live ? "Every number is computed by leapmap in this page"
+    : `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as ` +
+    `shown`) +
     (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop by exact`) +
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
-    (map.fields.some((f) => f.name === "agility") ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "") + ".";
+    (map.fields.some((f) => f.name === "agility")
+      ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "")
+      + ".";
 
-  let said = "", own = null, points = false;  // what the readout tells; the hoop beside, if it is none of the map's; whether one points at the map
-  /** Of every quantity but the one shown a row, whether there is a number or none, so that nothing below moves. */
-  const tellOthers = (textOf) => element("others").replaceChildren(...toldFields(map).filter((f) => f !== view.view.field && applies(map, f)).map((f) => {
-    const pair = document.createElement("div"), name = document.createElement("dt"), value = document.createElement("dd");
+  // what the readout tells; the hoop beside, if it is none of the map's; whether one points at the map
+  let said = "", own = null, points = false;
+  /** Of every quantity but the one shown a row, whether there is a number or none, so that nothing below
+      moves. */
+  const tellOthers = (textOf) => element("others")
+    .replaceChildren(...toldFields(map).filter((f) => f !== view.view.field && applies(map, f)).map((f) => {
+    const pair = document.createElement("div"), name = document.createElement("dt"),
+      value = document.createElement("dd");
     name.textContent = f.label.split(":")[0];
     value.textContent = textOf(f) || "–";
     pair.append(name, value);
@@ -123,19 +150,26 @@ function start(map, solver, teller) {
   let speaking = 0;
   const speak = () => {
     clearTimeout(speaking);
-    speaking = setTimeout(() => { element("spoken").textContent = `${element("place").textContent}. ${element("value").textContent}`; }, 600);
+    speaking = setTimeout(() =>
+      { element("spoken").textContent = `${element("place").textContent}. ${element("value").textContent}`; },
+      600);
   };
   const tellOwn = () => {
     const { outcome, title, design } = own, { field } = view.view, v = outcome[field.name];
     said = "";
     element("place").textContent = title;
-    element("value").textContent = `${field.label}: ${Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : v === undefined ? (map.asked.made ? "being solved" : "unknown") : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ")}`;
-    tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name]) ? toldIn(outcome[f.name], f.unit, design) : ""));
+    const instead = v === undefined ? (map.asked.made ? "being solved" : "unknown")
+      : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ");
+    element("value").textContent = `${field.label}: ` +
+      (Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : instead);
+    tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name])
+      ? toldIn(outcome[f.name], f.unit, design) : ""));
     speak();
     Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });
   };
   const chosen = hopPanel(map, solver, {
-    ofItsOwn(title, outcome, design) { own = { title, outcome, design }; points = false; view.view.picked = null; view.paint(); tellOwn(); },
+    ofItsOwn(title, outcome, design) { own = { title, outcome, design }; points = false;
+      view.view.picked = null; view.paint(); tellOwn(); },
     otherUnits: () => tellUnits(),
     pinned: () => view.paint(),
     followed() { offerFields(); map.refresh?.(); },
@@ -149,14 +183,21 @@ function start(map, solver, teller) {
     said = key;
     drawCuts();
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
-    const number = (f) => (f.values[at] === f.values[at] ? (map.live && f.log ? short(f.values[at], 6) : f.values[at].toFixed(decimalsOf(f.step))) : "");
+    const number = (f) =>
+      (f.values[at] === f.values[at]
+      ? (map.live && f.log ? short(f.values[at], 6) : f.values[at].toFixed(decimalsOf(f.step))) : "");
     const isSolving = (f) => map.live && costOf(f) && !number(f) && canvas.dataset.coarse !== "true";
-    const text = (f) => (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : isSolving(f) ? "being solved" : "none");
+    const text = (f) =>
+      (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : isSolving(f)
+      ? "being solved" : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
-    const notes = status === "no_jump" && spurious ? [`no jump: all lift-offs below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
-      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "), spurious ? "the first lift-off is below the threshold" : ""];
+    const notes = status === "no_jump" && spurious
+      ? [`no jump: all lift-offs below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
+      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "),
+        spurious ? "the first lift-off is below the threshold" : ""];
     element("place").textContent = placeText(map, index);
-    const notesSaid = notes.filter((w) => w && !isSolving(shown)).map((note) => (shown.made ? `nominal: ${note}` : note));
+    const notesSaid = notes.filter((w) => w && !isSolving(shown))
+      .map((note) => (shown.made ? `nominal: ${note}` : note));
     element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notesSaid].join("; ");
     tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));
     speak();
@@ -165,30 +206,37 @@ function start(map, solver, teller) {
     dataset.value = number(shown);
   };
   const pointed = (index) => { points = true; told(index); };
-  const view = (map.columns ? listView : mapView)(canvas, map, pointed, (index, byHand) => { own = null; chosen.show(index, byHand); });
+  const view = (map.columns ? listView : mapView)(canvas, map, pointed, (index, byHand) =>
+    { own = null; chosen.show(index, byHand); });
   canvas.addEventListener("pointerleave", () => { points = false; if (own) tellOwn(); });
 
-  // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value if there are others.
+  // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value
+  // if there are others.
   const choices = map.columns ?? map.axes;  // of what may be drawn to the right
-  const liked = (axis, k) => [axis.values.length > 1 ? 0 : 1, ["slope", "mass_ratio"].includes(axis.name) ? 0 : 1, axis.name === "slope" ? 0 : 1, k];
+  const liked = (axis, k) =>
+    [axis.values.length > 1 ? 0 : 1, ["slope", "mass_ratio"].includes(axis.name) ? 0 : 1,
+    axis.name === "slope" ? 0 : 1, k];
   if (map.live) { view.view.x = 0; view.view.y = 1; }
   const order = choices.map(liked).sort((a, b) => a.reduce((sum, v, i) => sum || v - b[i], 0));
   if (!map.live) view.view.x = order[0][3];
   if (!map.live && !map.columns) view.view.y = order[1][3];
   // A front stands as it was asked for: the first objective up, the second to the right.
   if (map.columns && map.objectives.length === 2) {
-    const right = map.columns.findIndex((c) => c.name === map.objectives[1]), up = map.fields.find((f) => f.name === map.objectives[0]);
+    const right = map.columns.findIndex((c) => c.name === map.objectives[1]),
+      up = map.fields.find((f) => f.name === map.objectives[0]);
     if (right >= 0 && up) Object.assign(view.view, { x: right, field: up });
   }
 
-  const fieldSelect = element("field"), selects = map.columns ? { x: element("x-axis") } : { x: element("x-axis"), y: element("y-axis") };
+  const fieldSelect = element("field"), selects = map.columns ? { x: element("x-axis") }
+    : { x: element("x-axis"), y: element("y-axis") };
   element("y-axis").parentElement.hidden = Boolean(map.columns) || Boolean(map.live);
   element("x-axis").parentElement.hidden = Boolean(map.live);
   map.fields.forEach((f, k) => option(fieldSelect, k, fieldLabel(f, map.fixed)));
   fieldSelect.value = map.fields.indexOf(view.view.field);
   /** Offers what the model has. */
   const offerFields = () => {
-    map.fields.forEach((f, k) => { fieldSelect.options[k].hidden = fieldSelect.options[k].disabled = !applies(map, f); });
+    map.fields.forEach((f, k) =>
+      { fieldSelect.options[k].hidden = fieldSelect.options[k].disabled = !applies(map, f); });
     if (!applies(map, view.view.field)) { fieldSelect.value = 0; view.view.field = map.fields[0]; }
   };
   offerFields();
@@ -196,12 +244,14 @@ function start(map, solver, teller) {
   const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
   map.wanted = () => [view.view.field, ...(filters?.fields() ?? [])];
   map.hoopGoals = () => filters?.ofHoops() ?? [];
-  /** Solves a live map anew if it has not the numbers of all that is wanted, or is still after some that are not. */
+  /** Solves a live map anew if it has not the numbers of all that is wanted, or is still after some that are
+      not. */
   const tellWanted = () => {
     if (!map.live) return;
     const { asked } = map, wanted = toAsk(map), isThere = element("map").dataset.whole === "true";
     element("settle").parentElement.hidden = wanted.settle === 0;
-    const lacks = (wanted.settle && wanted.settle !== asked.settle) || (wanted.growth && !asked.growth) || (wanted.made && !isAsMade(map));
+    const lacks = (wanted.settle && wanted.settle !== asked.settle) || (wanted.growth && !asked.growth)
+      || (wanted.made && !isAsMade(map));
     if (!lacks && (isThere || costEach(wanted) >= costEach(asked))) return;
     map.refresh();
     chosen.follow();
@@ -221,7 +271,8 @@ function start(map, solver, teller) {
     write(words) { if (fieldSelect.value !== firstField) words.set("field", view.view.field.name); },
     read(words) {
       const at = map.fields.findIndex((f) => f.name === words.get("field"));
-      if (words.has("field") && at < 0) notice(`The address asks for a field that is not on this map: ${words.get("field")}`);
+      if (words.has("field") && at < 0)
+        notice(`The address asks for a field that is not on this map: ${words.get("field")}`);
       fieldSelect.value = at < 0 ? firstField : at;
       showField();
     },
@@ -244,14 +295,19 @@ function start(map, solver, teller) {
     if (map.columns) return;
     element("sliders").replaceChildren(...map.axes.flatMap((axis, k) => {
       if (k === view.view.x || k === view.view.y) return [];
-      const label = document.createElement("label"), slider = document.createElement("input"), value = document.createElement("output");
+      const label = document.createElement("label"), slider = document.createElement("input"),
+        value = document.createElement("output");
       slider.type = "range";
       slider.min = 0;
       slider.max = axis.values.length - 1;
       slider.value = view.view.index[k];
       slider.dataset.axis = axis.name;
-      const tell = () => { value.textContent = withUnit(short(inShownUnit(axis, axis.values[view.view.index[k]])), axis.unit); slider.setAttribute("aria-valuetext", value.textContent); };
-      slider.addEventListener("input", () => { view.view.index[k] = Number(slider.value); tell(); view.paint(); told(view.view.index); noteAddress(); });
+      const tell = () => { value.textContent =
+        withUnit(short(inShownUnit(axis, axis.values[view.view.index[k]])), axis.unit);
+        slider.setAttribute("aria-valuetext", value.textContent); };
+      slider.addEventListener("input",
+        () => { view.view.index[k] = Number(slider.value); tell(); view.paint(); told(view.view.index);
+        noteAddress(); });
       tell();
       label.append(axis.label, slider, value);
       return [label];
@@ -275,9 +331,13 @@ function start(map, solver, teller) {
   saveButtons("map", canvas, pictureName, (like) => view.paintOn(like.getContext("2d")));
   element("cuts").hidden = Boolean(map.columns);
   if (!map.columns) drawCuts = cutsPart(map, view);
-  filters = map.columns ? null : filtersPart(map, view, () => { tellWanted(); view.paint(); chosen.recount(); }, (index) => { view.view.index = index; arrange(); view.paint(); view.pick(); });
+  filters = map.columns ? null
+    : filtersPart(map, view, () => { tellWanted(); view.paint(); chosen.recount(); }, (index) =>
+    { view.view.index = index; arrange(); view.paint(); view.pick(); });
   element("filters").hidden = Boolean(map.columns);
-  const tolerances = map.live ? tolerancesPart(map, () => { tellWanted(); filters.tell(); said = ""; tellShown(); chosen.haunt(); }) : null;
+  const tolerances = map.live
+    ? tolerancesPart(map, () => { tellWanted(); filters.tell(); said = ""; tellShown(); chosen.haunt(); })
+    : null;
   if (tolerances) addressPart(tolerances);
   if (filters) addressPart(filters);
   const tellUnits = () => {
@@ -300,17 +360,22 @@ function start(map, solver, teller) {
       if (x !== homeAxes[0]) words.set("right", choices[x].name);
       if (map.columns) return;
       if (y !== homeAxes[1]) words.set("up", choices[y].name);
-      map.axes.forEach((axis, k) => { if (k !== x && k !== y && view.view.index[k] !== (view.view.picked ?? home)[k]) words.append("at", `${axis.name}:${view.view.index[k]}`); });
+      map.axes.forEach((axis, k) =>
+        { if (k !== x && k !== y && view.view.index[k] !== (view.view.picked ?? home)[k])
+        words.append("at", `${axis.name}:${view.view.index[k]}`); });
     },
     read(words) {
-      const [x, y] = ["right", "up"].map((key, k) => { const at = choices.findIndex(({ name }) => name === words.get(key)); return at < 0 ? homeAxes[k] : at; });
+      const [x, y] = ["right", "up"].map((key, k) =>
+        { const at = choices.findIndex(({ name }) => name === words.get(key));
+        return at < 0 ? homeAxes[k] : at; });
       view.view.x = x;
       if (!map.columns) {
         view.view.y = x === y ? homeAxes[x === homeAxes[0] ? 1 : 0] : y;
         view.view.index = [...home];
         for (const [name, text] of words.getAll("at").map((word) => word.split(":"))) {
           const k = map.axes.findIndex((axis) => axis.name === name);
-          if (k >= 0 && /^\d+$/.test(text) && Number(text) < map.axes[k].values.length) view.view.index[k] = Number(text);
+          if (k >= 0 && /^\d+$/.test(text) && Number(text) < map.axes[k].values.length)
+            view.view.index[k] = Number(text);
           else notice(`The address asks for a place that is not on this map: ${name}`);
         }
       }
@@ -327,7 +392,9 @@ function start(map, solver, teller) {
         const slices = view.view.index;
         view.view.index = asked.index ?? [...home];
         view.pick();
-        if (words.has("at")) view.view.index = view.view.index.map((i, k) => (k === view.view.x || k === view.view.y ? i : slices[k]));
+        if (words.has("at"))
+          view.view.index = view.view.index.map((i, k) =>
+            (k === view.view.x || k === view.view.y ? i : slices[k]));
         arrange();
         view.paint();
         told(view.view.index);
@@ -359,25 +426,34 @@ function start(map, solver, teller) {
       if (!chosen.isOfMap()) chosen.follow();
     },
     /** The hoop shown, of the same place on another map. */
-    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true); else chosen.follow(); },
+    again() { if (view.view.picked && chosen.isOfMap()) chosen.show(view.view.picked, false, true);
+      else chosen.follow(); },
     /** Another model: what is told of a hoop is another. */
-    remodel() { element("paper").hidden = map.slips; offerFields(); tolerances.remodel(); chosen.remodel(); legend(); },
+    remodel() { element("paper").hidden = map.slips; offerFields(); tolerances.remodel(); chosen.remodel();
+      legend(); },
   };
 }
 
-/** What the solver is to be asked of a hoop of one's own beside a file's map, so that all its fields are told. */
+/** What the solver is to be asked of a hoop of one's own beside a file's map, so that all its fields are
+    told. */
 function askedOfFile(map) {
   const has = (cost) => map.fields.some((f) => costOf(f) === cost);
   const goals = has("made") ? numberedGoals(map.goals, map.solver.codes) : null;
-  return { jumps: map.jumps, settle: has("settle") ? map.settle : 0, growth: has("growth"), made: goals && madeAsked(map, goals) };
+  return { jumps: map.jumps, settle: has("settle") ? map.settle : 0, growth: has("growth"), made: goals
+    && madeAsked(map, goals) };
 }
 
 /** The address of the live map that a file's map begins at: its two longest axes, the rest as it stands. */
 function liveFrom(map) {
-  const words = new URLSearchParams(), fit = (axis) => axis.name in LIVE_RANGES && !NO_LIVE_AXIS.includes(axis.name) && axis.values.length > 1;
-  const axes = map.columns ? [] : map.axes.filter(fit).sort((a, b) => b.values.length - a.values.length).slice(0, 2).sort((a, b) => (b.name === "slope") - (a.name === "slope"));
-  axes.forEach((axis, k) => words.set(k === 0 ? "x" : "y", `${axis.name}:${axis.values[0]}:${axis.values.at(-1)}`));
-  for (const axis of map.columns ? [] : map.axes) if (!axes.includes(axis)) words.set(axis.name, axis.values[Math.floor(axis.values.length / 2)]);
+  const words = new URLSearchParams(), fit = (axis) => axis.name in LIVE_RANGES
+    && !NO_LIVE_AXIS.includes(axis.name) && axis.values.length > 1;
+  const axes = map.columns ? [] : map.axes.filter(fit)
+    .sort((a, b) => b.values.length - a.values.length).slice(0, 2)
+    .sort((a, b) => (b.name === "slope") - (a.name === "slope"));
+  axes.forEach((axis, k) =>
+    words.set(k === 0 ? "x" : "y", `${axis.name}:${axis.values[0]}:${axis.values.at(-1)}`));
+  for (const axis of map.columns ? [] : map.axes) if (!axes.includes(axis))
+    words.set(axis.name, axis.values[Math.floor(axis.values.length / 2)]);
   for (const [name, value] of Object.entries(map.fixed)) if (Number.isFinite(value)) words.set(name, value);
   if (map.slips) words.set("friction", "coulomb");
   if (map.settle > 0) words.set("settle", Math.min(map.settle, element("settle").max));
@@ -386,18 +462,26 @@ function liveFrom(map) {
   if (map.spreads.length > 0 && map.seed !== 1) words.set("seed", map.seed);
   for (const { field, least, most } of map.goals) {
     if (field === "spurious_first_jump" && least === "first_lift_off_is_the_jump") words.set("real", "");
-    else if (field === "status" && least === "jumped") continue;  // what any other goal takes, and what counts where there is none
-    else if (typeof (least ?? most) === "string") words.append("goal", `${field}:is:${least}`);  // which is said to be left out
-    else for (const [sign, bound] of [["least", least], ["most", most]]) if (bound !== null) words.append("goal", `${field}:${sign}:${bound}`);
+    // what any other goal takes, and what counts where there is none
+    else if (field === "status" && least === "jumped") continue;
+    // which is said to be left out
+    else if (typeof (least ?? most) === "string") words.append("goal", `${field}:is:${least}`);
+    else for (const [sign, bound] of [["least", least], ["most", most]]) if (bound !== null)
+      words.append("goal", `${field}:${sign}:${bound}`);
   }
   return `live&${words.toString().replaceAll("%3A", ":")}`;
 }
 
-/** What the address asks for, as #design=20,30,1&time=0.5: a design by its place along each axis, and a moment to stop at [s]. */
+/** What the address asks for, as #design=20,30,1&time=0.5: a design by its place along each axis, and a
+    moment to stop at [s]. */
 function addressed(map, words) {
-  const asked = {}, index = (words.get("design") ?? "").split(",").map((word) => (/^\d+$/.test(word) ? Number(word) : -1));
-  if (words.has("design") && !(index.length === map.axes.length && map.axes.every((axis, k) => index[k] >= 0 && index[k] < axis.values.length)))
-    notice(`The address asks for a design that is not on this map; there are ${map.axes.map((axis) => axis.values.length).join(" x ")}.`);
+  const asked = {}, index = (words.get("design") ?? "").split(",")
+    .map((word) => (/^\d+$/.test(word) ? Number(word) : -1));
+  if (words.has("design")
+      && !(index.length === map.axes.length
+      && map.axes.every((axis, k) => index[k] >= 0 && index[k] < axis.values.length)))
+    notice(`The address asks for a design that is not on this map; there are ` +
+      `${map.axes.map((axis) => axis.values.length).join(" x ")}.`);
   else if (words.has("design"))
     asked.index = index;
   if (words.get("time") && Number.isFinite(Number(words.get("time")))) asked.time = Number(words.get("time"));
@@ -408,14 +492,17 @@ function addressed(map, words) {
   try {
     if (typeof DecompressionStream === "undefined" || typeof WebAssembly === "undefined")
       throw new Error("this page needs Chrome 97, Firefox 113, Safari 16.4 or newer");
-    const module = await loadModule(element("module").textContent), solver = await solverOf(module), data = JSON.parse(element("data").textContent);
+    const module = await loadModule(element("module").textContent), solver = await solverOf(module),
+      data = JSON.parse(element("data").textContent);
     const live = data.only_live || addressWords().has("live");
     Object.assign(address, { live: Boolean(live), others: !data.only_live });
     tonesPart();
     const toggle = element("live-toggle");
     toggle.hidden = Boolean(data.only_live);
-    toggle.textContent = live ? "back to the map in the file" : "compute the map here: every parameter a slider";
-    toggle.addEventListener("click", () => { location.hash = live ? "" : liveFrom(data); location.reload(); });
+    toggle.textContent = live ? "back to the map in the file"
+      : "compute the map here: every parameter a slider";
+    toggle.addEventListener("click",
+      () => { location.hash = live ? "" : liveFrom(data); location.reload(); });
     if (live) startLive(data.for_live, module, solver);
     else start(await readMap(), solver, madeTeller(module, element("worker").textContent));
   } catch (error) { complain(error); }

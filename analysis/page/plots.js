@@ -2,11 +2,14 @@
 
 const PLOTS = [
   { label: "height", unit: "y", lines: [{ column: "y", tone: "data" }] },
-  { label: "force", unit: "force", lines: [{ column: "normal_force", tone: "data", name: "normal force", contact: true },
-                                { column: "friction", tone: "slide", name: "friction, downhill", contact: true, dash: [6, 4] }] },
+  { label: "force", unit: "force",
+    lines: [{ column: "normal_force", tone: "data", name: "normal force", contact: true },
+                                { column: "friction", tone: "slide", name: "friction, downhill",
+                                  contact: true, dash: [6, 4] }] },
 ];
 
-/** A line over time, broken where there is no number and, of forces, in flight: a force ends with the contact. */
+/** A line over time, broken where there is no number and, of forces, in flight: a force ends with the
+    contact. */
 function drawTrace(context, motion, values, contact, sx, sy) {
   context.beginPath();
   let drawing = false;
@@ -19,8 +22,9 @@ function drawTrace(context, motion, values, contact, sx, sy) {
 }
 
 /**
- * Draws the plots of a hoop's story, and of pinned ones, thin and in their colours, beside it: [{pin, story}]. end: the time axis's [s]; shown: {t, y, force}, each
- * what SI, or weights, are multiplied by, and the unit; radius: of the hoop [m]. Returns the time at a place on the screen.
+ * Draws the plots of a hoop's story, and of pinned ones, thin and in their colours, beside it: [{pin,
+ * story}]. end: the time axis's [s]; shown: {t, y, force}, each what SI, or weights, are multiplied by, and
+ * the unit; radius: of the hoop [m]. Returns the time at a place on the screen.
  */
 function drawPlots(canvas, { motion, liftOffs }, pinned, time, end, shown, radius) {
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
@@ -35,10 +39,15 @@ function drawPlots(canvas, { motion, liftOffs }, pinned, time, end, shown, radiu
   context.lineJoin = "round";
   PLOTS.forEach((plot, k) => {
     const top = k * height + 0.6 * font, bottom = (k + 1) * height - 0.6 * font;
-    const [factor, unit] = shown[plot.unit], scaled = plot.lines.map((line) => ({ ...line, values: motion[line.column].map((v) => v * factor) }));
-    let low = 0, high = factor * (plot.unit === "y" ? 0.1 * radius : 1e-9);  // a tenth of R: what is less is nothing to look at
-    const beside = pinned.filter(({ story }) => story.motion.t.length > 0).map(({ pin, story }) => ({ pin, motion: story.motion, values: story.motion[plot.lines[0].column].map((v) => v * factor) }));
-    for (const line of [...scaled, ...beside]) for (const v of line.values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+    const [factor, unit] = shown[plot.unit],
+      scaled = plot.lines.map((line) => ({ ...line, values: motion[line.column].map((v) => v * factor) }));
+    // a tenth of R: what is less is nothing to look at
+    let low = 0, high = factor * (plot.unit === "y" ? 0.1 * radius : 1e-9);
+    const beside = pinned.filter(({ story }) => story.motion.t.length > 0)
+      .map(({ pin, story }) =>
+      ({ pin, motion: story.motion, values: story.motion[plot.lines[0].column].map((v) => v * factor) }));
+    for (const line of [...scaled, ...beside]) for (const v of line.values)
+      if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
     high += 0.05 * (high - low);
     const sy = (v) => bottom - (bottom - top) * (v - low) / (high - low);
     // Phases but rolling are shaded.
@@ -111,8 +120,11 @@ function drawPlots(canvas, { motion, liftOffs }, pinned, time, end, shown, radiu
   context.textBaseline = "top";
   context.fillStyle = tones.ink;
   const times = linearTicks(0, end * shown.t[0], 8), texts = tickTexts(times);
-  for (const [i, tick] of times.entries()) context.fillText(texts[i], sx(tick / shown.t[0]), PLOTS.length * height - 0.4 * font);
+  for (const [i, tick] of times.entries())
+    context.fillText(texts[i], sx(tick / shown.t[0]), PLOTS.length * height - 0.4 * font);
   context.textBaseline = "alphabetic";
   context.fillText(`time since release [${shown.t[1]}]`, (left + right) / 2, canvas.height - 0.3 * font);
-  return (clientX) => Math.min(end, Math.max(0, ((clientX - box.left) * canvas.width / box.width - left) / (right - left) * end));
+  return (clientX) =>
+    Math.min(end, Math.max(0,
+    ((clientX - box.left) * canvas.width / box.width - left) / (right - left) * end));
 }

@@ -15,12 +15,14 @@ function axisScale(axis, from, to) {
     return edges;
   };
   let edges = edgesOf(places);
-  // Values so near each other, or so large, that no double lies between them or beside them: cells of one width.
+  // Values so near each other, or so large, that no double lies between them or beside them: cells of one
+  // width.
   if (!edges.every((edge, i) => Number.isFinite(edge) && (i === 0 || edge > edges[i - 1]))) {
     places = shown.map((_, i) => i);
     edges = edgesOf(places);
     const at = (value) => Math.max(0, shown.findLastIndex((v) => v <= value));
-    return axisOfPlaces(axis, shown, places, edges, at, (place) => shown[Math.min(n - 1, Math.max(0, Math.round(place)))], from, to);
+    return axisOfPlaces(axis, shown, places, edges, at, (place) =>
+      shown[Math.min(n - 1, Math.max(0, Math.round(place)))], from, to);
   }
   return axisOfPlaces(axis, shown, places, edges, at, axis.log ? Math.exp : (place) => place, from, to);
 }
@@ -53,8 +55,8 @@ function axisOfPlaces(axis, shown, places, edges, at, back, from, to) {
 }
 
 /**
- * Round numbers from low to high, about `most` of them, each once. Where the two are so near each other, or so far apart, that
- * no double is the round number, the two themselves.
+ * Round numbers from low to high, about `most` of them, each once. Where the two are so near each other, or
+ * so far apart, that no double is the round number, the two themselves.
  */
 function linearTicks(low, high, most = 7) {
   if (!(high > low)) return [low];
@@ -72,13 +74,16 @@ function linearTicks(low, high, most = 7) {
   return ticks.length > 0 ? ticks : [low, high];
 }
 
-/** Powers of ten from low to high; where there are few, twice and five times those as well; where there are none, round numbers. */
+/** Powers of ten from low to high; where there are few, twice and five times those as well; where there are
+    none, round numbers. */
 function logTicks(low, high, most = 12) {
-  const from = Math.floor(Math.log10(low)), to = Math.ceil(Math.log10(high)), every = Math.ceil((to - from) / most), ticks = [];
+  const from = Math.floor(Math.log10(low)), to = Math.ceil(Math.log10(high)),
+    every = Math.ceil((to - from) / most), ticks = [];
   for (let e = Math.ceil(from / every) * every; e <= to; e += every)
     for (const m of to - from <= 5 ? [1, 2, 5] : [1]) {
       const tick = Number(`${m}e${e}`);
-      if (tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9) && tick > 0 && tick < Infinity) ticks.push(tick);
+      if (tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9) && tick > 0 && tick < Infinity)
+        ticks.push(tick);
     }
   return ticks.length > 1 ? ticks : linearTicks(low, high);
 }
@@ -88,7 +93,8 @@ function tickTexts(ticks) {
   const raised = (text) => [...text].map((c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("");
   const text = (v, digits) => {
     if (v === 0 || (Math.abs(v) >= 1e-4 && Math.abs(v) < 1e5)) return String(Number(v.toPrecision(digits)));
-    const [mantissa, exponent] = v.toExponential(digits - 1).split("e"), least = mantissa.replace(/\.?0+$/, "");
+    const [mantissa, exponent] = v.toExponential(digits - 1).split("e"),
+      least = mantissa.replace(/\.?0+$/, "");
     return `${least === "1" ? "" : least === "-1" ? "-" : `${least}·`}10${raised(exponent.replace("+", ""))}`;
   };
   for (let digits = 4; digits < 17; ++digits) {

@@ -22,78 +22,94 @@ async function solverOf(module) {
     return names;
   };
   const parameters = namesBy(leapmap.parameter_name), columns = namesBy(leapmap.column_name);
-  const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name), rowNames = namesBy(leapmap.row_name), madeNames = namesBy(leapmap.made_name);
+  const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name),
+    rowNames = namesBy(leapmap.row_name), madeNames = namesBy(leapmap.made_name);
   const doubles = (pointer, n) => new Float64Array(leapmap.memory.buffer, pointer, n);
-  const defaults = Object.fromEntries(parameters.map((name, i) => [name, doubles(leapmap.parameter_values(), parameters.length)[i]]));
+  const defaults = Object.fromEntries(parameters.map((name, i) =>
+    [name, doubles(leapmap.parameter_values(), parameters.length)[i]]));
   const rows = (names, pointer, n) => {
     const values = doubles(pointer, n * names.length).slice();
-    return Object.fromEntries(names.map((name, k) => [name, Float64Array.from({ length: n }, (_, i) => values[i * names.length + k])]));
+    return Object.fromEntries(names.map((name, k) =>
+      [name, Float64Array.from({ length: n }, (_, i) => values[i * names.length + k])]));
   };
-  const ranges = Object.fromEntries(parameters.map((name, i) => [name, [leapmap.parameter_least(i), leapmap.parameter_most(i)]]));
-  const codes = Object.fromEntries(fields.map((name, i) => [name, namesBy((code) => leapmap.code_name(i, code))]));
-  const give = (design) => doubles(leapmap.parameter_values(), parameters.length).set(parameters.map((name) => design[name] ?? defaults[name]));
+  const ranges = Object.fromEntries(parameters.map((name, i) =>
+    [name, [leapmap.parameter_least(i), leapmap.parameter_most(i)]]));
+  const codes = Object.fromEntries(fields.map((name, i) =>
+    [name, namesBy((code) => leapmap.code_name(i, code))]));
+  const give = (design) => doubles(leapmap.parameter_values(), parameters.length)
+    .set(parameters.map((name) => design[name] ?? defaults[name]));
   const ask = ({ jumps = 1, settle = 0, growth = false }) => leapmap.ask(jumps, settle, Number(growth));
   return {
     defaults, ranges, codes,
     /**
-     * One design in full: {outcome, motion, liftOffs}, in SI but for forces, in weights, and heights, in diameters. interval: of the
-     * motion's samples [s]; 0: as fine as a picture needs. asked: how many `jumps` it is followed for, the gait after `settle` of them, if
-     * that is above zero, and whether the `growth` of errors is told.
+     * One design in full: {outcome, motion, liftOffs}, in SI but for forces, in weights, and heights, in
+     * diameters. interval: of the motion's samples [s]; 0: as fine as a picture needs. asked: how many
+     * `jumps` it is followed for, the gait after `settle` of them, if that is above zero, and whether the
+     * `growth` of errors is told.
      */
     solve(design, slips, tolerance, interval = 0, asked = {}) {
       give(design);
       ask(asked);
       leapmap.solve(slips ? 1 : 0, tolerance, interval);
-      const outcome = Object.fromEntries(fields.map((name, i) => [name, word(leapmap.field_text(i)) ?? leapmap.field_value(i)]));
+      const outcome = Object.fromEntries(fields.map((name, i) =>
+        [name, word(leapmap.field_text(i)) ?? leapmap.field_value(i)]));
       return {
         outcome,
         motion: rows(columns, leapmap.points(), leapmap.point_count()),
         liftOffs: rows(liftOffColumns, leapmap.lift_offs(), leapmap.lift_off_count()),
       };
     },
-    /** The derivatives of a field by every parameter, {name: number}: in the field's unit over the parameter's; NaN where there is none. */
+    /** The derivatives of a field by every parameter, {name: number}: in the field's unit over the
+        parameter's; NaN where there is none. */
     gradient(design, slips, tolerance, field) {
       give(design);
-      const values = doubles(leapmap.gradient(slips ? 1 : 0, tolerance, fields.indexOf(field)), parameters.length);
+      const values = doubles(leapmap.gradient(slips ? 1 : 0, tolerance, fields.indexOf(field)),
+        parameters.length);
       return Object.fromEntries(parameters.map((name, i) => [name, values[i]]));
     },
     /** What solvePlaces tells of a design, in order. */
     rowNames,
     /**
-     * Designs that differ in two parameters, in full: rows of numbers and codes of each, one after the other. places: the two numbers of
-     * each by turns. asked: as of solve.
+     * Designs that differ in two parameters, in full: rows of numbers and codes of each, one after the other.
+     * places: the two numbers of each by turns. asked: as of solve.
      */
     solvePlaces(design, slips, tolerance, first, second, places, asked = {}) {
       give(design);
       ask(asked);
       const count = places.length / 2;
       doubles(leapmap.places(count), places.length).set(places);
-      leapmap.solve_places(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second), count);
+      leapmap.solve_places(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second),
+        count);
       return doubles(leapmap.rows(), count * rowNames.length).slice();
     },
     /**
-     * The same designs as made: of each what `asked` names as fields, one after the other. asked: {fields, samples, seed, spreads: [{name, law,
-     * width, percent}], goals: [{field, least, most}], jumps, settle, growth}.
+     * The same designs as made: of each what `asked` names as fields, one after the other. asked: {fields,
+     * samples, seed, spreads: [{name, law, width, percent}], goals: [{field, least, most}], jumps, settle,
+     * growth}.
      */
     solveMade(design, slips, tolerance, first, second, places, asked) {
       give(design);
       ask(asked);
       leapmap.ask_made(asked.samples, asked.seed);
-      for (const { name, law, width, percent } of asked.spreads) leapmap.ask_spread(parameters.indexOf(name), law === "uniform" ? 1 : 0, width, Number(percent));
-      for (const { field, least, most } of asked.goals) leapmap.ask_goal(fields.indexOf(field), least ?? -Infinity, most ?? Infinity);
+      for (const { name, law, width, percent } of asked.spreads)
+        leapmap.ask_spread(parameters.indexOf(name), law === "uniform" ? 1 : 0, width, Number(percent));
+      for (const { field, least, most } of asked.goals)
+        leapmap.ask_goal(fields.indexOf(field), least ?? -Infinity, most ?? Infinity);
       for (const name of asked.fields) leapmap.ask_field(madeNames.indexOf(name));
       const count = places.length / 2;
       doubles(leapmap.places(count), places.length).set(places);
-      leapmap.solve_made(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second), count);
+      leapmap.solve_made(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second),
+        count);
       return doubles(leapmap.rows(), count * asked.fields.length).slice();
     },
     /**
-     * Heights of the jumps that `count` hoops go on making, which differ in one parameter: after `settle` jumps `keep` of each, hoop by
-     * hoop [diameters]; NaN: it makes none.
+     * Heights of the jumps that `count` hoops go on making, which differ in one parameter: after `settle`
+     * jumps `keep` of each, hoop by hoop [diameters]; NaN: it makes none.
      */
     bifurcate(design, slips, tolerance, { parameter, from, to, count, settle, keep }) {
       give(design);
-      leapmap.bifurcate(slips ? 1 : 0, tolerance, parameters.indexOf(parameter), from, to, count, settle, keep);
+      leapmap.bifurcate(slips ? 1 : 0, tolerance, parameters.indexOf(parameter), from, to, count, settle,
+        keep);
       return doubles(leapmap.heights(), count * keep).slice();
     },
   };

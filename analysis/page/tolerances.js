@@ -1,16 +1,24 @@
-// Hoops as made after the designs of a map: by which tolerances, how many, and what of them is asked of the solver.
+// Hoops as made after the designs of a map: by which tolerances, how many, and what of them is asked of the
+// solver.
 
-const USUAL_SPREADS = ["mass_ratio", "offset_ratio", "inertia_factor"].map((name) => ({ name, law: "normal", width: 1, percent: true }));
+const USUAL_SPREADS =
+  ["mass_ratio", "offset_ratio", "inertia_factor"].map((name) =>
+  ({ name, law: "normal", width: 1, percent: true }));
 const LAWS = ["normal", "uniform"];
 
 /** A tolerance as the address has it. */
-const spreadWord = ({ name, law, width, percent }) => [name, law, Number(width.toPrecision(12)), ...(percent ? ["percent"] : [])].join(":");
+const spreadWord = ({ name, law, width, percent }) =>
+  [name, law, Number(width.toPrecision(12)), ...(percent ? ["percent"] : [])].join(":");
 
-/** Goals as the solver takes them: by numbers, where a map's goals are words that a code stands for. Null: the page's solver knows one of them not. */
+/** Goals as the solver takes them: by numbers, where a map's goals are words that a code stands for. Null:
+    the page's solver knows one of them not. */
 function numberedGoals(goals, codes) {
-  const number = (field, value) => (Object.hasOwn(codes, field) && codes[field].includes(value) ? codes[field].indexOf(value) : value);
-  const numbered = goals.map(({ field, least, most }) => ({ field, least: number(field, least), most: number(field, most) }));
-  return numbered.every(({ field, least, most }) => Object.hasOwn(codes, field) && [least, most].every((v) => v === null || Number.isFinite(v))) ? numbered : null;
+  const number = (field, value) =>
+    (Object.hasOwn(codes, field) && codes[field].includes(value) ? codes[field].indexOf(value) : value);
+  const numbered = goals.map(({ field, least, most }) =>
+    ({ field, least: number(field, least), most: number(field, most) }));
+  return numbered.every(({ field, least, most }) => Object.hasOwn(codes, field)
+    && [least, most].every((v) => v === null || Number.isFinite(v))) ? numbered : null;
 }
 
 /** The goal to jump. */
@@ -20,21 +28,25 @@ function jumping(map) {
 }
 
 /**
- * What the solver is to be asked of hoops as made, so that all such fields of a map have numbers. goals: {field, least, most} that a hoop is to
- * reach, null: no such bound; without any it is to jump. yields: whether the yield is among them, which goals are for.
+ * What the solver is to be asked of hoops as made, so that all such fields of a map have numbers. goals:
+ * {field, least, most} that a hoop is to reach, null: no such bound; without any it is to jump. yields:
+ * whether the yield is among them, which goals are for.
  */
 function madeAsked(map, goals, yields = true) {
-  const fields = map.fields.filter((field) => field.made && (yields || field.name !== "yield")).map(({ name }) => name);
+  const fields = map.fields.filter((field) => field.made && (yields || field.name !== "yield"))
+    .map(({ name }) => name);
   return {
-    fields, samples: map.samples, seed: map.seed, spreads: map.spreads.map((spread) => ({ ...spread })), goals: goals.length > 0 ? goals : [jumping(map)],
-    jumps: goals.some(({ field }) => ["jumps", "sequence_condition"].includes(field)) ? map.jumps : 1, settle: goals.some(({ field }) => field.startsWith("gait_")) ? map.settle : 0,
+    fields, samples: map.samples, seed: map.seed, spreads: map.spreads.map((spread) => ({ ...spread })),
+    goals: goals.length > 0 ? goals : [jumping(map)],
+    jumps: goals.some(({ field }) => ["jumps", "sequence_condition"].includes(field)) ? map.jumps : 1,
+    settle: goals.some(({ field }) => field.startsWith("gait_")) ? map.settle : 0,
     growth: map.jumps > 1 && goals.some(({ field }) => field === "sequence_condition"),
   };
 }
 
 /**
- * A thread that tells what becomes of hoops made after one design, as that may take long: tell(order, done) calls done(row), null if it cannot be
- * told, unless something else is asked, or drop() called, before that.
+ * A thread that tells what becomes of hoops made after one design, as that may take long: tell(order, done)
+ * calls done(row), null if it cannot be told, unless something else is asked, or drop() called, before that.
  */
 function madeTeller(module, workerText) {
   const url = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
@@ -43,7 +55,8 @@ function madeTeller(module, workerText) {
   function tell(order, done) {
     drop();
     worker = new Worker(url);
-    const fail = (error) => { drop(); notice(`Manufactured hoops cannot be solved: ${error.message ?? error}`); done(null); };
+    const fail = (error) =>
+      { drop(); notice(`Manufactured hoops cannot be solved: ${error.message ?? error}`); done(null); };
     worker.onmessage = ({ data }) => {
       if (data.ready) worker.postMessage(order);
       else if (data.error) fail(data.error);
@@ -63,19 +76,24 @@ function tolerancesPart(map, changed) {
 
   function take() {
     map.spreads = rows.map(({ spread }) => spread);
-    const nothing = map.spreads.find(({ name, width, percent }) => percent && width > 0 && map.fixed[name] === 0 && !map.axes.some((axis) => axis.name === name));
-    notice(nothing ? `${map.parameters[nothing.name].label} is 0, and ${short(nothing.width)} % of it is 0: give the tolerance in its own unit.` : "");
+    const nothing = map.spreads.find(({ name, width, percent }) => percent && width > 0
+      && map.fixed[name] === 0 && !map.axes.some((axis) => axis.name === name));
+    notice(nothing ? `${map.parameters[nothing.name].label} is 0, and ${short(nothing.width)} % of it is ` +
+      `0: give the tolerance in its own unit.` : "");
     changed();
     noteAddress();
   }
 
   function row(asked) {
-    const spread = { ...asked }, item = document.createElement("li"), [name, law, unit] = [0, 1, 2].map(() => document.createElement("select"));
-    const number = document.createElement("input"), away = document.createElement("button"), each = { spread, away };
+    const spread = { ...asked }, item = document.createElement("li"),
+      [name, law, unit] = [0, 1, 2].map(() => document.createElement("select"));
+    const number = document.createElement("input"), away = document.createElement("button"),
+      each = { spread, away };
     const show = () => {
       const taken = rows.map((other) => other.spread.name), own = map.parameters[spread.name].unit;
       name.replaceChildren();
-      designParameters(map).filter((other) => other === spread.name || !taken.includes(other)).forEach((other) => option(name, other, map.parameters[other].label.split(" [")[0]));
+      designParameters(map).filter((other) => other === spread.name || !taken.includes(other))
+        .forEach((other) => option(name, other, map.parameters[other].label.split(" [")[0]));
       unit.replaceChildren();
       option(unit, "%", "%");
       option(unit, "own", own || "of its own");
@@ -142,7 +160,8 @@ function tolerancesPart(map, changed) {
     showAll();
   }
   add.addEventListener("click", () => {
-    const name = designParameters(map).find((other) => !rows.some(({ spread }) => spread.name === other)), angle = map.parameters[name].unit === "°";
+    const name = designParameters(map).find((other) => !rows.some(({ spread }) => spread.name === other)),
+      angle = map.parameters[name].unit === "°";
     row({ name, law: "normal", width: angle ? Math.PI / 180 : 1, percent: !angle && map.fixed[name] !== 0 });
     showAll();
     rows.at(-1).focus();
@@ -154,20 +173,25 @@ function tolerancesPart(map, changed) {
   const usual = USUAL_SPREADS.map(spreadWord).join();
   function spreadOf(word) {
     const [name, law, width, percent] = word.split(":");
-    return designParameters(map).includes(name) && LAWS.includes(law) && width !== "" && Number(width) >= 0 && Number.isFinite(Number(width)) && [undefined, "percent"].includes(percent)
+    return designParameters(map).includes(name) && LAWS.includes(law) && width !== "" && Number(width) >= 0
+      && Number.isFinite(Number(width)) && [undefined, "percent"].includes(percent)
       ? { name, law, width: Number(width), percent: percent === "percent" } : null;
   }
   return {
     /** Another model: other parameters may scatter. */
     remodel() {
-      const all = rows.map(({ spread }) => spread), dropped = all.filter(({ name }) => !designParameters(map).includes(name));
-      if (dropped.length > 0) notice(`Without slip there is no tolerance of: ${dropped.map(({ name }) => map.parameters[name].label).join(", ")}`);
+      const all = rows.map(({ spread }) => spread),
+        dropped = all.filter(({ name }) => !designParameters(map).includes(name));
+      if (dropped.length > 0)
+        notice(`Without slip there is no tolerance of: ` +
+          `${dropped.map(({ name }) => map.parameters[name].label).join(", ")}`);
       begin(all.filter((spread) => !dropped.includes(spread)));
       map.spreads = rows.map(({ spread }) => spread);
     },
     write(words) {
       const told = map.spreads.map(spreadWord);
-      if (told.join() !== usual) for (const word of told.length > 0 ? told : ["none"]) words.append("made", word);
+      if (told.join() !== usual) for (const word of told.length > 0 ? told : ["none"])
+        words.append("made", word);
       samples.write(words);
       if (map.seed !== 1) words.set("seed", map.seed);
     },
@@ -179,11 +203,13 @@ function tolerancesPart(map, changed) {
         else notice(`The address asks for a tolerance that is not possible: ${word}`);
       }
       const sigma = Number(words.get("sigma"));  // as addresses had it before each tolerance had its own word
-      begin(asked.length > 0 ? spreads : USUAL_SPREADS.map((spread) => (sigma > 0 ? { ...spread, width: sigma } : spread)));
+      begin(asked.length > 0 ? spreads
+        : USUAL_SPREADS.map((spread) => (sigma > 0 ? { ...spread, width: sigma } : spread)));
       map.spreads = rows.map(({ spread }) => spread);
       samples.read(words);
       map.seed = /^\d{1,15}$/.test(words.get("seed") ?? "1") ? Number(words.get("seed") ?? 1) : 1;
-      if (words.has("seed") && String(map.seed) !== words.get("seed")) notice(`The address asks for seed=${words.get("seed")}, which is not possible and is ignored.`);
+      if (words.has("seed") && String(map.seed) !== words.get("seed"))
+        notice(`The address asks for seed=${words.get("seed")}, which is not possible and is ignored.`);
       if (asked.length > 0) part.open = true;
     },
   };

@@ -1,4 +1,5 @@
-// The colours of everything that is drawn: the page's own (page.css), light or dark as the reader's system has it, or as chosen.
+// The colours of everything that is drawn: the page's own (page.css), light or dark as the reader's system
+// has it, or as chosen.
 
 const TONES = ["ground", "ink", "frame", "scene", "earth", "mark", "data", "slide", "fly", "weight", "faint"];
 const tones = {}, toneListeners = [];
@@ -16,13 +17,15 @@ const onTones = (repaint) => toneListeners.push(repaint);
 
 function tonesPart() {
   const system = window.matchMedia("(prefers-color-scheme: dark)"), button = element("tone");
-  const isDark = () => (document.documentElement.dataset.tone ?? (system.matches ? "dark" : "light")) === "dark";
+  const isDark = () =>
+    (document.documentElement.dataset.tone ?? (system.matches ? "dark" : "light")) === "dark";
   const changed = () => {
     readTones();
     button.textContent = isDark() ? "light" : "dark";
     for (const repaint of toneListeners) repaint();
   };
   system.addEventListener("change", changed);
-  button.addEventListener("click", () => { document.documentElement.dataset.tone = isDark() ? "light" : "dark"; changed(); });
+  button.addEventListener("click",
+    () => { document.documentElement.dataset.tone = isDark() ? "light" : "dark"; changed(); });
   changed();
 }

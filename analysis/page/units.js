@@ -2,27 +2,38 @@
 
 const units = { pure: false, mass: 0.0282 };  // kg, of hoop and point mass
 
-/** How measures of one hoop are told. design: with its radius and gravity; kg: of hoop and point mass. All are given in SI, forces in weights. */
+/** How measures of one hoop are told. design: with its radius and gravity; kg: of hoop and point mass. All
+    are given in SI, forces in weights. */
 function measuresOf(design, kg) {
   const R = design.radius, g = design.gravity, second = Math.sqrt(R / g);
-  const told = (value, digits, unit) => `${short(value, digits)} ${unit}`, tidy = (metres) => (Math.abs(metres) < 1e-9 * R ? 0 : metres);
+  const told = (value, digits, unit) => `${short(value, digits)} ${unit}`, tidy = (metres) =>
+    (Math.abs(metres) < 1e-9 * R ? 0 : metres);
   if (units.pure) return {
-    length: (metres, digits = 4) => told(tidy(metres) / R, digits, "R"), time: (s, digits = 4) => told(s / second, digits, "√(R/g)"),
-    speed: (v) => told(v / Math.sqrt(R * g), 4, "√(g R)"), spin: (radians) => told(radians * second, 4, "√(g/R)"), force: (weights) => told(weights, 4, "weights"),
+    length: (metres, digits = 4) => told(tidy(metres) / R, digits, "R"), time: (s, digits = 4) =>
+      told(s / second, digits, "√(R/g)"),
+    speed: (v) => told(v / Math.sqrt(R * g), 4, "√(g R)"), spin: (radians) =>
+      told(radians * second, 4, "√(g/R)"), force: (weights) => told(weights, 4, "weights"),
     energy: (part) => told(part, 4, "(m + mₚ) g R"),
     plots: { t: [1 / second, "√(R/g)"], y: [1 / R, "R"], force: [1, "weights"] },
   };
   return {
-    length: (metres, digits = 4) => (Math.abs(metres) >= 1 ? told(metres, digits, "m") : told(1000 * tidy(metres), digits, "mm")), time: (s, digits = 4) => told(s, digits, "s"),
-    speed: (v) => told(v, 4, "m/s"), spin: (radians) => told(radians, 4, "rad/s"), force: (weights) => told(weights * kg * g, 4, "N"), energy: (part) => told(1000 * part * kg * g * R, 4, "mJ"),
+    length: (metres, digits = 4) =>
+      (Math.abs(metres) >= 1 ? told(metres, digits, "m") : told(1000 * tidy(metres), digits, "mm")),
+      time: (s, digits = 4) => told(s, digits, "s"),
+    speed: (v) => told(v, 4, "m/s"), spin: (radians) => told(radians, 4, "rad/s"), force: (weights) =>
+      told(weights * kg * g, 4, "N"), energy: (part) => told(1000 * part * kg * g * R, 4, "mJ"),
     plots: { t: [1, "s"], y: [1000, "mm"], force: [kg * g, "N"] },
   };
 }
 
-/** What values of a unit are shown in: [factor, unit], in SI or as pure numbers. scene: with the radius and gravity they belong to. */
+/** What values of a unit are shown in: [factor, unit], in SI or as pure numbers. scene: with the radius and
+    gravity they belong to. */
 function shownIn(unit, { radius: R, gravity: g }) {
-  const second = Math.sqrt(R / g), rows = units.pure ? { s: [1 / second, "√(R/g)"], "m/s": [second / R, "√(g R)"] }
-    : { "hoop diameters": [2000 * R, "mm"], diameters: [2000 * R, "mm"], R: [1000 * R, "mm"], "√(g/R)": [1 / second, "rad/s"], rad: [180 / Math.PI, "°"], "(m + mₚ) g R": [1000 * units.mass * g * R, "mJ"] };
+  const second = Math.sqrt(R / g), rows = units.pure
+    ? { s: [1 / second, "√(R/g)"], "m/s": [second / R, "√(g R)"] }
+    : { "hoop diameters": [2000 * R, "mm"], diameters: [2000 * R, "mm"], R: [1000 * R, "mm"],
+      "√(g/R)": [1 / second, "rad/s"], rad: [180 / Math.PI, "°"],
+      "(m + mₚ) g R": [1000 * units.mass * g * R, "mJ"] };
   return rows[unit] ?? [1, unit];
 }
 
@@ -33,14 +44,18 @@ function toldIn(value, unit, scene, digits = 4) {
 }
 
 /** A field's value in the units shown, where those are not the field's own: " = 99 mm"; "" else. */
-const alsoAs = (field, value, scene) => (shownIn(field.unit, scene)[1] === field.unit || value !== value ? "" : ` = ${toldIn(value, field.unit, scene)}`);
+const alsoAs = (field, value, scene) =>
+  (shownIn(field.unit, scene)[1] === field.unit || value !== value ? ""
+  : ` = ${toldIn(value, field.unit, scene)}`);
 
 /** A field's name with the unit it is shown in. */
-const fieldLabel = (field, scene, label = field.label) => { const [, unit] = shownIn(field.unit, scene); return unit ? `${label} [${unit}]` : label; };
+const fieldLabel = (field, scene, label = field.label) =>
+  { const [, unit] = shownIn(field.unit, scene); return unit ? `${label} [${unit}]` : label; };
 
 /** A field's isolines, round numbers in the units shown: [{value, text}], value in the field's own. */
 function shownLevels(field, scene) {
-  const [factor] = shownIn(field.unit, scene), told = (value) => ({ value: value / factor, text: short(value) });
+  const [factor] = shownIn(field.unit, scene), told = (value) =>
+    ({ value: value / factor, text: short(value) });
   if (factor === 1 || field.levels.length === 0) return field.levels.map(told);
   const [low, high] = [field.low * factor, field.high * factor];
   return (field.log ? logTicks(low, high) : linearTicks(low, high, 12)).map(told);
@@ -52,6 +67,7 @@ function unitsPart(changed) {
   select.addEventListener("change", () => { units.pure = select.value === "pure"; changed(); });
   return {
     write(words) { if (units.pure) words.set("units", "pure"); },
-    read(words) { units.pure = words.get("units") === "pure"; select.value = units.pure ? "pure" : "si"; changed(); },
+    read(words) { units.pure = words.get("units") === "pure"; select.value = units.pure ? "pure" : "si";
+      changed(); },
   };
 }

@@ -48,20 +48,19 @@ std::string kinds_told() {
   return numbered(names);
 }
 
-/// Every cliff a row; then every place of every curve.
-std::vector<Table> tables_of(const Boundaries& found) {
+TableColumn axis_column(const Axis& axis, const std::string& prefix, std::vector<double> values) {
+  const Option& option = *find_option("", axis.key);
+  const bool own = option.unit != "rad" && option.unit != "1";
+  return {prefix + axis.key, std::string(own ? "1" : option.unit), std::string(option.meaning),
+          std::move(values)};
+}
+
+/// Every cliff a row.
+Table cliffs_table(const Boundaries& found) {
   Table cliffs{numbered_rows(found.cliffs.size())};
   cliffs[0].name = "cliff";
   std::vector<std::string> axis_names;
   for (const Axis& axis : found.axes) axis_names.push_back(axis.key);
-  std::vector<std::vector<double>> places;
-  for (const Cliff& cliff : found.cliffs) places.push_back(place_of(found, cliff));
-  const auto axis_column = [&](std::size_t k, const std::string& prefix, const std::vector<double>& values) {
-    const Option& option = *find_option("", found.axes[k].key);
-    const bool own = option.unit != "rad" && option.unit != "1";
-    return TableColumn{prefix + found.axes[k].key, std::string(own ? "1" : option.unit),
-                       std::string(option.meaning), values};
-  };
   const auto add_numbers = [&](const std::string& name, const std::string& meaning, const auto& number) {
     std::vector<double> numbers;
     for (const Cliff& cliff : found.cliffs) numbers.push_back(static_cast<double>(number(cliff)));
@@ -69,8 +68,8 @@ std::vector<Table> tables_of(const Boundaries& found) {
   };
   for (std::size_t k = 0; k < found.axes.size(); ++k) {
     std::vector<double> values;
-    for (const std::vector<double>& place : places) values.push_back(place[k]);
-    cliffs.push_back(axis_column(k, "", values));
+    for (const Cliff& cliff : found.cliffs) values.push_back(place_of(found, cliff)[k]);
+    cliffs.push_back(axis_column(found.axes[k], "", std::move(values)));
   }
   add_numbers("along",
               fmt::format("axis along which it was bisected; its value is the largest one below; {}",
@@ -94,8 +93,11 @@ std::vector<Table> tables_of(const Boundaries& found) {
       for (const Cliff& cliff : found.cliffs) letters.push_back(phase_letters((cliff.*which).phase_sequence));
       cliffs.push_back({std::string(side) + "_phases", "1", fmt::format("phases {}", side), letters});
     }
-  if (found.curves.empty()) return {cliffs};
+  return cliffs;
+}
 
+/// Every place of every curve a row.
+Table curves_table(const Boundaries& found) {
   std::vector<double> curve, number, kinds;
   std::vector<std::vector<double>> at(found.axes.size());
   const auto add = [&](std::size_t i, double cliff, const std::vector<double>& place) {
@@ -104,14 +106,15 @@ std::vector<Table> tables_of(const Boundaries& found) {
     for (std::size_t k = 0; k < at.size(); ++k) at[k].push_back(place[k]);
   };
   const auto meeting = [&](std::size_t i, const std::vector<double>& there, std::size_t beside) {
-    std::vector<double> place = places[beside];
+    std::vector<double> place = place_of(found, found.cliffs[beside]);
     for (std::size_t k = 0; k < 2; ++k) place[found.plane[k]] = there[k];
     add(i, -1.0, place);
   };
   for (std::size_t i = 0; i < found.curves.size(); ++i) {
     const CliffCurve& one = found.curves[i];
     if (!one.meeting_from.empty()) meeting(i, one.meeting_from, one.cliffs.front());
-    for (const std::size_t cliff : one.cliffs) add(i, static_cast<double>(cliff), places[cliff]);
+    for (const std::size_t cliff : one.cliffs)
+      add(i, static_cast<double>(cliff), place_of(found, found.cliffs[cliff]));
     if (!one.meeting_to.empty()) meeting(i, one.meeting_to, one.cliffs.back());
   }
   Table curves{numbered_rows(curve.size())};
@@ -121,8 +124,14 @@ std::vector<Table> tables_of(const Boundaries& found) {
   curves.push_back({"curve_cliff", "1",
                     "row of the discontinuity; -1: three outcomes meet, known only to a cell of the grid",
                     number});
-  for (std::size_t k = 0; k < at.size(); ++k) curves.push_back(axis_column(k, "curve_", at[k]));
-  return {cliffs, curves};
+  for (std::size_t k = 0; k < at.size(); ++k)
+    curves.push_back(axis_column(found.axes[k], "curve_", std::move(at[k])));
+  return curves;
+}
+
+std::vector<Table> tables_of(const Boundaries& found) {
+  if (found.curves.empty()) return {cliffs_table(found)};
+  return {cliffs_table(found), curves_table(found)};
 }
 
 constexpr std::string_view csv_head = "curve,kind,along";

@@ -119,6 +119,63 @@ std::optional<PhaseEnd> SlidingLeg<S>::end_at_edge(const Slide& slide, const Con
 }
 
 template <class S>
+auto SlidingLeg<S>::Step::part(const S& share) const -> typename Panels::Taken {
+  if (!by_angle) return {std::nullopt, duration * share};
+  typename Panels::Stretch some = stretch;
+  some.span *= share;
+  return {some, S(0)};
+}
+
+template <class S>
+std::optional<PhaseEnd> SlidingLeg<S>::take_panel(const Slide& slide, const ContactState<S>& at, const S& way,
+                                                  const S& acceleration, const Bounds& bounds,
+                                                  Step& step) const {
+  Panel& panel = step.panel;
+  const auto shrink = [&] {
+    return std::isfinite(panel.excess) ? change(panel.excess, Panels::nodes, S(0.85)) : S(0.5);
+  };
+  step.by_angle = at.spin != S(0) || acceleration != S(0);
+  if (step.by_angle) {
+    step.length = std::min(step.length, bounds.longest);
+    for (;; step.length *= shrink()) {
+      step.stretch = Panels::stretch_of(at.spin, S(way * acceleration), step.length);
+      panels_.solve_by_angle(slide, at, step.stretch, panel);
+      if (panel.excess <= S(1)) return {};
+      const S least =
+          panel.spin_vanishes ? std::min(S(vanishing_angle), bounds.longest * S(0.1)) : bounds.shortest;
+      if (!(step.length > least)) break;
+    }
+  }
+  step.by_angle = false;
+  step.length = S(vanishing_angle);
+  for (;; step.duration *= shrink()) {
+    panels_.solve_by_time(slide, at, step.duration, panel);
+    if (panel.excess <= S(1)) return {};
+    if (!(step.duration > bounds.briefest))
+      return panel.indeterminate ? PhaseEnd::indeterminate : PhaseEnd::failed;
+  }
+}
+
+template <class S>
+bool SlidingLeg<S>::end_within(const S& place, Slide& slide, ContactState<S>& at, Step& step) const {
+  Panel& panel = step.panel;
+  if (step.by_angle) {
+    const typename Panels::Inside inside = panels_.state_at(slide, at, step.stretch, panel, place);
+    if (inside.is_sharp) {
+      at = inside.state;
+      return true;
+    }
+    step.stretch.span *= place;  // the panel once more, ending there
+    panels_.solve_by_angle(slide, at, step.stretch, panel);
+  } else {
+    panels_.solve_by_time(slide, at, S(step.duration * place), panel);
+  }
+  if (!std::isfinite(panel.excess)) return false;
+  at = panel.end;
+  return true;
+}
+
+template <class S>
 PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactState<S>& at, const S& runway,
                             int direction, std::vector<typename Panels::Taken>* taken) const {
   Slide slide{hoop, direction > 0 ? mu_kinetic : -mu_kinetic, {}, {}, {}};
@@ -128,96 +185,54 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   if (!(sliding_coefficients(hoop, released, friction).pivot > S(0))) return PhaseEnd::indeterminate;
   slide.free_force = free_normal_force(hoop, released, S(at.spin * at.spin));
   EdgesAround<S> edges;
-  Panel panel;
-  S length(first_angle), duration(first_time);
-  const auto shrink = [&](const Panel& tried) {
-    return std::isfinite(tried.excess) ? change(tried.excess, Panels::nodes, S(0.85)) : S(0.5);
-  };
+  Step step{S(first_angle), S(first_time)};
+  const Panel& panel = step.panel;
   int refined = 0, shortened = 0;
   for (int tried = 0; tried < most_panels; ++tried) {
     throw_if_stopped();
-    // By angle while the hoop turns and its spin does not vanish soon; else by time.
     slide.edge.reset();
     if (const auto* near = edges.near()) slide.edge = near->edge, slide.left = near->left;
     const Trig<S> phi = trig(at.angle);
     const SlidingMotion<S> start = sliding_motion(hoop, phi, S(at.spin * at.spin), friction,
                                                   slide.coefficients(hoop, phi, S(0)), slide.free_force);
     const S way = at.spin < S(0) || (at.spin == S(0) && start.angular < S(0)) ? S(-1) : S(1);
-    S longest(longest_angle);
+    // Near the edge panels are as short as what is left, to which all that happens there is in proportion.
+    Bounds bounds{S(longest_angle), S(shortest_angle) * (slide.edge ? slide.left : S(1) + std::abs(at.angle)),
+                  S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1))};
     if (has_edges) {
       edges.find(hoop, friction, at.angle, way);
       if (slide.edge && slide.edge->way == way)
         if (const auto end = end_at_edge(slide, at, start)) return *end;
       const S left = edges.on(way).left;
-      if (!std::isnan(left)) longest = std::min(longest, S(share_of_edge) * left);
+      if (!std::isnan(left)) bounds.longest = std::min(bounds.longest, S(share_of_edge) * left);
     }
-    // Near the edge panels are as short as what is left, to which all that happens there is in proportion.
-    const S shortest = S(shortest_angle) * (slide.edge ? slide.left : S(1) + std::abs(at.angle)),
-            briefest = S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1));
-    typename Panels::Stretch stretch{};
-    bool by_angle = at.spin != S(0) || start.angular != S(0);
-    if (by_angle) {
-      length = std::min(length, longest);
-      for (;; length *= shrink(panel)) {
-        stretch = Panels::stretch_of(at.spin, S(way * start.angular), length);
-        panels_.solve_by_angle(slide, at, stretch, panel);
-        by_angle = panel.excess <= S(1);
-        const S least = panel.spin_vanishes ? std::min(S(vanishing_angle), longest * S(0.1)) : shortest;
-        if (by_angle || !(length > least)) break;
-      }
-    }
-    if (!by_angle) {
-      length = S(vanishing_angle);
-      for (;; duration *= shrink(panel)) {
-        panels_.solve_by_time(slide, at, duration, panel);
-        if (panel.excess <= S(1)) break;
-        if (!(duration > briefest)) return panel.indeterminate ? PhaseEnd::indeterminate : PhaseEnd::failed;
-      }
-    }
+    if (const auto end = take_panel(slide, at, way, start.angular, bounds, step)) return *end;
     const Event event = first_event(runway, direction, panel);
     if (event.unsure && refined < 2) {  // the polynomials of shorter panels are right to rounding
-      (by_angle ? length : duration) *= S(0.5);
+      step.extent() *= S(0.5);
       ++refined;
       continue;
     }
     const S to = std::max(S(2) * event.place, S(0.5 * least_place));
-    const S shorter = by_angle ? stretch.angle(to) : duration * to;
+    const S shorter = step.by_angle ? step.stretch.angle(to) : step.duration * to;
     if (comes_too_soon(event.place, at.time, S(panel.end.time - at.time)) &&
-        shorter > (by_angle ? shortest : briefest) && ++shortened < most_shortened) {
-      (by_angle ? length : duration) = shorter;
+        shorter > (step.by_angle ? bounds.shortest : bounds.briefest) && ++shortened < most_shortened) {
+      step.extent() = shorter;
       continue;
     }
     refined = shortened = 0;
-    if (taken) {
-      const S share = std::min(event.place, S(1));
-      typename Panels::Stretch part = stretch;
-      part.span *= share;
-      taken->push_back(by_angle ? typename Panels::Taken{part, S(0)}
-                                : typename Panels::Taken{std::nullopt, duration * share});
-    }
+    if (taken) taken->push_back(step.part(std::min(event.place, S(1))));
     if (event.place > S(1)) {
       edges.turn(panel.turned);
       at = panel.end;
       slide.free_force = panel.free_force.end.value;
-      (by_angle ? length : duration) *=
-          std::max(change(panel.excess, Panels::nodes, S(2)), S(1));  // roundings do not shrink with it
-      length = std::min(length, S(longest_angle)), duration = std::min(duration, S(longest_time));
+      // Roundings do not shrink with it.
+      step.extent() *= std::max(change(panel.excess, Panels::nodes, S(2)), S(1));
+      step.length = std::min(step.length, S(longest_angle));
+      step.duration = std::min(step.duration, S(longest_time));
       continue;
     }
-    typename Panels::Inside inside{{}, false};
-    if (by_angle) inside = panels_.state_at(slide, at, stretch, panel, event.place);
-    if (inside.is_sharp) {
-      at = inside.state;
-    } else {  // the panel once more, ending there
-      if (by_angle) {
-        stretch.span *= event.place;
-        panels_.solve_by_angle(slide, at, stretch, panel);
-      } else {
-        panels_.solve_by_time(slide, at, S(duration * event.place), panel);
-      }
-      if (!std::isfinite(panel.excess)) return PhaseEnd::failed;
-      at = panel.end;
-    }
+    if (!end_within(event.place, slide, at, step)) return PhaseEnd::failed;
     if (event.end == PhaseEnd::slip_ends) at.slip = S(0);
     return event.end;
   }

@@ -66,6 +66,28 @@ class SlidingLeg {
     bool unsure;
   };
   Event first_event(const S& runway, int direction, const Panel& panel) const;
+
+  /// Panel after panel: the one in hand, and how long the next one may be.
+  struct Step {
+    S length, duration;  ///< an angle, or a time, whichever a panel goes by
+    bool by_angle = false;
+    typename Panels::Stretch stretch{};  ///< of the panel in hand, if by angle
+    Panel panel{};
+
+    S& extent() { return by_angle ? length : duration; }
+    /// The panel in hand as far as a share of it.
+    typename Panels::Taken part(const S& share) const;
+  };
+  /// Bounds of a panel's length.
+  struct Bounds {
+    S longest, shortest, briefest;  ///< angle, angle, time
+  };
+  /// Solves a panel that resolves what it holds: by angle while the hoop turns and its spin does not vanish
+  /// soon, else by time. Nothing: solved; else how the phase ends.
+  std::optional<PhaseEnd> take_panel(const Slide& slide, const ContactState<S>& at, const S& way,
+                                     const S& acceleration, const Bounds& bounds, Step& step) const;
+  /// Ends the slide within the panel in hand. False: it could not be solved.
+  bool end_within(const S& place, Slide& slide, ContactState<S>& at, Step& step) const;
   /// How a slide ends that has come to Painleve's edge; nothing: it has not, or something may happen yet.
   static std::optional<PhaseEnd> end_at_edge(const Slide& slide, const ContactState<S>& at,
                                              const SlidingMotion<S>& motion);

@@ -111,6 +111,44 @@ Importance importance(std::string of, std::span<const std::vector<double>> outpu
   return told;
 }
 
+/// A number of each hoop that importance is told of: whether it reaches the goals, whether it jumps, and of
+/// those that jump every quantity. The tally must outlive them.
+std::vector<HoopValue> hoop_values(const Spec& spec, const std::vector<const Field*>& quantities,
+                                   const MadeTally& tally) {
+  const auto of_solved = [](const auto& holds) {
+    return [holds](const Outcome& o) { return o.status == Status::failed ? nan : holds(o) ? 1.0 : 0.0; };
+  };
+  const auto jumps = [](const Outcome& o) { return o.status == Status::jumped; };
+  std::vector<HoopValue> values;
+  if (!spec.goals.empty())
+    values.push_back({"yield", of_solved([&tally](const Outcome& o) { return tally.reaches_all(o); })});
+  values.push_back({"jumps", of_solved(jumps)});
+  for (const Field* field : quantities)
+    values.push_back({std::string(field->name), [jumps, of = std::get<Quantity>(field->source).member](
+                                                    const Outcome& o) { return jumps(o) ? o.*of : nan; }});
+  return values;
+}
+
+/// Solves every sample of the pick-and-freeze plan; keeps the hoops and outcomes of the first one in the
+/// report, and tells the importance of the tolerances.
+void sample(const Workshop& workshop, const Spec& spec, const std::vector<HoopValue>& of,
+            ScatterReport& report) {
+  const auto plan = pick_and_freeze(spec.scatter.spreads.size());
+  std::vector values(of.size(), std::vector(plan.size(), std::vector<double>(workshop.samples())));
+  report.made.resize(workshop.samples()), report.outcomes.resize(workshop.samples());
+  for (std::size_t s = 0; s < plan.size(); ++s)
+    workshop.make(spec.scatter, plan[s],
+                  [&](std::size_t first, std::span<const Design> made, std::span<const Outcome> outcomes) {
+                    const auto place = static_cast<std::ptrdiff_t>(first);
+                    for (std::size_t k = 0; k < of.size(); ++k)
+                      std::ranges::transform(outcomes, values[k][s].begin() + place, of[k].value);
+                    if (s != 0) return;
+                    std::ranges::copy(made, report.made.begin() + place);
+                    std::ranges::copy(outcomes, report.outcomes.begin() + place);
+                  });
+  for (std::size_t k = 0; k < of.size(); ++k) report.importance.push_back(importance(of[k].of, values[k]));
+}
+
 }  // namespace
 
 ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
@@ -130,39 +168,7 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
   ScatterReport report;
   report.samples = workshop.samples();
 
-  const auto jumps = [](const Outcome& outcome) { return outcome.status == Status::jumped; };
-  const auto known = [](const Outcome& outcome, double value) {
-    return outcome.status == Status::failed ? nan : value;
-  };
-  std::vector<HoopValue> outputs;
-  if (!spec.goals.empty())
-    outputs.push_back(
-        {"yield", [&](const Outcome& o) { return known(o, tally.reaches_all(o) ? 1.0 : 0.0); }});
-  outputs.push_back({"jumps", [&](const Outcome& o) { return known(o, jumps(o) ? 1.0 : 0.0); }});
-  for (const Field* field : quantities)
-    outputs.push_back({std::string(field->name), [&jumps, of = std::get<Quantity>(field->source).member](
-                                                     const Outcome& o) { return jumps(o) ? o.*of : nan; }});
-
-  // Of each output, of each sample.
-  const auto samples = pick_and_freeze(spec.scatter.spreads.size());
-  std::vector<std::vector<std::vector<double>>> values(
-      outputs.size(),
-      std::vector<std::vector<double>>(samples.size(), std::vector<double>(workshop.samples())));
-  for (std::size_t s = 0; s < samples.size(); ++s) {
-    if (s == 0) report.made.resize(workshop.samples()), report.outcomes.resize(workshop.samples());
-    workshop.make(spec.scatter, samples[s],
-                  [&](std::size_t first, std::span<const Design> made, std::span<const Outcome> outcomes) {
-                    const auto place = static_cast<std::ptrdiff_t>(first);
-                    for (std::size_t k = 0; k < outputs.size(); ++k)
-                      std::ranges::transform(outcomes, values[k][s].begin() + place, outputs[k].value);
-                    if (s != 0) return;
-                    std::ranges::copy(made, report.made.begin() + place);
-                    std::ranges::copy(outcomes, report.outcomes.begin() + place);
-                  });
-  }
-  for (std::size_t k = 0; k < outputs.size(); ++k)
-    report.importance.push_back(importance(outputs[k].of, values[k]));
-
+  sample(workshop, spec, hoop_values(spec, quantities, tally), report);
   for (std::size_t i = 0; i < report.outcomes.size(); ++i)
     tally.add(report.outcomes[i], workshop.replicate(i));
   report.jumps = tally.jumps();

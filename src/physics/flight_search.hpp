@@ -13,6 +13,31 @@
 
 namespace leapmap {
 
+/// Where a high toss can neither land nor have its highest apex. With y between L(psi) = psi sin(phi) - gamma
+/// psi^2 / 2 - (1 + cos phi) and L + 2, no landing is possible while L > 0. And y less its parabola repeats
+/// every turn, so that the highest apex is at most half a turn from the vertex.
+template <class S>
+struct TossLeaps {
+  S vertex;
+  S half_width;  ///< of L > 0, about the vertex
+
+  TossLeaps(const Toss<S>& toss, const S& launch) {
+    using std::sqrt;
+    const S s = toss.phi.sin + launch;
+    const S clearance = s * s - S(2) * toss.gravity * (S(1) + toss.phi.cos);
+    vertex = s / toss.gravity;
+    half_width = clearance > S(0) ? sqrt(clearance) / toss.gravity : S(0);
+  }
+
+  /// From psi on the next place to look at, of a hoop that is above the plane.
+  S next_of_interest(const S& psi) const {
+    const S around = S(2) * std::numbers::pi_v<S>;
+    if (!(psi > vertex - half_width) || !(psi < vertex + half_width)) return psi;
+    if (psi < vertex - around) return vertex - around;
+    return psi > vertex + around ? vertex + half_width : psi;
+  }
+};
+
 /// Height, apex, landing and dip of a toss: psi in place of times, heights of rho in place of diameters.
 ///
 /// For one toss that rises and sinks many times. The walk goes from zero of y'' to zero of y''; of a fast
@@ -20,7 +45,7 @@ namespace leapmap {
 /// the start, v_n / (rho w) of a rebound.
 template <class S>
 Flight<S> walk_toss(const Toss<S>& toss, const S& launch = S(0)) {
-  using std::floor, std::sqrt;
+  using std::floor;
   const S pi = std::numbers::pi_v<S>, two_pi = S(2) * pi;
   const S resolution = S(2) * std::numeric_limits<S>::epsilon();
   const auto height_at = [&](const S& psi) {
@@ -47,20 +72,8 @@ Flight<S> walk_toss(const Toss<S>& toss, const S& launch = S(0)) {
     return true;
   };
 
-  // With y between L(psi) = psi sin(phi) - gamma psi^2 / 2 - (1 + cos phi) and L + 2, no landing is possible
-  // while L > 0. And y less its parabola repeats every turn, so that the highest apex is at most half a turn
-  // from the vertex.
-  const S s = toss.phi.sin + launch, vertex = s / toss.gravity, around = two_pi;
-  const S clearance = s * s - S(2) * toss.gravity * (S(1) + toss.phi.cos);
-  const S half_width =
-      clearance > S(0) ? sqrt(clearance) / toss.gravity : S(0);  // of L > 0, about the vertex
+  const TossLeaps<S> leaps(toss, launch);
   const S last = toss_end(toss, launch);
-  const auto next_of_interest = [&](const S& psi) {
-    if (!above || !(psi > vertex - half_width) || !(psi < vertex + half_width)) return psi;
-    if (psi < vertex - around) return vertex - around;
-    return psi > vertex + around ? vertex + half_width : psi;
-  };
-
   // The zeros of y'': odd knots are the maxima of y', even ones its minima.
   const auto knot_at = [&](long knot) {
     return toss.top + two_pi * S(knot / 2) - (knot % 2 == 0 ? S(2) * (pi - toss.opening) : S(0));
@@ -69,10 +82,11 @@ Flight<S> walk_toss(const Toss<S>& toss, const S& launch = S(0)) {
   for (long knot = 0; start <= last; ++knot) {
     // y(psi + 2 pi) - y(psi) = 2 pi (s - gamma (psi + pi)): from half a turn before the vertex on, every turn
     // lies below the one before, so that a hoop that was not above the plane in one of them never is.
-    if (!above && start > std::max(vertex, S(0)) + two_pi) return {};
+    if (!above && start > std::max(leaps.vertex, S(0)) + two_pi) return {};
     const S end = knot_at(knot);
     if (end <= start) continue;
-    const long leap = 2 * static_cast<long>(floor((next_of_interest(start) - toss.top) / two_pi)) + 1;
+    const S next = above ? leaps.next_of_interest(start) : start;
+    const long leap = 2 * static_cast<long>(floor((next - toss.top) / two_pi)) + 1;
     if (leap > knot) {
       start = knot_at(leap);
       climb_start = climb_at(start).value;

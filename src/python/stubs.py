@@ -12,18 +12,21 @@ NUMBERS = {"float64": "NDArray[np.float64]", "uint8": "NDArray[np.uint8]", "uint
 
 
 def arguments(arrays):
-    return "".join(f" {row['name']}: {'Numbers' if arrays and row['array'] else 'Number'} = ..., " for row in _core.parameters())
+    return "".join(f" {row['name']}: {'Numbers' if arrays and row['array'] else 'Number'} = ..., "
+                   for row in _core.parameters())
 
 
 def attributes(of):
     told = {np.ndarray: "NDArray[np.float64]", dict: "dict[str, Any]", list: "list[Any]"}
-    return "\n".join(f"    {field.name}: {told.get(field.type, field.type.__name__)}" for field in dataclasses.fields(of))
+    return "\n".join(
+        f"    {field.name}: {told.get(field.type, field.type.__name__)}" for field in dataclasses.fields(of))
 
 
 with open(sys.argv[1], "w", encoding="utf-8") as file:
     fields = "\n".join(f"    {row['name']}: {NUMBERS[row['type']]}" for row in _core.fields())
     statuses = "\n".join(f"    {status.name} = {status.value}" for status in leapmap.Status)
-    points = "\n".join(f"    {name}: NDArray[np.{'uint8' if name == 'phase' else 'float64'}]" for name in _results._POINTS)
+    points = "\n".join(
+        f"    {name}: NDArray[np.{'uint8' if name == 'phase' else 'float64'}]" for name in _results._POINTS)
     file.write(f'''# Written by src/python/stubs.py from leapmap's tables of parameters and fields.
 import os
 from enum import IntEnum
@@ -55,27 +58,31 @@ class Motion:
     def to_xarray(self) -> xarray.Dataset: ...
 
 def solve(*,{arguments(True)}
-          friction: str = ..., jumps: int = ..., settle: int = ..., most_period: int = ..., fields: Optional[Sequence[str]] = ...,
-          method: str = ..., tolerance: float = ..., max_steps: int = ..., threads: int = ...) -> Outcomes: ...
+          friction: str = ..., jumps: int = ..., settle: int = ..., most_period: int = ...,
+          fields: Optional[Sequence[str]] = ..., method: str = ..., tolerance: float = ...,
+          max_steps: int = ..., threads: int = ...) -> Outcomes: ...
 def gradient(*,{arguments(True)}
-             of: str = ..., friction: str = ..., tolerance: float = ..., threads: int = ...) -> dict[str, NDArray[np.float64]]: ...
+             of: str = ..., friction: str = ..., tolerance: float = ...,
+             threads: int = ...) -> dict[str, NDArray[np.float64]]: ...
 def trace(*,{arguments(False)}
-          interval: float = ..., friction: str = ..., method: str = ..., tolerance: float = ..., max_steps: int = ...) -> Motion: ...
+          interval: float = ..., friction: str = ..., method: str = ..., tolerance: float = ...,
+          max_steps: int = ...) -> Motion: ...
 def gaits(*,{arguments(False)}
           most_period: int = ..., tolerance: float = ...) -> dict[str, Any]: ...
 class Found:
 {attributes(leapmap.Found)}
     def __len__(self) -> int: ...
-def design(spec: Asked = ..., *, goal: Optional[Mapping[str, Any]] = ..., maximize: Names = ..., minimize: Names = ...,
-           scatter: Optional[Mapping[str, Any]] = ..., seed: int = ..., most: int = ..., sample: int = ..., threads: int = ...,
-           **overrides: Any) -> Found: ...
+def design(spec: Asked = ..., *, goal: Optional[Mapping[str, Any]] = ..., maximize: Names = ...,
+           minimize: Names = ..., scatter: Optional[Mapping[str, Any]] = ..., seed: int = ...,
+           most: int = ..., sample: int = ..., threads: int = ..., **overrides: Any) -> Found: ...
 class DesignProblem:
     names: list[str]
     bounds: list[tuple[float, float]]
     objectives: list[str]
     fixed: dict[str, Any]
-    def __init__(self, spec: Asked = ..., *, goal: Optional[Mapping[str, Any]] = ..., maximize: Names = ..., minimize: Names = ...,
-                 scatter: Optional[Mapping[str, Any]] = ..., threads: int = ..., **overrides: Any) -> None: ...
+    def __init__(self, spec: Asked = ..., *, goal: Optional[Mapping[str, Any]] = ..., maximize: Names = ...,
+                 minimize: Names = ..., scatter: Optional[Mapping[str, Any]] = ..., threads: int = ...,
+                 **overrides: Any) -> None: ...
     @property
     def evaluations(self) -> int: ...
     def judge(self, places: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
@@ -91,16 +98,18 @@ class FittedParameter:
 {attributes(leapmap.FittedParameter)}
 class Fit:
 {attributes(leapmap.Fit)}
-def fit(data: Union[Path, Mapping[str, Any]], spec: Asked = ..., *, model: str = ..., error: Optional[float] = ..., allow_gaps: bool = ...,
-        seed: int = ..., threads: int = ..., **overrides: Any) -> list[Fit]: ...
+def fit(data: Union[Path, Mapping[str, Any]], spec: Asked = ..., *, model: str = ...,
+        error: Optional[float] = ..., allow_gaps: bool = ..., seed: int = ..., threads: int = ...,
+        **overrides: Any) -> list[Fit]: ...
 class Estimate(NamedTuple):
     value: float
     error: float
 
 def scatter(spec: Asked = ..., *, scatter: Optional[Mapping[str, Any]] = ...,
-            goal: Optional[Mapping[str, Any]] = ..., threads: int = ..., **overrides: Any) -> dict[str, Any]: ...
-def sweep(spec: Union[Path, Mapping[str, Mapping[str, Any]]], file: Optional[Path] = ..., *, in_memory: bool = ...,
-          resume: bool = ..., overwrite: bool = ..., threads: int = ...,
+            goal: Optional[Mapping[str, Any]] = ..., threads: int = ...,
+            **overrides: Any) -> dict[str, Any]: ...
+def sweep(spec: Union[Path, Mapping[str, Mapping[str, Any]]], file: Optional[Path] = ..., *,
+          in_memory: bool = ..., resume: bool = ..., overwrite: bool = ..., threads: int = ...,
           progress: Optional[Callable[[int, int], Any]] = ..., **overrides: Any) -> xarray.Dataset: ...
 def load(path: Path) -> xarray.Dataset: ...
 def phase_letters(sequence: int) -> str: ...

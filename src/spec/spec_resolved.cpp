@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "leapmap/outcome.hpp"
@@ -23,79 +24,82 @@ std::string number(double value) {
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
 }
 
-/// spaced: axes by their bounds where those give the same bits.
+std::string quoted_text(const std::string& value) {
+  std::ostringstream quoted;
+  quoted << toml::value<std::string>(value);
+  return quoted.str();
+}
+
+/// spaced: by its bounds where those give the same bits.
+std::string text_of(const Axis& axis, bool spaced) {
+  const auto scale = [](bool log) { return log ? ", scale = \"log\"" : ""; };
+  if (axis.free)
+    return fmt::format("{{ from = {}, to = {}{} }}", number(axis.values.front()), number(axis.values.back()),
+                       scale(axis.log));
+  if (const auto spacing = spaced ? spacing_of(axis.values) : std::nullopt)
+    return fmt::format("{{ from = {}, to = {}, count = {}{} }}", number(spacing->from), number(spacing->to),
+                       spacing->count, scale(spacing->log));
+  std::vector<std::string> values;
+  for (const double value : axis.values) values.push_back(number(value));
+  return fmt::format("{{ values = [{}] }}", fmt::join(values, ", "));
+}
+
+/// The value of an option; unset: its line is left out.
+std::optional<std::string> value_of(const Option& option, Spec& spec) {
+  return std::visit(
+      [&](const auto& slot) -> std::optional<std::string> {
+        using Slot = std::decay_t<decltype(slot)>;
+        if constexpr (std::is_same_v<Slot, ParameterSlot>) {
+          const double value = spec.design.*slot.member;
+          if (std::isnan(value)) return std::nullopt;  // it follows another parameter
+          return number(value);
+        } else if constexpr (std::is_same_v<Slot, SceneSlot>) {
+          return number(spec.scene.*slot.member);
+        } else if constexpr (std::is_same_v<Slot, FrictionSlot>) {
+          return quoted_text(std::string(model_of(spec.scene).name));
+        } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
+          return number(slot(spec));
+        } else if constexpr (std::is_same_v<Slot, SpreadSlot>) {
+          const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
+          if (spread == spec.scatter.spreads.end()) return std::nullopt;
+          return leapmap::text_of(*spread);
+        } else if constexpr (std::is_same_v<Slot, GoalSlot>) {
+          const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
+          if (goal == spec.goals.end()) return std::nullopt;
+          return leapmap::text_of(*goal);
+        } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {
+          if (option.section == "scatter" && spec.scatter.spreads.empty()) return std::nullopt;
+          return fmt::format("{}", slot(spec));
+        } else if constexpr (std::is_same_v<Slot, TextSlot>) {
+          if (slot(spec).empty()) return std::nullopt;
+          return quoted_text(slot(spec));
+        } else {
+          if (slot(spec).empty()) return std::nullopt;
+          std::vector<std::string> names;
+          for (const std::string& name : slot(spec)) names.push_back(quoted_text(name));
+          return fmt::format("[{}]", fmt::join(names, ", "));
+        }
+      },
+      option.slot);
+}
+
 std::string text_of(const Spec& original, bool spaced) {
   Spec spec = original;
   spec.numerics.method = resolved_method(spec.numerics);
   std::string text;
   std::string_view section;
-  const auto line_below = [&](std::string_view header, std::string_view key, const std::string& value) {
+  const auto line = [&](std::string_view header, std::string_view key, const std::string& value) {
     if (header != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section = header);
     text += fmt::format("{} = {}\n", key, value);
   };
-  const auto line = [&](const Option& option, const std::string& value) {
-    line_below(option.section, option.key, value);
-  };
-  const auto string = [](const std::string& value) {
-    std::ostringstream quoted_text;
-    quoted_text << toml::value<std::string>(value);
-    return quoted_text.str();
-  };
-  const auto axes = [&] {  // in spec order, which is the order of the map's dimensions
-    for (const Axis& axis : spec.axes) {
-      if (axis.free) {
-        line_below("design", axis.key,
-                   fmt::format("{{ from = {}, to = {}{} }}", number(axis.values.front()),
-                               number(axis.values.back()), axis.log ? ", scale = \"log\"" : ""));
-        continue;
-      }
-      if (const auto spacing = spaced ? spacing_of(axis.values) : std::nullopt) {
-        line_below("design", axis.key,
-                   fmt::format("{{ from = {}, to = {}, count = {}{} }}", number(spacing->from),
-                               number(spacing->to), spacing->count, spacing->log ? ", scale = \"log\"" : ""));
-        continue;
-      }
-      std::vector<std::string> values;
-      for (const double value : axis.values) values.push_back(number(value));
-      line_below("design", axis.key, fmt::format("{{ values = [{}] }}", fmt::join(values, ", ")));
-    }
-  };
   for (const Option& option : spec_options()) {
     if (option.section == "gait" && spec.scene.settle == 0) continue;
-    if (option.key == "points") axes();  // after all numbers of the section
+    if (option.key ==
+        "points")  // axes after all numbers of the section, in the order of the map's dimensions
+      for (const Axis& axis : spec.axes) line("design", axis.key, text_of(axis, spaced));
     const bool parameter = std::holds_alternative<ParameterSlot>(option.slot);
     if (parameter && std::ranges::find(spec.axes, option.key, &Axis::key) != spec.axes.end()) continue;
-    std::visit(
-        [&](const auto& slot) {
-          using Slot = std::decay_t<decltype(slot)>;
-          if constexpr (std::is_same_v<Slot, ParameterSlot>) {
-            // NaN: follows another parameter, and is left out.
-            if (const double value = spec.design.*slot.member; !std::isnan(value))
-              line(option, number(value));
-          } else if constexpr (std::is_same_v<Slot, SceneSlot>) {
-            line(option, number(spec.scene.*slot.member));
-          } else if constexpr (std::is_same_v<Slot, FrictionSlot>) {
-            line(option, string(std::string(model_of(spec.scene).name)));
-          } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
-            line(option, number(slot(spec)));
-          } else if constexpr (std::is_same_v<Slot, SpreadSlot>) {
-            const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
-            if (spread != spec.scatter.spreads.end()) line(option, leapmap::text_of(*spread));
-          } else if constexpr (std::is_same_v<Slot, GoalSlot>) {
-            const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
-            if (goal != spec.goals.end()) line(option, leapmap::text_of(*goal));
-          } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {
-            if (option.section == "scatter" && spec.scatter.spreads.empty()) return;
-            line(option, fmt::format("{}", slot(spec)));
-          } else if constexpr (std::is_same_v<Slot, TextSlot>) {
-            if (!slot(spec).empty()) line(option, string(slot(spec)));
-          } else if (!slot(spec).empty()) {
-            std::vector<std::string> names;
-            for (const std::string& name : slot(spec)) names.push_back(string(name));
-            line(option, fmt::format("[{}]", fmt::join(names, ", ")));
-          }
-        },
-        option.slot);
+    if (const auto value = value_of(option, spec)) line(option.section, option.key, *value);
   }
   return text;
 }

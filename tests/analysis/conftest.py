@@ -8,9 +8,10 @@ from selenium.webdriver.chrome.service import Service
 def browser(tmp_path_factory):
     options = Options()
     options.binary_location = "/usr/bin/chromium"
-    for switch in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-dev-shm-usage",
-                   "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
-                   "--window-size=1400,1300", f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
+    for switch in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+                   "--disable-dev-shm-usage", "--disable-background-networking", "--disable-component-update",
+                   "--disable-sync", "--hide-scrollbars", "--window-size=1400,1300",
+                   f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
         options.add_argument(switch)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The charts, drawn from small maps and read back from their SVG: what they must contain, not merely that they exist."""
+"""The charts, drawn from small maps and read back from their SVG: what they must contain, not merely that
+they exist."""
 import json
 import os
 import re
@@ -35,17 +36,21 @@ def charts(tmp_path_factory):
     folder = tmp_path_factory.mktemp("charts")
     done = draw("design_chart.py", sweep(folder, CHART), "-o", folder / "chart")
     assert done.returncode == 0, done.stderr
-    assert done.stdout.split() == [f"{folder}/chart_{f}.{e}" for f in ("jump_height", "jump_time", "agility") for e in ("png", "svg", "pdf")]
+    assert done.stdout.split() == [
+        f"{folder}/chart_{f}.{e}" for f in ("jump_height", "jump_time", "agility")
+        for e in ("png", "svg", "pdf")
+    ]
     return folder
 
 
-@pytest.mark.parametrize("field,label,level", [("jump_height", "jump height [hoop diameters]", "0.75"),
-                                               ("jump_time", "time from release to the jump [s]", "0.4"),
-                                               ("agility", "agility: height over time from release to apex [m/s]", "0.05")])
+@pytest.mark.parametrize("field,label,level",
+                         [("jump_height", "jump height [hoop diameters]", "0.75"),
+                          ("jump_time", "time from release to the jump [s]", "0.4"),
+                          ("agility", "agility: height over time from release to apex [m/s]", "0.05")])
 def test_the_design_chart_has_units_panels_levels_and_marks(field, label, level, charts):
     words = texts(charts / f"chart_{field}.svg")
-    for word in ("slope [degrees]", label, "L/R = 0.7", "L/R = 1", "first lift-off below the threshold", "no jump within the rolling limit",
-                 "the paper's hoop"):
+    for word in ("slope [degrees]", label, "L/R = 0.7", "L/R = 1", "first lift-off below the threshold",
+                 "no jump within the rolling limit", "the paper's hoop"):
         assert word in words, word
     assert "mass ratio mₚ/m" in words
     assert words.count(level) >= 2, "an isoline's label, besides the colour bar's"
@@ -67,19 +72,24 @@ def test_charts_are_the_same_bytes_for_the_same_map(charts, tmp_path):
     assert draw("design_chart.py", charts / "map.h5", "-o", tmp_path / "chart").returncode == 0
     for field in ("jump_height", "agility"):
         for ending in ("png", "svg", "pdf"):
-            assert (tmp_path / f"chart_{field}.{ending}").read_bytes() == (charts / f"chart_{field}.{ending}").read_bytes(), ending
+            assert (tmp_path / f"chart_{field}.{ending}").read_bytes() == (
+                charts / f"chart_{field}.{ending}").read_bytes(), ending
 
 
 def test_any_two_axes_of_any_map_can_be_drawn(charts, tmp_path):
-    done = draw("design_chart.py", charts / "map.h5", "-x", "mass_ratio", "-y", "offset_ratio", "--at", "slope=23", "-o", tmp_path / "chart")
+    done = draw("design_chart.py", charts / "map.h5", "-x", "mass_ratio", "-y", "offset_ratio", "--at",
+                "slope=23", "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "chart_jump_height.svg")
     assert "offset ratio L/R" in words and any(w.startswith("mass ratio") for w in words)
     assert any("slope = 22.3" in w or "slope = 23.1" in w for w in words), "the nearest slope there is"
-    for wrong, word in ((["--at", "weight=3"], "no axis weight"), (["--at", "slope=steep"], "not a number"), (["-x", "weight"], "no axis weight"),
-                        (["-x", "slope", "-y", "slope"], "both slope"), (["-x", "mass_ratio", "-y", "offset_ratio"], "--at")):
+    for wrong, word in ((["--at", "weight=3"], "no axis weight"),
+                        (["--at", "slope=steep"], "not a number"), (["-x", "weight"], "no axis weight"), ([
+                            "-x", "slope", "-y", "slope"
+                        ], "both slope"), (["-x", "mass_ratio", "-y", "offset_ratio"], "--at")):
         refused = draw("design_chart.py", charts / "map.h5", *wrong, "-o", tmp_path / "no")
-        assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and word in refused.stderr, refused.stderr
+        assert refused.returncode == 2 and refused.stderr.count(
+            "\n") == 1 and word in refused.stderr, refused.stderr
 
 
 def test_the_status_chart_tells_how_designs_end_and_how_many(charts, tmp_path):
@@ -100,17 +110,23 @@ def test_the_cut_chart_draws_a_line_for_each_value_with_units_and_what_is_fixed(
     done = draw("cut_chart.py", charts / "map.h5", "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "chart.svg")
-    for word in ("[hoop diameters]", "[m/s]", "slope [degrees]", "mₚ/m = 0.1", "mₚ/m = 20", "dashed: first lift-off below the threshold"):
+    for word in ("[hoop diameters]", "[m/s]", "slope [degrees]", "mₚ/m = 0.1", "mₚ/m = 20",
+                 "dashed: first lift-off below the threshold"):
         assert word in words, (word, words)
     assert any("L/R = 1" in w for w in words) and any("R = 41 mm" in w for w in words)
-    done = draw("cut_chart.py", charts / "map.h5", "--along", "mass_ratio", "--by", "offset_ratio", "--at", "slope=30", "--fields", "dip", "-o", tmp_path / "dip")
+    done = draw("cut_chart.py", charts / "map.h5", "--along", "mass_ratio", "--by", "offset_ratio", "--at",
+                "slope=30", "--fields", "dip", "-o", tmp_path / "dip")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "dip.svg")
-    assert "lowest height right after lift-off" in words and "L/R = 0.7" in words and any("slope = 30" in w or "slope = 29.6" in w for w in words)
-    for wrong, word in ((["--along", "mu_static"], "mu_static"), (["--by", "slope"], "both slope"), (["--by", "weight"], "no other axis"), (["--values", "99"], "beyond the map"),
-                        (["--at", "offset_ratio=3"], "beyond the map"), (["--fields", "beauty"], "beauty")):
+    assert "lowest height right after lift-off" in words and "L/R = 0.7" in words
+    assert any("slope = 30" in w or "slope = 29.6" in w for w in words)
+    for wrong, word in ((["--along", "mu_static"], "mu_static"), (["--by", "slope"], "both slope"),
+                        (["--by", "weight"], "no other axis"), (["--values", "99"], "beyond the map"), ([
+                            "--at", "offset_ratio=3"
+                        ], "beyond the map"), (["--fields", "beauty"], "beauty")):
         refused = draw("cut_chart.py", charts / "map.h5", *wrong, "-o", tmp_path / "no")
-        assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and word in refused.stderr, refused.stderr
+        assert refused.returncode == 2 and refused.stderr.count(
+            "\n") == 1 and word in refused.stderr, refused.stderr
 
 
 def colours_of(png, colour):
@@ -119,25 +135,34 @@ def colours_of(png, colour):
 
 
 def test_a_coarse_logarithmic_axis_fills_its_panel_row_by_row(tmp_path):
-    path = sweep(tmp_path, "[design]\nslope = { values = [0.1, 0.4, 0.7] }\nmass_ratio = { values = [0.1, 1, 10, 100] }\n[numerics]\naudit = 0\n")
+    path = sweep(
+        tmp_path,
+        "[design]\nslope = { values = [0.1, 0.4, 0.7] }\nmass_ratio = { values = [0.1, 1, 10, 100] }\n"
+        "[numerics]\naudit = 0\n"
+    )
     for script, output in (("status_chart.py", "chart.png"), ("design_chart.py", "chart_jump_height.png")):
         done = draw(script, path, "-o", tmp_path / "chart")
         assert done.returncode == 0 and done.stderr == "", done.stderr
         assert "100" in texts(tmp_path / output.replace("png", "svg"))
     # Each design is a twelfth of the panel, which is some 60 % of the picture.
     with h5py.File(path) as file:
-        shares = {"#1b7837": (file["spurious_first_jump"][()] == 0).mean(), "#fdae61": (file["spurious_first_jump"][()] == 1)[file["status"][()] == 1].sum() / 12}
+        shares = {
+            "#1b7837": (file["spurious_first_jump"][()] == 0).mean(),
+            "#fdae61": (file["spurious_first_jump"][()] == 1)[file["status"][()] == 1].sum() / 12
+        }
     seen = {colour: colours_of(tmp_path / "chart.png", colour) for colour in shares}
     assert seen["#1b7837"] / seen["#fdae61"] == pytest.approx(shares["#1b7837"] / shares["#fdae61"], rel=0.05)
 
 
 def test_the_axis_to_fix_that_a_refusal_names_can_be_typed_as_it_stands(tmp_path):
-    path = sweep(tmp_path, '[design]\nslope = { from = 0.2, to = 0.9, count = 14 }\n'
-                           "mass_ratio = { values = [1, 3] }\noffset_ratio = { values = [0.6, 1] }\n[numerics]\naudit = 0\n")
+    path = sweep(
+        tmp_path, '[design]\nslope = { from = 0.2, to = 0.9, count = 14 }\n'
+        "mass_ratio = { values = [1, 3] }\noffset_ratio = { values = [0.6, 1] }\n[numerics]\naudit = 0\n")
     refused = draw("design_chart.py", path, "-x", "mass_ratio", "-y", "offset_ratio", "-o", tmp_path / "x")
     assert refused.returncode == 2 and "--at slope=11.46°" in refused.stderr, refused.stderr
     named = refused.stderr.split("--at ")[1].split()[0]
-    assert draw("design_chart.py", path, "-x", "mass_ratio", "-y", "offset_ratio", "--at", named, "-o", tmp_path / "x").returncode == 0
+    assert draw("design_chart.py", path, "-x", "mass_ratio", "-y", "offset_ratio", "--at", named, "-o",
+                tmp_path / "x").returncode == 0
 
 
 @pytest.mark.parametrize("damage", ["spin", "phase", "candidate_time", "status", "spec"])
@@ -149,21 +174,25 @@ def test_a_damaged_trace_is_refused_with_one_line_that_names_it(damage, tmp_path
         else:
             del file.attrs[damage]
     done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "x")
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and str(tmp_path / "trace.h5") in done.stderr, done.stderr
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and str(
+        tmp_path / "trace.h5") in done.stderr, done.stderr
 
 
 def test_designs_without_a_jump_are_told_apart_and_the_star_needs_its_panel(tmp_path):
-    spec = CHART.replace("offset_ratio = { values = [0.7, 1.0] }", 'release_angle = { values = ["30 deg", "190 deg"] }')
+    spec = CHART.replace("offset_ratio = { values = [0.7, 1.0] }",
+                         'release_angle = { values = ["30 deg", "190 deg"] }')
     done = draw("design_chart.py", sweep(tmp_path, spec), "-o", tmp_path / "chart.png")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "chart_jump_height.svg")
-    assert "trapped (stalled)" in words and "no jump within the rolling limit" in words and "release angle = 30°" in words
+    assert "trapped (stalled)" in words and "no jump within the rolling limit" in words
+    assert "release angle = 30°" in words
     assert "the paper's hoop" not in words, "no panel has its release"
     assert any("L/R = 1" in w and "rolling limit 5 revolutions" in w for w in words), "what is fixed is told"
 
 
-@pytest.mark.parametrize("design,word", [("slope = { values = [0.01, 0.02] }\nmass_ratio = { values = [0.1, 0.2] }", "jumps"),
-                                         ("slope = { values = [0.4] }\nmass_ratio = { values = [1, 2] }", "at least two")])
+@pytest.mark.parametrize(
+    "design,word", [("slope = { values = [0.01, 0.02] }\nmass_ratio = { values = [0.1, 0.2] }", "jumps"),
+                    ("slope = { values = [0.4] }\nmass_ratio = { values = [1, 2] }", "at least two")])
 def test_what_cannot_be_drawn_is_refused_with_one_line(design, word, tmp_path):
     done = draw("design_chart.py", sweep(tmp_path, f"[design]\n{design}\n"), "-o", tmp_path / "x")
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
@@ -174,8 +203,9 @@ def test_the_trace_chart_marks_both_candidates(tmp_path):
     done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "figure")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "figure.svg")
-    for word in ("angle φ [degrees]", "spin [rad/s]", "normal force [weights]", "friction [weights]", "height y [mm]",
-                 "time since release [s]", "lift-off 0.1700 s", "jump 0.3200 s", "flies 0.0074 diameters", "flies 0.997 diameters"):
+    for word in ("angle φ [degrees]", "spin [rad/s]", "normal force [weights]", "friction [weights]",
+                 "height y [mm]", "time since release [s]", "lift-off 0.1700 s", "jump 0.3200 s",
+                 "flies 0.0074 diameters", "flies 0.997 diameters"):
         assert word in words, word
 
 
@@ -192,10 +222,12 @@ def test_the_jump_chart_shows_the_hoop_where_the_trace_has_it(tmp_path):
     slope = jump_chart.Slope(0.4)
     centre, mass = jump_chart.markers(trace, trace.numbers(), slope)
     assert np.allclose(np.linalg.norm(mass - centre, axis=1), 0.041), "the mass is on the rim"
-    assert np.allclose(centre @ slope.away - 0.041, trace.fields["y"]), "the lowest point is y above the plane"
+    assert np.allclose(centre @ slope.away - 0.041,
+                       trace.fields["y"]), "the lowest point is y above the plane"
     rolls = trace.code("phase", "rolling")
     at_plane = rolls & (np.cos(trace.fields["phi"]) > 0.95)
-    assert at_plane.any() and (mass[at_plane] @ slope.away < 2.1e-3).all(), "phi = 0: the mass touches the plane"
+    assert at_plane.any() and (mass[at_plane] @ slope.away <
+                               2.1e-3).all(), "phi = 0: the mass touches the plane"
 
 
 def test_the_trace_charts_mark_what_the_paper_published(tmp_path):
@@ -206,18 +238,22 @@ def test_the_trace_charts_mark_what_the_paper_published(tmp_path):
     for word in ("paper: about 0.17 s", "paper: about 0.30 s", "seen 0.330 s"):
         assert word in words, word
     words = texts(tmp_path / "figure_flight.svg")
-    for word in ("Δx along the plane [mm]", "Δy above the plane [mm]", "Δφ [degrees]", "time since lift-off [s]", "measured apex 0.129 s",
-                 "measured landing 0.198 s", "one diameter", "apex 0.997 diameters", "lands after 0.2003 s"):
+    for word in ("Δx along the plane [mm]", "Δy above the plane [mm]", "Δφ [degrees]",
+                 "time since lift-off [s]", "measured apex 0.129 s", "measured landing 0.198 s",
+                 "one diameter", "apex 0.997 diameters", "lands after 0.2003 s"):
         assert word in words, (word, words)
     unmarked = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "plain")
-    assert unmarked.returncode == 0 and not any("paper" in w or "measured" in w for w in texts(tmp_path / "plain.svg") + texts(tmp_path / "plain_flight.svg"))
+    assert unmarked.returncode == 0
+    assert not any("paper" in w or "measured" in w
+                   for w in texts(tmp_path / "plain.svg") + texts(tmp_path / "plain_flight.svg"))
 
 
 def test_the_papers_times_are_not_marked_on_another_release(tmp_path):
     leapmap("hop", "--trace", tmp_path / "trace.h5")
     done = draw("trace_chart.py", tmp_path / "trace.h5", "--paper", "-o", tmp_path / "figure")
     assert done.returncode == 0 and "another moment" in done.stderr
-    assert not any("about" in w for w in texts(tmp_path / "figure.svg")) and "one diameter" in texts(tmp_path / "figure_flight.svg")
+    assert not any("about" in w for w in texts(tmp_path / "figure.svg"))
+    assert "one diameter" in texts(tmp_path / "figure_flight.svg")
 
 
 def test_a_trace_with_friction_has_its_flight_drawn_from_the_jump_on(tmp_path):
@@ -226,29 +262,41 @@ def test_a_trace_with_friction_has_its_flight_drawn_from_the_jump_on(tmp_path):
     assert done.returncode == 0, done.stderr
     told = json.loads(leapmap("hop", "--set", "friction=coulomb", "--mu-static", "0.4", "--json").stdout)
     words = texts(tmp_path / "figure_flight.svg")
-    assert f"lands after {told['flight_time']:.4f} s" in words and f"apex {told['jump_height']:.3f} diameters" in words, words
+    assert f"lands after {told['flight_time']:.4f} s" in words, words
+    assert f"apex {told['jump_height']:.3f} diameters" in words, words
 
 
 def test_a_trace_of_several_jumps_marks_each_and_its_flight_chart_is_of_the_first(tmp_path):
-    leapmap("hop", "--slope", "12 deg", "--mass-ratio", "3", "--offset-ratio", "0.5", "--jumps", "3", "--set", "runway=20", "--trace", tmp_path / "trace.h5")
+    leapmap("hop", "--slope", "12 deg", "--mass-ratio", "3", "--offset-ratio", "0.5", "--jumps", "3", "--set",
+            "runway=20", "--trace", tmp_path / "trace.h5")
     done = draw("trace_chart.py", tmp_path / "trace.h5", "-o", tmp_path / "figure")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "figure.svg")
-    assert sum(word.startswith("jump ") for word in words) == 3 and not any(word.startswith("candidate") for word in words)
+    assert sum(word.startswith("jump ") for word in words) == 3
+    assert not any(word.startswith("candidate") for word in words)
     assert "apex 0.142 diameters" in texts(tmp_path / "figure_flight.svg")
 
 
 def test_the_period_chart_tells_periods_and_of_one_hoop_which_release_leads_to_which_gait(tmp_path):
     spec = "[scene]\nrunway = 20.0\n[design]\n{}\n[gait]\nsettle = 200\n"
-    path = sweep(tmp_path, spec.format("slope = { from = 0.1, to = 0.4, count = 24 }\nmass_ratio = { from = 1, to = 9, count = 20 }\noffset_ratio = 0.5"))
+    path = sweep(
+        tmp_path,
+        spec.format(
+            "slope = { from = 0.1, to = 0.4, count = 24 }\nmass_ratio = { from = 1, to = 9, count = 20 }\n"
+            "offset_ratio = 0.5"
+        ))
     done = draw("period_chart.py", path, "-o", tmp_path / "periods")
     assert done.returncode == 0, done.stderr
     words = [w for w in texts(tmp_path / "periods.svg") if w.endswith("%")]
     with h5py.File(path) as m:
         period = m["gait_period"][:]
-    assert f"period 1: {100 * (period == 1).mean():.3g} %" in words and f"the jumps end: {100 * (period == 0).mean():.3g} %" in words
-    hoop = "slope = 0.4057\nmass_ratio = 11.29\noffset_ratio = 0.4428\nrelease_angle = { from = \"0 deg\", to = \"360 deg\", count = 25 }\nrelease_spin = { from = -1, to = 1, count = 15 }"
-    done = draw("period_chart.py", sweep(tmp_path, spec.format(hoop), name="basins.h5"), "-x", "release_angle", "-o", tmp_path / "basins")
+    assert f"period 1: {100 * (period == 1).mean():.3g} %" in words
+    assert f"the jumps end: {100 * (period == 0).mean():.3g} %" in words
+    hoop = ("slope = 0.4057\nmass_ratio = 11.29\noffset_ratio = 0.4428\n"
+            "release_angle = { from = \"0 deg\", to = \"360 deg\", count = 25 }\n"
+            "release_spin = { from = -1, to = 1, count = 15 }")
+    done = draw("period_chart.py", sweep(tmp_path, spec.format(hoop), name="basins.h5"), "-x",
+                "release_angle", "-o", tmp_path / "basins")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "basins.svg")
     for gait in ("0.328 diameters", "0.735 diameters", "0.992 diameters, period 2"):
@@ -280,24 +328,31 @@ def test_a_map_without_the_axes_of_a_chart_is_refused_with_one_line(tmp_path):
 
 
 def test_adequacy_compares_two_maps_panel_by_panel_and_refuses_others(tmp_path):
-    axes = 'slope = { from = "5 deg", to = "45 deg", count = 12 }\nmass_ratio = { from = 0.2, to = 10, count = 11, scale = "log" }\n'
+    axes = ('slope = { from = "5 deg", to = "45 deg", count = 12 }\n'
+            'mass_ratio = { from = 0.2, to = 10, count = 11, scale = "log" }\n')
     rigid = sweep(tmp_path, f"[design]\n{axes}[numerics]\naudit = 0\n", name="rigid.h5")
-    slipping = sweep(tmp_path, f'[scene]\nfriction = "coulomb"\nmu_static = {{ values = [0.2, 1.5] }}\n[design]\n{axes}[numerics]\naudit = 0\n',
-                     name="slipping.h5")
+    slipping = sweep(
+        tmp_path,
+        f'[scene]\nfriction = "coulomb"\nmu_static = {{ values = [0.2, 1.5] }}\n[design]\n{axes}[numerics]\n'
+        'audit = 0\n',
+        name="slipping.h5")
     done = draw("adequacy_chart.py", rigid, slipping, "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     found = " ".join(texts(tmp_path / "chart.svg"))
-    assert "μ = 0.2" in found and "μ = 1.5" in found and "height within 5 %" in found and "mass ratio" in found
+    assert "μ = 0.2" in found and "μ = 1.5" in found and "height within 5 %" in found
+    assert "mass ratio" in found
     swapped = draw("adequacy_chart.py", slipping, rigid, "-o", tmp_path / "no")
     assert swapped.returncode == 2 and swapped.stderr.count("\n") == 1 and "comes first" in swapped.stderr
-    other = sweep(tmp_path, f"[design]\n{axes.replace('45 deg', '40 deg')}[numerics]\naudit = 0\n", name="other.h5")
+    other = sweep(tmp_path, f"[design]\n{axes.replace('45 deg', '40 deg')}[numerics]\naudit = 0\n",
+                  name="other.h5")
     refused = draw("adequacy_chart.py", other, slipping, "-o", tmp_path / "no")
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "slope" in refused.stderr
 
 
 def test_the_experiment_chart_marks_what_was_measured(tmp_path):
-    path = sweep(tmp_path, '[scene]\nfriction = "coulomb"\nmu_static = { from = 0.3, to = 0.5, count = 21 }\n'
-                           '[design]\nrelease_angle = { from = "178 deg", to = "210 deg", count = 33 }\n[numerics]\naudit = 0\n')
+    path = sweep(
+        tmp_path, '[scene]\nfriction = "coulomb"\nmu_static = { from = 0.3, to = 0.5, count = 21 }\n'
+        '[design]\nrelease_angle = { from = "178 deg", to = "210 deg", count = 33 }\n[numerics]\naudit = 0\n')
     done = draw("experiment_chart.py", path, "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     found = " ".join(texts(tmp_path / "chart.svg"))
@@ -305,7 +360,8 @@ def test_the_experiment_chart_marks_what_was_measured(tmp_path):
 
 
 def test_a_list_of_designs_is_drawn_a_dot_each_over_a_parameter_that_varies(tmp_path):
-    (tmp_path / "designs.csv").write_text("slope,mass_ratio\n" + "".join(f"{5 + i} deg,{0.05 * 1.2**i}\n" for i in range(25)))
+    (tmp_path / "designs.csv").write_text("slope,mass_ratio\n" +
+                                          "".join(f"{5 + i} deg,{0.05 * 1.2**i}\n" for i in range(25)))
     path = sweep(tmp_path, '[design]\npoints = "designs.csv"\n')
     done = draw("list_chart.py", path, "-o", tmp_path / "list")
     assert done.returncode == 0, done.stderr
@@ -319,7 +375,8 @@ def test_a_list_of_designs_is_drawn_a_dot_each_over_a_parameter_that_varies(tmp_
     dots = [use for use in svg.iter("{http://www.w3.org/2000/svg}use") if "#e08214" in use.get("style", "")]
     assert len(dots) == 3 * (jumps & spurious).sum() + 1, "three panels, and the legend's"
     rows = (tmp_path / "designs.csv").read_text().splitlines()
-    (tmp_path / "designs.csv").write_text("label," + rows[0] + "\n" + "".join(f'"$hoop, {i}",{row}\n' for i, row in enumerate(rows[1:])))
+    (tmp_path / "designs.csv").write_text("label," + rows[0] + "\n" +
+                                          "".join(f'"$hoop, {i}",{row}\n' for i, row in enumerate(rows[1:])))
     named = sweep(tmp_path, '[design]\npoints = "designs.csv"\n', name="named.h5")
     for along in ("design", "slope"):
         done = draw("list_chart.py", named, "-x", along, "-o", tmp_path / "named")
@@ -327,7 +384,8 @@ def test_a_list_of_designs_is_drawn_a_dot_each_over_a_parameter_that_varies(tmp_
         assert done.returncode == 0 and "$hoop, 24" in found, (done.stderr, along)
         assert {"design": "designs of the list", "slope": "slope [degrees]"}[along] in found
         assert "no slip" in " ".join(found) and "L/R = 1" in " ".join(found)
-    over_number = draw("list_chart.py", path, "-x", "design", "--fields", "jump_height", "-o", tmp_path / "number")
+    over_number = draw("list_chart.py", path, "-x", "design", "--fields", "jump_height", "-o",
+                       tmp_path / "number")
     assert over_number.returncode == 0 and "number in the list, from 0" in texts(tmp_path / "number.svg")
     wrong = draw("list_chart.py", path, "-x", "gravity", "-o", tmp_path / "wrong")
     assert wrong.returncode == 2 and "allowed: design, " in wrong.stderr
@@ -338,17 +396,25 @@ def test_a_list_of_designs_is_drawn_a_dot_each_over_a_parameter_that_varies(tmp_
 @pytest.fixture(scope="module")
 def with_cliffs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("cliffs")
-    path = sweep(folder, CHART.replace("values = [0.7, 1.0]", "values = [1.0]").replace("offset_ratio = { values = [1.0] }", "offset_ratio = 1.0"))
+    path = sweep(
+        folder,
+        CHART.replace("values = [0.7, 1.0]", "values = [1.0]").replace("offset_ratio = { values = [1.0] }",
+                                                                       "offset_ratio = 1.0"))
     done = leapmap("boundaries", path, "-o", folder / "map.cliffs.h5")
     assert done.returncode == 0, done.stderr
     return folder
 
 
-@pytest.mark.parametrize("script, words", [
-    ("design_chart.py", ["discontinuity: a lift-off crosses the jump threshold", "discontinuity: a lift-off appears (fold)"]),
-    ("status_chart.py", ["discontinuity: a lift-off crosses the jump threshold"]),
-    ("phase_diagram.py", ["jumps on the 1st lift-off", "jumps on the 2nd lift-off", "1st", "2nd", "no jump", "the paper's hoop"])])
-def test_charts_draw_the_cliffs_beside_a_map_as_curves_named_in_the_legend(with_cliffs, tmp_path, script, words):
+@pytest.mark.parametrize(
+    "script, words",
+    [("design_chart.py",
+      ["discontinuity: a lift-off crosses the jump threshold", "discontinuity: a lift-off appears (fold)"]),
+     ("status_chart.py", ["discontinuity: a lift-off crosses the jump threshold"]),
+     ("phase_diagram.py", [
+         "jumps on the 1st lift-off", "jumps on the 2nd lift-off", "1st", "2nd", "no jump", "the paper's hoop"
+     ])])
+def test_charts_draw_the_cliffs_beside_a_map_as_curves_named_in_the_legend(with_cliffs, tmp_path, script,
+                                                                           words):
     done = draw(script, with_cliffs / "map.h5", "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     svg = next(line for line in done.stdout.split() if line.endswith(".svg"))
@@ -374,7 +440,8 @@ def test_pixels_beside_a_cliff_are_of_the_side_they_are_on(with_cliffs, monkeypa
     rng = np.random.default_rng(3)
     rows, columns = rng.integers(0, len(ratios), 400), rng.integers(0, len(slopes), 400)
     designs = with_cliffs / "pixels.csv"
-    designs.write_text("slope,mass_ratio\n" + "".join(f"{slopes[c]!r},{ratios[r]!r}\n" for r, c in zip(rows, columns)))
+    designs.write_text("slope,mass_ratio\n" +
+                       "".join(f"{slopes[c]!r},{ratios[r]!r}\n" for r, c in zip(rows, columns)))
     sweep(with_cliffs, '[design]\npoints = "pixels.csv"\n[numerics]\naudit = 0\n', name="pixels.h5")
     with h5py.File(with_cliffs / "pixels.h5") as f:
         truth = np.where(f["status"][()] == 1, f["candidates"][()], 0)
@@ -410,11 +477,14 @@ def test_the_yield_chart_has_isolines_cliffs_and_where_to_sit(tmp_path):
     done = draw("yield_chart.py", path, "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     told = texts(tmp_path / "chart.svg")
-    for words in ("yield: jump height at least 0.8", "nominal jump height", "50 %", "90 %", "99 %", "discontinuity: a lift-off crosses the jump threshold", "the paper's hoop"):
+    for words in ("yield: jump height at least 0.8", "nominal jump height", "50 %", "90 %", "99 %",
+                  "discontinuity: a lift-off crosses the jump threshold", "the paper's hoop"):
         assert words in told, words
     with h5py.File(path) as f:
         safe = np.where(f["yield"][()] - 2 * f["yield_error"][()] >= 0.99, f["jump_height"][()], 0).max()
-    assert any(word.startswith(f"highest nominal jump with a yield of 99 %: {safe:.3g} diameters at slope") for word in told)
+    assert any(
+        word.startswith(f"highest nominal jump with a yield of 99 %: {safe:.3g} diameters at slope")
+        for word in told)
     assert any("slope σ = 1°" in word and "mass ratio mₚ/m ± 5 %" in word for word in told)
 
 
@@ -432,7 +502,8 @@ def test_the_scatter_chart_shows_goals_quantiles_and_importance(friction, tmp_pa
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "one_scatter.svg")
     made = json.loads(told.stdout)["scatter"]
-    assert "goal: at least 0.8" in words and f"median {made['quantities']['jump_height']['q50']['value']:.4g}" in words
+    assert "goal: at least 0.8" in words
+    assert f"median {made['quantities']['jump_height']['q50']['value']:.4g}" in words
     assert "of reaching every goal" in words and "of the height of those that jump" in words
     assert any(f"{100 * made['yield']['value']:.1f}" in word and "reach every goal" in word for word in words)
 
@@ -464,7 +535,10 @@ def test_a_front_has_its_gaps_its_cloud_and_three_designs_called_out(tmp_path, m
     for word in ("mass ratio mₚ/m", "jump height [hoop diameters]", "designs by chance", "1", "2", "3"):
         assert word in words, word
     svg = (tmp_path / "front.svg").read_text()
-    lines = [len(d.split("L")) for d in re.findall(r'<path d="(M[^"]*)"[^>]*style="fill: none; stroke: #[0-9a-f]{6}; stroke-width: 1.4', svg)]
+    lines = [
+        len(d.split("L")) for d in re.findall(
+            r'<path d="(M[^"]*)"[^>]*style="fill: none; stroke: #[0-9a-f]{6}; stroke-width: 1.4', svg)
+    ]
     assert sum(n > 20 for n in lines) >= 2, "the front is cut at its cliffs"
     (tmp_path / "one.toml").write_text(QUESTION.replace('minimize = ["mass_ratio"]', ""))
     refused = draw("front_chart.py", tmp_path / "one.toml", "-o", tmp_path / "x")
@@ -474,10 +548,13 @@ def test_a_front_has_its_gaps_its_cloud_and_three_designs_called_out(tmp_path, m
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "jump_hight" in refused.stderr
 
 
-@pytest.mark.parametrize("models", [["no slip"], pytest.param(["no slip", "Coulomb friction"], marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "models",
+    [["no slip"], pytest.param(["no slip", "Coulomb friction"], marks=pytest.mark.slow)])
 def test_a_fit_of_events_is_a_bar_each(models, tmp_path):
     flags = ["--model", "sticking"] if models == ["no slip"] else []
-    assert leapmap("fit", TOP / "sweeps/paper_events.csv", "--csv", tmp_path / "fit.csv", *flags).returncode == 0
+    assert leapmap("fit", TOP / "sweeps/paper_events.csv", "--csv", tmp_path / "fit.csv",
+                   *flags).returncode == 0
     done = draw("fit_chart.py", tmp_path / "fit.csv", "-o", tmp_path / "fit")
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "fit.svg")

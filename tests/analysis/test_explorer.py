@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The explorer's page in a real browser, Debian's chromium without a window: what it shows is the map's and leapmap's own."""
+"""The explorer's page in a real browser, Debian's chromium without a window: what it shows is the map's and
+leapmap's own."""
 import json
 import math
 import os
@@ -56,7 +57,8 @@ def point(browser, index, click=False):
     x, y = browser.execute_script("return window.explorer.view.placeOf(arguments[0])", index)
     canvas = browser.find_element("id", "map")
     left, top, width, height = (canvas.rect[k] for k in ("x", "y", "width", "height"))
-    chain = ActionChains(browser).move_to_element_with_offset(canvas, round(x - left - width / 2), round(y - top - height / 2))
+    chain = ActionChains(browser).move_to_element_with_offset(canvas, round(x - left - width / 2),
+                                                              round(y - top - height / 2))
     (chain.click() if click else chain).perform()
 
 
@@ -81,11 +83,17 @@ def test_pointing_at_a_design_reads_the_map_s_own_number(index, page, map_file):
 
 
 def select_layer(browser, k):
-    browser.execute_script("const s = document.querySelector('#sliders input'); s.value = arguments[0]; s.dispatchEvent(new Event('input'))", k)
+    browser.execute_script(
+        "const s = document.querySelector('#sliders input'); s.value = arguments[0]; s.dispatchEvent(new "
+        "Event('input'))",
+        k)
 
 
 def test_every_field_of_every_design_on_the_page_is_the_map_s_rounded(page, map_file):
-    fields = page.execute_script("return window.explorer.map.fields.map(f => ({name: f.name, step: f.step, values: [...f.values].map(v => v === v ? v : null)}))")
+    fields = page.execute_script(
+        "return window.explorer.map.fields.map(f => ({name: f.name, step: f.step, values: "
+        "[...f.values].map(v => v === v ? v : null)}))"
+    )
     assert {"jump_height", "jump_time", "agility", "dip", "candidates"} <= {f["name"] for f in fields}
     with h5py.File(map_file) as file:
         for field in fields:
@@ -96,7 +104,8 @@ def test_every_field_of_every_design_on_the_page_is_the_map_s_rounded(page, map_
             shown = np.array(field["values"], float).reshape(truth.shape)
             assert np.array_equal(np.isnan(shown), np.isnan(truth)), field["name"]
             assert np.nanmax(np.abs(shown - truth)) <= 0.5001 * field["step"], field["name"]
-            assert field["step"] <= 2e-4 * np.nanmax(np.abs(truth)) or field["name"] == "candidates", field["name"]
+            assert field["step"] <= 2e-4 * np.nanmax(
+                np.abs(truth)) or field["name"] == "candidates", field["name"]
 
 
 @pytest.mark.parametrize("index", [[20, 30, 1], [44, 5, 1], [0, 0, 0]])
@@ -109,7 +118,8 @@ def test_a_click_shows_the_hoop_and_its_numbers_are_those_of_leapmap_hop(index, 
 
 
 def pixels(browser, canvas):
-    return browser.execute_script("const c = document.getElementById(arguments[0]); return c.toDataURL()", canvas)
+    return browser.execute_script("const c = document.getElementById(arguments[0]); return c.toDataURL()",
+                                  canvas)
 
 
 def test_the_animation_moves_stops_and_can_be_scrubbed(page):
@@ -133,12 +143,15 @@ def test_the_animation_moves_stops_and_can_be_scrubbed(page):
         })();""")
     assert moved != before, "the hoop is elsewhere"
     assert "play" in word and later == stopped
-    page.execute_script("const s = document.getElementById('scrub'); s.value = s.max; s.dispatchEvent(new Event('input'))")
+    page.execute_script(
+        "const s = document.getElementById('scrub'); s.value = s.max; s.dispatchEvent(new Event('input'))")
     last = pixels(page, "scene")
     told = told_by_leapmap(page)
     # The motion ends with the landing of the jump.
-    assert float(page.find_element("id", "clock").text.split()[0]) == pytest.approx(told["jump_time"] + told["flight_time"], abs=6e-4)
-    page.execute_script("const s = document.getElementById('scrub'); s.value = 0; s.dispatchEvent(new Event('input'))")
+    assert float(page.find_element("id", "clock").text.split()[0]) == pytest.approx(
+        told["jump_time"] + told["flight_time"], abs=6e-4)
+    page.execute_script(
+        "const s = document.getElementById('scrub'); s.value = 0; s.dispatchEvent(new Event('input'))")
     assert pixels(page, "scene") != last and page.find_element("id", "clock").text == "0.000 s"
 
 
@@ -159,20 +172,28 @@ def test_the_motion_shown_is_that_of_leapmap_s_trace(page, tmp_path):
 def test_one_animation_runs_however_many_designs_were_clicked(page):
     for i in range(6):
         point(page, [20, 25 + i, 1], click=True)
-    drawn = page.execute_async_script("""const done = arguments[0], context = CanvasRenderingContext2D.prototype, arc = context.arc;
+    drawn = page.execute_async_script("""const done = arguments[0],
+          context = CanvasRenderingContext2D.prototype, arc = context.arc;
         let arcs = 0, frames = 0;
         context.arc = function (...a) { ++arcs; return arc.apply(this, a); };
-        const count = () => { if (++frames < 20) requestAnimationFrame(count); else { context.arc = arc; done(arcs / frames); } };
+        const count = () => { if (++frames < 20) requestAnimationFrame(count); else { context.arc = arc;
+        done(arcs / frames); } };
         requestAnimationFrame(count);""")
     assert 1 <= drawn <= 2.5, "the hoop and its mass are two arcs a picture"
 
 
 def test_a_run_of_a_thousand_turns_is_shown_too(browser, tmp_path):
-    path = sweep(tmp_path, '[scene]\nrunway = 1000\nhop_height = 100\n[design]\nslope = { values = [0.1, 0.2] }\nmass_ratio = { values = [0.05, 0.1] }\n'
-                           '[output]\nfields = ["status", "first_jump_height"]\n')
+    path = sweep(
+        tmp_path,
+        '[scene]\nrunway = 1000\nhop_height = 100\n[design]\nslope = { values = [0.1, 0.2] }\nmass_ratio = { '
+        'values = [0.05, 0.1] }\n'
+        '[output]\nfields = ["status", "first_jump_height"]\n')
     opened(browser, made(path))
     assert numbers(browser)["status"] == "no_jump"
-    motion = browser.execute_script("return [...window.explorer.solver.solve({...window.explorer.map.fixed, slope: 0.1, mass_ratio: 0.05}, false, 1e-10).motion.x]")
+    motion = browser.execute_script(
+        "return [...window.explorer.solver.solve({...window.explorer.map.fixed, slope: 0.1, mass_ratio: "
+        "0.05}, false, 1e-10).motion.x]"
+    )
     assert 1000 < len(motion) <= 4200 and motion[-1] == pytest.approx(2 * np.pi * 1000 * 0.041, rel=1e-3)
 
 
@@ -212,13 +233,17 @@ def test_the_field_the_axes_and_the_layer_can_be_chosen(page, map_file):
 def test_radius_and_mass_scale_the_numbers(page):
     point(page, [20, 30, 1], click=True)
     before = numbers(page)
-    page.execute_script("const r = document.getElementById('radius'); r.value = 164; r.dispatchEvent(new Event('change'))")
-    page.execute_script("const m = document.getElementById('mass'); m.value = 56.4; m.dispatchEvent(new Event('change'))")
+    page.execute_script(
+        "const r = document.getElementById('radius'); r.value = 164; r.dispatchEvent(new Event('change'))")
+    page.execute_script(
+        "const m = document.getElementById('mass'); m.value = 56.4; m.dispatchEvent(new Event('change'))")
     after = numbers(page)
     assert float(after["jump_height"]) == pytest.approx(float(before["jump_height"]), rel=1e-9)
-    assert float(after["jump_time"]) == pytest.approx(2 * float(before["jump_time"]), rel=1e-9), "times grow with the root of the radius"
+    assert float(after["jump_time"]) == pytest.approx(2 * float(before["jump_time"]),
+                                                      rel=1e-9), "times grow with the root of the radius"
     assert float(after["agility"]) == pytest.approx(2 * float(before["agility"]), rel=1e-9)
-    assert float(after["most_normal_force"]) == pytest.approx(2 * float(before["most_normal_force"]), rel=1e-6), "forces with the mass"
+    assert float(after["most_normal_force"]) == pytest.approx(2 * float(before["most_normal_force"]),
+                                                              rel=1e-6), "forces with the mass"
     assert told_by_leapmap(page)["scene"]["radius"] == 0.164
     assert agrees(after, told_by_leapmap(page)) >= 9
 
@@ -227,27 +252,34 @@ def test_what_is_no_radius_is_said_so_and_changes_nothing(page):
     point(page, [20, 30, 1], click=True)
     before = numbers(page)
     for wrong in ("0", "-5", ""):
-        page.execute_script("const r = document.getElementById('radius'); r.value = arguments[0]; r.dispatchEvent(new Event('change'))", wrong)
+        page.execute_script(
+            "const r = document.getElementById('radius'); r.value = arguments[0]; r.dispatchEvent(new "
+            "Event('change'))",
+            wrong)
         assert "above 0" in page.find_element("id", "message").text and numbers(page) == before
-    page.execute_script("const r = document.getElementById('radius'); r.value = 41; r.dispatchEvent(new Event('change'))")
+    page.execute_script(
+        "const r = document.getElementById('radius'); r.value = 41; r.dispatchEvent(new Event('change'))")
     assert page.find_element("id", "message").text == ""
 
 
 def test_an_address_opens_a_design_at_a_moment_and_says_if_there_is_none(page, map_file):
     address = map_file.with_suffix(".html").as_uri()
-    for place, index, text in (("#design=7,8,0&time=0.1", "7,8,0", ""), ("#design=999,8,0", None, "not on this map")):
+    for place, index, text in (("#design=7,8,0&time=0.1", "7,8,0", ""), ("#design=999,8,0", None,
+                                                                         "not on this map")):
         page.get("about:blank")
         page.get(address + place)
         WebDriverWait(page, 60).until(lambda b: b.execute_script("return !!window.explorer"))
         assert index in (None, readout(page)["index"]) and text in page.find_element("id", "message").text
         if index:
-            assert page.find_element("id", "clock").text == "0.100 s" and "play" in page.find_element("id", "play").text
+            assert page.find_element("id", "clock").text == "0.100 s"
+            assert "play" in page.find_element("id", "play").text
 
 
 def test_slow_and_swift_hoops_are_sampled_as_a_picture_needs(page):
     for spin in (1e-6, 1.0, 1e4):
         motion = page.execute_script("""const e = window.explorer;
-            const m = e.solver.solve({...e.map.fixed, slope: 0, mass_ratio: 0, release_angle: 0, release_spin: arguments[0]}, false, 1e-10).motion;
+            const m = e.solver.solve({...e.map.fixed, slope: 0, mass_ratio: 0, release_angle: 0,
+              release_spin: arguments[0]}, false, 1e-10).motion;
             return {t: [...m.t], phi: [...m.phi]}""", spin)
         assert 390 <= len(motion["t"]) <= 4100 and motion["phi"][-1] == pytest.approx(10 * np.pi, rel=5e-3)
 
@@ -261,8 +293,12 @@ def test_the_papers_hoop_can_be_shown_whether_or_not_it_is_on_the_grid(page):
 
 
 def test_a_map_with_friction_shows_sliding(browser, tmp_path):
-    path = sweep(tmp_path, '[scene]\nfriction = "coulomb"\nmu_static = { values = [0.2, 0.5] }\nrestitution = 0.3\n[design]\n'
-                           'slope = { from = "10 deg", to = "40 deg", count = 13 }\nmass_ratio = { from = 1, to = 10, count = 12 }\n[numerics]\naudit = 0\n')
+    path = sweep(
+        tmp_path,
+        '[scene]\nfriction = "coulomb"\nmu_static = { values = [0.2, 0.5] }\nrestitution = 0.3\n[design]\n'
+        'slope = { from = "10 deg", to = "40 deg", count = 13 }\nmass_ratio = { from = 1, to = 10, count = '
+        '12 }\n[numerics]\naudit = 0\n'
+    )
     opened(browser, made(path))
     with h5py.File(path) as file:
         jumped = np.argwhere(file["status"][()] == 1)
@@ -281,22 +317,29 @@ def test_the_page_fits_a_phone_and_a_screenshot_is_kept(page):
     time.sleep(0.5)
     assert page.save_screenshot(str(ARTEFACTS / "explorer.png"))
     try:
-        page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 360, "height": 800, "deviceScaleFactor": 2, "mobile": True})
+        page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                             {"width": 360, "height": 800, "deviceScaleFactor": 2, "mobile": True})
         time.sleep(0.5)
         # Chromium's window is 500 px wide at least; what counts is that nothing is wider than it.
         assert page.execute_script("return document.documentElement.scrollWidth <= 360")
-        assert page.execute_script("return document.getElementById('map').getBoundingClientRect().bottom < document.getElementById('scene').getBoundingClientRect().top")
+        assert page.execute_script(
+            "return document.getElementById('map').getBoundingClientRect().bottom < "
+            "document.getElementById('scene').getBoundingClientRect().top"
+        )
         page.save_screenshot(str(ARTEFACTS / "explorer_phone.png"))
         page.execute_script("window.scrollTo(0, 0)")
         point(page, [10, 35, 1], click=True)
         # A tap on the map brings the hoop, which is further down, into sight.
-        WebDriverWait(page, 60).until(lambda b: 0 <= b.execute_script("return document.getElementById('scene').getBoundingClientRect().top") < 800)
+        WebDriverWait(page, 60).until(lambda b: 0 <= b.execute_script(
+            "return document.getElementById('scene').getBoundingClientRect().top") < 800)
         page.execute_script("window.scrollTo(0, 0)")
     finally:
         page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
-@pytest.mark.parametrize("slopes, most_bytes", [(25, 1_200_000), pytest.param(241, 3_000_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "slopes, most_bytes",
+    [(25, 1_200_000), pytest.param(241, 3_000_000, marks=pytest.mark.slow)])
 def test_the_page_needs_no_network_and_stays_below_three_megabytes(slopes, most_bytes, tmp_path):
     path = sweep(tmp_path, f"""[design]
 slope = {{ from = "2 deg", to = "50 deg", count = {slopes} }}
@@ -366,23 +409,33 @@ def with_spec(old, new):
 
 
 BROKEN = {
-    "an axis with a NaN": with_value("slope", np.nan), "an axis with an infinity": with_value("slope", np.inf),
+    "an axis with a NaN": with_value("slope", np.nan),
+    "an axis with an infinity": with_value("slope", np.inf),
     "an axis with the same value twice": lambda file: file["slope"].__setitem__(3, file["slope"][4]),
-    "a field of another shape": with_dataset("jump_time", np.zeros(7)), "a field of texts": with_dataset("jump_height", ["high"] * 3),
-    "a field beyond all bounds": with_value("jump_height", 1e308), "no spec": with_attribute("spec", None),
-    "a spec that is no text": with_attribute("spec", 5), "a spec of bytes": with_attribute("spec", np.bytes_(b"radius = 1")),
-    "no radius": with_spec("radius", "diameter"), "a radius below zero": with_spec("radius = ", "radius = -"),
-    "a gravity of zero": with_spec("gravity = 9.81", "gravity = 0.0"), "a runway that is none": with_spec("runway = 5.0", "runway = nan"),
+    "a field of another shape": with_dataset("jump_time", np.zeros(7)),
+    "a field of texts": with_dataset("jump_height", ["high"] * 3),
+    "a field beyond all bounds": with_value("jump_height", 1e308),
+    "no spec": with_attribute("spec", None),
+    "a spec that is no text": with_attribute("spec", 5),
+    "a spec of bytes": with_attribute("spec", np.bytes_(b"radius = 1")),
+    "no radius": with_spec("radius", "diameter"),
+    "a radius below zero": with_spec("radius = ", "radius = -"),
+    "a gravity of zero": with_spec("gravity = 9.81", "gravity = 0.0"),
+    "a runway that is none": with_spec("runway = 5.0", "runway = nan"),
     "codes without a meaning": with_attribute("flag_meanings", 5, "status"),
     "codes with texts for values": with_attribute("flag_values", "0 1 2 3 4 5 6", "status"),
-    "codes beyond all bounds": with_attribute("flag_values", np.arange(7) * 50_000_000, "status"),
-    "tiles that are no number": with_attribute("tiles_done", "x"), "no version": with_attribute("version", None),
+    "codes beyond all bounds": with_attribute("flag_values",
+                                              np.arange(7) * 50_000_000, "status"),
+    "tiles that are no number": with_attribute("tiles_done", "x"),
+    "no version": with_attribute("version", None),
 }
 
 
 # One reader serves all scripts: the explorer meets every kind, the others some.
-KINDS = [("explorer", kind) for kind in BROKEN] + [(script, kind) for script in ("design_chart.py", "status_chart.py", "cut_chart.py")
-                                                   for kind in ("an axis with an infinity", "a field of texts", "a spec of bytes")]
+KINDS = [("explorer", kind) for kind in BROKEN
+         ] + [(script, kind)
+              for script in ("design_chart.py", "status_chart.py", "cut_chart.py")
+              for kind in ("an axis with an infinity", "a field of texts", "a spec of bytes")]
 
 
 def test_of_hoops_as_made_the_yield_is_a_field_and_twenty_ghosts_jump_along(browser, tmp_path):
@@ -403,15 +456,19 @@ fields = ["jump_height"]
 """
     path = sweep(tmp_path, spec)
     opened(browser, made(path))
-    fields = browser.execute_script("return window.explorer.map.fields.map(f => ({name: f.name, made: f.made, values: [...f.values]}))")
+    fields = browser.execute_script(
+        "return window.explorer.map.fields.map(f => ({name: f.name, made: f.made, values: [...f.values]}))")
     yields = next(f for f in fields if f["name"] == "yield")
     with h5py.File(path) as f:
-        assert yields["made"] and np.allclose(np.reshape(yields["values"], (25, 21)), f["yield"][()], atol=1e-4)
+        assert yields["made"]
+        assert np.allclose(np.reshape(yields["values"], (25, 21)), f["yield"][()], atol=1e-4)
         where = tuple(int(i) for i in np.argwhere(np.abs(f["yield"][()] - 0.5) < 0.2)[0])
         share = f["yield"][()][where]
     point(browser, where, click=True)
     before = pixels(browser, "scene")
-    browser.execute_script("const s = document.getElementById('scrub'); s.value = s.max / 2; s.dispatchEvent(new Event('input'))")
+    browser.execute_script(
+        "const s = document.getElementById('scrub'); s.value = s.max / 2; s.dispatchEvent(new Event('input'))"
+    )
     alone = pixels(browser, "scene")
     browser.find_element("id", "ghosts").click()
     WebDriverWait(browser, 60).until(lambda b: "reach every goal" in b.find_element("id", "ghosts-told").text)
@@ -440,8 +497,10 @@ def test_pixels_beside_a_cliff_are_of_the_side_they_are_on(browser, tmp_path):
         slopes, ratios = np.radians(shown["x"]), np.array(shown["y"])
         rng = np.random.default_rng(3)
         rows, columns = rng.integers(0, len(ratios), 1000), rng.integers(0, len(slopes), 1000)
-        (tmp_path / "pixels.csv").write_text("slope,mass_ratio\n" + "".join(f"{slopes[c]!r},{ratios[r]!r}\n" for r, c in zip(rows, columns)))
-        sweep(tmp_path, '[design]\npoints = "pixels.csv"\n[numerics]\naudit = 0\n', "--overwrite", name="pixels.h5")
+        (tmp_path / "pixels.csv").write_text("slope,mass_ratio\n" + "".join(f"{slopes[c]!r},{ratios[r]!r}\n"
+                                                                            for r, c in zip(rows, columns)))
+        sweep(tmp_path, '[design]\npoints = "pixels.csv"\n[numerics]\naudit = 0\n', "--overwrite",
+              name="pixels.h5")
         codes = []
         for name in ("map.h5", "pixels.h5"):
             with h5py.File(tmp_path / name) as f:
@@ -463,23 +522,28 @@ def test_a_broken_map_is_refused_with_one_line_that_names_it(script, kind, map_f
 def test_files_that_are_no_grids_are_refused_with_one_line_that_says_what_to_do(map_file, tmp_path):
     (tmp_path / "words.h5").write_text("words")
     one_axis = sweep(tmp_path, "[design]\nslope = { from = 0.1, to = 0.2, count = 20001 }\n")
-    for path, word in ((tmp_path / "words.h5", "HDF5"), (tmp_path / "nowhere.h5", "does not exist"), (one_axis, "two axes or more")):
+    for path, word in ((tmp_path / "words.h5", "HDF5"), (tmp_path / "nowhere.h5", "does not exist"),
+                       (one_axis, "two axes or more")):
         done = explorer(path, "-o", tmp_path / "x.html")
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and word in done.stderr, done.stderr
     done = scripted("explorer", map_file, "-o", tmp_path / "x.html", "--module", tmp_path / "no.wasm")
     assert done.returncode == 2 and "leapmap-wasm" in done.stderr, done.stderr
     only_status = sweep(tmp_path, SPEC + '[output]\nfields = ["status"]\n', name="status.h5")
     done = explorer(only_status, "-o", tmp_path / "x.html")
-    assert done.returncode == 2 and "output.fields" in done.stderr and "jump_height" in done.stderr, done.stderr
+    assert done.returncode == 2, done.stderr
+    assert "output.fields" in done.stderr, done.stderr
+    assert "jump_height" in done.stderr, done.stderr
     small = explorer(map_file, "-o", tmp_path / "x.html", "--most", "0.1")
     assert small.returncode == 2 and "--most" in small.stderr
     size = 0.97e-6 * made(map_file).stat().st_size
     fewer = explorer(map_file, "-o", tmp_path / "x.html", "--most", size)
-    assert fewer.returncode == 0 and "left out" in fewer.stderr and (tmp_path / "x.html").stat().st_size < 1e6 * size
+    assert fewer.returncode == 0 and "left out" in fewer.stderr
+    assert (tmp_path / "x.html").stat().st_size < 1e6 * size
 
 
 def test_a_list_of_designs_is_a_dot_each_that_can_be_pointed_at_and_clicked(browser, tmp_path):
-    (tmp_path / "designs.csv").write_text('label,slope,mass_ratio\n"thick, <b>",0.4,3\nlight,23 deg,1\nflat,1 deg,0.1\n')
+    (tmp_path /
+     "designs.csv").write_text('label,slope,mass_ratio\n"thick, <b>",0.4,3\nlight,23 deg,1\nflat,1 deg,0.1\n')
     path = sweep(tmp_path, '[design]\npoints = "designs.csv"\n')
     opened(browser, made(path))
     with h5py.File(path) as m:
@@ -501,18 +565,23 @@ def test_a_list_of_designs_is_a_dot_each_that_can_be_pointed_at_and_clicked(brow
 
 
 def test_a_front_stands_as_it_was_asked_for_and_each_of_its_designs_jumps(browser, tmp_path):
-    (tmp_path / "q.toml").write_text('[design]\nslope = { from = "5 deg", to = "20 deg" }\nmass_ratio = { from = 0.5, to = 10, scale = "log" }\n'
-                                     '[goal]\nmaximize = ["jump_height"]\nminimize = ["jump_time"]\n')
+    (tmp_path / "q.toml").write_text(
+        '[design]\nslope = { from = "5 deg", to = "20 deg" }\nmass_ratio = { from = 0.5, to = 10, scale = '
+        '"log" }\n'
+        '[goal]\nmaximize = ["jump_height"]\nminimize = ["jump_time"]\n')
     path = tmp_path / "front.h5"
     assert leapmap("design", tmp_path / "q.toml", "--sample", "20000", "-o", path).returncode == 0
     opened(browser, made(path))
     with h5py.File(path) as m:
         heights, times = m["jump_height"][()], m["jump_time"][()]
     chosen = lambda name: Select(browser.find_element("id", name)).first_selected_option.text
-    assert chosen("x-axis").startswith("time from release to the jump") and chosen("field").startswith("jump height")
-    places = browser.execute_script("return window.explorer.map.axes[0].values.map((_, i) => window.explorer.view.placeOf([i]))")
+    assert chosen("x-axis").startswith("time from release to the jump")
+    assert chosen("field").startswith("jump height")
+    places = browser.execute_script(
+        "return window.explorer.map.axes[0].values.map((_, i) => window.explorer.view.placeOf([i]))")
     x, y = np.array(places).T
-    assert np.corrcoef(x, times)[0, 1] > 0.9999 and np.corrcoef(-y, heights)[0, 1] > 0.9999, "the second objective to the right, the first up"
+    assert np.corrcoef(x, times)[0, 1] > 0.9999 and np.corrcoef(
+        -y, heights)[0, 1] > 0.9999, "the second objective to the right, the first up"
     for number in (0, len(heights) // 2, len(heights) - 1):
         point(browser, [number], click=True)
         assert float(readout(browser)["value"]) == pytest.approx(heights[number], abs=1e-4)
@@ -521,12 +590,15 @@ def test_a_front_stands_as_it_was_asked_for_and_each_of_its_designs_jumps(browse
 
 @pytest.mark.parametrize("friction", ["", '[scene]\nfriction = "coulomb"\nmu_static = 0.9\n'])
 def test_driven_hoops_and_those_that_turn_round_move_as_leapmap_tells(browser, tmp_path, friction):
-    path = sweep(tmp_path, friction + '[design]\nslope = { values = ["-10 deg", "15 deg"] }\ndrive_torque = { values = [0.0, 0.75] }\n'
-                                      'release_spin = { values = [-0.8, 0.0] }\nrelease_angle = "170 deg"\n')
+    path = sweep(
+        tmp_path, friction +
+        '[design]\nslope = { values = ["-10 deg", "15 deg"] }\ndrive_torque = { values = [0.0, 0.75] }\n'
+        'release_spin = { values = [-0.8, 0.0] }\nrelease_angle = "170 deg"\n')
     opened(browser, made(path))
     backwards = 0
     for index in ([0, 0, 0], [0, 1, 1], [1, 0, 0], [1, 1, 0]):
-        browser.execute_script("window.explorer.view.view.index = arguments[0]; window.explorer.view.pick()", index)
+        browser.execute_script("window.explorer.view.view.index = arguments[0]; window.explorer.view.pick()",
+                               index)
         agrees(numbers(browser), told_by_leapmap(browser))
         backwards += told_by_leapmap(browser)["design"]["release_spin"] < 0
         assert browser.find_element("id", "message").text == ""
@@ -560,14 +632,16 @@ def test_an_unfinished_map_says_how_much_of_it_is_there(browser, map_file, tmp_p
 
 
 def test_a_hoop_goes_on_jumping_as_leapmap_hop_tells(page):
-    index = page.execute_script("""const { map, solver } = window.explorer, axes = map.axes.map((a) => a.values);
+    index = page.execute_script("""const { map, solver } = window.explorer,
+          axes = map.axes.map((a) => a.values);
         for (let i = 0; i < axes[0].length; i += 3) for (let j = 0; j < axes[1].length; j += 3) {
           const design = {...map.fixed, slope: axes[0][i], mass_ratio: axes[1][j], offset_ratio: axes[2][1]};
           if (solver.solve(design, false, 1e-10, 0, { jumps: 4 }).outcome.jumps >= 3) return [i, j, 1];
         }""")
     select_layer(page, 1)
     point(page, index, click=True)
-    page.execute_script("const j = document.getElementById('jumps'); j.value = 4; j.dispatchEvent(new Event('change'))")
+    page.execute_script(
+        "const j = document.getElementById('jumps'); j.value = 4; j.dispatchEvent(new Event('change'))")
     try:
         told = told_by_leapmap(page)
         words = page.find_element("id", "command").text.split()
@@ -576,16 +650,23 @@ def test_a_hoop_goes_on_jumping_as_leapmap_hop_tells(page):
         assert told["jumps"] >= 2
         shown = page.find_element("css selector", "tr[data-name='jumps'] td").text
         made, listed = shown.split(": ")
-        assert made == f"{told['jumps']} of 4" and [float(w.removesuffix(" mm")) for w in listed.split(", ")] == pytest.approx([82 * h for h in heights], rel=6e-4)
-        landed, end = page.execute_script("""const { solver, map } = window.explorer, story = solver.solve({...map.fixed, ...arguments[0]}, false, 1e-10, 0, { jumps: 4 });
+        assert made == f"{told['jumps']} of 4"
+        assert [float(w.removesuffix(" mm")) for w in listed.split(", ")] == pytest.approx(
+            [82 * h for h in heights], rel=6e-4)
+        landed, end = page.execute_script("""const { solver, map } = window.explorer,
+              story = solver.solve({...map.fixed, ...arguments[0]}, false, 1e-10, 0, { jumps: 4 });
             const { time, flight_time, is_jump } = story.liftOffs, k = is_jump.lastIndexOf(1);
             return [time[k] + flight_time[k], story.motion.t.at(-1)]""", told["design"])
-        assert end >= landed - 1e-9 > told["jump_time"] + told["flight_time"]  # the motion goes on to the last landing
+        # the motion goes on to the last landing
+        assert end >= landed - 1e-9 > told["jump_time"] + told["flight_time"]
     finally:
-        page.execute_script("const j = document.getElementById('jumps'); j.value = 0; j.dispatchEvent(new Event('change'))")
+        page.execute_script(
+            "const j = document.getElementById('jumps'); j.value = 0; j.dispatchEvent(new Event('change'))")
         assert "whole number" in page.find_element("id", "message").text
-        page.execute_script("const j = document.getElementById('jumps'); j.value = 1; j.dispatchEvent(new Event('change'))")
-    assert page.find_element("id", "message").text == "" and "--jumps" not in page.find_element("id", "command").text
+        page.execute_script(
+            "const j = document.getElementById('jumps'); j.value = 1; j.dispatchEvent(new Event('change'))")
+    assert page.find_element("id", "message").text == ""
+    assert "--jumps" not in page.find_element("id", "command").text
 
 
 def test_bifurcations_are_of_the_jumps_that_leapmap_hop_tells(page):
@@ -593,16 +674,20 @@ def test_bifurcations_are_of_the_jumps_that_leapmap_hop_tells(page):
     compared = 0
     for slips in (False, True):
         heights = page.execute_script("""const s = window.explorer.solver;
-            return Array.from(s.bifurcate({...s.defaults, mass_ratio: 3, offset_ratio: 0.6, mu_static: 0.7, runway: 30}, arguments[0], 1e-10,
+            return Array.from(s.bifurcate({...s.defaults, mass_ratio: 3, offset_ratio: 0.6, mu_static: 0.7,
+              runway: 30}, arguments[0], 1e-10,
               { parameter: "slope", from: 0.1, to: 0.4, count: 7, settle: 2, keep: 3 }), String)""", slips)
         for i in range(7):
-            told = json.loads(finished(PROGRAM, "hop", "--slope", str(0.1 + 0.05 * i), "--mass-ratio", 3, "--offset-ratio", 0.6, "--jumps", 5, "--set", "runway=150", "--json",
-                                       *(["--set", "friction=coulomb", "--mu-static", 0.7] if slips else [])).stdout)
+            told = json.loads(
+                finished(PROGRAM, "hop", "--slope", str(0.1 + 0.05 * i), "--mass-ratio", 3, "--offset-ratio",
+                         0.6, "--jumps", 5, "--set", "runway=150", "--json",
+                         *(["--set", "friction=coulomb", "--mu-static", 0.7] if slips else [])).stdout)
             for k in range(3):
                 expected, found = told[f"jump_height_{3 + k}"], float(heights[3 * i + k])
                 assert (expected is None) == math.isnan(found), (slips, i, k)
                 if expected is not None:
-                    assert found == pytest.approx(expected, rel=1e-7)  # slopes are one rounding apart, and errors grow
+                    # slopes are one rounding apart, and errors grow
+                    assert found == pytest.approx(expected, rel=1e-7)
                     compared += 1
     assert compared >= 20
 
@@ -615,10 +700,13 @@ def test_the_bifurcation_picture_is_drawn_once_it_is_opened(page):
     lively = int(picture.get_attribute("data-lively"))
     assert 50 < lively < 512 and f"{lively} of 512" in page.find_element("id", "gaits-told").text
     Select(page.find_element("id", "gaits-over")).select_by_value("offset_ratio")
-    WebDriverWait(page, 60).until(lambda b: picture.get_attribute("data-hoops") == "512" and picture.get_attribute("data-lively") != str(lively))
+    WebDriverWait(page, 60).until(lambda b: picture.get_attribute("data-hoops") == "512" and picture.
+                                  get_attribute("data-lively") != str(lively))
     ActionChains(page).move_to_element_with_offset(picture, 0, 0).click().perform()
-    assert "L/R" in page.find_element("id", "hop-title").text or "offset" in page.find_element("id", "hop-title").text.lower()
-    page.execute_script("const f = document.getElementById('gaits-from'); f.value = -3; f.dispatchEvent(new Event('change'))")
+    assert "L/R" in page.find_element("id", "hop-title").text or "offset" in page.find_element(
+        "id", "hop-title").text.lower()
+    page.execute_script(
+        "const f = document.getElementById('gaits-from'); f.value = -3; f.dispatchEvent(new Event('change'))")
     assert "between" in page.find_element("id", "gaits-told").text
     page.execute_script("document.getElementById('gaits').open = false")
 
@@ -628,12 +716,20 @@ def test_the_solver_on_the_page_is_as_good_as_the_program_on_random_designs(page
     random = np.random.default_rng(7)
     for k in range(100):
         slips = k % 2 == 1
-        design = {"slope": random.uniform(0.1, 0.8), "mass_ratio": random.uniform(0.3, 10), "offset_ratio": random.uniform(0.3, 1),
-                  "release_angle": random.uniform(2.6, 4.4), "mu_static": random.uniform(0.1, 1.0), "restitution": random.uniform(0, 0.5)}
+        design = {
+            "slope": random.uniform(0.1, 0.8), "mass_ratio": random.uniform(0.3, 10),
+            "offset_ratio": random.uniform(0.3, 1), "release_angle": random.uniform(2.6, 4.4),
+            "mu_static": random.uniform(0.1, 1.0), "restitution": random.uniform(0, 0.5)
+        }
         outcome = page.execute_script("""const s = window.explorer.solver;
             const o = s.solve({...s.defaults, ...arguments[0]}, arguments[1], 1e-10, 0).outcome;
             return Object.fromEntries(Object.entries(o).map(([k, v]) => [k, String(v)]))""", design, slips)
-        flags = [w for name, value in design.items() if slips or name not in ("mu_static", "restitution") for w in (f"--{name.replace('_', '-')}", repr(float(value)))]
-        told = json.loads(finished(PROGRAM, "hop", *flags, "--json", *(["--set", "friction=coulomb"] if slips else [])).stdout)
+        flags = [
+            w for name, value in design.items() if slips or name not in ("mu_static", "restitution")
+            for w in (f"--{name.replace('_', '-')}", repr(float(value)))
+        ]
+        told = json.loads(
+            finished(PROGRAM, "hop", *flags, "--json",
+                     *(["--set", "friction=coulomb"] if slips else [])).stdout)
         assert outcome["status"] == told["status"], design
         assert agrees(outcome, told) >= 10

@@ -34,7 +34,10 @@ def wait(browser, condition, seconds=90):
 
 def shown(browser):
     """The numbers of the hoop that the page shows, and what leapmap tells of it."""
-    numbers = browser.execute_script("return Object.fromEntries([...document.querySelectorAll('#numbers tr')].map(r => [r.dataset.name, r.dataset.value]))")
+    numbers = browser.execute_script(
+        "return Object.fromEntries([...document.querySelectorAll('#numbers tr')].map(r => [r.dataset.name, "
+        "r.dataset.value]))"
+    )
     words = shlex.split(browser.execute_script("return document.getElementById('command').textContent"))
     return numbers, json.loads(leapmap(*words[1:], "--json").stdout)
 

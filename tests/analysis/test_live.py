@@ -14,7 +14,8 @@ from support.browser import agrees, opened, settled, told_by_leapmap
 from support.program import leapmap, scripted, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
-TOLD = ("jump_height", "jump_time", "first_jump_height", "first_jump_time", "jump_angle", "jump_spin", "apex_time", "flight_time", "jump_distance", "candidates")
+TOLD = ("jump_height", "jump_time", "first_jump_height", "first_jump_time", "jump_angle", "jump_spin",
+        "apex_time", "flight_time", "jump_distance", "candidates")
 
 
 def page_at(folder, *arguments):
@@ -43,7 +44,8 @@ def designs(browser, cells):
     """The designs of some cells with all that the page tells of them."""
     return browser.execute_script("""const { map } = window.explorer, ny = map.axes[1].values.length;
         return arguments[0].map((k) => ({
-          design: {...map.fixed, [map.axes[0].name]: map.axes[0].values[Math.floor(k / ny)], [map.axes[1].name]: map.axes[1].values[k % ny]},
+          design: {...map.fixed, [map.axes[0].name]: map.axes[0].values[Math.floor(k / ny)],
+            [map.axes[1].name]: map.axes[1].values[k % ny]},
           slips: map.slips, status: map.codes.status.meanings[map.codes.status.values[k]],
           told: Object.fromEntries(map.fields.map((f) => [f.name, String(f.values[k])])) }))""", cells)
 
@@ -51,7 +53,10 @@ def designs(browser, cells):
 def told_of(cell, *more):
     """What leapmap hop tells of a cell's design."""
     contact = ("mu_static", "mu_kinetic", "restitution", "rest_speed")
-    flags = [w for name, v in cell["design"].items() if v is not None and (cell["slips"] or name not in contact) for w in ("--set", f"{name}={v!r}")]
+    flags = [
+        w for name, v in cell["design"].items() if v is not None and (cell["slips"] or name not in contact)
+        for w in ("--set", f"{name}={v!r}")
+    ]
     done = leapmap("hop", *flags, *(["--set", "friction=coulomb"] if cell["slips"] else []), *more, "--json")
     assert done.returncode == 0, (cell, done.stderr)
     return json.loads(done.stdout)
@@ -75,7 +80,9 @@ def compare(browser, random, count):
     return jumped
 
 
-TYPED = (("offset_ratio", "0.62"), ("release_angle", "155.5"), ("inertia_factor", "0.8"), ("hop_height", "0.02"), ("release_spin", "0.4"), ("radius", "0.2"), ("gravity", "1.62"), ("runway", "3"))
+TYPED = (("offset_ratio", "0.62"), ("release_angle", "155.5"), ("inertia_factor", "0.8"),
+         ("hop_height", "0.02"), ("release_spin", "0.4"), ("radius", "0.2"), ("gravity", "1.62"), ("runway",
+                                                                                                   "3"))
 
 
 @pytest.mark.parametrize("count", [5, pytest.param(20, marks=pytest.mark.slow)])
@@ -97,7 +104,8 @@ def test_with_friction_too(live):
     type_in(live, "mu_static", "0.55")
     settled(live, 200)
     assert compare(live, np.random.default_rng(6), 40) >= 8
-    assert "friction=coulomb" in live.execute_script("return location.hash") and "mu_static=0.55" in live.execute_script("return location.hash")
+    assert "friction=coulomb" in live.execute_script("return location.hash")
+    assert "mu_static=0.55" in live.execute_script("return location.hash")
     assert "friction=coulomb" in live.find_element("id", "command").text
 
 
@@ -113,9 +121,12 @@ def test_a_coarse_map_is_there_long_before_the_whole_one(live):
 
 
 def test_what_is_dragged_past_is_not_what_stays(live):
-    live.execute_script("""const slider = document.querySelector("#live-sliders input[type=range][data-parameter=offset_ratio]");
+    live.execute_script(
+        """const offset = "input[type=range][data-parameter=offset_ratio]";
+        const slider = document.querySelector("#live-sliders " + offset);
         document.getElementById('map').dataset.whole = 'false';
-        for (let k = 0; k < 40; ++k) { slider.value = 0.3 + 0.01 * k; slider.dispatchEvent(new Event('input')); }""")
+        for (let k = 0; k < 40; ++k) { slider.value = 0.3 + 0.01 * k;
+        slider.dispatchEvent(new Event('input')); }""")
     settled(live)
     assert live.execute_script("return window.explorer.map.fixed.offset_ratio") == pytest.approx(0.69)
     assert compare(live, np.random.default_rng(7), 12) >= 4
@@ -125,25 +136,31 @@ def test_axes_can_be_any_two_parameters_with_bounds_of_ones_own(live):
     live.execute_script("document.getElementById('map').dataset.whole = 'false'")
     Select(live.find_element("id", "live-y")).select_by_value("release_angle")
     settled(live)
-    assert live.execute_script("return window.explorer.map.axes.map((a) => a.name)") == ["slope", "release_angle"]
-    assert live.find_elements("css selector", "#live-sliders input[data-parameter=mass_ratio]") and not live.find_elements("css selector", "#live-sliders input[data-parameter=release_angle]")
+    assert live.execute_script("return window.explorer.map.axes.map((a) => a.name)") == [
+        "slope", "release_angle"
+    ]
+    assert live.find_elements("css selector", "#live-sliders input[data-parameter=mass_ratio]")
+    assert not live.find_elements("css selector", "#live-sliders input[data-parameter=release_angle]")
     compare(live, np.random.default_rng(8), 12)
     low = live.find_element("id", "live-y-from")
     low.clear()
     low.send_keys("500", Keys.TAB)
-    assert "below to" in live.find_element("id", "message").text and low.get_attribute("aria-invalid") == "true"
+    assert "below to" in live.find_element("id", "message").text
+    assert low.get_attribute("aria-invalid") == "true"
     low.clear()
     live.execute_script("document.getElementById('map').dataset.whole = 'false'")
     low.send_keys("90", Keys.TAB)
     settled(live)
     assert live.find_element("id", "message").text == ""
-    assert live.execute_script("return window.explorer.map.axes[1].values[0]") == pytest.approx(math.pi / 2, rel=1e-12)
+    assert live.execute_script("return window.explorer.map.axes[1].values[0]") == pytest.approx(
+        math.pi / 2, rel=1e-12)
 
 
 def test_an_address_is_what_was_seen(live, browser, tmp_path):
     type_in(live, "offset_ratio", "0.64")
     settled(live)
-    address, height = live.execute_script("return [location.hash, [...window.explorer.map.fields[0].values].map(String)]")
+    address, height = live.execute_script(
+        "return [location.hash, [...window.explorer.map.fields[0].values].map(String)]")
     assert "offset_ratio=0.64" in address
     browser.get("about:blank")
     browser.get(page_at(tmp_path).as_uri() + address)
@@ -160,38 +177,54 @@ def test_goals_dim_what_fails_and_the_best_left_is_shown(live):
     bound.send_keys("24.6")  # mm, of 82 mm
     live.find_element("id", "goal-real").click()
     height, spurious = (np.array(v, float) for v in live.execute_script(
-        "const { map } = window.explorer; return [[...map.fields[0].values].map(String), [...map.codes.spurious_first_jump.values]]"))
+        "const { map } = window.explorer; return [[...map.fields[0].values].map(String), "
+        "[...map.codes.spurious_first_jump.values]]"
+    ))
     left = (height >= 0.3) & (spurious == 0)
-    assert f"{left.sum():,} of 30,000" in live.find_element("id", "goals-told").text and 0 < left.sum() < 30000
+    assert f"{left.sum():,} of 30,000" in live.find_element("id", "goals-told").text
+    assert 0 < left.sum() < 30000
     live.find_element("id", "goal-best").click()
     picked = live.execute_script("return window.explorer.view.view.picked")
     assert height[picked[0] * 150 + picked[1]] == height[left].max()
-    assert float(live.execute_script("return document.querySelector('#numbers tr[data-name=jump_height]').dataset.value")) == pytest.approx(height[left].max(), rel=1e-9)
+    assert float(
+        live.execute_script(
+            "return document.querySelector('#numbers tr[data-name=jump_height]').dataset.value")
+    ) == pytest.approx(height[left].max(), rel=1e-9)
     live.find_element("css selector", "#goals button").click()
     live.find_element("id", "goal-real").click()
     assert live.find_element("id", "goals-told").text == ""
 
 
 def test_cuts_go_through_the_design_pointed_at(live):
-    assert live.find_element("id", "cut-x").get_attribute("data-values") is None, "nothing is drawn before anybody asks"
-    live.execute_script("document.getElementById('cuts').open = true; const { view } = window.explorer.view; view.index = [100, 40]; window.explorer.view.point()")
-    height = np.array(live.execute_script("return [...window.explorer.map.fields[0].values].map(String)"), float).reshape(200, 150)
-    WebDriverWait(live, 60).until(lambda b: b.find_element("id", "cut-y").get_attribute("data-values") == str(np.isfinite(height[100]).sum()))
-    assert live.find_element("id", "cut-x").get_attribute("data-values") == str(np.isfinite(height[:, 40]).sum())
+    assert live.find_element(
+        "id", "cut-x").get_attribute("data-values") is None, "nothing is drawn before anybody asks"
+    live.execute_script(
+        "document.getElementById('cuts').open = true; const { view } = window.explorer.view; view.index = "
+        "[100, 40]; window.explorer.view.point()"
+    )
+    height = np.array(live.execute_script("return [...window.explorer.map.fields[0].values].map(String)"),
+                      float).reshape(200, 150)
+    WebDriverWait(live, 60).until(lambda b: b.find_element("id", "cut-y").get_attribute("data-values") == str(
+        np.isfinite(height[100]).sum()))
+    assert live.find_element("id", "cut-x").get_attribute("data-values") == str(
+        np.isfinite(height[:, 40]).sum())
     before = live.execute_script("return document.getElementById('cut-x').toDataURL()")
-    live.execute_script("const { view } = window.explorer.view; view.index = [100, 80]; window.explorer.view.point()")
+    live.execute_script(
+        "const { view } = window.explorer.view; view.index = [100, 80]; window.explorer.view.point()")
     assert live.execute_script("return document.getElementById('cut-x').toDataURL()") != before
 
 
 def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(live, tmp_path):
     pin = live.find_element("id", "pin")
     for place in ([92, 29], [120, 60], [60, 90], [150, 100], [10, 10]):
-        live.execute_script("const { view, pick } = window.explorer.view; view.index = arguments[0]; pick()", place)
+        live.execute_script("const { view, pick } = window.explorer.view; view.index = arguments[0]; pick()",
+                            place)
         pin.click()
     assert "room for 4" in live.find_element("id", "message").text
     head = live.find_elements("css selector", "#pins-table tr:first-child th")
     assert len(head) == 5
-    (tmp_path / "pins.csv").write_text(live.execute_script("return document.getElementById('pins-csv').dataset.text") + "\n")
+    (tmp_path / "pins.csv"
+     ).write_text(live.execute_script("return document.getElementById('pins-csv').dataset.text") + "\n")
     swept = leapmap("sweep", "--points", tmp_path / "pins.csv", "-o", tmp_path / "pins.h5", "--quiet")
     assert swept.returncode == 0, swept.stderr
     commands = live.find_element("id", "pins-commands").text.split("leapmap hop")[1:]
@@ -201,35 +234,49 @@ def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(
             told = json.loads(leapmap("hop", *command.split(), "--json").stdout)
             assert height == pytest.approx(told["jump_height"], rel=1e-9)
     # The hoops move along: the picture is another without them.
-    live.execute_script("document.getElementById('play').click(); const s = document.getElementById('scrub'); s.value = 0.4 * s.max; s.dispatchEvent(new Event('input'))")
+    live.execute_script(
+        "document.getElementById('play').click(); const s = document.getElementById('scrub'); s.value = 0.4 "
+        "* s.max; s.dispatchEvent(new Event('input'))"
+    )
     along = live.execute_script("return document.getElementById('scene').toDataURL()")
     marked = live.execute_script("return document.getElementById('map').toDataURL()")
     live.find_element("id", "pins-along").click()
-    WebDriverWait(live, 60).until(lambda b: b.execute_script("return document.getElementById('scene').toDataURL()") != along)
+    WebDriverWait(
+        live,
+        60).until(lambda b: b.execute_script("return document.getElementById('scene').toDataURL()") != along)
     traced = live.execute_script("return document.getElementById('plots').toDataURL()")
     live.find_element("id", "pins-along").click()
-    WebDriverWait(live, 60).until(lambda b: b.execute_script("return document.getElementById('plots').toDataURL()") != traced)
+    WebDriverWait(
+        live,
+        60).until(lambda b: b.execute_script("return document.getElementById('plots').toDataURL()") != traced)
     live.find_element("css selector", "#pins-table button").click()
     assert len(live.find_elements("css selector", "#pins-table tr:first-child th")) == 4
-    assert live.execute_script("return document.getElementById('map').toDataURL()") != marked, "the map marks what is pinned"
+    assert live.execute_script(
+        "return document.getElementById('map').toDataURL()") != marked, "the map marks what is pinned"
 
 
 @pytest.mark.parametrize("friction", [False, True])
 def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(friction, live):
-    option = "return [...document.getElementById('field').options].find((o) => o.textContent === 'number of jumps').disabled"
+    option = ("return [...document.getElementById('field').options].find((o) => o.textContent === 'number "
+              "of jumps').disabled")
     assert live.execute_script(option)
     if friction:
         Select(live.find_element("id", "live-model")).select_by_value("coulomb")
-    live.execute_script("document.getElementById('map').dataset.whole = 'false'; const j = document.getElementById('jumps'); j.value = 4; j.dispatchEvent(new Event('change'))")
+    live.execute_script(
+        "document.getElementById('map').dataset.whole = 'false'; const j = document.getElementById('jumps'); "
+        "j.value = 4; j.dispatchEvent(new Event('change'))"
+    )
     settled(live, 200)
     assert not live.execute_script(option)
     Select(live.find_element("id", "field")).select_by_visible_text("number of jumps")
-    WebDriverWait(live, 60).until(lambda b: "jumps=4" in b.execute_script("return location.hash") and "field=jumps" in b.execute_script("return location.hash"))
+    WebDriverWait(live, 60).until(lambda b: "jumps=4" in b.execute_script("return location.hash") and
+                                  "field=jumps" in b.execute_script("return location.hash"))
     made = []
     for cell in designs(live, [int(k) for k in np.random.default_rng(11).integers(0, 30000, 30)]):
         told = told_of(cell, "--jumps", "4")
         same_first_jump(cell, told)
-        assert (cell["told"]["jumps"] == "NaN" and not told["jumps"]) or float(cell["told"]["jumps"]) == told["jumps"], cell
+        assert (cell["told"]["jumps"] == "NaN" and not told["jumps"]) or float(
+            cell["told"]["jumps"]) == told["jumps"], cell
         made.append(told["jumps"] or 0)
     assert len(set(made)) >= 3  # none, some, all
 
@@ -237,7 +284,8 @@ def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(fri
 def show(browser, field):
     """Chooses the quantity that the map shows."""
     browser.execute_script("""const select = document.getElementById('field');
-        select.value = window.explorer.map.fields.findIndex((f) => f.name === arguments[0]); select.dispatchEvent(new Event('change'))""", field)
+        select.value = window.explorer.map.fields.findIndex((f) => f.name === arguments[0]);
+        select.dispatchEvent(new Event('change'))""", field)
 
 
 COARSE = [i * 150 + j for i in range(0, 200, 8) for j in range(0, 150, 8)]  # the cells of the first picture
@@ -246,14 +294,21 @@ COARSE = [i * 150 + j for i in range(0, 200, 8) for j in range(0, 150, 8)]  # th
 def first_picture(browser, field, seconds=120):
     """Waits for the first picture in which a field has numbers."""
     told = """const f = window.explorer?.map.fields.find((f) => f.name === arguments[1]);
-        return document.getElementById('map').dataset.coarse === 'true' && f && arguments[0].some((k) => f.values[k] === f.values[k])"""
+        return document.getElementById('map').dataset.coarse === 'true' && f &&
+          arguments[0].some((k) => f.values[k] === f.values[k])"""
     WebDriverWait(browser, seconds).until(lambda b: b.execute_script(told, COARSE, field))
 
 
-@pytest.mark.parametrize("friction, settle", [("sticking", 200), pytest.param("coulomb", 60, marks=pytest.mark.slow)])
-def test_the_gait_that_each_hoop_settles_on_is_a_field_solved_once_one_looks(friction, settle, live, tmp_path):
-    assert not live.execute_script("return window.explorer.map.fields.find((f) => f.name === 'gait_period').values.some((v) => v === v)"), "nobody has asked for gaits yet"
-    address = f"#live&x=slope:0.05:0.45&y=mass_ratio:0.3:20&offset_ratio=0.5&runway=20&settle={settle}&field=gait_period&friction={friction}"
+@pytest.mark.parametrize(
+    "friction, settle",
+    [("sticking", 200), pytest.param("coulomb", 60, marks=pytest.mark.slow)])
+def test_the_gait_that_each_hoop_settles_on_is_a_field_solved_once_one_looks(friction, settle, live,
+                                                                             tmp_path):
+    assert not live.execute_script(
+        "return window.explorer.map.fields.find((f) => f.name === 'gait_period').values.some((v) => v === v)"
+    ), "nobody has asked for gaits yet"
+    address = (f"#live&x=slope:0.05:0.45&y=mass_ratio:0.3:20&offset_ratio=0.5&runway=20&settle={settle}"
+               f"&field=gait_period&friction={friction}")
     live.get("about:blank")
     live.get(page_at(tmp_path).as_uri() + address)
     first_picture(live, "gait_period")
@@ -268,27 +323,37 @@ def test_the_gait_that_each_hoop_settles_on_is_a_field_solved_once_one_looks(fri
         if period > 0 and period == told["gait_period"]:
             settled_on_one += 1
             for name in ("gait_height", "gait_speed", "gait_energy_lost"):
-                assert float(cell["told"][name]) == pytest.approx(told[name], rel=1e-9, abs=1e-11), (name, cell)
+                assert float(cell["told"][name]) == pytest.approx(told[name], rel=1e-9,
+                                                                  abs=1e-11), (name, cell)
             # A derivative, of as many digits as Newton's iteration leaves the orbit.
-            assert float(cell["told"]["gait_multiplier"]) == pytest.approx(told["gait_multiplier"], rel=1e-6, abs=1e-8), cell
+            assert float(cell["told"]["gait_multiplier"]) == pytest.approx(told["gait_multiplier"], rel=1e-6,
+                                                                           abs=1e-8), cell
     assert same >= 0.9 * len(cells) and settled_on_one >= 3, (same, settled_on_one, len(cells))
 
 
-MADE = ("yield", *(f"{q}_{s}" for q in ("jump_height", "jump_time") for s in ("mean", "sd", "q05", "q50", "q95")))
+MADE = ("yield", *(f"{q}_{s}" for q in ("jump_height", "jump_time")
+                   for s in ("mean", "sd", "q05", "q50", "q95")))
 
 
 def told_as_made(cells, folder, *settings):
     """What leapmap sweep tells of hoops made after some cells' designs, by field."""
     scene = ("runway", "hop_height", "rest_speed", "radius", "gravity")
     contact = ("mu_static", "mu_kinetic", "restitution")
-    names = [n for n in cells[0]["design"] if n not in scene and (cells[0]["slips"] or n not in contact) and cells[0]["design"][n] is not None]
+    names = [
+        n for n in cells[0]["design"]
+        if n not in scene and (cells[0]["slips"] or n not in contact) and cells[0]["design"][n] is not None
+    ]
     rows = [",".join(names), *(",".join(repr(c["design"][n]) for n in names) for c in cells)]
     (folder / "cells.csv").write_text("\n".join(rows) + "\n")
     (folder / "cells.h5").unlink(missing_ok=True)
-    fixed = [w for n in scene if cells[0]["slips"] or n != "rest_speed" for w in ("--set", f"{n}={cells[0]['design'][n]!r}")]
+    fixed = [
+        w for n in scene if cells[0]["slips"] or n != "rest_speed"
+        for w in ("--set", f"{n}={cells[0]['design'][n]!r}")
+    ]
     fields = "output.fields=[" + ", ".join(f'"{n}"' for n in MADE) + "]"
-    done = leapmap("sweep", "--points", folder / "cells.csv", "-o", folder / "cells.h5", "--quiet", *fixed, "--set", fields,
-                   *(["--set", "friction=coulomb"] if cells[0]["slips"] else []), *(w for each in settings for w in ("--set", each)))
+    done = leapmap("sweep", "--points", folder / "cells.csv", "-o", folder / "cells.h5", "--quiet", *fixed,
+                   "--set", fields, *(["--set", "friction=coulomb"] if cells[0]["slips"] else []),
+                   *(w for each in settings for w in ("--set", each)))
     assert done.returncode == 0, done.stderr
     with h5py.File(folder / "cells.h5") as made:
         return {name: made[name][...] for name in MADE}
@@ -298,25 +363,37 @@ def same_as_made(cells, told):
     """Every field of each cell is what leapmap tells; how many have a yield between none and all."""
     for name in MADE:
         page = np.array([float(cell["told"][name]) for cell in cells])
-        # Roundings differ, and with friction times and heights by as little as the tolerance, 1e-10, which may be divided by a small spread.
-        np.testing.assert_allclose(page, told[name], rtol=1e-7 if name.endswith("_sd") else 1e-9, atol=1e-9, err_msg=name)
+        # Roundings differ, and with friction times and heights by as little as the tolerance, 1e-10, which
+        # may be divided by a small spread.
+        np.testing.assert_allclose(page, told[name], rtol=1e-7 if name.endswith("_sd") else 1e-9, atol=1e-9,
+                                   err_msg=name)
     return int(np.sum((told["yield"] > 0.02) & (told["yield"] < 0.98)))
 
 
 @pytest.mark.parametrize("friction, samples", [("sticking", 256), ("coulomb", 32)])
-def test_the_yield_of_hoops_as_made_is_a_field_by_the_tolerances_and_goals_that_are_set(friction, samples, live, tmp_path):
-    assert not live.execute_script("return window.explorer.map.fields.find((f) => f.name === 'yield').values.some((v) => v === v)"), "nobody has asked for hoops as made yet"
-    # At L/R = 1 half of a law is cut off, so that its inverse is taken at other places than a table would have.
-    address = f"#live&x=slope:0.1:0.8&y=offset_ratio:0.5:1&mass_ratio=4&samples={samples}&field=yield&friction={friction}" \
-        "&made=slope:uniform:0.03&made=offset_ratio:normal:3:percent&made=mass_ratio:normal:4:percent&goal=jump_height:least:0.4&goal=jump_time:most:0.5&real"
+def test_the_yield_of_hoops_as_made_is_a_field_by_the_tolerances_and_goals_that_are_set(
+        friction, samples, live, tmp_path):
+    assert not live.execute_script(
+        "return window.explorer.map.fields.find((f) => f.name === 'yield').values.some((v) => v === v)"
+    ), "nobody has asked for hoops as made yet"
+    # At L/R = 1 half of a law is cut off, so that its inverse is taken at other places than a table would
+    # have.
+    address = (f"#live&x=slope:0.1:0.8&y=offset_ratio:0.5:1&mass_ratio=4&samples={samples}&field=yield"
+               f"&friction={friction}"
+               "&made=slope:uniform:0.03&made=offset_ratio:normal:3:percent&made=mass_ratio:normal:4:percent"
+               "&goal=jump_height:least:0.4&goal=jump_time:most:0.5&real")
     live.get("about:blank")
     live.get(page_at(tmp_path).as_uri() + address)
     first_picture(live, "yield")
-    assert live.find_element("id", "tolerances").get_attribute("open") and len(live.find_elements("css selector", "#spreads li")) == 3
+    assert live.find_element("id", "tolerances").get_attribute("open")
+    assert len(live.find_elements("css selector", "#spreads li")) == 3
     cells = designs(live, [*COARSE[::20], 192 * 150 + 144, 96 * 150 + 144])
     cells = [cell for cell in cells if cell["told"]["yield"] != "NaN"]
-    settings = [f"scatter.samples={samples}", "scatter.slope={uniform=0.03}", 'scatter.offset_ratio={normal="3%"}', 'scatter.mass_ratio={normal="4%"}',
-                "goal.jump_height={at_least=0.4}", "goal.jump_time={at_most=0.5}", 'goal.spurious_first_jump={is="first_lift_off_is_the_jump"}']
+    settings = [
+        f"scatter.samples={samples}", "scatter.slope={uniform=0.03}", 'scatter.offset_ratio={normal="3%"}',
+        'scatter.mass_ratio={normal="4%"}', "goal.jump_height={at_least=0.4}", "goal.jump_time={at_most=0.5}",
+        'goal.spurious_first_jump={is="first_lift_off_is_the_jump"}'
+    ]
     assert len(cells) >= 20 and same_as_made(cells, told_as_made(cells, tmp_path, *settings)) >= 3
 
 
@@ -327,58 +404,96 @@ def test_without_a_goal_the_yield_counts_hoops_that_jump_and_a_tolerance_changed
     spots = [i * 150 + j for i in range(2, 42, 2) for j in (20, 100)]
     usual = [f'scatter.{n}={{normal="1%"}}' for n in ("offset_ratio", "inertia_factor")]
     cells = designs(live, spots)
-    same_as_made(cells, told_as_made(cells, tmp_path, "scatter.samples=32", 'scatter.mass_ratio={normal="1%"}', *usual, 'goal.status={is="jumped"}'))
-    live.execute_script("""document.getElementById('tolerances').open = true; document.getElementById('map').dataset.whole = 'false';
-        const [number] = document.querySelectorAll('#spreads input'); number.value = 20; number.dispatchEvent(new Event('change'))""")
+    same_as_made(
+        cells,
+        told_as_made(cells, tmp_path, "scatter.samples=32", 'scatter.mass_ratio={normal="1%"}', *usual,
+                     'goal.status={is="jumped"}'))
+    live.execute_script("""document.getElementById('tolerances').open = true;
+          document.getElementById('map').dataset.whole = 'false';
+        const [number] = document.querySelectorAll('#spreads input'); number.value = 20;
+        number.dispatchEvent(new Event('change'))""")
     settled(live)
     assert "made=mass_ratio:normal:20:percent" in live.execute_script("return location.hash")
     cells = designs(live, spots)
-    told = told_as_made(cells, tmp_path, "scatter.samples=32", 'scatter.mass_ratio={normal="20%"}', *usual, 'goal.status={is="jumped"}')
+    told = told_as_made(cells, tmp_path, "scatter.samples=32", 'scatter.mass_ratio={normal="20%"}', *usual,
+                        'goal.status={is="jumped"}')
     assert same_as_made(cells, told) >= 3
     # A hoop typed in is told as made, too, whenever that is known.
     live.execute_script("""for (const [name, value] of [['slope', 22], ['mass_ratio', 3]]) {
-        const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value; input.dispatchEvent(new Event('change')); }""")
-    WebDriverWait(live, 60).until(lambda b: b.find_element("id", "readout").get_attribute("data-value") not in ("", None))
+        const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value;
+        input.dispatchEvent(new Event('change')); }""")
+    WebDriverWait(
+        live,
+        60).until(lambda b: b.find_element("id", "readout").get_attribute("data-value") not in ("", None))
     own = {**cells[0], "design": {**cells[0]["design"], "slope": math.radians(22), "mass_ratio": 3.0}}
-    told = told_as_made([own], tmp_path, "scatter.samples=32", 'scatter.mass_ratio={normal="20%"}', *usual, 'goal.status={is="jumped"}')
-    assert float(live.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(told["yield"][0], rel=1e-9)
+    told = told_as_made([own], tmp_path, "scatter.samples=32", 'scatter.mass_ratio={normal="20%"}', *usual,
+                        'goal.status={is="jumped"}')
+    assert float(live.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(
+        told["yield"][0], rel=1e-9)
     live.find_element("id", "undo").click()  # the hoop
     live.find_element("css selector", "#spreads button").click()
     assert "made=offset_ratio:normal:1:percent" in live.execute_script("return location.hash")
 
 
-def test_a_file_s_map_as_made_tells_a_hoop_of_ones_own_and_goes_live_with_its_tolerances_and_goals(browser, tmp_path):
-    sweep(tmp_path, """[design]\nslope = {from = "5 deg", to = "45 deg", count = 9}\nmass_ratio = {from = 1, to = 9, count = 5}
+def test_a_file_s_map_as_made_tells_a_hoop_of_ones_own_and_goes_live_with_its_tolerances_and_goals(
+        browser, tmp_path):
+    sweep(
+        tmp_path,
+        """[design]\nslope = {from = "5 deg", to = "45 deg", count = 9}
+mass_ratio = {from = 1, to = 9, count = 5}
 [scatter]\nsamples = 64\nseed = 5\nslope = {normal = "2 deg"}\nmass_ratio = {uniform = "8%"}
-[goal]\njump_height = {at_least = 0.3}\nspurious_first_jump = {is = "first_lift_off_is_the_jump"}\n[output]\nfields = ["jump_height", "status", "yield"]\n""", name="made.h5")
+[goal]\njump_height = {at_least = 0.3}\nspurious_first_jump = {is = "first_lift_off_is_the_jump"}
+[output]\nfields = ["jump_height", "status", "yield"]\n""",
+        name="made.h5")
     browser.get("about:blank")
     opened(browser, page_at(tmp_path, tmp_path / "made.h5"))
     show(browser, "yield")
-    browser.execute_script("const { view, pick } = window.explorer.view; view.index = [4, 2]; pick(); document.getElementById('own').open = true")
-    at = browser.execute_script("const { map } = window.explorer; return [map.fields.find((f) => f.name === 'yield').values[4 * 5 + 2], map.axes[0].values[4], map.axes[1].values[2]]")
-    browser.execute_script("""for (const [name, value] of [['mass_ratio', 5.000001], ['mass_ratio', arguments[0]]]) {
-        const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value; input.dispatchEvent(new Event('change')); }""", at[2])
-    WebDriverWait(browser, 60).until(lambda b: b.find_element("id", "readout").get_attribute("data-value") not in ("", None))
+    browser.execute_script(
+        "const { view, pick } = window.explorer.view; view.index = [4, 2]; pick(); "
+        "document.getElementById('own').open = true"
+    )
+    at = browser.execute_script(
+        "const { map } = window.explorer; return [map.fields.find((f) => f.name === 'yield').values[4 * 5 + "
+        "2], map.axes[0].values[4], map.axes[1].values[2]]"
+    )
+    browser.execute_script("""for (const [name, value] of [['mass_ratio', 5.000001], ['mass_ratio',
+          arguments[0]]]) {
+        const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value;
+        input.dispatchEvent(new Event('change')); }""", at[2])
+    WebDriverWait(
+        browser,
+        60).until(lambda b: b.find_element("id", "readout").get_attribute("data-value") not in ("", None))
     # Rounded on the map to a 60,000th of what it holds; the slope typed in has as many digits as are shown.
-    assert float(browser.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(at[0], abs=1e-4)
+    assert float(browser.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(
+        at[0], abs=1e-4)
     browser.find_element("id", "live-toggle").click()
     WebDriverWait(browser, 60).until(lambda b: b.execute_script("return !!window.explorer?.map.live"))
-    asked = browser.execute_script("const { map } = window.explorer; return [map.spreads, map.samples, map.seed, map.hoopGoals()]")
-    assert asked == [[{"name": "slope", "law": "normal", "width": pytest.approx(math.radians(2)), "percent": False}, {"name": "mass_ratio", "law": "uniform", "width": 8, "percent": True}],
-                     64, 5, [{"field": "jump_height", "least": 0.3, "most": None}, {"field": "spurious_first_jump", "least": 0, "most": 0}, {"field": "status", "least": 1, "most": 1}]]
+    asked = browser.execute_script(
+        "const { map } = window.explorer; return [map.spreads, map.samples, map.seed, map.hoopGoals()]")
+    assert asked == [[{
+        "name": "slope", "law": "normal", "width": pytest.approx(math.radians(2)), "percent": False
+    }, {"name": "mass_ratio", "law": "uniform", "width": 8, "percent": True}], 64, 5,
+                     [{"field": "jump_height", "least": 0.3,
+                       "most": None}, {"field": "spurious_first_jump", "least": 0, "most": 0},
+                      {"field": "status", "least": 1, "most": 1}]]
 
 
 def gait_of_a_hoop_of_ones_own(browser):
     """Types a hoop in whose gait is shown; it must be the one that the command beside it tells."""
     browser.execute_script("""for (const [name, value] of [['slope', 12], ['mass_ratio', 3]]) {
-        const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value; input.dispatchEvent(new Event('change')); }""")
+        const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value;
+        input.dispatchEvent(new Event('change')); }""")
     told = told_by_leapmap(browser)
     assert told["gait_height"] > 0.1
-    assert float(browser.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(told["gait_height"], rel=1e-9)
+    assert float(browser.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(
+        told["gait_height"], rel=1e-9)
 
 
 def test_a_file_s_map_tells_gaits_of_a_hoop_of_one_s_own_too_and_goes_live_as_it_settled(browser, tmp_path):
-    path = sweep(tmp_path, """[scene]\nrunway = 20.0\n[design]\nslope = { from = "8 deg", to = "16 deg", count = 9 }\nmass_ratio = { from = 2, to = 4, count = 5 }\noffset_ratio = 0.5
+    path = sweep(
+        tmp_path,
+        """[scene]\nrunway = 20.0\n[design]\nslope = { from = "8 deg", to = "16 deg", count = 9 }
+mass_ratio = { from = 2, to = 4, count = 5 }\noffset_ratio = 0.5
 [gait]\nsettle = 60\n[output]\nfields = ["jump_height", "status", "gait_height", "gait_period"]\n""")
     html = page_at(tmp_path, path)
     browser.get("about:blank")
@@ -394,16 +509,24 @@ def test_a_file_s_map_tells_gaits_of_a_hoop_of_one_s_own_too_and_goes_live_as_it
 def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps, live, tmp_path):
     asked = "return window.explorer.map.asked.settle"
     live.get("about:blank")
-    live.get(page_at(tmp_path).as_uri() + "#live&x=slope:0.05:0.45&y=mass_ratio:0.3:20&offset_ratio=0.5&runway=20&settle=%d&field=gait_height" % jumps)
-    WebDriverWait(live, 60).until(lambda b: b.execute_script("return window.explorer?.map.asked.settle") == jumps)
+    live.get(
+        page_at(tmp_path).as_uri() +
+        "#live&x=slope:0.05:0.45&y=mass_ratio:0.3:20&offset_ratio=0.5&runway=20&settle=%d&field=gait_height" %
+        jumps)
+    WebDriverWait(live,
+                  60).until(lambda b: b.execute_script("return window.explorer?.map.asked.settle") == jumps)
     settled(live)
     # A hoop of one's own is told the same, by the command that the page shows too.
     gait_of_a_hoop_of_ones_own(live)
     settle = live.find_element("id", "settle")
     assert settle.is_displayed()
-    live.execute_script("document.getElementById('map').dataset.whole = 'false'; arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('change'))", settle, jumps + 4)
+    live.execute_script(
+        "document.getElementById('map').dataset.whole = 'false'; arguments[0].value = arguments[1]; "
+        "arguments[0].dispatchEvent(new Event('change'))",
+        settle, jumps + 4)
     settled(live)
-    assert live.execute_script(asked) == jumps + 4 and f"settle={jumps + 4}" in live.execute_script("return location.hash")
+    assert live.execute_script(asked) == jumps + 4
+    assert f"settle={jumps + 4}" in live.execute_script("return location.hash")
     live.execute_script("document.getElementById('map').dataset.whole = 'false'")
     live.find_element("id", "undo").click()
     settled(live)
@@ -411,7 +534,8 @@ def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps,
     show(live, "jump_height")
     assert not settle.is_displayed() and live.execute_script(asked) == jumps, "what is there stays"
     show(live, "gait_height")
-    assert live.execute_script("return document.getElementById('map').dataset.whole") == "true", "and is not solved again"
+    assert live.execute_script(
+        "return document.getElementById('map').dataset.whole") == "true", "and is not solved again"
     show(live, "jump_height")
     live.execute_script("document.getElementById('map').dataset.whole = 'false'")
     type_in(live, "offset_ratio", "0.6")
@@ -420,7 +544,10 @@ def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps,
 
 
 def test_how_errors_grow_is_a_field_of_sequences(live):
-    live.execute_script("document.getElementById('map').dataset.whole = 'false'; const j = document.getElementById('jumps'); j.value = 3; j.dispatchEvent(new Event('change'))")
+    live.execute_script(
+        "document.getElementById('map').dataset.whole = 'false'; const j = document.getElementById('jumps'); "
+        "j.value = 3; j.dispatchEvent(new Event('change'))"
+    )
     settled(live)
     show(live, "sequence_condition")
     compared = 0
@@ -430,7 +557,8 @@ def test_how_errors_grow_is_a_field_of_sequences(live):
         if told["sequence_condition"] is None:
             assert cell["told"]["sequence_condition"] == "NaN", cell
             continue
-        assert float(cell["told"]["sequence_condition"]) == pytest.approx(told["sequence_condition"], rel=1e-6), cell
+        assert float(cell["told"]["sequence_condition"]) == pytest.approx(told["sequence_condition"],
+                                                                          rel=1e-6), cell
         compared += 1
     assert compared >= 3
 
@@ -438,13 +566,17 @@ def test_how_errors_grow_is_a_field_of_sequences(live):
 def test_cliffs_move_while_one_drags_and_no_drag_goes_unseen(live):
     """Each picture on the way has curves of its own, and they come however often the slider tells."""
     settled(live, what="cliffs")
-    curves = live.execute_async_script("""const done = arguments[0], { map } = window.explorer, canvas = document.getElementById('map'), seen = [];
-        const slider = document.querySelector('#live-sliders input[type=range][data-parameter=offset_ratio]'), begun = performance.now();
+    curves = live.execute_async_script("""const done = arguments[0], { map } = window.explorer;
+        const canvas = document.getElementById('map'), seen = [], begun = performance.now();
+        const offset = 'input[type=range][data-parameter=offset_ratio]';
+        const slider = document.querySelector('#live-sliders ' + offset);
         let last = canvas.dataset.generation;
         (function drag() {
           slider.value = 0.9 - 0.3 * (performance.now() - begun) / 4000;
           slider.dispatchEvent(new Event('input'));
-          if (canvas.dataset.generation !== last) { last = canvas.dataset.generation; if (map.curves.length > 0) seen.push([map.roughCurves, JSON.stringify(map.curves.map(({ x }) => x.slice(0, 3)))]); }
+          if (canvas.dataset.generation !== last) { last = canvas.dataset.generation;
+          if (map.curves.length > 0) seen.push([map.roughCurves, JSON.stringify(map.curves.map(({
+            x }) => x.slice(0, 3)))]); }
           if (performance.now() - begun < 4000) requestAnimationFrame(drag); else done(seen);
         })();""")
     assert len(curves) >= 5 and all(rough for rough, _ in curves)  # some fifty on an idle machine
@@ -453,15 +585,18 @@ def test_cliffs_move_while_one_drags_and_no_drag_goes_unseen(live):
 
 def test_the_animation_goes_frame_by_frame_and_is_saved_as_a_film(live):
     clock = live.find_element("id", "clock")
-    live.execute_script("const s = document.getElementById('scrub'); s.value = 0.1; s.dispatchEvent(new Event('input'))")
+    live.execute_script(
+        "const s = document.getElementById('scrub'); s.value = 0.1; s.dispatchEvent(new Event('input'))")
     live.find_element("id", "step-on").click()
-    assert float(clock.text.split()[0]) == pytest.approx(0.1 + 0.25 / 30, abs=6e-4)  # at a quarter of the speed
+    # at a quarter of the speed
+    assert float(clock.text.split()[0]) == pytest.approx(0.1 + 0.25 / 30, abs=6e-4)
     live.find_element("id", "step-back").click()
     live.find_element("id", "step-back").click()
     assert float(clock.text.split()[0]) == pytest.approx(0.1 - 0.25 / 30, abs=6e-4)
     Select(live.find_element("id", "speed")).select_by_value("1")
     live.find_element("id", "film").click()
-    WebDriverWait(live, 240).until(lambda b: int(b.find_element("id", "film").get_attribute("data-bytes") or 0) > 3000)
+    WebDriverWait(
+        live, 240).until(lambda b: int(b.find_element("id", "film").get_attribute("data-bytes") or 0) > 3000)
 
 
 def test_a_link_to_the_paper_s_hoop_shows_the_hoop_first_on_a_phone(live, tmp_path):
@@ -471,24 +606,37 @@ def test_a_link_to_the_paper_s_hoop_shows_the_hoop_first_on_a_phone(live, tmp_pa
         live.get("about:blank")
         live.get(page_at(tmp_path).as_uri() + "#live&paper")
         settled(live)
-        tops = live.execute_script("return ['hop-part', 'map-part'].map((id) => document.getElementById(id).getBoundingClientRect().top)")
+        tops = live.execute_script(
+            "return ['hop-part', 'map-part'].map((id) => "
+            "document.getElementById(id).getBoundingClientRect().top)"
+        )
         assert tops[0] < tops[1] and tops[0] < 400
-        assert live.execute_script("return document.documentElement.scrollWidth") <= live.execute_script("return window.innerWidth")
+        assert live.execute_script("return document.documentElement.scrollWidth") <= live.execute_script(
+            "return window.innerWidth")
     finally:
         live.set_window_size(size["width"], size["height"])
 
 
 def test_a_file_s_map_goes_live_where_it_is_and_back(browser, tmp_path):
-    path = sweep(tmp_path, "[design]\nslope = { from = \"5 deg\", to = \"40 deg\", count = 20 }\nmass_ratio = { from = 0.5, to = 10, count = 15 }\noffset_ratio = 0.8\n")
+    path = sweep(
+        tmp_path,
+        "[design]\nslope = { from = \"5 deg\", to = \"40 deg\", count = 20 }\nmass_ratio = { from = 0.5, to "
+        "= 10, count = 15 }\noffset_ratio = 0.8\n"
+    )
     html = page_at(tmp_path, path)
     browser.get("about:blank")
     opened(browser, html)
     browser.find_element("id", "live-toggle").click()
     settled(browser)
-    axes, offset = browser.execute_script("const { map } = window.explorer; return [map.axes.map((a) => [a.name, a.values[0], a.values.at(-1)]), map.fixed.offset_ratio]")
+    axes, offset = browser.execute_script(
+        "const { map } = window.explorer; return [map.axes.map((a) => [a.name, a.values[0], "
+        "a.values.at(-1)]), map.fixed.offset_ratio]"
+    )
     assert [axis[0] for axis in axes] == ["slope", "mass_ratio"] and offset == 0.8
-    assert axes[0][1:] == pytest.approx([math.radians(5), math.radians(40)]) and axes[1][1:] == pytest.approx([0.5, 10])
+    assert axes[0][1:] == pytest.approx([math.radians(5), math.radians(40)])
+    assert axes[1][1:] == pytest.approx([0.5, 10])
     compare(browser, np.random.default_rng(9), 10)
     browser.find_element("id", "live-toggle").click()
-    WebDriverWait(browser, 60).until(lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
+    WebDriverWait(browser,
+                  60).until(lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
     assert browser.execute_script("return window.explorer.map.axes[0].values.length") == 20

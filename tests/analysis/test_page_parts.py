@@ -49,11 +49,15 @@ def at(browser, html, address):
 
 
 def give(browser, selector, value, event="change"):
-    browser.execute_script("const input = document.querySelector(arguments[0]); input.value = arguments[1]; input.dispatchEvent(new Event(arguments[2]))", selector, value, event)
+    browser.execute_script(
+        "const input = document.querySelector(arguments[0]); input.value = arguments[1]; "
+        "input.dispatchEvent(new Event(arguments[2]))",
+        selector, value, event)
 
 
 def show(browser, index):
-    browser.execute_script("const { view, pick } = window.explorer.view; view.index = arguments[0]; pick()", index)
+    browser.execute_script("const { view, pick } = window.explorer.view; view.index = arguments[0]; pick()",
+                           index)
 
 
 def pixels(browser, canvas):
@@ -70,17 +74,32 @@ def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, 
         Select(page.find_element("id", "live-model")).select_by_value("coulomb")
     random, jumped, turned = np.random.default_rng(23), 0, 0
     for _ in range(count):
-        design = {"slope": random.uniform(0.05, 0.85), "mass_ratio": random.uniform(0.2, 15), "offset_ratio": random.uniform(0.1, 1), "inertia_factor": random.uniform(0.5, 1),
-                  "release_angle": random.uniform(0, 2 * math.pi), "release_spin": random.choice([0, random.uniform(-2, 3)]), "drive_torque": random.choice([0, random.uniform(0, 0.2)]),
-                  "runway": random.uniform(2, 9), "hop_height": random.uniform(0, 0.1), "gravity": random.uniform(1.5, 25)}
+        design = {
+            "slope": random.uniform(0.05, 0.85), "mass_ratio": random.uniform(0.2, 15),
+            "offset_ratio": random.uniform(0.1, 1), "inertia_factor": random.uniform(
+                0.5, 1), "release_angle": random.uniform(0, 2 * math.pi), "release_spin": random.choice([
+                    0, random.uniform(-2, 3)
+                ]), "drive_torque": random.choice([0, random.uniform(0, 0.2)]), "runway": random.uniform(
+                    2, 9), "hop_height": random.uniform(0, 0.1), "gravity": random.uniform(1.5, 25)
+        }
         if friction:
-            design |= {"mu_static": random.uniform(0.1, 1.2), "mu_kinetic": random.uniform(0.05, 0.1), "restitution": random.uniform(0, 0.6), "rest_speed": random.uniform(1e-4, 0.05)}
-        page.execute_script("""for (const [name, text] of Object.entries(arguments[0])) {
-            const input = document.querySelector(`#hoop-inputs input[data-parameter=${name}]`); input.value = text; input.dispatchEvent(new Event('change')); }""",
-                            {name: repr(math.degrees(v) if name in ANGLES else float(v)) for name, v in design.items()})
+            design |= {
+                "mu_static": random.uniform(0.1, 1.2), "mu_kinetic": random.uniform(0.05, 0.1),
+                "restitution": random.uniform(0, 0.6), "rest_speed": random.uniform(1e-4, 0.05)
+            }
+        page.execute_script(
+            """for (const [name, text] of Object.entries(arguments[0])) {
+            const input = document.querySelector(`#hoop-inputs input[data-parameter=${name}]`);
+            input.value = text; input.dispatchEvent(new Event('change')); }""",
+            {name: repr(math.degrees(v) if name in ANGLES else float(v)) for name, v in design.items()})
         assert page.find_element("id", "message").text == ""
         told = told_by_leapmap(page)
-        settings = {name: float(word) for name, _, word in (setting.partition("=") for setting in shlex.split(page.find_element("id", "command").text)) if name in design}
+        settings = {
+            name: float(word)
+            for name, _, word in (setting.partition("=")
+                                  for setting in shlex.split(page.find_element("id", "command").text))
+            if name in design
+        }
         for name, value in design.items():
             if name in settings:
                 assert settings[name] == pytest.approx(value, rel=1e-14)
@@ -88,10 +107,15 @@ def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, 
             assert told["design"][name] == pytest.approx(value, rel=1e-14, abs=1e-300), name
         assert agrees(numbers(page), told) >= (9 if told["status"] == "jumped" else 1)
         if told["status"] == "jumped":  # what is read is that number, in SI
-            text = page.execute_script("return [...document.querySelectorAll('#numbers tr')].filter((r) => r.dataset.name.match(/^jump_(height|time)$/)).map((r) => r.cells[1].textContent)")
+            text = page.execute_script(
+                "return [...document.querySelectorAll('#numbers tr')].filter((r) => "
+                "r.dataset.name.match(/^jump_(height|time)$/)).map((r) => r.cells[1].textContent)"
+            )
             diameter = 2 * told["design"]["radius"] if "radius" in told["design"] else 0.082
             scale = 1000 if text[0].split()[1] == "mm" else 1
-            assert float(text[0].split()[0]) == pytest.approx(scale * diameter * told["jump_height"], rel=1e-3) and float(text[1].split()[0]) == pytest.approx(told["jump_time"], rel=1e-3)
+            assert float(text[0].split()[0]) == pytest.approx(scale * diameter * told["jump_height"],
+                                                              rel=1e-3)
+            assert float(text[1].split()[0]) == pytest.approx(told["jump_time"], rel=1e-3)
         jumped += told["status"] == "jumped"
         turned += design["release_spin"] < 0
     assert jumped >= 0.4 * count and turned >= count // 20
@@ -102,30 +126,40 @@ def test_a_number_that_no_hoop_has_is_refused_and_changes_nothing(page):
     before = numbers(page)
     give(page, "#hoop-inputs input[data-parameter=offset_ratio]", "1.5")
     assert "offset ratio" in page.find_element("id", "message").text and numbers(page) == before
-    assert page.find_element("css selector", "#hoop-inputs input[data-parameter=offset_ratio]").get_attribute("aria-invalid") == "true"
+    assert page.find_element(
+        "css selector",
+        "#hoop-inputs input[data-parameter=offset_ratio]").get_attribute("aria-invalid") == "true"
 
 
 def test_derivatives_are_those_that_leapmap_stores(page, tmp_path):
-    """The table's own numbers against a map's gradients, which are to rounding: a hoop without slip and one with."""
+    """The table's own numbers against a map's gradients, which are to rounding: a hoop without slip and one
+    with."""
     for friction, parameters in (("never", 7), ("coulomb", 10)):
         spec = f"""[scene]\nfriction = "{friction}"\nmu_static = 0.6\nmu_kinetic = 0.5\nrestitution = 0.2
-[design]\nslope = {{ values = [0.3, 0.42] }}\nmass_ratio = 3.0\noffset_ratio = 0.9\ninertia_factor = 0.9\nrelease_angle = 3.0\nrelease_spin = 0.1\ndrive_torque = 0.01
+[design]\nslope = {{ values = [0.3, 0.42] }}\nmass_ratio = 3.0\noffset_ratio = 0.9\ninertia_factor = 0.9
+release_angle = 3.0\nrelease_spin = 0.1\ndrive_torque = 0.01
 [numerics]\ntolerance = 1e-10\naudit = 0
 [output]\ngradients = ["jump_height", "jump_time"]\n"""
         if friction == "never":
-            spec = spec.replace('friction = "never"\nmu_static = 0.6\nmu_kinetic = 0.5\nrestitution = 0.2\n', "")
+            spec = spec.replace('friction = "never"\nmu_static = 0.6\nmu_kinetic = 0.5\nrestitution = 0.2\n',
+                                "")
         with h5py.File(sweep(tmp_path, spec, name=f"{friction}.h5")) as file:
             stored = {name: float(file[name][1]) for name in file if "_by_" in name}
         page.execute_script("document.getElementById('gradient').open = true")
         if friction == "coulomb":
             Select(page.find_element("id", "live-model")).select_by_value("coulomb")
-        page.execute_script("""for (const [name, text] of Object.entries(arguments[0])) {
+        page.execute_script(
+            """for (const [name, text] of Object.entries(arguments[0])) {
             const input = document.querySelector(`#hoop-inputs input[data-parameter=${name}]`);
-            if (input) { input.value = text; input.dispatchEvent(new Event('change')); } }""",
-                            {"slope": repr(math.degrees(0.42)), "mass_ratio": "3", "offset_ratio": "0.9", "inertia_factor": "0.9", "release_angle": repr(math.degrees(3.0)), "release_spin": "0.1",
-                             "drive_torque": "0.01", "mu_static": "0.6", "mu_kinetic": "0.5", "restitution": "0.2"})
-        shown = page.execute_script("""return Object.fromEntries([...document.querySelectorAll('#gradient-table tr[data-name]')].flatMap((row) =>
-            [...row.querySelectorAll('td')].map((td) => [`${td.dataset.of}_by_${row.dataset.name}`, td.dataset.value])))""")
+            if (input) { input.value = text; input.dispatchEvent(new Event('change')); } }""", {
+                "slope": repr(math.degrees(0.42)), "mass_ratio": "3", "offset_ratio": "0.9",
+                "inertia_factor": "0.9", "release_angle": repr(math.degrees(3.0)), "release_spin": "0.1",
+                "drive_torque": "0.01", "mu_static": "0.6", "mu_kinetic": "0.5", "restitution": "0.2"
+            })
+        shown = page.execute_script(
+            """const rows = [...document.querySelectorAll('#gradient-table tr[data-name]')];
+            return Object.fromEntries(rows.flatMap((row) => [...row.querySelectorAll('td')].map((td) =>
+              [`${td.dataset.of}_by_${row.dataset.name}`, td.dataset.value])))""")
         finite = {name: value for name, value in stored.items() if math.isfinite(value)}
         assert len(finite) >= 2 * (parameters - 1)
         for name, value in finite.items():
@@ -134,10 +168,12 @@ def test_derivatives_are_those_that_leapmap_stores(page, tmp_path):
 
 
 def test_what_was_done_is_undone_and_done_again(page):
-    undo, redo, state = page.find_element("id", "undo"), page.find_element("id", "redo"), "return [location.hash, window.explorer.map.fixed.offset_ratio]"
+    undo, redo, state = page.find_element("id", "undo"), page.find_element(
+        "id", "redo"), "return [location.hash, window.explorer.map.fixed.offset_ratio]"
     first = page.execute_script(state)
     assert not undo.is_enabled() and not redo.is_enabled()
-    WebDriverWait(page, 60).until(lambda b: b.execute_script("return performance.now() > 1500"))  # well after the page began
+    # well after the page began
+    WebDriverWait(page, 60).until(lambda b: b.execute_script("return performance.now() > 1500"))
     page.execute_script("document.getElementById('map').dataset.whole = 'false'")
     give(page, "#live-sliders input[type=number][data-parameter=offset_ratio]", "0.7")
     settled(page)
@@ -148,14 +184,17 @@ def test_what_was_done_is_undone_and_done_again(page):
     WebDriverWait(page, 60).until(lambda b: b.execute_script(state) == first)
     settled(page)
     assert redo.is_enabled() and not undo.is_enabled()
-    assert page.find_element("css selector", "#live-sliders input[type=number][data-parameter=offset_ratio]").get_attribute("value") == "1"
+    assert page.find_element(
+        "css selector",
+        "#live-sliders input[type=number][data-parameter=offset_ratio]").get_attribute("value") == "1"
     page.find_element("tag name", "body").send_keys(Keys.CONTROL + Keys.SHIFT + "z")
     WebDriverWait(page, 60).until(lambda b: b.execute_script(state) == second)
 
 
 def test_a_link_is_all_that_was_found(page, html):
     """Field, goals, pins, a hoop typed in, its jumps, its mass and the units, as the address has them."""
-    Select(page.find_element("id", "field")).select_by_visible_text("agility: height over time from release to apex [m/s]")
+    Select(page.find_element(
+        "id", "field")).select_by_visible_text("agility: height over time from release to apex [m/s]")
     page.execute_script("document.getElementById('filters').open = true")
     page.find_element("id", "goal-add").click()
     give(page, "#goals input", "0.11", "input")
@@ -173,21 +212,34 @@ def test_a_link_is_all_that_was_found(page, html):
     give(page, "#scrub", "0.31", "input")
 
     def seen():
-        return page.execute_script("""return { goals: document.getElementById('goals-told').textContent, field: window.explorer.view.view.field.name, units: document.getElementById('units').value,
-            pins: document.getElementById('pins-csv').dataset.text, commands: document.getElementById('pins-commands').textContent, command: document.getElementById('command').textContent,
-            numbers: document.getElementById('numbers').textContent, mass: document.getElementById('mass').value, title: document.getElementById('hop-title').textContent,
-            clock: document.getElementById('clock').textContent, ways: ['speed', 'follow', 'forces'].map((id) => { const e = document.getElementById(id); return e.type === 'checkbox' ? e.checked : e.value; }) }""")
+        return page.execute_script("""return { goals: document.getElementById('goals-told').textContent,
+              field: window.explorer.view.view.field.name, units: document.getElementById('units').value,
+            pins: document.getElementById('pins-csv').dataset.text,
+              commands: document.getElementById('pins-commands').textContent,
+                command: document.getElementById('command').textContent,
+            numbers: document.getElementById('numbers').textContent,
+              mass: document.getElementById('mass').value,
+                title: document.getElementById('hop-title').textContent,
+            clock: document.getElementById('clock').textContent, ways: ['speed', 'follow',
+              'forces'].map((id) => { const e = document.getElementById(id);
+              return e.type === 'checkbox' ? e.checked : e.value; }) }""")
     WebDriverWait(page, 60).until(lambda b: "time=0.31" in b.execute_script("return location.hash"))
     before, address = seen(), page.execute_script("return location.hash")
-    assert before["field"] == "agility" and "of 30,000" in before["goals"] and before["commands"].count("leapmap hop") == 2 and "--jumps 3" in before["command"] and "√(R/g)" in before["numbers"]
+    assert before["field"] == "agility" and "of 30,000" in before["goals"]
+    assert before["commands"].count("leapmap hop") == 2 and "--jumps 3" in before["command"]
+    assert "√(R/g)" in before["numbers"]
     at(page, html, address)
     assert before["ways"] == ["0.1", True, False]
     assert seen() == before
     assert page.execute_script("return location.hash") == address
 
 
-@pytest.mark.parametrize(("address", "words"), [("#goal=nonsense:least:1", "nonsense"), ("#goal=jump_height:least:", "jump_height"), ("#field=nonsense", "nonsense"),
-                                                ("#hoop=slope:99", "not possible"), ("#hoop=<img src=x onerror=alert(1)>:1", "not possible"), ("#design=1,2,3", "not on this map")])
+@pytest.mark.parametrize(("address", "words"), [("#goal=nonsense:least:1", "nonsense"),
+                                                ("#goal=jump_height:least:", "jump_height"),
+                                                ("#field=nonsense", "nonsense"),
+                                                ("#hoop=slope:99", "not possible"),
+                                                ("#hoop=<img src=x onerror=alert(1)>:1", "not possible"),
+                                                ("#design=1,2,3", "not on this map")])
 def test_an_address_that_asks_for_what_cannot_be_says_so(address, words, browser, html):
     at(browser, html, address)
     assert words in browser.find_element("id", "message").text
@@ -196,23 +248,28 @@ def test_an_address_that_asks_for_what_cannot_be_says_so(address, words, browser
 
 def test_cliffs_lie_where_what_becomes_of_a_hoop_changes(page):
     settled(page, what="cliffs")
-    sides = page.execute_script("""const { map, solver } = window.explorer, [x, y] = map.axes, step = [x, y].map((a) => a.values[1] - a.values[0]), found = [];
-        const place = (axis, v, k) => (v - axis.values[0]) / step[k], course = (u, v) => { const { outcome: o } = solver.solve({ ...map.fixed, [x.name]: u, [y.name]: v }, false, 1e-10);
+    sides = page.execute_script("""const { map, solver } = window.explorer, [x, y] = map.axes, step = [x,
+          y].map((a) => a.values[1] - a.values[0]), found = [];
+        const place = (axis, v, k) => (v - axis.values[0]) / step[k], course = (u, v) => { const {
+          outcome: o } = solver.solve({ ...map.fixed, [x.name]: u, [y.name]: v }, false, 1e-10);
           return `${o.status} ${o.spurious_first_jump} ${o.candidates}`; };
         for (const curve of map.curves) for (let k = 0; k < curve.x.length; k += 15) {
-          const i = place(x, curve.x[k], 0), j = place(y, curve.y[k], 1), right = Math.abs(j - Math.round(j)) < 1e-6, up = Math.abs(i - Math.round(i)) < 1e-6;
+          const i = place(x, curve.x[k], 0), j = place(y, curve.y[k], 1),
+            right = Math.abs(j - Math.round(j)) < 1e-6, up = Math.abs(i - Math.round(i)) < 1e-6;
           if (right === up) continue;  // a middle of a square, or a corner
           const [dx, dy] = right ? [step[0] / 64, 0] : [0, step[1] / 64];
           found.push(course(curve.x[k] - dx, curve.y[k] - dy) !== course(curve.x[k] + dx, curve.y[k] + dy));
         }
         return found""")
-    # A row of the solver's and one of its whole story may count a lift-off at its very edge differently, and a third outcome may lie between two.
+    # A row of the solver's and one of its whole story may count a lift-off at its very edge differently, and
+    # a third outcome may lie between two.
     assert len(sides) > 100 and np.mean(sides) > 0.99
 
 
 def test_forces_are_drawn_at_the_contact_and_may_be_left_out(page):
     show(page, [87, 29])
-    page.execute_script("document.getElementById('play').click()") if "pause" in page.find_element("id", "play").text else None
+    page.execute_script("document.getElementById('play').click()") if "pause" in page.find_element(
+        "id", "play").text else None
     give(page, "#scrub", "0.28", "input")
     drawn = pixels(page, "scene")
     page.find_element("id", "forces").click()
@@ -224,11 +281,13 @@ def test_forces_are_drawn_at_the_contact_and_may_be_left_out(page):
 def test_hoops_as_made_jump_along_on_a_live_map(page):
     show(page, [87, 29])
     page.find_element("id", "ghosts").click()
-    told = lambda words: WebDriverWait(page, 60).until(lambda b: words in b.find_element("id", "ghosts-told").text)
+    told = lambda words: WebDriverWait(page, 60).until(lambda b: words in b.find_element("id", "ghosts-told").
+                                                       text)
     told("of 20 jump")
     give(page, "#spreads input", "20")
     told("of 20 jump")
-    page.execute_script("document.getElementById('filters').open = true; document.getElementById('goal-add').click()")
+    page.execute_script(
+        "document.getElementById('filters').open = true; document.getElementById('goal-add').click()")
     give(page, "#goals input", "1", "input")  # mm
     told("reach every goal")
     assert " 0 reach" not in page.find_element("id", "ghosts-told").text
@@ -243,55 +302,75 @@ def test_hoops_as_made_jump_along_on_a_live_map(page):
 def saved(page, button):
     """The text of the file that a button offers."""
     page.execute_script("""window.offered = null; const make = URL.createObjectURL;
-        URL.createObjectURL = (blob) => { window.offered = blob; URL.createObjectURL = make; return make.call(URL, blob); }""")
+        URL.createObjectURL = (blob) => { window.offered = blob; URL.createObjectURL = make;
+        return make.call(URL, blob); }""")
     page.find_element("id", button).click()
-    return page.execute_async_script("const done = arguments[arguments.length - 1]; window.offered.text().then(done)")
+    return page.execute_async_script(
+        "const done = arguments[arguments.length - 1]; window.offered.text().then(done)")
 
 
-@pytest.mark.parametrize(("button", "words", "images"), [("map-svg", ["slope [degrees]", "mass ratio", "mm", "power 0.6"], 1), ("plots-svg", ["height [mm]", "force [N]", "time since release [s]"], 0),
-                                                         ("cut-x-svg", ["slope [degrees]", "jump height [mm]"], 0), ("gaits-svg", ["jump height [mm]", "slope [°]"], 1)])
+@pytest.mark.parametrize(("button", "words", "images"),
+                         [("map-svg", ["slope [degrees]", "mass ratio", "mm", "power 0.6"], 1),
+                          ("plots-svg", ["height [mm]", "force [N]", "time since release [s]"], 0),
+                          ("cut-x-svg", ["slope [degrees]", "jump height [mm]"], 0),
+                          ("gaits-svg", ["jump height [mm]", "slope [°]"], 1)])
 def test_charts_are_saved_as_svg_with_texts_that_are_texts(button, words, images, page):
     page.execute_script("for (const id of ['cuts', 'gaits']) document.getElementById(id).open = true")
     WebDriverWait(page, 60).until(lambda b: b.find_element("id", "cut-x").get_attribute("data-values"))
     root = ElementTree.fromstring(saved(page, button))
     named = lambda kind: root.findall(f".//{{http://www.w3.org/2000/svg}}{kind}")
     texts = [text.text for text in named("text")]
-    assert root.tag == "{http://www.w3.org/2000/svg}svg" and len(named("path")) > (0 if button == "gaits-svg" else 3) and len(named("image")) == images
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    assert len(named("path")) > (0 if button == "gaits-svg" else 3) and len(named("image")) == images
     for word in words:
         assert any(word in text for text in texts), word
 
 
 def test_units_are_switched_wherever_numbers_stand(page):
-    """Fields, goals, pins, derivatives and the colour bar: SI at first, then pure numbers, of the same values."""
+    """Fields, goals, pins, derivatives and the colour bar: SI at first, then pure numbers, of the same
+    values."""
     show(page, [87, 29])
-    page.execute_script("document.getElementById('filters').open = document.getElementById('gradient').open = true")
+    page.execute_script(
+        "document.getElementById('filters').open = document.getElementById('gradient').open = true")
     page.find_element("id", "goal-add").click()
     give(page, "#goals input", "41", "input")
     page.find_element("id", "pin").click()
 
     def seen():
-        return page.execute_script("""return [document.getElementById('field').selectedOptions[0].textContent, document.querySelector('#goals option').textContent, document.querySelector('#goals input').value,
-            [...document.querySelectorAll('#pins-table tr')].find((r) => r.cells[0].textContent === 'jump height').cells[1].textContent, document.querySelector('#gradient-table th:nth-child(2)').textContent,
-            document.getElementById('goals-told').textContent]""")
+        return page.execute_script(
+            """const of = (selector) => document.querySelector(selector);
+            const pins = [...document.querySelectorAll('#pins-table tr')];
+            return [of('#field').selectedOptions[0].textContent, of('#goals option').textContent,
+              of('#goals input').value,
+              pins.find((r) => r.cells[0].textContent === 'jump height').cells[1].textContent,
+              of('#gradient-table th:nth-child(2)').textContent,
+              document.getElementById('goals-told').textContent]""")
     field, option, goal, pin, gradient, left = seen()
-    assert field == option == "jump height [mm]" and goal == "41" and pin.endswith(" mm") and gradient == "jump height [mm]"
+    assert field == option == "jump height [mm]" and goal == "41" and pin.endswith(" mm")
+    assert gradient == "jump height [mm]"
     assert "mm" in saved(page, "map-svg")
     Select(page.find_element("id", "units")).select_by_value("pure")
     pure = seen()
-    assert pure[0] == pure[1] == "jump height [hoop diameters]" and pure[2] == "0.5" and pure[4] == "jump height [diameters]" and pure[5] == left
+    assert pure[0] == pure[1] == "jump height [hoop diameters]" and pure[2] == "0.5"
+    assert pure[4] == "jump height [diameters]" and pure[5] == left
     assert float(pure[3].split()[0]) == pytest.approx(float(pin.split()[0]) / 82, rel=1e-4)
     assert ">mm<" not in saved(page, "map-svg")
 
 
 def test_a_file_s_map_has_its_axes_and_slices_in_the_address_and_goes_back_from_live(browser, tmp_path):
-    path = sweep(tmp_path, "[design]\nslope = { from = 0.1, to = 0.7, count = 9 }\nmass_ratio = { from = 0.5, to = 10, count = 8 }\noffset_ratio = { values = [0.7, 0.9, 1.0] }\n")
+    path = sweep(
+        tmp_path,
+        "[design]\nslope = { from = 0.1, to = 0.7, count = 9 }\nmass_ratio = { from = 0.5, to = 10, count = "
+        "8 }\noffset_ratio = { values = [0.7, 0.9, 1.0] }\n"
+    )
     done = scripted("explorer", path, "--module", BUILD / "leapmap.wasm", "-o", tmp_path / "map.html")
     assert done.returncode == 0, done.stderr
     browser.get("about:blank")
     opened(browser, tmp_path / "map.html")
     give(browser, "#x-axis", "1")
     give(browser, "#sliders input", "0", "input")
-    state = "return [window.explorer.view.view.x, window.explorer.view.view.y, window.explorer.view.view.index[2], location.hash]"
+    state = ("return [window.explorer.view.view.x, window.explorer.view.view.y, "
+             "window.explorer.view.view.index[2], location.hash]")
     WebDriverWait(browser, 60).until(lambda b: "at=offset_ratio:0" in b.execute_script(state)[3])
     before = browser.execute_script(state)
     assert before[:3] == [1, 0, 0]
@@ -303,26 +382,34 @@ def test_a_file_s_map_has_its_axes_and_slices_in_the_address_and_goes_back_from_
     browser.find_element("id", "live-toggle").click()
     settled(browser)
     browser.execute_script("history.back()")
-    WebDriverWait(browser, 60).until(lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
+    WebDriverWait(browser,
+                  60).until(lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
     assert browser.execute_script(state) == before
 
 
 def test_a_picture_is_saved_as_png(page):
     page.find_element("id", "map-png").click()
-    WebDriverWait(page, 60).until(lambda b: int(b.execute_script("return document.body.dataset.bytes ?? 0")) > 10000)
+    WebDriverWait(
+        page, 60).until(lambda b: int(b.execute_script("return document.body.dataset.bytes ?? 0")) > 10000)
 
 
 def test_nothing_moves_when_numbers_change(page):
     """Controls stay where they are, whatever design is pointed at and while the hoop moves."""
-    places = lambda: page.execute_script("""return ['field', 'map', 'map-png', 'filters', 'play', 'scrub', 'step-on', 'speed', 'film', 'mass', 'copy', 'command'].map((id) => {
-        const { left, top } = document.getElementById(id).getBoundingClientRect(); return [left + scrollX, top + scrollY]; })""")
+    places = lambda: page.execute_script("""return ['field', 'map', 'map-png', 'filters', 'play', 'scrub',
+          'step-on', 'speed', 'film', 'mass', 'copy', 'command'].map((id) => {
+        const { left, top } = document.getElementById(id).getBoundingClientRect();
+        return [left + scrollX, top + scrollY]; })""")
     show(page, [87, 29])
     before = places()
     for index in ([0, 0], [199, 149], [30, 100]):
-        page.execute_script("const { view, point } = window.explorer.view; view.index = arguments[0]; point()", index)
+        page.execute_script(
+            "const { view, point } = window.explorer.view; view.index = arguments[0]; point()", index)
         assert places() == before
     for part in (0, 0.3, 1):
-        page.execute_script("const s = document.getElementById('scrub'); s.value = arguments[0] * s.max; s.dispatchEvent(new Event('input'))", part)
+        page.execute_script(
+            "const s = document.getElementById('scrub'); s.value = arguments[0] * s.max; s.dispatchEvent(new "
+            "Event('input'))",
+            part)
         assert places() == before
     page.find_element("id", "copy").click()
     WebDriverWait(page, 60).until(lambda b: b.find_element("id", "copy").text != "copy")
@@ -348,21 +435,34 @@ def axe():
 
 @pytest.mark.parametrize("tone", ["light", "dark"])
 def test_axe_finds_nothing_serious(tone, page, axe):
-    assert page.execute_script("return getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert page.execute_script(
+        "return getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     if tone == "dark":
         before = pixels(page, "scene")
         page.find_element("id", "tone").click()
-        assert page.execute_script("return getComputedStyle(document.body).backgroundColor") == "rgb(20, 24, 29)" and pixels(page, "scene") != before
-    page.execute_script("for (const part of document.querySelectorAll('details')) part.open = true; document.getElementById('goal-add').click(); document.getElementById('pin').click()")
+        assert page.execute_script(
+            "return getComputedStyle(document.body).backgroundColor") == "rgb(20, 24, 29)"
+        assert pixels(page, "scene") != before
+    page.execute_script(
+        "for (const part of document.querySelectorAll('details')) part.open = true; "
+        "document.getElementById('goal-add').click(); document.getElementById('pin').click()"
+    )
     page.execute_script(axe)
-    found = page.execute_async_script("const done = arguments[arguments.length - 1]; axe.run(document).then(({ violations, passes }) => done({ violations, passes: passes.length }))")
-    serious = [(v["id"], v["help"], [node["html"][:120] for node in v["nodes"]]) for v in found["violations"] if v["impact"] in ("serious", "critical")]
+    found = page.execute_async_script(
+        "const done = arguments[arguments.length - 1]; axe.run(document).then(({ violations, passes }) => "
+        "done({ violations, passes: passes.length }))"
+    )
+    serious = [(v["id"], v["help"], [node["html"][:120]
+                                     for node in v["nodes"]])
+               for v in found["violations"]
+               if v["impact"] in ("serious", "critical")]
     assert not serious, serious
     assert found["passes"] > 15
 
 
 def test_one_hoop_has_one_answer_left_and_right(browser, html):
-    """A hoop that is none of the map's designs, the paper's say, is told by its own numbers until one points at the map again."""
+    """A hoop that is none of the map's designs, the paper's say, is told by its own numbers until one points
+    at the map again."""
     at(browser, html, "#live&paper")
     right = float(numbers(browser)["jump_height"])
     assert right == pytest.approx(0.98280096607, abs=1e-10)
@@ -387,12 +487,15 @@ def test_ticks_of_any_two_numbers_are_few_ascend_and_differ_in_their_texts(page)
           if (low > high) [low, high] = [high, low];
           const ticks = linearTicks(low, high), texts = tickTexts(ticks);
           if (!ticks.length || ticks.length > 12 || new Set(texts).size !== texts.length
-              || ticks.some((v, k) => !Number.isFinite(v) || (k > 0 && v <= ticks[k - 1]))) bad.push([low, high]);
+              || ticks.some((v, k) => !Number.isFinite(v) || (k > 0 &&
+                v <= ticks[k - 1]))) bad.push([low, high]);
           if (low > 0 && logTicks(low, high).length > 60) bad.push(["log", low, high]);
         }
         return bad;""")
     assert bad == []
-    assert page.execute_script(SCALES + "return tickTexts(logTicks(1, 1e7))") == ["1", "10", "100", "1000", "10000", "10⁵", "10⁶", "10⁷"]
+    assert page.execute_script(SCALES + "return tickTexts(logTicks(1, 1e7))") == [
+        "1", "10", "100", "1000", "10000", "10⁵", "10⁶", "10⁷"
+    ]
 
 
 def test_a_list_whose_values_differ_by_a_rounding_opens(browser, tmp_path):

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the Python module adds to the C++ library: a million designs against the same call in C++, and one design.
+"""What the Python module adds to the C++ library: a million designs against the same call in C++, and one
+design.
 
-Medians of repeats, C++ and Python in turn. Needs LEAPMAP_BUILD; the C++ side is tests/solve-benchmark of that build."""
+Medians of repeats, C++ and Python in turn. Needs LEAPMAP_BUILD; the C++ side is tests/solve-benchmark of that
+build."""
 import os
 import statistics
 import subprocess
@@ -32,11 +34,15 @@ def main():
     for _ in range(REPEATS):
         runs["python"].append(seconds(lambda: leapmap.solve(slope=slope, mass_ratio=mass)))
         one["python"].append(seconds(lambda: leapmap.solve(slope=0.4), 200))
-        words = subprocess.run([os.path.join(BUILD, "tests", "solve-benchmark")], check=True, capture_output=True, text=True).stdout.split()
+        words = subprocess.run([os.path.join(BUILD, "tests", "solve-benchmark")], check=True,
+                               capture_output=True, text=True).stdout.split()
         runs["C++"].append(float(words[0]))
         one["C++"].append(float(words[1]))
     many, single = ({k: statistics.median(v) for k, v in r.items()} for r in (runs, one))
-    print(f"a million designs: C++ {many['C++']:.3f} s, Python {many['python']:.3f} s, {many['python'] / many['C++'] - 1:+.1%}")
+    print(
+        f"a million designs: C++ {many['C++']:.3f} s, Python {many['python']:.3f} s, "
+        f"{many['python'] / many['C++'] - 1:+.1%}"
+    )
     print(f"one design: C++ {single['C++'] * 1e6:.1f} us, Python {single['python'] * 1e6:.1f} us, "
           f"overhead {(single['python'] - single['C++']) * 1e6:.1f} us")
 

@@ -46,11 +46,15 @@ def test_a_bad_spec_ends_with_status_2_one_line_and_no_file(kind, tmp_path):
     assert set(os.listdir(tmp_path)) == before
 
 
-@pytest.mark.parametrize("arguments, meant", [
-    (["swep"], "sweep"), (["hop", "--slpe", "1"], "--slope"), (["info", "m.h5", "--spce"], "--spec"), (["hop", "--slope", "30"], "30deg"),
-    (["hop", "--set", "metod=exact"], "method"), (["hop", "--set", "method=exakt"], "exact"), (["hop", "--friction", "colomb"], "coulomb"),
-    (["hop", "--set", "scene.runaway=3"], "runway"), (["sweep", "--set", 'fields=["jump_heigth"]'], "jump_height"),
-    (["fit", "x.csv", "--model", "stiking"], "sticking")])
+@pytest.mark.parametrize("arguments, meant", [(["swep"], "sweep"), (["hop", "--slpe", "1"], "--slope"),
+                                              (["info", "m.h5", "--spce"], "--spec"),
+                                              (["hop", "--slope", "30"], "30deg"),
+                                              (["hop", "--set", "metod=exact"], "method"),
+                                              (["hop", "--set", "method=exakt"], "exact"),
+                                              (["hop", "--friction", "colomb"], "coulomb"),
+                                              (["hop", "--set", "scene.runaway=3"], "runway"),
+                                              (["sweep", "--set", 'fields=["jump_heigth"]'], "jump_height"),
+                                              (["fit", "x.csv", "--model", "stiking"], "sticking")])
 def test_what_is_misspelled_gets_a_suggestion(arguments, meant):
     done = leapmap(*arguments)
     assert done.returncode == 2
@@ -59,19 +63,36 @@ def test_what_is_misspelled_gets_a_suggestion(arguments, meant):
 
 def test_a_section_that_is_misspelled_gets_a_suggestion(tmp_path):
     (tmp_path / "bad.toml").write_text("[desing]\nslope = 0.4\n")
-    assert "[desing]: unknown section (did you mean design?); allowed: [scene], [design]" in leapmap("hop", tmp_path / "bad.toml").stderr
+    assert "[desing]: unknown section (did you mean design?); allowed: [scene], [design]" in leapmap(
+        "hop", tmp_path / "bad.toml").stderr
 
 
 def test_a_release_angle_in_degrees_is_noticed():
     assert "for degrees write 180deg" in leapmap("hop", "--release-angle", "180").stderr
-    assert leapmap("hop", "--release-angle", "180deg").stderr == "" == leapmap("hop", "--release-angle", "3600deg").stderr
+    assert leapmap("hop", "--release-angle", "180deg").stderr == "" == leapmap(
+        "hop", "--release-angle", "3600deg").stderr
 
 
 @pytest.mark.parametrize("arguments", [
-    [], ["swep"], ["sweep"], ["sweep", "/nowhere.toml"], ["hop", "--slope", "91deg"], ["hop", "--slope"], ["hop", "--sloop", "1"],
-    ["hop", "--slope", "steep"], ["hop", "--trace", ""], ["sweep", "x.toml", "-o", ""], ["stability", "-o", ""], ["hop", "--trace-interval", "-1"], ["sweep", "x.toml", "--threads", "0"], ["info"],
-    ["hop", "--set", "design.slope={values=[0.1,0.2]}"], ["hop", "--set", "tolerance=1e-3\nslope=9"],
-    ["hop", "--set", 'method="a\\nb"'], ["hop", "--slope", "0.4raddeg"], ["hop", "--trace-interval", "nan", "--trace", "/tmp/x.h5"],
+    [],
+    ["swep"],
+    ["sweep"],
+    ["sweep", "/nowhere.toml"],
+    ["hop", "--slope", "91deg"],
+    ["hop", "--slope"],
+    ["hop", "--sloop", "1"],
+    ["hop", "--slope", "steep"],
+    ["hop", "--trace", ""],
+    ["sweep", "x.toml", "-o", ""],
+    ["stability", "-o", ""],
+    ["hop", "--trace-interval", "-1"],
+    ["sweep", "x.toml", "--threads", "0"],
+    ["info"],
+    ["hop", "--set", "design.slope={values=[0.1,0.2]}"],
+    ["hop", "--set", "tolerance=1e-3\nslope=9"],
+    ["hop", "--set", 'method="a\\nb"'],
+    ["hop", "--slope", "0.4raddeg"],
+    ["hop", "--trace-interval", "nan", "--trace", "/tmp/x.h5"],
 ])
 def test_bad_usage_ends_with_status_2_and_one_line(arguments):
     done = leapmap(*arguments)
@@ -81,13 +102,18 @@ def test_bad_usage_ends_with_status_2_and_one_line(arguments):
 
 
 @pytest.mark.parametrize("arguments", [
-    ["hop", "--trace-interval", "0.01"], ["info", "m.h5", "--limit", "3"], ["info", "m.h5", "--spec", "--failed"],
-    ["sweep", "x.toml", "--retry-failed", "--overwrite"], ["gait", "--set", "scene.jumps=5"], ["gait", "--set", "jumps=5"],
+    ["hop", "--trace-interval", "0.01"],
+    ["info", "m.h5", "--limit", "3"],
+    ["info", "m.h5", "--spec", "--failed"],
+    ["sweep", "x.toml", "--retry-failed", "--overwrite"],
+    ["gait", "--set", "scene.jumps=5"],
+    ["gait", "--set", "jumps=5"],
 ])
 def test_an_option_without_use_is_refused_by_its_name(arguments):
     done = leapmap(*arguments)
     assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
-    assert next(word for word in ("jumps", "trace-interval", "limit", "failed", "overwrite") if any(word in a for a in arguments)) in done.stderr
+    assert next(word for word in ("jumps", "trace-interval", "limit", "failed", "overwrite")
+                if any(word in a for a in arguments)) in done.stderr
 
 
 def test_a_sweep_without_a_file_to_write_is_refused(tmp_path):
@@ -111,7 +137,8 @@ def test_an_existing_map_is_untouched_without_overwrite_and_replaced_with_it(tmp
 def test_a_trace_replaces_a_trace_but_nothing_else(tmp_path):
     (tmp_path / "notes.h5").write_text("precious")
     done = leapmap("hop", "--trace", tmp_path / "notes.h5")
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and (tmp_path / "notes.h5").read_text() == "precious"
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert (tmp_path / "notes.h5").read_text() == "precious"
     assert [leapmap("hop", "--trace", tmp_path / "trace.h5").returncode for _ in range(2)] == [0, 0]
 
 
@@ -136,13 +163,19 @@ def test_a_folder_that_may_not_be_written_ends_with_status_3():
         locked.mkdir(mode=0o555)
         folder.chmod(0o755)
         become = ["setpriv", "--reuid=65534", "--clear-groups"] if os.geteuid() == 0 else []
-        (folder / "wide.toml").write_text(SMALL.replace("count = 12", "count = 1200").replace("count = 11", "count = 1100"))
-        (folder / "question.toml").write_text('[design]\nslope = { from = 0.1, to = 0.5 }\n[goal]\nmaximize = ["jump_height"]\n')
-        for command in (["sweep", "spec.toml", "-o", "locked/map.h5"], ["boundaries", "wide.toml", "-o", "locked/c.h5"],
-                        ["boundaries", "wide.toml", "--csv", "locked/c.csv"], ["design", "question.toml", "-o", "locked/d.h5"],
-                        ["precision", "-o", "locked/p.h5"], ["hop", "--trace", "locked/t.h5"]):
+        (folder / "wide.toml").write_text(
+            SMALL.replace("count = 12", "count = 1200").replace("count = 11", "count = 1100"))
+        (folder / "question.toml"
+         ).write_text('[design]\nslope = { from = 0.1, to = 0.5 }\n[goal]\nmaximize = ["jump_height"]\n')
+        for command in (["sweep", "spec.toml", "-o",
+                         "locked/map.h5"], ["boundaries", "wide.toml", "-o", "locked/c.h5"], [
+                             "boundaries", "wide.toml", "--csv", "locked/c.csv"
+                         ], ["design", "question.toml", "-o",
+                             "locked/d.h5"], ["precision", "-o",
+                                              "locked/p.h5"], ["hop", "--trace", "locked/t.h5"]):
             begin = time.monotonic()
-            done = subprocess.run([*become, folder / "leapmap", *command], capture_output=True, text=True, cwd=folder)
+            done = subprocess.run([*become, folder / "leapmap", *command], capture_output=True, text=True,
+                                  cwd=folder)
             assert done.returncode == 3, done.stderr
             assert done.stderr.count("\n") == 1
             assert os.listdir(locked) == []
@@ -150,17 +183,34 @@ def test_a_folder_that_may_not_be_written_ends_with_status_3():
 
 
 def test_a_bad_design_is_a_status_and_the_sweep_goes_on(tmp_path):
-    path = sweep(tmp_path, '[design]\nslope = { values = [0.4] }\nmass_ratio = { values = [2, 3] }\n[numerics]\nmethod = "gsl-rk8pd"\nmax_steps = 20\naudit = 0\n')
+    path = sweep(
+        tmp_path,
+        '[design]\nslope = { values = [0.4] }\nmass_ratio = { values = [2, 3] }\n[numerics]\nmethod = '
+        '"gsl-rk8pd"\nmax_steps = 20\naudit = 0\n'
+    )
     text = leapmap("info", path).stdout
     assert "failed" in text
 
 
 NUMBERS = [  # a command up to its flag
-    ["hop", "--drive-torque", "0.05", "--mass"], ["hop", "--trace", "t.h5", "--trace-interval"], ["hop", "--mass-ratio"], ["hop", "--runway"],
-    ["sweep", "--dry-run", "--time-limit"], ["sweep", "--dry-run", "--threads"], ["sweep", "--dry-run", "--commit-interval"],
-    ["sweep", "--dry-run", "--shards"], ["fit", "film.csv", "--error"], ["fit", "film.csv", "--scale"], ["fit", "film.csv", "--seed"],
-    ["design", "spec.toml", "--most"], ["design", "spec.toml", "--sample"], ["design", "spec.toml", "--seed"], ["gait", "--most-period"],
-    ["boundaries", "spec.toml", "--threads"], ["check", "m.h5", "--sample"], ["precision", "--designs"],
+    ["hop", "--drive-torque", "0.05", "--mass"],
+    ["hop", "--trace", "t.h5", "--trace-interval"],
+    ["hop", "--mass-ratio"],
+    ["hop", "--runway"],
+    ["sweep", "--dry-run", "--time-limit"],
+    ["sweep", "--dry-run", "--threads"],
+    ["sweep", "--dry-run", "--commit-interval"],
+    ["sweep", "--dry-run", "--shards"],
+    ["fit", "film.csv", "--error"],
+    ["fit", "film.csv", "--scale"],
+    ["fit", "film.csv", "--seed"],
+    ["design", "spec.toml", "--most"],
+    ["design", "spec.toml", "--sample"],
+    ["design", "spec.toml", "--seed"],
+    ["gait", "--most-period"],
+    ["boundaries", "spec.toml", "--threads"],
+    ["check", "m.h5", "--sample"],
+    ["precision", "--designs"],
 ]
 
 
@@ -181,8 +231,10 @@ def test_numbers_are_read_alike_by_every_flag(tmp_path):
 
 
 @pytest.mark.parametrize("arguments, used", [
-    (["hop", "--set", "slope=0.1", "--set", "slope=0.2"], "slope=0.2 is used"), (["hop", "--slope", "0.1", "--set", "design.slope=0.2"], "design.slope=0.1 is used"),
-    (["sweep", "--dry-run", "--set", "tolerance=1e-9", "--set", "numerics.tolerance=1e-8"], "numerics.tolerance=1e-8 is used"),
+    (["hop", "--set", "slope=0.1", "--set", "slope=0.2"], "slope=0.2 is used"),
+    (["hop", "--slope", "0.1", "--set", "design.slope=0.2"], "design.slope=0.1 is used"),
+    (["sweep", "--dry-run", "--set", "tolerance=1e-9", "--set", "numerics.tolerance=1e-8"
+      ], "numerics.tolerance=1e-8 is used"),
     (["gait", "--set", "slope=0.21", "--set", "mass_ratio=3", "--set", "slope=0.2"], "slope=0.2 is used"),
 ])
 def test_of_a_key_given_twice_the_value_that_is_used_is_said(arguments, used):
@@ -191,21 +243,29 @@ def test_of_a_key_given_twice_the_value_that_is_used_is_said(arguments, used):
 
 
 def test_a_fit_of_one_model_refuses_another_friction():
-    done = leapmap("fit", INPUTS / "events_impossible.csv", "--model", "sticking", "--set", "friction=coulomb")
+    done = leapmap("fit", INPUTS / "events_impossible.csv", "--model", "sticking", "--set",
+                   "friction=coulomb")
     assert done.returncode == 2 and "both set the friction" in done.stderr and done.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("arguments", [["hop", ""], ["sweep", "", "--dry-run"], ["info", ""], ["info", "m.h5", "--at", ""], ["fit", "x.csv", ""],
-                                       ["design", ""], ["boundaries", ""], ["check", ""], ["gait", ""]])
+@pytest.mark.parametrize(
+    "arguments", [["hop", ""], ["sweep", "", "--dry-run"], ["info", ""], ["info", "m.h5", "--at", ""],
+                  ["fit", "x.csv", ""], ["design", ""], ["boundaries", ""], ["check", ""], ["gait", ""]])
 def test_an_empty_name_is_refused(arguments):
     done = leapmap(*arguments)
     assert done.returncode == 2 and "is empty" in done.stderr, done.stderr
 
 
 @pytest.mark.parametrize("name, words", [
-    ("film.mp4", ["a video"]), ("points_utf16.csv", ["UTF-16"]), ("points_nul.csv", ["byte 0"]), ("points_semicolon.csv", ["semicolons"]),
-    ("film_tabs.csv", ["tabs"]), ("film_degrees_2000fps.csv", ["degrees"]), ("film_held_before_release.csv", ["held"]),
-    ("film_two_nan_rows.csv", [":22:", "--allow-gaps"]), ("events_degrees.csv", ["jump_angle = 700", "degrees"]),
+    ("film.mp4", ["a video"]),
+    ("points_utf16.csv", ["UTF-16"]),
+    ("points_nul.csv", ["byte 0"]),
+    ("points_semicolon.csv", ["semicolons"]),
+    ("film_tabs.csv", ["tabs"]),
+    ("film_degrees_2000fps.csv", ["degrees"]),
+    ("film_held_before_release.csv", ["held"]),
+    ("film_two_nan_rows.csv", [":22:", "--allow-gaps"]),
+    ("events_degrees.csv", ["jump_angle = 700", "degrees"]),
 ])
 def test_a_file_of_another_form_is_recognised(name, words):
     done = leapmap("fit", INPUTS / name)
@@ -213,9 +273,13 @@ def test_a_file_of_another_form_is_recognised(name, words):
     assert all(word in done.stderr for word in [name, "allowed", *words]), done.stderr
 
 
-@pytest.mark.parametrize("head, words", [(b"PK\3\4" + b"\0" * 26 + b"xl/workbook.xml", "xlsx"), (b"\xd0\xcf\x11\xe0", "xls"), (b"\x89HDF\r\n", "HDF5"),
-                                         (b"<?xml version", "XML"), (b"RIFF\0\0\0\0AVI LIST", "video"), (b"\xff\xfet\0", "UTF-16")])
-@pytest.mark.parametrize("how", [["fit", "x"], ["sweep", "--dry-run", "--points", "x"], ["sweep", "--dry-run", "x"]], ids=["film", "points", "spec"])
+@pytest.mark.parametrize("head, words", [(b"PK\3\4" + b"\0" * 26 + b"xl/workbook.xml", "xlsx"),
+                                         (b"\xd0\xcf\x11\xe0", "xls"), (b"\x89HDF\r\n", "HDF5"),
+                                         (b"<?xml version", "XML"), (b"RIFF\0\0\0\0AVI LIST", "video"),
+                                         (b"\xff\xfet\0", "UTF-16")])
+@pytest.mark.parametrize("how",
+                         [["fit", "x"], ["sweep", "--dry-run", "--points", "x"], ["sweep", "--dry-run", "x"]],
+                         ids=["film", "points", "spec"])
 def test_what_is_no_text_is_named_wherever_texts_are_read(head, words, how, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "x").write_bytes(head)
@@ -228,26 +292,34 @@ def test_rebounds_without_end_name_the_key_that_ends_them():
     assert "rest_speed" in done.stdout.splitlines()[-2], done.stdout[-300:]
 
 
-@pytest.mark.parametrize("how", [["--slope", "0"], ["--slope", "0", "--mass-ratio", "13.5", "--set", "hop_height=0"],
-                                 ["--slope", "0", "--friction", "coulomb"], ["--slope", "0", "--release-angle", "540deg"]])
+@pytest.mark.parametrize(
+    "how", [["--slope", "0"], ["--slope", "0", "--mass-ratio", "13.5", "--set", "hop_height=0"],
+            ["--slope", "0", "--friction", "coulomb"], ["--slope", "0", "--release-angle", "540deg"]])
 def test_a_hoop_at_rest_on_its_equilibrium_is_stalled_and_its_check_agrees(how):
     done = leapmap("hop", *how)
     assert done.returncode == 0 and "trapped" in done.stdout and "agrees" in done.stdout, done.stdout
 
 
 def test_a_sweep_over_level_ground_agrees_with_its_audit(tmp_path):
-    sweep(tmp_path, '[scene]\nhop_height = 0\n[design]\nslope = 0\nmass_ratio = { values = [1, 13.5, 20] }\n[numerics]\naudit = 1\n')
+    sweep(
+        tmp_path,
+        '[scene]\nhop_height = 0\n[design]\nslope = 0\nmass_ratio = { values = [1, 13.5, 20] }\n[numerics]\n'
+        'audit = 1\n'
+    )
 
 
 def test_a_flight_ten_million_times_as_long_as_its_contact_is_told():
-    for how in (["--slope", "-1.57", "--drive-torque", "1000"], ["--mass-ratio", "1e9", "--slope=-89.9deg", "--drive-torque", "10"]):
+    for how in (["--slope", "-1.57", "--drive-torque",
+                 "1000"], ["--mass-ratio", "1e9", "--slope=-89.9deg", "--drive-torque", "10"]):
         done = leapmap("hop", *how)
         assert done.returncode == 0 and "Motor" in done.stdout, done.stderr
 
 
 def test_one_endless_design_heeds_a_signal(tmp_path):
     """Before, 870 s and no end."""
-    done = subprocess.run(["timeout", "-s", "TERM", "1", PROGRAM, "sweep", "-o", tmp_path / "m.h5", "--set", "runway=1e6", "--set", "mass_ratio=1e12",
-                           "--set", "audit=0"], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([
+        "timeout", "-s", "TERM", "1", PROGRAM, "sweep", "-o", tmp_path / "m.h5", "--set", "runway=1e6",
+        "--set", "mass_ratio=1e12", "--set", "audit=0"
+    ], capture_output=True, text=True, timeout=60)
     assert done.returncode == 124, done.stderr  # timeout's own, if it has sent the signal
     assert "interrupted" in done.stderr

@@ -12,8 +12,9 @@ sys.path.insert(0, str(TOP / "tests" / "faults"))
 import walk  # noqa: E402
 
 
-@pytest.mark.parametrize("command,every", [("sweep", 47), ("overwrite", 97), ("resume", 61), ("retry", 97), ("trace", 23), ("info", 29),
-                                           ("check", 71), ("list", 71), ("explorer", 131)])
+@pytest.mark.parametrize("command,every", [("sweep", 47), ("overwrite", 97), ("resume", 61), ("retry", 97),
+                                           ("trace", 23), ("info", 29), ("check", 71), ("list", 71),
+                                           ("explorer", 131)])
 def test_whatever_call_fails_nothing_is_lost(command, every):
     runs, findings = walk.walk([command], ["EIO", "ENOSPC"], (False, True), every)
     assert runs > 4 and findings == []
@@ -31,8 +32,10 @@ def test_a_lack_of_memory_is_a_line_and_loses_nothing(memory, every):
 
 
 def run_with(fault, *arguments):
-    environment = dict(os.environ, LD_PRELOAD=walk.INJECTOR, **{"FAULT_" + k.upper(): str(v) for k, v in fault.items()})
-    return subprocess.run([PROGRAM, *map(str, arguments)], env=environment, capture_output=True, text=True, timeout=60)
+    environment = dict(os.environ, LD_PRELOAD=walk.INJECTOR,
+                       **{"FAULT_" + k.upper(): str(v) for k, v in fault.items()})
+    return subprocess.run([PROGRAM, *map(str, arguments)], env=environment, capture_output=True, text=True,
+                          timeout=60)
 
 
 def test_a_file_system_without_locks_is_refused_and_no_lock_goes_on(tmp_path):
@@ -55,9 +58,12 @@ def test_a_file_system_without_locks_is_refused_and_no_lock_goes_on(tmp_path):
 
 def test_a_part_that_was_taken_away_is_not_renamed(tmp_path):
     """Another sweep's unfinished file has that name now."""
-    (tmp_path / "spec.toml").write_text(SMALL.replace("audit = 0.05", 'method = "gsl-rk4"\ntolerance = 1e-13\naudit = 0').replace("count = 12", "count = 60"))
-    process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--threads", "2"], stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+    (tmp_path / "spec.toml").write_text(
+        SMALL.replace("audit = 0.05", 'method = "gsl-rk4"\ntolerance = 1e-13\naudit = 0').replace(
+            "count = 12", "count = 60"))
+    process = subprocess.Popen(
+        [PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--threads", "2"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     part = tmp_path / "map.h5.part"
     while not (part.exists() and part.stat().st_size > 0):  # by then it is locked
         assert process.poll() is None
@@ -71,7 +77,8 @@ def test_a_part_that_was_taken_away_is_not_renamed(tmp_path):
 @pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
 def test_closed_standard_streams_reach_no_file(closed, tmp_path):
     (tmp_path / "spec.toml").write_text(SMALL)
-    done = subprocess.run(f"{PROGRAM} sweep {tmp_path}/spec.toml -o {tmp_path}/map.h5 {closed}", shell=True, capture_output=True, text=True)
+    done = subprocess.run(f"{PROGRAM} sweep {tmp_path}/spec.toml -o {tmp_path}/map.h5 {closed}", shell=True,
+                          capture_output=True, text=True)
     assert done.returncode == 0
     assert leapmap("check", tmp_path / "map.h5").returncode == 0
     trace = subprocess.run(f"{PROGRAM} hop --trace {tmp_path}/trace.h5 {closed}", shell=True)
@@ -82,14 +89,17 @@ def test_closed_standard_streams_reach_no_file(closed, tmp_path):
 
 def test_what_cannot_be_printed_ends_with_status_3(tmp_path):
     path = sweep(tmp_path)
-    for words in (["info", "--spec", path], ["info", path], ["hop"], ["hop", "--json"], ["--help"], ["check", path]):
+    for words in (["info", "--spec", path], ["info", path], ["hop"], ["hop",
+                                                                      "--json"], ["--help"], ["check", path]):
         with open("/dev/full", "w") as full:
-            assert subprocess.run([PROGRAM, *words], stdout=full, stderr=subprocess.DEVNULL).returncode == 3, words
+            assert subprocess.run([PROGRAM, *words], stdout=full,
+                                  stderr=subprocess.DEVNULL).returncode == 3, words
 
 
 def test_more_threads_than_any_machine_has_are_no_crash(tmp_path):
     (tmp_path / "spec.toml").write_text(SMALL)
-    done = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--quiet"], env=dict(os.environ, OMP_NUM_THREADS="100000"))
+    done = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--quiet"],
+                          env=dict(os.environ, OMP_NUM_THREADS="100000"))
     assert done.returncode == 0
 
 
@@ -101,14 +111,16 @@ def test_a_retry_killed_at_any_call_is_simply_made_again(tmp_path):
         folder.parent.mkdir()
         subprocess.run(["cp", "-r", each.before, folder], check=True)
         words = walk.argv(command.words, folder)
-        environment = dict(os.environ, LD_PRELOAD=walk.INJECTOR, FAULT_UNDER=str(folder), FAULT_NUMBER=str(number), FAULT_ERROR="kill")
+        environment = dict(os.environ, LD_PRELOAD=walk.INJECTOR, FAULT_UNDER=str(folder),
+                           FAULT_NUMBER=str(number), FAULT_ERROR="kill")
         assert subprocess.run(words, env=environment, capture_output=True).returncode == -9
         assert finished(*words).returncode == 0
         assert walk.content(folder / "map.h5", folder) == each.right
 
 
 def test_an_audit_that_failed_fails_again_when_resumed(tmp_path):
-    (tmp_path / "spec.toml").write_text(SMALL.replace("audit = 0.05", 'method = "gsl-rk8pd"\ntolerance = 3e-3\naudit = 1'))
+    (tmp_path / "spec.toml").write_text(
+        SMALL.replace("audit = 0.05", 'method = "gsl-rk8pd"\ntolerance = 3e-3\naudit = 1'))
     first = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5")
     again = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5", "--resume")
     assert first.returncode == 1 and "cross-check: design" in first.stderr

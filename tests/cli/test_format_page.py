@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""docs/reference/file_format.md names every dataset and attribute of a map with its type and unit, and nothing else."""
+"""docs/reference/file_format.md names every dataset and attribute of a map with its type and unit, and
+nothing else."""
 import re
 
 import h5py
@@ -29,27 +30,46 @@ def rows(title):
 def maps(tmp_path_factory):
     folder = tmp_path_factory.mktemp("maps")
     (folder / "designs.csv").write_text("label,slope,mass_ratio\nsteep,0.4,2.44\nsteeper,0.5,1\n")
-    axes = "".join(f"{k} = {{ values = [{v}] }}\n" for k, v in {
-        "slope": "0.3, 0.4", "mass_ratio": "2, 3", "offset_ratio": "0.9, 1", "inertia_factor": "1", "release_angle": "3.1",
-        "release_spin": "0, 0.1"}.items())
-    grid = sweep(folder, f"[design]\n{axes}[numerics]\nmethod = \"gsl-rk8pd\"\nmax_steps = 60\naudit = 0\n", name="grid.h5")
+    axes = "".join(
+        f"{k} = {{ values = [{v}] }}\n" for k, v in {
+            "slope": "0.3, 0.4", "mass_ratio": "2, 3", "offset_ratio": "0.9, 1", "inertia_factor": "1",
+            "release_angle": "3.1", "release_spin": "0, 0.1"
+        }.items())
+    grid = sweep(folder, f"[design]\n{axes}[numerics]\nmethod = \"gsl-rk8pd\"\nmax_steps = 60\naudit = 0\n",
+                 name="grid.h5")
     retried = leapmap("sweep", folder / "spec.toml", "-o", grid, "--retry-failed")
     assert retried.returncode == 0, retried.stderr
     joined = folder / "joined.h5"
-    assert leapmap("sweep", "-o", joined, "--shard", "1/1").returncode == 0 and leapmap("join", joined).returncode == 0
+    assert leapmap("sweep", "-o", joined, "--shard", "1/1").returncode == 0
+    assert leapmap("join", joined).returncode == 0
     linked = folder / "linked.h5"
-    assert leapmap("sweep", "-o", linked, "--shard", "1/1").returncode == 0 and leapmap("join", linked, "--virtual").returncode == 0
+    assert leapmap("sweep", "-o", linked, "--shard", "1/1").returncode == 0
+    assert leapmap("join", linked, "--virtual").returncode == 0
     slipping = '[scene]\nfriction = "coulomb"\n[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n'
-    return [grid, joined, linked, sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
-            sweep(folder, slipping, name="slipping.h5"),
-            sweep(folder, "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n[gait]\nsettle = 50\n"
-                          "[numerics]\naudit = 1\n", name="gaits.h5"),
-            sweep(folder, "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n"
-                          "[output]\nfields = [\"status\", \"sequence_condition\"]\n", name="growth.h5")]
+    return [
+        grid, joined, linked,
+        sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
+        sweep(folder, slipping, name="slipping.h5"),
+        sweep(
+            folder,
+            "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n[gait]\nsettle = "
+            "50\n"
+            "[numerics]\naudit = 1\n", name="gaits.h5"),
+        sweep(
+            folder, "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n"
+            "[output]\nfields = [\"status\", \"sequence_condition\"]\n", name="growth.h5")
+    ]
 
 
 def kind(dtype):
-    return {np.dtype("<f8"): "f8", np.dtype("<f4"): "f4", np.dtype("u1"): "u1", np.dtype("<i8"): "i8", np.dtype("<u8"): "u8", np.dtype("<i4"): "i4"}.get(dtype, "text")
+    return {
+        np.dtype("<f8"): "f8",
+        np.dtype("<f4"): "f4",
+        np.dtype("u1"): "u1",
+        np.dtype("<i8"): "i8",
+        np.dtype("<u8"): "u8",
+        np.dtype("<i4"): "i4"
+    }.get(dtype, "text")
 
 
 def test_the_version_is_the_files(maps):
@@ -59,7 +79,10 @@ def test_the_version_is_the_files(maps):
 
 
 def test_each_dataset_is_on_the_page_with_type_and_unit_and_the_page_names_no_other(maps):
-    page = {**rows("Dimensions"), **{k: v for k, v in rows("Fields").items() if k not in ("long_name", "units", "_FillValue")}}
+    page = {
+        **rows("Dimensions"),
+        **{k: v for k, v in rows("Fields").items() if k not in ("long_name", "units", "_FillValue")}
+    }
     later = {"jump_height_2": "1", "jump_time_2": "s"}  # the page tells them in words
     seen = set()
     for path in maps:

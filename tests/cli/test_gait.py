@@ -30,15 +30,18 @@ def test_hop_tells_every_jump():
 
 @pytest.mark.parametrize("friction", ["sticking", "coulomb"])
 def test_a_map_of_sequences_holds_what_hop_tells_and_its_end(tmp_path, friction):
-    spec = f"[scene]\nfriction = \"{friction}\"\njumps = 3\nrunway = 6.0\n[design]\nslope = {{ from = 0.1, to = 0.5, count = 9 }}\n[numerics]\naudit = 1\n"
+    spec = (f"[scene]\nfriction = \"{friction}\"\njumps = 3\nrunway = 6.0\n[design]\n"
+            f"slope = {{ from = 0.1, to = 0.5, count = 9 }}\n[numerics]\naudit = 1\n")
     path = sweep(tmp_path, spec)
     with h5py.File(path) as m:
         jumps, end = m["jumps"][:], m["sequence_end"][:]
         later = m["jump_height_3"][:]
-        assert (np.isfinite(later) == (jumps == 3)).all() and (end[jumps == 3] == 1).all() and (end[jumps < 3] != 1).all()
+        assert (np.isfinite(later) == (jumps == 3)).all() and (end[jumps == 3] == 1).all()
+        assert (end[jumps < 3] != 1).all()
         assert len(set(jumps.tolist())) > 1
         for i in (0, 4, 8):
-            hop = told("hop", "--friction", friction, "--slope", repr(float(m["slope"][i])), "--jumps", "3", "--set", "runway=6")
+            hop = told("hop", "--friction", friction, "--slope", repr(float(m["slope"][i])), "--jumps", "3",
+                       "--set", "runway=6")
             assert hop["jumps"] == jumps[i]
             for k in range(2, jumps[i] + 1):
                 assert hop[f"jump_height_{k}"] == pytest.approx(m[f"jump_height_{k}"][i], abs=1e-12)
@@ -46,17 +49,22 @@ def test_a_map_of_sequences_holds_what_hop_tells_and_its_end(tmp_path, friction)
 
 
 def test_the_audit_tells_of_later_jumps_and_gaits_and_check_sees_a_wrong_one(tmp_path):
-    spec = ("[scene]\njumps = 4\nrunway = 20.0\n[design]\nslope = { from = 0.1, to = 0.4, count = 8 }\nmass_ratio = { from = 1, to = 4, count = 4 }\n"
-            "offset_ratio = 0.5\n[gait]\nsettle = 200\n[numerics]\naudit = 1\n")
+    spec = (
+        "[scene]\njumps = 4\nrunway = 20.0\n[design]\nslope = { from = 0.1, to = 0.4, count = 8 }\n"
+        "mass_ratio = { from = 1, to = 4, count = 4 }\n"
+        "offset_ratio = 0.5\n[gait]\nsettle = 200\n[numerics]\naudit = 1\n")
     (tmp_path / "spec.toml").write_text(spec)
     path = tmp_path / "map.h5"
     done = leapmap("sweep", tmp_path / "spec.toml", "-o", path)
     assert done.returncode == 0, done.stderr
-    assert "later jumps: 0 designs wrong" in done.stdout and "by integration over one period: 0 wrong" in done.stdout
+    assert "later jumps: 0 designs wrong" in done.stdout
+    assert "by integration over one period: 0 wrong" in done.stdout
     with h5py.File(path) as m:
         made, period = m["jumps"][:], m["gait_period"][:]
-        assert m.attrs["audit_jumps_compared"] + m.attrs["audit_jumps_beyond"] == (made[made > 0] - 1).sum() > 20
-        assert m.attrs["audit_gaits"] == ((period > 0) & (period < 255)).sum() > 5 and m.attrs["audit_gaits_wrong"] == 0
+        assert m.attrs["audit_jumps_compared"] + m.attrs["audit_jumps_beyond"] == (made[made > 0] -
+                                                                                   1).sum() > 20
+        assert m.attrs["audit_gaits"] == ((period > 0) & (period < 255)).sum() > 5
+        assert m.attrs["audit_gaits_wrong"] == 0
         assert 0 < m.attrs["audit_jump_max_error"] < 1e-11 and m.attrs["audit_first_wrong_gait"] == -1
     assert "later jumps" in leapmap("info", path).stdout
     assert leapmap("check", path, "--sample", "32").returncode == 0
@@ -73,7 +81,8 @@ def test_the_audit_tells_of_later_jumps_and_gaits_and_check_sees_a_wrong_one(tmp
 
 
 def test_the_growth_of_errors_is_told_where_it_is_asked_for(tmp_path):
-    spec = "[scene]\njumps = 40\nrunway = 500.0\n[design]\nslope = {{ values = [0.2094395102393195, 0.35] }}\nmass_ratio = 3.0\noffset_ratio = {}\n{}"
+    spec = ("[scene]\njumps = 40\nrunway = 500.0\n[design]\n"
+            "slope = {{ values = [0.2094395102393195, 0.35] }}\nmass_ratio = 3.0\noffset_ratio = {}\n{}")
     plain = sweep(tmp_path, spec.format(0.5, ""), name="plain.h5")
     with h5py.File(plain) as m:
         assert "sequence_condition" not in m
@@ -82,13 +91,17 @@ def test_the_growth_of_errors_is_told_where_it_is_asked_for(tmp_path):
         assert m["jumps"][0] == 40 and 1 < m["sequence_condition"][0] < 1e3
     with h5py.File(sweep(tmp_path, spec.format(0.8, asked), name="wild.h5")) as m:
         assert m["jumps"][1] == 40 and m["sequence_condition"][1] > 1e4
-    hop = told("hop", "--slope", "0.35", "--mass-ratio", "3", "--offset-ratio", "0.8", "--jumps", "250", "--set", "runway=1000")
+    hop = told("hop", "--slope", "0.35", "--mass-ratio", "3", "--offset-ratio", "0.8", "--jumps", "250",
+               "--set", "runway=1000")
     assert hop["jumps"] == 250 and hop["sequence_condition"] == 1e20
 
 
 def test_sequences_and_gaits_have_the_same_bits_whatever_the_threads(tmp_path):
-    spec = ("[scene]\njumps = 4\nrunway = 20.0\n[design]\nslope = { from = 0.1, to = 0.5, count = 40 }\n"
-            "mass_ratio = { from = 0.5, to = 9, count = 30 }\noffset_ratio = 0.5\n[gait]\nsettle = 100\n[numerics]\naudit = 0\n")
+    spec = (
+        "[scene]\njumps = 4\nrunway = 20.0\n[design]\nslope = { from = 0.1, to = 0.5, count = 40 }\n"
+        "mass_ratio = { from = 0.5, to = 9, count = 30 }\noffset_ratio = 0.5\n[gait]\nsettle = 100\n"
+        "[numerics]\naudit = 0\n"
+    )
     maps = [sweep(tmp_path, spec, "--threads", threads, name=f"{threads}.h5") for threads in ("1", "2")]
     with h5py.File(maps[0]) as one, h5py.File(maps[1]) as two:
         for name in ("jump_height_4", "jump_time_4", "gait_period", "gait_multiplier", "gait_speed"):
@@ -108,16 +121,19 @@ def test_gait_tells_every_gait_of_a_hoop_and_which_the_release_settles_on():
     assert stable[0]["multiplier"] == pytest.approx(all_of_them["gait_multiplier"], abs=1e-8)
     assert {gait["period"] for gait in all_of_them["gaits"]} == {1, 2}
     # The return map's own slope where it crosses the diagonal is the multiplier.
-    angle, following, slope = np.array([row[:3] for row in all_of_them["return_map"] if None not in row[:3]], float).T
+    angle, following, slope = np.array([row[:3] for row in all_of_them["return_map"] if None not in row[:3]],
+                                       float).T
     there = stable[0]["jumps"][0]["angle"] % (2 * np.pi)
     nearest = np.argmin(np.abs(angle - there))
-    assert abs(following[nearest] - angle[nearest]) < 0.02 and slope[nearest] == pytest.approx(stable[0]["multiplier"], abs=0.02)
+    assert abs(following[nearest] - angle[nearest]) < 0.02
+    assert slope[nearest] == pytest.approx(stable[0]["multiplier"], abs=0.02)
 
 
 def test_hop_says_how_many_later_jumps_were_checked_and_how_far_to_believe_them():
     tame = leapmap("hop", *HOOP, "--jumps", "5", "--set", "runway=20").stdout
     assert "Later jumps: 4 of 4 compared, all within" in tame
-    wild = leapmap("hop", "--slope", "0.6", "--mass-ratio", "8", "--offset-ratio", "0.9", "--jumps", "60", "--set", "runway=1000").stdout
+    wild = leapmap("hop", "--slope", "0.6", "--mass-ratio", "8", "--offset-ratio", "0.9", "--jumps", "60",
+                   "--set", "runway=1000").stdout
     line = next(line for line in wild.splitlines() if line.startswith("Later jumps: "))
     assert 2 <= int(line.split()[2]) < 30 and "of 59 compared" in line and "not those of this hoop" in line
     settled = leapmap("hop", *HOOP, "--set", "gait.settle=500")
@@ -125,7 +141,8 @@ def test_hop_says_how_many_later_jumps_were_checked_and_how_far_to_believe_them(
 
 
 def test_gait_does_not_depend_on_what_a_spec_stores():
-    plain, other = (leapmap("gait", *HOOP, "--most-period", "1", *more).stdout for more in ([], ["--set", 'output.fields=["jump_height"]']))
+    plain, other = (leapmap("gait", *HOOP, "--most-period", "1", *more).stdout
+                    for more in ([], ["--set", 'output.fields=["jump_height"]']))
     assert plain == other and "converge to a gait of period 1" in plain
 
 
@@ -134,14 +151,19 @@ def test_with_friction_gait_tells_what_the_release_settles_on():
     assert hop["gaits"] is None and 0 <= hop["gait_period"] <= 255
 
 
-@pytest.mark.parametrize("arguments, words", [
-    (["hop", "--jumps", "251"], "jumps"), (["hop", "--jumps", "1.5"], "jumps"), (["gait", "--most-period", "17"], "most-period"),
-    (["gait", "--set", "gait.settle=-1"], "settle"), (["gait", "--set", "method=gsl-rk8pd"], "settle"),
-    (["gait", "--set", "slope={from=0.1,to=0.2,count=3}"], "leapmap sweep"),
-    (["sweep", "--set", "fields=[\"jump_height_3\"]", "--set", "jumps=2", "--dry-run"], "jump_height_3"),
-    (["sweep", "--set", "fields=[\"gait_period\"]", "--dry-run"], "gait"), (["gait", "--set", "gait.settle=0"], "settle"),
-    (["gait", "--friction", "coulomb", "--mu-static", "0.5", "--most-period", "3"], "most-period"), (["gait", "--jumps", "3"], "jumps"),
-    (["sweep", "--set", "goal.gait_period={is=1}", "--dry-run"], "gait"), (["sweep", "--set", "gradients=[\"gait_height\"]", "--set", "settle=50", "--dry-run"], "gait_height")])
+@pytest.mark.parametrize(
+    "arguments, words",
+    [(["hop", "--jumps", "251"], "jumps"), (["hop", "--jumps", "1.5"], "jumps"),
+     (["gait", "--most-period", "17"], "most-period"), (["gait", "--set", "gait.settle=-1"], "settle"),
+     (["gait", "--set", "method=gsl-rk8pd"], "settle"),
+     (["gait", "--set", "slope={from=0.1,to=0.2,count=3}"], "leapmap sweep"),
+     (["sweep", "--set", "fields=[\"jump_height_3\"]", "--set", "jumps=2", "--dry-run"], "jump_height_3"),
+     (["sweep", "--set", "fields=[\"gait_period\"]", "--dry-run"], "gait"),
+     (["gait", "--set", "gait.settle=0"], "settle"),
+     (["gait", "--friction", "coulomb", "--mu-static", "0.5", "--most-period", "3"], "most-period"),
+     (["gait", "--jumps", "3"], "jumps"),
+     (["sweep", "--set", "goal.gait_period={is=1}", "--dry-run"], "gait"),
+     (["sweep", "--set", "gradients=[\"gait_height\"]", "--set", "settle=50", "--dry-run"], "gait_height")])
 def test_bad_input_is_one_line(tmp_path, arguments, words):
     if arguments[0] == "sweep":
         (tmp_path / "spec.toml").write_text("[design]\nslope = { values = [0.3, 0.4] }\n")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`cmake --install` gives a program that runs and a library that another project builds on, with its public headers alone."""
+"""`cmake --install` gives a program that runs and a library that another project builds on, with its public
+headers alone."""
 import gzip
 import os
 import re
@@ -34,7 +35,8 @@ def test_nothing_but_public_headers_is_installed_and_they_name_no_library(prefix
     assert {h.parent for h in headers} == {prefix / "include/leapmap"}
     for header in headers:
         for included in re.findall(r"#include [<\"]([^>\"]+)", header.read_text()):
-            assert "." not in included or included.startswith("leapmap/"), f"{header.name} includes {included}"
+            assert "." not in included or included.startswith(
+                "leapmap/"), f"{header.name} includes {included}"
 
 
 def test_the_python_module_the_charts_and_the_page_are_installed(prefix, tmp_path):
@@ -42,16 +44,20 @@ def test_the_python_module_the_charts_and_the_page_are_installed(prefix, tmp_pat
     if not (Path(os.environ["LEAPMAP_BUILD"]) / "python").exists():
         pytest.skip("built without pybind11")
     environment = dict(os.environ, PYTHONPATH=str(packages[0]), MPLBACKEND="Agg")
-    run(prefix / "bin/leapmap", "sweep", prefix / "share/leapmap/sweeps/smoke.toml", "-o", tmp_path / "m.h5", "--quiet")
-    code = "import leapmap; print(leapmap.__file__, leapmap.load('m.h5').jump_height.shape, leapmap.solve().jump_height)"
+    run(prefix / "bin/leapmap", "sweep", prefix / "share/leapmap/sweeps/smoke.toml", "-o", tmp_path / "m.h5",
+        "--quiet")
+    code = ("import leapmap; print(leapmap.__file__, leapmap.load('m.h5').jump_height.shape, "
+            "leapmap.solve().jump_height)")
     told = run(sys.executable, "-c", code, cwd=tmp_path, env=environment)
     assert str(packages[0]) in told and "(25, 24)" in told and "0.98280" in told
-    run(sys.executable, "-m", "leapmap.charts", "design", "m.h5", "-o", "chart", cwd=tmp_path, env=environment)
+    run(sys.executable, "-m", "leapmap.charts", "design", "m.h5", "-o", "chart", cwd=tmp_path,
+        env=environment)
     assert (tmp_path / "chart_jump_height.png").stat().st_size > 10_000
     if list(packages[0].glob("leapmap/leapmap.wasm")):
         run(sys.executable, "-m", "leapmap.charts", "explorer", "m.h5", cwd=tmp_path, env=environment)
         assert (tmp_path / "m.html").exists()
-    assert "is not a chart" in subprocess.run([sys.executable, "-m", "leapmap.charts", "pie"], env=environment, capture_output=True, text=True).stderr
+    assert "is not a chart" in subprocess.run([sys.executable, "-m", "leapmap.charts", "pie"],
+                                              env=environment, capture_output=True, text=True).stderr
 
 
 def test_the_man_page_and_completion_know_every_command(prefix, tmp_path):
@@ -59,10 +65,12 @@ def test_the_man_page_and_completion_know_every_command(prefix, tmp_path):
     script = prefix / "share/bash-completion/completions/leapmap"
     for command in ("sweep", "hop", "info", "check", "precision", "stability"):
         assert f".SH LEAPMAP {command.upper()}" in page
-    typed = f"source {script}; COMP_WORDS=(leapmap hop --offset); COMP_CWORD=2; _leapmap; echo ${{COMPREPLY[@]}}"
+    typed = (f"source {script}; COMP_WORDS=(leapmap hop --offset); COMP_CWORD=2; _leapmap; echo "
+             f"${{COMPREPLY[@]}}")
     assert run("bash", "-c", typed).strip() == "--offset-ratio"
     (tmp_path / "my map.h5").touch()
-    typed = f"source {script}; COMP_WORDS=(leapmap info my); COMP_CWORD=2; _leapmap; printf '%s|' \"${{COMPREPLY[@]}}\""
+    typed = (f"source {script}; COMP_WORDS=(leapmap info my); COMP_CWORD=2; _leapmap; printf '%s|' "
+             f"\"${{COMPREPLY[@]}}\"")
     assert run("bash", "-c", typed, cwd=tmp_path) == "my map.h5|"
 
 

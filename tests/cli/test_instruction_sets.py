@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One program for every machine: each instruction set it was built with solves the reference tables, here or under qemu."""
+"""One program for every machine: each instruction set it was built with solves the reference tables, here or
+under qemu."""
 import csv
 import json
 import os
@@ -17,7 +18,8 @@ OLD = {"x86-64": "Nehalem", "x86-64-v3": "Haswell"}  # processors that have that
 
 
 def available():
-    return re.search(r"--instruction-set NAME.*?one of ([\w, -]+)", " ".join(leapmap("--help").stdout.split()))[1].rstrip(" ,").split(", ")
+    return re.search(r"--instruction-set NAME.*?one of ([\w, -]+)", " ".join(
+        leapmap("--help").stdout.split()))[1].rstrip(" ,").split(", ")
 
 
 SETS = [s.split()[0] for s in available()]
@@ -31,7 +33,8 @@ def rows(table, most):
 
 def check(row, outcome, friction):
     assert outcome["status"] == row["status"]
-    for name, allowed in (("jump_height", 1e-7 if friction else 1e-11), ("jump_angle", 1e-6 if friction else 1e-11)):
+    for name, allowed in (("jump_height", 1e-7 if friction else 1e-11), ("jump_angle",
+                                                                         1e-6 if friction else 1e-11)):
         if row.get(name):
             assert outcome[name] == pytest.approx(float(row[name]), abs=allowed), name
 
@@ -45,8 +48,10 @@ DESIGN = ("slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angl
 
 @pytest.mark.parametrize("set_name", SETS)
 def test_an_error_thrown_inside_a_set_is_told_in_one_line(set_name, tmp_path):
-    done = leapmap("--instruction-set", set_name, "hop", "--trace", tmp_path / "t.h5", "--trace-interval", "1e-9")
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "allowed: a longer interval" in done.stderr
+    done = leapmap("--instruction-set", set_name, "hop", "--trace", tmp_path / "t.h5", "--trace-interval",
+                   "1e-9")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert "allowed: a longer interval" in done.stderr
 
 
 @pytest.mark.parametrize("set_name", SETS)
@@ -56,7 +61,8 @@ def test_each_set_solves_the_reference_tables(set_name):
         assert done.returncode == 0, done.stderr
         check(row, json.loads(done.stdout), False)
     for row in rows("coulomb_first_liftoff.csv", 8):
-        done = leapmap("hop", "--instruction-set", set_name, "--json", "--friction", "coulomb", "--hop-height", "0", *flags(row, DESIGN),
+        done = leapmap("hop", "--instruction-set", set_name, "--json", "--friction", "coulomb",
+                       "--hop-height", "0", *flags(row, DESIGN),
                        *flags(row, ("mu_static", "mu_kinetic", "restitution")))
         assert done.returncode == 0, done.stderr
         check(row, json.loads(done.stdout), True)
@@ -87,7 +93,8 @@ def test_an_old_machine_runs_what_it_has(set_name):
     done = subprocess.run([*on_old, "--version"], capture_output=True, text=True, env=environment)
     assert done.returncode == 0 and f"using {set_name}," in done.stdout, done.stdout + done.stderr
     for friction in ("sticking", "coulomb"):
-        done = subprocess.run([*on_old, "hop", "--json", "--friction", friction], capture_output=True, text=True, env=environment)
+        done = subprocess.run([*on_old, "hop", "--json", "--friction", friction], capture_output=True,
+                              text=True, env=environment)
         assert done.returncode == 0, done.stderr
         here = leapmap("--instruction-set", set_name, "hop", "--json", "--friction", friction)
         if set_name in SETS:

@@ -37,14 +37,16 @@ def test_a_signal_keeps_finished_tiles_readable_in_the_part(number, status, tmp_
         computed = part["status"][()] != 0
         assert 0 < computed.sum() < computed.size
         assert np.isnan(part["jump_height"][()][~computed]).all()
-    again = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5"], capture_output=True, text=True)
+    again = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5"],
+                           capture_output=True, text=True)
     assert again.returncode == 2 and "map.h5.part" in again.stderr, "what was kept is not overwritten unasked"
 
 
 def test_an_interrupted_shard_says_how_to_go_on_with_it(tmp_path):
     spec = LONG.replace("audit = 0", "audit = 0\n[output]\nfile = '%s'" % (tmp_path / "map.h5"))
     (tmp_path / "spec.toml").write_text(spec)
-    process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "--shard", "1/2"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "--shard", "1/2"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     time.sleep(3.0)
     process.send_signal(signal.SIGINT)
     err = process.communicate(timeout=120)[1]
@@ -58,7 +60,8 @@ def test_an_interrupted_shard_says_how_to_go_on_with_it(tmp_path):
 
 
 def test_a_signal_during_the_audit_is_an_interruption_too(tmp_path):
-    (tmp_path / "spec.toml").write_text(LONG.replace("audit = 0", "audit = 1").replace("gsl-rk4", "exact").replace("300", "3000"))
+    (tmp_path / "spec.toml").write_text(
+        LONG.replace("audit = 0", "audit = 1").replace("gsl-rk4", "exact").replace("300", "3000"))
     process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5"],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     time.sleep(4.0)  # solving takes less than a second, auditing by integration twenty and more

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What commands write: never over an input, another output, a device or a stranger's file; modes and links stay."""
+"""What commands write: never over an input, another output, a device or a stranger's file; modes and links
+stay."""
 import os
 import stat
 import subprocess

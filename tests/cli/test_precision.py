@@ -32,14 +32,18 @@ def test_what_the_study_is_for_holds_in_it(table):
         exact = t.isel(row=np.flatnonzero((t.method == "exact")))
         assert (exact.wrong == 0).all() and (exact.failed == 0).all() and exact.max_height_error.max() < 1e-13
         others = t.isel(row=np.flatnonzero((t.method != "exact") & (t.designs == "random")))
-        assert exact.isel(row=np.flatnonzero(exact.designs == "random")).max_height_error.max() < others.max_height_error.min()
+        assert exact.isel(row=np.flatnonzero(
+            exact.designs == "random")).max_height_error.max() < others.max_height_error.min()
         assert (exact.seconds > 0).all() and (others.seconds > 0).all()
 
 
 def test_charts_show_every_method(table, tmp_path):
     done = scripted("precision_chart.py", table[0], "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
-    drawn = {kind: (tmp_path / f"chart_{kind}.svg").read_text() for kind in ("time", "work", "wrong", "order", "model")}
+    drawn = {
+        kind: (tmp_path / f"chart_{kind}.svg").read_text()
+        for kind in ("time", "work", "wrong", "order", "model")
+    }
     for method in ("exact", "gsl-rk8pd", "gsl-bsimp", "velocity-verlet"):
         assert method in drawn["time"], method
     assert "two multipliers" in drawn["model"] and "projected" in drawn["model"]

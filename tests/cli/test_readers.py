@@ -10,9 +10,10 @@ import xarray
 from support.program import SMALL, leapmap, sweep
 
 FIELDS = {
-    "jump_height": "<f8", "jump_time": "<f8", "spurious_first_jump": "u1", "status": "u1", "jump_angle": "<f8", "jump_spin": "<f8",
-    "jump_distance": "<f8", "apex_time": "<f8", "flight_time": "<f8", "first_jump_height": "<f8", "first_jump_time": "<f8",
-    "dip": "<f8", "candidates": "u1"}
+    "jump_height": "<f8", "jump_time": "<f8", "spurious_first_jump": "u1", "status": "u1",
+    "jump_angle": "<f8", "jump_spin": "<f8", "jump_distance": "<f8", "apex_time": "<f8", "flight_time": "<f8",
+    "first_jump_height": "<f8", "first_jump_time": "<f8", "dip": "<f8", "candidates": "u1"
+}
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +24,8 @@ def grid(tmp_path_factory):
 @pytest.fixture(scope="module")
 def points(tmp_path_factory):
     folder = tmp_path_factory.mktemp("points")
-    (folder / "designs.csv").write_text('label,slope,mass_ratio\n"the paper\'s, or so",0.4,2.44\n"""light""",0.5,1\nflät,0.05,0.1\n')
+    (folder / "designs.csv").write_text(
+        'label,slope,mass_ratio\n"the paper\'s, or so",0.4,2.44\n"""light""",0.5,1\nflät,0.05,0.1\n')
     return sweep(folder, '[design]\npoints = "designs.csv"\n')
 
 
@@ -33,7 +35,8 @@ def printed(*command):
 
 def test_each_dataset_is_as_the_interface_says(grid):
     with h5py.File(grid) as m:
-        assert list(m["jump_height"].dims[i][0].name for i in range(3)) == ["/slope", "/mass_ratio", "/offset_ratio"]
+        assert list(
+            m["jump_height"].dims[i][0].name for i in range(3)) == ["/slope", "/mass_ratio", "/offset_ratio"]
         for name, dtype in FIELDS.items():
             dataset = m[name]
             assert dataset.dtype == np.dtype(dtype), name
@@ -43,8 +46,9 @@ def test_each_dataset_is_as_the_interface_says(grid):
             assert np.array_equal(dataset.fillvalue, fill[0], equal_nan=dtype == "<f8")
             assert dataset.chunks is not None
         status = m["status"].attrs
-        assert status["flag_meanings"].split() == ["not_computed", "jumped", "no_jump", "stalled", "airborne_at_release",
-                                                   "indeterminate", "failed"]
+        assert status["flag_meanings"].split() == [
+            "not_computed", "jumped", "no_jump", "stalled", "airborne_at_release", "indeterminate", "failed"
+        ]
         assert list(status["flag_values"]) == list(range(7)) and status["flag_values"].dtype == np.uint8
         assert m["spurious_first_jump"].fillvalue == 255
         assert m["slope"].attrs["units"] == "rad"
@@ -70,7 +74,8 @@ def test_root_attributes_tell_where_the_map_comes_from(grid):
 
 
 def test_f4_halves_the_numbers_and_every_reader_still_sees_the_holes(grid, tmp_path):
-    single = sweep(tmp_path, SMALL, "--set", "precision=f4", "--set", "fields=[\"jump_height\",\"spurious_first_jump\"]")
+    single = sweep(tmp_path, SMALL, "--set", "precision=f4", "--set",
+                   "fields=[\"jump_height\",\"spurious_first_jump\"]")
     with h5py.File(grid) as m, h5py.File(single) as s, xarray.open_dataset(single) as d:
         assert s["jump_height"].dtype == np.float32 and "jump_time" not in s
         assert np.array_equal(m["jump_height"][()].astype(np.float32), s["jump_height"][()], equal_nan=True)
@@ -143,11 +148,14 @@ def test_conformance_to_cf(grid, points):
             assert d.attrs["title"]  # 2.6.2
             for name, v in d.variables.items():
                 assert names.match(name)  # 2.3
-                assert v.dtype.kind in "fiu" and v.dtype.itemsize <= 8 or name == "label" and v.dtype.kind == "O"  # 2.2
+                # 2.2
+                is_number = v.dtype.kind in "fiu" and v.dtype.itemsize <= 8
+                assert is_number or name == "label" and v.dtype.kind == "O"
                 assert len(set(v.dims)) == len(v.dims)  # 2.4: no dimension twice
                 assert v.attrs["units"] in udunits and v.attrs["long_name"]  # 3.1, 3.2
                 assert "standard_name" not in v.attrs  # 3.3: there is none for what we tell
-                if name in d.sizes:  # 2.5.1, 5: a coordinate variable is one-dimensional and has no missing values
+                # 2.5.1, 5: a coordinate variable is one-dimensional and has no missing values
+                if name in d.sizes:
                     assert v.dims == (name,) and "_FillValue" not in v.attrs and np.isfinite(v.values).all()
                     assert len(np.unique(v.values)) == v.size
                     continue
@@ -162,7 +170,8 @@ def test_conformance_to_cf(grid, points):
 
 
 def test_only_the_fields_asked_for_are_stored(tmp_path):
-    path = sweep(tmp_path, '[design]\nslope = { values = [0.3, 0.4] }\n[output]\nfields = ["status", "jump_height"]\n')
+    path = sweep(tmp_path,
+                 '[design]\nslope = { values = [0.3, 0.4] }\n[output]\nfields = ["status", "jump_height"]\n')
     with h5py.File(path) as m:
         assert set(m) == {"slope", "status", "jump_height", "entry"}
     assert leapmap("info", path).returncode == 0

@@ -7,12 +7,16 @@ import numpy as np
 import pytest
 from support.program import REFERENCE, sweep
 
-INPUTS = ["slope", "mass_ratio", "offset_ratio", "release_angle", "release_spin", "inertia_factor", "drive_torque"]
+INPUTS = [
+    "slope", "mass_ratio", "offset_ratio", "release_angle", "release_spin", "inertia_factor", "drive_torque"
+]
 
 
-@pytest.mark.parametrize("table", ["noslip_top_release", "noslip_general", "noslip_stress", "noslip_turning", "noslip_drive"])
+@pytest.mark.parametrize(
+    "table", ["noslip_top_release", "noslip_general", "noslip_stress", "noslip_turning", "noslip_drive"])
 @pytest.mark.parametrize("method,bound", [("auto", 1e-12), ("gsl-rk8pd", 1e-9)])
-def test_every_status_flag_and_count_is_equal_and_heights_and_times_are_within_the_bound(table, method, bound, tmp_path):
+def test_every_status_flag_and_count_is_equal_and_heights_and_times_are_within_the_bound(
+        table, method, bound, tmp_path):
     rows = list(csv.DictReader((REFERENCE / f"{table}.csv").open()))
     inputs = [name for name in INPUTS if name in rows[0]]
     with (tmp_path / "designs.csv").open("w") as file:

@@ -52,11 +52,15 @@ def uninterrupted(tmp_path_factory):
 
 def command(folder, *more):
     # committed after every tile, so that a kill meets commits as often as computing
-    return [str(w) for w in (PROGRAM, "sweep", folder / "spec.toml", "-o", folder / "map.h5", "--commit-interval", "0", *more)]
+    return [
+        str(w) for w in (PROGRAM, "sweep", folder / "spec.toml", "-o", folder / "map.h5", "--commit-interval",
+                         "0", *more)
+    ]
 
 
 def killed(folder, seconds, number=signal.SIGKILL, *more):
-    process = subprocess.Popen(command(folder, *more), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command(folder, *more), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               text=True)
     time.sleep(seconds)
     process.send_signal(number)
     out, err = process.communicate(timeout=60)
@@ -74,15 +78,18 @@ def wait_for(path, size):
 
 def has_all_designs(part):
     """Whether it was stopped between its last tile and its renaming."""
-    done, count = re.search(r"INCOMPLETE: ([\d,]+) of ([\d,]+) designs", leapmap("info", part).stdout).groups()
+    done, count = re.search(r"INCOMPLETE: ([\d,]+) of ([\d,]+) designs",
+                            leapmap("info", part).stdout).groups()
     return done == count
 
 
 def stopped(folder, size, number=signal.SIGINT, *more):
-    """A sweep stopped once its .part is so large, before its last tile, whatever the machine is doing meanwhile."""
+    """A sweep stopped once its .part is so large, before its last tile, whatever the machine is doing
+    meanwhile."""
     part = folder / "map.h5.part"
     for _ in range(8):
-        process = subprocess.Popen(command(folder, *more), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command(folder, *more), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True)
         assert wait_for(part, size) or process.poll() is not None
         process.send_signal(number)
         out, err = process.communicate(timeout=60)
@@ -108,8 +115,8 @@ def test_killed_at_random_moments_it_is_gone_on_with_to_the_same_bits(uninterrup
         folder = tmp_path / str(run)
         folder.mkdir()
         (folder / "spec.toml").write_text(SPEC)
-        # Killed at a random time, which may be before its file is there, or at a random size of its file; some are
-        # killed twice, the second time while resuming.
+        # Killed at a random time, which may be before its file is there, or at a random size of its file;
+        # some are killed twice, the second time while resuming.
         if run % 2:
             assert stopped(folder, moments.randrange(22_000_000), signal.SIGKILL)[0] == -signal.SIGKILL
         else:
@@ -139,7 +146,8 @@ def test_a_part_cut_anywhere_is_refused_with_a_line_or_gone_on_with(uninterrupte
         if cut == 0:
             continue  # nothing was ever written: --resume begins anew
         done = finished(*command(tmp_path, "--resume"))
-        assert done.returncode == 3 and done.stderr.count("\n") == 1 and "--overwrite" in done.stderr, (cut, done.stderr)
+        assert done.returncode == 3 and done.stderr.count("\n") == 1 and "--overwrite" in done.stderr, (
+            cut, done.stderr)
         assert not (tmp_path / "map.h5").exists()
         assert part.read_bytes() == bytes_[:cut], "what is refused is left alone"
     part.write_bytes(bytes_ + os.urandom(5000))  # what a commit that never came left
@@ -153,7 +161,9 @@ def test_a_part_whose_bytes_changed_is_refused_and_left_alone(uninterrupted, tmp
     part = tmp_path / "map.h5.part"
     whole = part.read_bytes()
     with h5py.File(part) as p:
-        places = {name: p[name].id.get_offset() + 8 * 3 + 2 for name in ("slope", "mass_ratio", "offset_ratio")}
+        places = {
+            name: p[name].id.get_offset() + 8 * 3 + 2 for name in ("slope", "mass_ratio", "offset_ratio")
+        }
         places["jump_height"] = p["jump_height"].id.get_chunk_info(0).byte_offset + 20
         places["the superblock"] = 20
     places["a text"] = whole.index(b"slope of the plane") + 4
@@ -162,7 +172,8 @@ def test_a_part_whose_bytes_changed_is_refused_and_left_alone(uninterrupted, tmp
         broken[place] ^= 1
         part.write_bytes(broken)
         done = finished(*command(tmp_path, "--resume"))
-        assert done.returncode == 3 and done.stderr.count("\n") == 1 and done.stderr.count("--overwrite") == 1, (what, done.stderr)
+        assert done.returncode == 3 and done.stderr.count("\n") == 1 and done.stderr.count(
+            "--overwrite") == 1, (what, done.stderr)
         assert part.read_bytes() == broken, what
     part.write_bytes(b"words" * 40000)
     refused = finished(*command(tmp_path, "--resume"))
@@ -203,14 +214,16 @@ def test_ctrl_c_while_a_resumed_sweep_gathers_its_audit(tmp_path):
     (tmp_path / "spec.toml").write_text(slow)
     assert stopped(tmp_path, 150_000)[0] == 130  # about 15,000 designs, half a second or more to solve again
     tiles = tiles_done(tmp_path / "map.h5.part")
-    assert killed(tmp_path, 0.3, signal.SIGINT, "--resume")[0] in (130, -signal.SIGINT)  # the latter: even before that
+    # the latter: even before that
+    assert killed(tmp_path, 0.3, signal.SIGINT, "--resume")[0] in (130, -signal.SIGINT)
     assert tiles_done(tmp_path / "map.h5.part") == tiles
 
 
 def test_an_unfinished_map_tells_what_it_lacks(uninterrupted, tmp_path):
     sys.path.insert(0, str(TOP / "analysis"))
     from read_map import read_map
-    (tmp_path / "spec.toml").write_text(SPEC.replace(', "status"', ""))  # without status holes look like no jump
+    # without status holes look like no jump
+    (tmp_path / "spec.toml").write_text(SPEC.replace(', "status"', ""))
     assert stopped(tmp_path, HALF)[0] == 130
     part = read_map(tmp_path / "map.h5.part")
     whole = read_map(uninterrupted[0])
@@ -237,15 +250,19 @@ audit = 0
 """)
     assert stopped(tmp_path, 500_000)[0] == 130
     chart = scripted("design_chart.py", tmp_path / "map.h5.part", "-o", tmp_path / "chart")
-    assert chart.returncode == 0 and "INCOMPLETE" in chart.stderr and (tmp_path / "chart_jump_height.png").exists()
+    assert chart.returncode == 0 and "INCOMPLETE" in chart.stderr
+    assert (tmp_path / "chart_jump_height.png").exists()
 
 
 def test_another_spec_is_refused_by_its_key(uninterrupted, tmp_path):
     (tmp_path / "spec.toml").write_text(SPEC)
     assert stopped(tmp_path, HALF)[0] == 130
     before = (tmp_path / "map.h5.part").read_bytes()
-    for key, setting in {"numerics.tolerance": "tolerance=1e-9", "scene.runway": "runway=3", "design.slope": "slope={values=[0.1,0.2]}",
-                         "output.precision": "precision=f4", "output.fields": 'fields=["status"]', "design.release_spin": "release_spin=0.1"}.items():
+    for key, setting in {
+            "numerics.tolerance": "tolerance=1e-9", "scene.runway": "runway=3",
+            "design.slope": "slope={values=[0.1,0.2]}", "output.precision": "precision=f4",
+            "output.fields": 'fields=["status"]', "design.release_spin": "release_spin=0.1"
+    }.items():
         done = finished(*command(tmp_path, "--resume", "--set", setting))
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and key in done.stderr, done.stderr
     assert (tmp_path / "map.h5.part").read_bytes() == before
@@ -256,12 +273,14 @@ def test_another_spec_is_refused_by_its_key(uninterrupted, tmp_path):
 def test_a_list_is_gone_on_with_unless_its_designs_changed(tmp_path):
     rows = [f"{0.1 + 1e-5 * i},{1 + 1e-4 * i}" for i in range(60000)]
     (tmp_path / "designs.csv").write_text("slope,mass_ratio\n" + "\n".join(rows))
-    (tmp_path / "spec.toml").write_text('[design]\npoints = "designs.csv"\n[numerics]\nmethod = "gsl-rk8pd"\naudit = 0\n')
+    (tmp_path / "spec.toml"
+     ).write_text('[design]\npoints = "designs.csv"\n[numerics]\nmethod = "gsl-rk8pd"\naudit = 0\n')
     assert stopped(tmp_path, 5_000_000)[0] == 130  # of which 3.4 MB are the list itself
     (tmp_path / "designs.csv").write_text("slope,mass_ratio\n" + "\n".join(rows[:-1] + ["0.3,2"]))
     done = finished(*command(tmp_path, "--resume"))
     assert done.returncode == 2 and "design.slope" in done.stderr, done.stderr
-    (tmp_path / "designs.csv").write_text("mass_ratio,slope\n" + "\n".join(",".join(r.split(",")[::-1]) for r in rows))
+    (tmp_path / "designs.csv").write_text("mass_ratio,slope\n" + "\n".join(",".join(r.split(",")[::-1])
+                                                                           for r in rows))
     done = finished(*command(tmp_path, "--resume"))
     assert done.returncode == 0 and "resumed" in done.stdout, "the columns' order does not matter"
 
@@ -273,7 +292,8 @@ def test_two_sweeps_on_one_output_the_second_is_refused(tmp_path):
         assert wait_for(tmp_path / "map.h5.part", 10_000)
         for more in ([], ["--overwrite"], ["--resume"]):
             second = finished(*command(tmp_path, *more))
-            assert second.returncode == 2 and second.stderr.count("\n") == 1 and "map.h5.part" in second.stderr, second.stderr
+            assert second.returncode == 2 and second.stderr.count(
+                "\n") == 1 and "map.h5.part" in second.stderr, second.stderr
         reading = leapmap("info", tmp_path / "map.h5.part")
         assert reading.returncode == 2 and "writing" in reading.stderr
     finally:
@@ -295,14 +315,17 @@ def grown(folder, limit=None):
     def preexec():
         if limit:
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-    words = command(folder, "--resume", "--set", "slope={from=0.1,to=0.8,count=200}", "--set", "mass_ratio={from=0.1,to=20,count=200}",
-                    "--set", "offset_ratio=1", "--set", "audit=0", "--set", "compression=0")
+
+    words = command(folder, "--resume", "--set", "slope={from=0.1,to=0.8,count=200}", "--set",
+                    "mass_ratio={from=0.1,to=20,count=200}", "--set", "offset_ratio=1", "--set", "audit=0",
+                    "--set", "compression=0")
     return subprocess.run(words, capture_output=True, text=True, preexec_fn=preexec)
 
 
 def test_a_file_that_may_not_grow_is_gone_on_with_once_it_may(tmp_path):
     (tmp_path / "spec.toml").write_text(SMALL)
-    for limit in (500, 1000, 4000, 8000, 12_000, 16_000, 24_000, 30_000, 40_000, 60_000, 100_000):  # less than a tile
+    # less than a tile
+    for limit in (500, 1000, 4000, 8000, 12_000, 16_000, 24_000, 30_000, 40_000, 60_000, 100_000):
         done = grown(tmp_path, limit)
         assert done.returncode == 3 and done.stderr.count("\n") == 1, (limit, done.stderr)
         assert os.listdir(tmp_path) == ["spec.toml"], limit
@@ -348,7 +371,8 @@ def test_a_map_behind_a_symbolic_link_stays_there(tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "map.h5").symlink_to(tmp_path / "elsewhere" / "real.h5")
     assert finished(*command(tmp_path)).returncode == 0
-    assert (tmp_path / "map.h5").is_symlink() and leapmap("info", tmp_path / "elsewhere" / "real.h5").returncode == 0
+    assert (tmp_path / "map.h5").is_symlink()
+    assert leapmap("info", tmp_path / "elsewhere" / "real.h5").returncode == 0
     (tmp_path / "other.h5.part").symlink_to(tmp_path / "victim")
     (tmp_path / "victim").write_text("precious")
     refused = leapmap("sweep", tmp_path / "spec.toml", "-o", tmp_path / "other.h5", "--overwrite")
@@ -387,7 +411,8 @@ def test_failed_designs_are_listed_as_commands_that_fail_and_retried(tmp_path):
     hop = subprocess.run(listed[0].replace("leapmap", PROGRAM, 1), shell=True, capture_output=True, text=True)
     assert hop.returncode == 1 and "The method failed" in hop.stdout, hop.stdout
     done = finished(*command(tmp_path, "--retry-failed"))
-    assert done.returncode == 0 and f"{failed} solved, 0 failed again" in done.stdout, done.stdout + done.stderr
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"{failed} solved, 0 failed again" in done.stdout, done.stdout + done.stderr
     with h5py.File(tmp_path / "map.h5") as m:
         assert (m["status"][()] == 6).sum() == 0 and m.attrs["status_counts"].sum() == 600
         assert np.isfinite(m["jump_height"][()][m["status"][()] == 1]).all()

@@ -28,7 +28,8 @@ def shards(folder, spec, count, *arguments, which=None, name="map.h5"):
     """Sweeps shards of a spec's text, whose map's path is returned."""
     (folder / "shards.toml").write_text(spec)
     for i in which or range(1, count + 1):
-        done = leapmap("sweep", folder / "shards.toml", "-o", folder / name, "--quiet", "--shard", f"{i}/{count}", *arguments)
+        done = leapmap("sweep", folder / "shards.toml", "-o", folder / name, "--quiet", "--shard",
+                       f"{i}/{count}", *arguments)
         assert done.returncode == 0, done.stderr
     return folder / name
 
@@ -53,8 +54,11 @@ def same_datasets(one, other):
         assert set(b.attrs) - set(a.attrs) == {"shards"}
 
 
-@pytest.mark.parametrize(("spec", "count"), [(SMALL, 3), (COULOMB, 5), (SMALL + '[output]\ngradients = ["jump_height"]\nprecision = "f4"\ncompression = 4\n', 2),
-                                             (SMALL + "[scene]\njumps = 3\n", 4), (SMALL, 1)])
+@pytest.mark.parametrize(
+    ("spec", "count"),
+    [(SMALL, 3), (COULOMB, 5),
+     (SMALL + '[output]\ngradients = ["jump_height"]\nprecision = "f4"\ncompression = 4\n', 2),
+     (SMALL + "[scene]\njumps = 3\n", 4), (SMALL, 1)])
 def test_the_map_of_all_shards_is_that_of_one_sweep_bit_for_bit(spec, count, tmp_path):
     joined = shards(tmp_path, spec, count)
     done = leapmap("join", joined)
@@ -64,7 +68,9 @@ def test_the_map_of_all_shards_is_that_of_one_sweep_bit_for_bit(spec, count, tmp
     assert all(shard(joined, i, count).exists() for i in range(1, count + 1)), "the shards stay"
 
 
-@pytest.mark.parametrize(("spec", "count"), [(COULOMB, 3), (SMALL + '[output]\nprecision = "f4"\ncompression = 4\n', 4), (SMALL + "[scene]\njumps = 3\n", 1)])
+@pytest.mark.parametrize(("spec", "count"), [(COULOMB, 3),
+                                             (SMALL + '[output]\nprecision = "f4"\ncompression = 4\n', 4),
+                                             (SMALL + "[scene]\njumps = 3\n", 1)])
 def test_a_virtual_map_looks_its_values_up_in_its_shards(spec, count, tmp_path):
     joined = shards(tmp_path, spec, count)
     done = leapmap("join", joined, "--virtual")
@@ -75,7 +81,8 @@ def test_a_virtual_map_looks_its_values_up_in_its_shards(spec, count, tmp_path):
             if isinstance(a[name], h5py.Dataset):
                 assert np.array_equal(a[name][()], b[name][()], equal_nan=a[name].dtype.kind == "f"), name
         assert b["status"].is_virtual and a.attrs["tiles_checksum"] == b.attrs["tiles_checksum"]
-        assert len(b.attrs["shard_checksums"]) == len({source.file_name for source in b["status"].virtual_sources()})
+        assert len(b.attrs["shard_checksums"]) == len(
+            {source.file_name for source in b["status"].virtual_sources()})
     checked = leapmap("check", joined)
     assert checked.returncode == 0 and "check    " in checked.stdout, checked
     fields = lambda path: leapmap("info", path).stdout.split("dimensions")[1]
@@ -110,7 +117,8 @@ def test_a_virtual_map_without_its_shards_tells_no_fill_values(harm, tmp_path):
 
 
 def test_a_virtual_map_of_a_list_is_read_and_one_behind_a_link_too(tmp_path):
-    (tmp_path / "list.csv").write_text("slope,mass_ratio\n" + "".join(f"{0.1 + 0.003 * i!r},{1 + 0.02 * i!r}\n" for i in range(200)))
+    (tmp_path / "list.csv").write_text("slope,mass_ratio\n" +
+                                       "".join(f"{0.1 + 0.003 * i!r},{1 + 0.02 * i!r}\n" for i in range(200)))
     joined = shards(tmp_path, f"[design]\npoints = \"{tmp_path / 'list.csv'}\"\n", 2)
     assert leapmap("join", joined, "--virtual").returncode == 0
     (tmp_path / "links").mkdir()
@@ -121,7 +129,9 @@ def test_a_virtual_map_of_a_list_is_read_and_one_behind_a_link_too(tmp_path):
 
 
 def test_shards_of_equal_sums_are_told_apart(tmp_path):
-    spec = "[design]\nslope = { from = 0.5, to = 0.6, count = 256 }\nmass_ratio = { from = 5, to = 6, count = 256 }\n[output]\nfields = [\"status\"]\n[numerics]\naudit = 0\n"
+    spec = ("[design]\nslope = { from = 0.5, to = 0.6, count = 256 }\n"
+            "mass_ratio = { from = 5, to = 6, count = 256 }\n[output]\nfields = [\"status\"]\n[numerics]\n"
+            "audit = 0\n")
     joined = shards(tmp_path, spec, 2)
     assert leapmap("join", joined, "--virtual").returncode == 0
     with h5py.File(joined) as m:
@@ -154,7 +164,9 @@ def test_a_virtual_map_is_not_changed_and_not_drawn(tmp_path):
 
 
 def test_a_list_has_shards_too(tmp_path):
-    (tmp_path / "list.csv").write_text("label,slope,mass_ratio\n" + "".join(f"hoop {i},{0.1 + 0.003 * i!r},{1 + 0.02 * i!r}\n" for i in range(200)))
+    (tmp_path /
+     "list.csv").write_text("label,slope,mass_ratio\n" +
+                            "".join(f"hoop {i},{0.1 + 0.003 * i!r},{1 + 0.02 * i!r}\n" for i in range(200)))
     spec = f"[design]\npoints = \"{tmp_path / 'list.csv'}\"\n"
     joined = shards(tmp_path, spec, 2)
     assert leapmap("join", joined).returncode == 0
@@ -168,9 +180,12 @@ def test_shards_hold_every_tile_once_and_as_much_work_as_the_others(tmp_path):
     for i in range(1, count + 1):
         with h5py.File(shard(joined, i, count)) as file:
             assert file.attrs["filetype"] == "leapmap shard" and file.attrs["shard"] == f"{i}/{count}"
-            designs.append(int((file["status"][()] != 255).sum()) if file["status"].fillvalue == 255 else int(sum(file.attrs["status_counts"])))
+            designs.append(
+                int((file["status"][()] != 255
+                     ).sum()) if file["status"].fillvalue == 255 else int(sum(file.attrs["status_counts"])))
     assert sum(designs) == 12 * 30 * 20 and min(designs) > 0.2 * sum(designs) / count
-    planned = leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--dry-run", "--shards", count, "--time-limit", 1).stdout
+    planned = leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--dry-run", "--shards", count,
+                      "--time-limit", 1).stdout
     ratio = float(planned.split(" times the mean")[0].split()[-1])
     assert 1.0 <= ratio <= 1.25 and "limit" in planned and f"--shard 1/{count}" in planned
 
@@ -185,12 +200,17 @@ def test_a_shard_is_no_map_to_anything_else(tmp_path):
 
 
 def test_a_shard_that_was_killed_is_gone_on_with(tmp_path):
-    spec = COULOMB.replace("count = 30", "count = 300").replace("count = 20", "count = 60").replace("audit = 0.01", "audit = 0.02")
+    spec = COULOMB.replace("count = 30", "count = 300").replace("count = 20", "count = 60").replace(
+        "audit = 0.01", "audit = 0.02")
     (tmp_path / "shards.toml").write_text(spec)
-    command = [PROGRAM, "sweep", tmp_path / "shards.toml", "-o", tmp_path / "map.h5", "--quiet", "--threads", "1", "--commit-interval", "0"]
+    command = [
+        PROGRAM, "sweep", tmp_path / "shards.toml", "-o", tmp_path / "map.h5", "--quiet", "--threads", "1",
+        "--commit-interval", "0"
+    ]
     for i, sign in ((1, signal.SIGKILL), (2, signal.SIGTERM)):
         part = tmp_path / f"map.{i}-of-3.h5.part"
-        process = subprocess.Popen([str(word) for word in [*command, "--shard", f"{i}/3"]], stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([str(word) for word in [*command, "--shard", f"{i}/3"]],
+                                   stderr=subprocess.PIPE, text=True)
         end = time.monotonic() + 60
         while time.monotonic() < end and not (part.exists() and part.stat().st_size > 300_000):
             time.sleep(0.02)
@@ -200,7 +220,8 @@ def test_a_shard_that_was_killed_is_gone_on_with(tmp_path):
         if sign == signal.SIGTERM:
             assert f"--shard {i}/3" in said and "--resume" in said
     missing = leapmap("join", tmp_path / "map.h5")
-    assert missing.returncode == 2 and "--array=1-3" in missing.stderr and "2 of them unfinished" in missing.stderr
+    assert missing.returncode == 2 and "--array=1-3" in missing.stderr
+    assert "2 of them unfinished" in missing.stderr
     joined = shards(tmp_path, spec, 3, "--resume")
     assert leapmap("join", joined).returncode == 0
     same_datasets(sweep(tmp_path, spec, name="one.h5"), joined)
@@ -221,7 +242,10 @@ def test_what_is_missing_is_named_as_an_array_of_slurm(tmp_path):
     refused(tmp_path / "other.h5", "no shard")
 
 
-@pytest.mark.parametrize("harm", ["torn", "flipped", "renamed", "doubled", "foreign spec", "foreign program", "foreign library", "two sets", "whole map", "unreadable"])
+@pytest.mark.parametrize("harm", [
+    "torn", "flipped", "renamed", "doubled", "foreign spec", "foreign program", "foreign library", "two sets",
+    "whole map", "unreadable"
+])
 def test_a_shard_that_cannot_be_right_is_named_and_nothing_is_written(harm, tmp_path):
     joined = shards(tmp_path, SMALL, 3)
     path = shard(joined, 2, 3)
@@ -310,11 +334,17 @@ def test_a_file_under_anothers_name_is_not_whole_already(tmp_path):
 
 def test_a_map_of_thousands_of_tiles_has_shards_that_are_resumed_checked_and_joined(tmp_path):
     axes = {"mu_static": (0.3, 0.9), "mu_kinetic": (0.2, 0.3), "restitution": (0, 0.4)}
-    design = {"slope": (0.2, 0.6), "mass_ratio": (1, 4), "offset_ratio": (0.6, 1), "inertia_factor": (0.8, 1), "release_angle": (3, 3.3)}
-    said = lambda parts: "".join(f"{name} = {{ from = {a}, to = {b}, count = 5 }}\n" for name, (a, b) in parts.items())
-    spec = f'[scene]\nfriction = "coulomb"\nrunway = 1\n{said(axes)}[design]\n{said(design)}[numerics]\naudit = 0\n[output]\nfields = ["status"]\n'
+    design = {
+        "slope": (0.2, 0.6), "mass_ratio": (1, 4), "offset_ratio": (0.6, 1), "inertia_factor": (0.8, 1),
+        "release_angle": (3, 3.3)
+    }
+    said = lambda parts: "".join(f"{name} = {{ from = {a}, to = {b}, count = 5 }}\n" for name,
+                                 (a, b) in parts.items())
+    spec = (f'[scene]\nfriction = "coulomb"\nrunway = 1\n{said(axes)}[design]\n{said(design)}[numerics]\n'
+            'audit = 0\n[output]\nfields = ["status"]\n')
     joined = shards(tmp_path, spec, 2)
-    assert leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--resume", "--shard", "2/2").returncode == 0
+    assert leapmap("sweep", tmp_path / "shards.toml", "-o", joined, "--resume", "--shard",
+                   "2/2").returncode == 0
     assert leapmap("check", shard(joined, 1, 2)).returncode == 0
     done = leapmap("join", joined)
     tiles = int(done.stdout.split(" chunks")[0].split()[-1].replace(",", ""))
@@ -362,15 +392,18 @@ def test_a_plan_of_shards_wants_a_dry_run():
 
 
 def test_the_plan_tells_places_that_threads_are_bound_to(tmp_path):
-    told = subprocess.run([PROGRAM, "sweep", "-o", tmp_path / "m.h5", "--set", "slope={from=0.1,to=0.8,count=50}", "--dry-run"], capture_output=True, text=True,
-                          env={**os.environ, "OMP_PLACES": "threads", "OMP_PROC_BIND": "close"})
+    told = subprocess.run(
+        [PROGRAM, "sweep", "-o", tmp_path / "m.h5", "--set", "slope={from=0.1,to=0.8,count=50}", "--dry-run"],
+        capture_output=True, text=True, env={**os.environ, "OMP_PLACES": "threads", "OMP_PROC_BIND": "close"})
     assert told.returncode == 0 and "places " in told.stdout and "bound" in told.stdout
-    assert "places " not in leapmap("sweep", "-o", tmp_path / "m.h5", "--set", "slope={from=0.1,to=0.8,count=50}", "--dry-run").stdout
+    assert "places " not in leapmap("sweep", "-o", tmp_path / "m.h5", "--set",
+                                    "slope={from=0.1,to=0.8,count=50}", "--dry-run").stdout
 
 
 def test_bound_threads_make_the_same_map(tmp_path):
     sweep(tmp_path, SMALL)
-    bound = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "bound.h5", "--quiet"], env={**os.environ, "OMP_PLACES": "threads", "OMP_PROC_BIND": "spread"})
+    bound = subprocess.run([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "bound.h5", "--quiet"],
+                           env={**os.environ, "OMP_PLACES": "threads", "OMP_PROC_BIND": "spread"})
     assert bound.returncode == 0
     with h5py.File(tmp_path / "map.h5") as a, h5py.File(tmp_path / "bound.h5") as b:
         assert a.attrs["tiles_checksum"] == b.attrs["tiles_checksum"]
@@ -380,9 +413,12 @@ def test_gnu_parallel_runs_all_shards_and_joins_them(tmp_path):
     if not shutil.which("parallel"):
         pytest.skip("GNU parallel is missing")
     sweep(tmp_path, SMALL, name="one.h5")
-    again = lambda *words: subprocess.run(["sh", TOP / "sweeps" / "cluster" / "parallel.sh", "3", tmp_path / "spec.toml", tmp_path / "all" / "map.h5", *words], capture_output=True,
-                                          text=True, env={**os.environ, "LEAPMAP": PROGRAM})
+    again = lambda *words: subprocess.run([
+        "sh", TOP / "sweeps" / "cluster" / "parallel.sh", "3", tmp_path / "spec.toml", tmp_path / "all" /
+        "map.h5", *words
+    ], capture_output=True, text=True, env={**os.environ, "LEAPMAP": PROGRAM})
     done = again()
     assert done.returncode == 0, done.stderr
     same_datasets(tmp_path / "one.h5", tmp_path / "all" / "map.h5")
-    assert again().returncode == 0 and again("--set", "runway=2").returncode == 2  # complete already; of another spec
+    # complete already; of another spec
+    assert again().returncode == 0 and again("--set", "runway=2").returncode == 2

@@ -28,7 +28,8 @@ mass_ratio = { from = 0.2, to = 12, count = 60, scale = "log" }
 audit = 0.15
 """
 
-pytestmark = pytest.mark.slow  # its twins are those of test_shards, one of which starts shards by GNU parallel
+# its twins are those of test_shards, one of which starts shards by GNU parallel
+pytestmark = pytest.mark.slow
 
 
 def free_port():
@@ -49,7 +50,8 @@ def running(folder):
             words = (entry / "cmdline").read_bytes().split(b"\0")
         except (OSError, ValueError):
             continue
-        if entry.name.isdigit() and any(str(folder).encode() in word for word in words) and Path(words[0].decode()).name.split(":")[0] in (*DAEMONS, "slurmstepd"):
+        if entry.name.isdigit() and any(str(folder).encode() in word for word in words) and Path(
+                words[0].decode()).name.split(":")[0] in (*DAEMONS, "slurmstepd"):
             found.append(int(entry.name))
     return found
 
@@ -97,21 +99,30 @@ ReturnToService=2
 JobRequeue=1
 KillWait=5
 MinJobAge=600
-NodeName={host} NodeAddr=127.0.0.1 CPUs=2 Boards=1 SocketsPerBoard=1 CoresPerSocket=2 ThreadsPerCore=1 State=UNKNOWN
+NodeName={host} NodeAddr=127.0.0.1 CPUs=2 Boards=1 SocketsPerBoard=1 CoresPerSocket=2 ThreadsPerCore=1 \
+State=UNKNOWN
 PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
 """)
-        self.environment = {**os.environ, "SLURM_CONF": str(self.configuration), "LEAPMAP": PROGRAM, "LEAPMAP_SCRATCH": str(folder / "scratch")}
+        self.environment = {
+            **os.environ, "SLURM_CONF": str(self.configuration), "LEAPMAP": PROGRAM,
+            "LEAPMAP_SCRATCH": str(folder / "scratch")
+        }
         self.started = []
 
     def start(self):
         """Returns why it cannot be, or None."""
         munge = self.folder / "munge"
-        commands = ([daemon("munged"), "--foreground", "--force", f"--socket={self.socket}", f"--key-file={munge / 'key'}", f"--pid-file={munge / 'pid'}",
-                     f"--log-file={munge / 'log'}", f"--seed-file={munge / 'seed'}"],
-                    [daemon("slurmctld"), "-D", "-f", self.configuration], [daemon("slurmd"), "-D", "-f", self.configuration])
+        commands = ([
+            daemon("munged"), "--foreground", "--force", f"--socket={self.socket}",
+            f"--key-file={munge / 'key'}", f"--pid-file={munge / 'pid'}", f"--log-file={munge / 'log'}",
+            f"--seed-file={munge / 'seed'}"
+        ], [daemon("slurmctld"), "-D", "-f",
+            self.configuration], [daemon("slurmd"), "-D", "-f", self.configuration])
         for command in commands:
             log = (self.folder / "log" / Path(command[0]).name).with_suffix(".out").open("w")
-            self.started.append(subprocess.Popen([str(word) for word in command], stdout=log, stderr=log, env=self.environment))
+            self.started.append(
+                subprocess.Popen([str(word) for word in command], stdout=log, stderr=log,
+                                 env=self.environment))
             time.sleep(0.5)
             if self.started[-1].poll() is not None:
                 return f"{Path(command[0]).name} does not start: {Path(log.name).read_text()[-300:]}"
@@ -123,7 +134,8 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
         return f"the node does not come up: {self.run('sinfo').stdout}"
 
     def run(self, *command):
-        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=60, env=self.environment, cwd=self.folder)
+        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=60,
+                              env=self.environment, cwd=self.folder)
 
     def states(self, job):
         """The state of each task of an array, {number: state}."""
@@ -143,7 +155,8 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
             if answer := question():
                 return answer
             time.sleep(0.1)
-        raise AssertionError(self.run("squeue").stdout + "".join(p.read_text() for p in self.folder.glob("slurm-*.out")))
+        raise AssertionError(
+            self.run("squeue").stdout + "".join(p.read_text() for p in self.folder.glob("slurm-*.out")))
 
     def stop(self):
         self.run("scancel", "--user=root")
@@ -163,7 +176,8 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
 def slurm(tmp_path):
     missing = [name for name in DAEMONS if not daemon(name)]
     if missing or os.geteuid() != 0:
-        pytest.skip(f"no Slurm can be started here: {', '.join(missing) + ' missing' if missing else 'not root'}")
+        pytest.skip(
+            f"no Slurm can be started here: {', '.join(missing) + ' missing' if missing else 'not root'}")
     cluster = Slurm(tmp_path)
     try:
         if why := cluster.start():
@@ -181,7 +195,8 @@ def sweeping(folder, shard):
             words = (entry / "cmdline").read_bytes().split(b"\0")
         except (OSError, ValueError):
             continue
-        if entry.name.isdigit() and words[0].decode() == PROGRAM and f"{shard}/8".encode() in words and any(str(folder).encode() in word for word in words):
+        if entry.name.isdigit() and words[0].decode() == PROGRAM and f"{shard}/8".encode() in words and any(
+                str(folder).encode() in word for word in words):
             return int(entry.name)
     return None
 
@@ -197,17 +212,20 @@ def has_committed(slurm, shard):
     return False
 
 
-def test_an_array_of_eight_with_a_task_killed_and_one_cancelled_joins_to_the_map_of_one_sweep(slurm, tmp_path):
+def test_an_array_of_eight_with_a_task_killed_and_one_cancelled_joins_to_the_map_of_one_sweep(
+        slurm, tmp_path):
     (tmp_path / "spec.toml").write_text(SPEC)
     map_path = tmp_path / "maps" / "map.h5"
-    submitted = slurm.run("sh", CLUSTER / "submit.sh", 8, tmp_path / "spec.toml", map_path, "--cpus-per-task=1")
+    submitted = slurm.run("sh", CLUSTER / "submit.sh", 8, tmp_path / "spec.toml", map_path,
+                          "--cpus-per-task=1")
     assert submitted.returncode == 0, submitted.stderr
     array, join = submitted.stdout.split()[1], submitted.stdout.split()[7].rstrip(";")
     # One is killed with its work half done, another is cancelled, which tells it to stop.
     victim = slurm.wait(lambda: has_committed(slurm, 1) and sweeping(tmp_path, 1))
     os.kill(victim, signal.SIGKILL)
     slurm.wait(lambda: has_committed(slurm, 2))
-    told = subprocess.Popen(["scancel", "--batch", "--signal=TERM", f"{array}_2"], env=slurm.environment)  # tries again and again until it has ended
+    # tries again and again until it has ended
+    told = subprocess.Popen(["scancel", "--batch", "--signal=TERM", f"{array}_2"], env=slurm.environment)
     slurm.wait(lambda: has_committed(slurm, 3))
     slurm.run("scancel", f"{array}_3")
     told.wait(60)
@@ -220,11 +238,17 @@ def test_an_array_of_eight_with_a_task_killed_and_one_cancelled_joins_to_the_map
     assert not map_path.exists()
     # One is requeued by hand; the others run again as an array, and go on with what is left of them.
     assert slurm.run("scontrol", "requeue", f"{array}_1").returncode == 0
-    again = subprocess.run(["sh", str(CLUSTER / "submit.sh"), "8", str(tmp_path / "spec.toml"), str(map_path), "--cpus-per-task=1"], capture_output=True, text=True,
-                           env={**slurm.environment, "AGAIN": "2-3"}, cwd=tmp_path, timeout=60)
+    again = subprocess.run([
+        "sh",
+        str(CLUSTER / "submit.sh"), "8",
+        str(tmp_path / "spec.toml"),
+        str(map_path), "--cpus-per-task=1"
+    ], capture_output=True, text=True, env={**slurm.environment, "AGAIN": "2-3"}, cwd=tmp_path, timeout=60)
     assert again.returncode == 0, again.stderr
     second = again.stdout.split()[1]
-    slurm.wait(lambda: slurm.states(array).get(1) in {"COMPLETED", "FAILED"} and set(slurm.states(second).values()) == {"COMPLETED"}, 300)
+    slurm.wait(
+        lambda: slurm.states(array).get(1) in {"COMPLETED", "FAILED"} and set(slurm.states(second).values())
+        == {"COMPLETED"}, 300)
     assert slurm.states(array)[1] == "COMPLETED"
     for job, shard in ((array, 1), (second, 2), (second, 3)):
         assert "designs were complete" in (tmp_path / f"slurm-{job}_{shard}.out").read_text()

@@ -7,9 +7,11 @@ import xarray
 from support.program import leapmap, scripted
 
 
-CASES = ("landing", "needle", "release", "graze", "long", "step", "tolerance", "chaos", "painleve", "slow", "dip", "stick", "bounces")
+CASES = ("landing", "needle", "release", "graze", "long", "step", "tolerance", "chaos", "painleve", "slow",
+         "dip", "stick", "bounces")
 QUICK = tuple(case for case in CASES if case != "painleve")  # which takes longer than all others together
-both = pytest.mark.parametrize("table", [QUICK, pytest.param(CASES, marks=pytest.mark.slow)], ids=["quick", "all"], indirect=True)
+both = pytest.mark.parametrize("table", [QUICK, pytest.param(CASES, marks=pytest.mark.slow)],
+                               ids=["quick", "all"], indirect=True)
 
 
 @pytest.fixture(scope="module")
@@ -29,13 +31,16 @@ def test_every_method_has_a_verdict_in_every_case_and_no_default_is_silently_wro
         said = set(zip(t.study.values, t.method.values, t.control.values, t.verdict.values))
         assert len(said) == len(lines)
         for study, method, control, verdict in said:
-            assert any([word.strip() for word in (line[:10], line[11:38], line[39:48], line[50:70])] == [study, method, control, verdict]
+            assert any([word.strip()
+                        for word in (line[:10], line[11:38], line[39:48],
+                                     line[50:70])] == [study, method, control, verdict]
                        for line in lines)
         defaults = [v for s, m, c, v in said if m in ("exact", "closed form (leapmap)")]
         assert len(defaults) == len(cases) - 1 and set(defaults) == {"fine"}
         assert {s for s, *_ in said} == set(cases)
         wrong = t.finding == "wrong"
-        assert ((t.verdict == "silently wrong") | ~wrong).all() and wrong.any(), "a study in which nothing fails shows nothing"
+        assert ((t.verdict == "silently wrong")
+                | ~wrong).all() and wrong.any(), "a study in which nothing fails shows nothing"
 
 
 def rows_of(table, cases, path):
@@ -55,7 +60,8 @@ def rows_of(table, cases, path):
 @both
 def test_charts_of_the_cases_show_the_verdicts(table, tmp_path):
     cases = CASES if table[2] == CASES else ("landing", "stick")
-    done = scripted("stability_chart.py", rows_of(table[0], cases, tmp_path / "table.h5"), "-o", tmp_path / "chart")
+    done = scripted("stability_chart.py", rows_of(table[0], cases, tmp_path / "table.h5"), "-o",
+                    tmp_path / "chart")
     assert done.returncode == 0, done.stderr
     assert "wrong, silent" in (tmp_path / "chart.svg").read_text()
     for case in cases:
@@ -71,7 +77,8 @@ def test_scipy_and_boost_solve_the_same_designs_and_stand_on_the_same_chart(tmp_
         for rival in ("Boost.odeint, dopri5", "scipy, DOP853", "leapmap, gsl-rk8pd"):
             rows = np.flatnonzero(method == rival)
             tightest = rows[np.argmin(setting[rows])]
-            # Three programs that share no code agree: within some hundred times the tightest tolerance, 1e-11 or less.
+            # Three programs that share no code agree: within some hundred times the tightest tolerance, 1e-11
+            # or less.
             assert t["max_height_error"][tightest] < 1e-8 and t["wrong"][tightest] == 0, rival
     drawn = (tmp_path / "rivals_time.svg").read_text()
     assert "scipy" in drawn and "Boost" in drawn and "leapmap, exact, SIMD lanes" in drawn

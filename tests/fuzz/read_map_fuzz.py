@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random changes to a map, made through HDF5 or to its bytes: read_map reads it or refuses it with NotAMap, whatever it is.
+"""Random changes to a map, made through HDF5 or to its bytes: read_map reads it or refuses it with NotAMap,
+whatever it is.
 
     LEAPMAP=... read_map_fuzz.py SECONDS [SEED]"""
 import os
@@ -20,9 +21,12 @@ sys.path.insert(0, str(TOP / "analysis"))
 from read_map import NotAMap, read_map  # noqa: E402
 
 PROGRAM = os.environ.get("LEAPMAP", str(TOP / "build/release/leapmap"))
-NAMES = ("slope", "mass_ratio", "jump_height", "status", "spurious_first_jump", "entry", "candidates", "new", "entry/data/new")
-ATTRIBUTES = ("filetype", "version", "spec", "tiles_done", "title", "units", "flag_values", "flag_meanings", "_FillValue", "DIMENSION_LIST", "CLASS")
-VALUES = (0, -1, 2**40, np.nan, 1e300, "text", b"bytes", np.zeros(3), np.zeros((2, 2)), ["a", "b"], np.arange(7, dtype="u1"), "\x1b[2J", "$\\frac{$")
+NAMES = ("slope", "mass_ratio", "jump_height", "status", "spurious_first_jump", "entry", "candidates", "new",
+         "entry/data/new")
+ATTRIBUTES = ("filetype", "version", "spec", "tiles_done", "title", "units", "flag_values", "flag_meanings",
+              "_FillValue", "DIMENSION_LIST", "CLASS")
+VALUES = (0, -1, 2**40, np.nan, 1e300, "text", b"bytes", np.zeros(3), np.zeros(
+    (2, 2)), ["a", "b"], np.arange(7, dtype="u1"), "\x1b[2J", "$\\frac{$")
 
 
 def change(file, pick, elsewhere):
@@ -45,7 +49,8 @@ def change(file, pick, elsewhere):
     elif kind == 6:
         file[name] = file[other]
     elif kind == 7:
-        file.create_dataset("more", (10 ** pick.randrange(12),), dtype=pick.choice(("f8", "u1", "S5", h5py.ref_dtype))).make_scale("more")
+        file.create_dataset("more", (10**pick.randrange(12), ), dtype=pick.choice(
+            ("f8", "u1", "S5", h5py.ref_dtype))).make_scale("more")
     else:
         del file[name].attrs[pick.choice(ATTRIBUTES)]
 
@@ -56,8 +61,10 @@ def main():
     read = refused = 0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "spec.toml").write_text("[design]\nslope = { values = [0.1, 0.2, 0.3] }\nmass_ratio = { values = [1, 2, 3, 4, 5] }\n")
-        subprocess.run([PROGRAM, "sweep", folder / "spec.toml", "-o", folder / "map.h5", "--quiet"], check=True)
+        (folder / "spec.toml").write_text(
+            "[design]\nslope = { values = [0.1, 0.2, 0.3] }\nmass_ratio = { values = [1, 2, 3, 4, 5] }\n")
+        subprocess.run([PROGRAM, "sweep", folder / "spec.toml", "-o", folder / "map.h5", "--quiet"],
+                       check=True)
         end = time.time() + seconds
         while time.time() < end:
             path = folder / "changed.h5"

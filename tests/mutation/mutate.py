@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Plants an error of a thousandth in each formula of src/physics, one at a time, and asks the referee to find it.
+"""Plants an error of a thousandth in each formula of src/physics, one at a time, and asks the referee to find
+it.
 
-The solvers are compiled with the error and judged against src/referee, which is of the paper's equations (7) to (9) alone and
-includes nothing of src/physics: that is looked at first. An error that is not found, or a right solver that is found wrong,
-ends this with status 1. Needs a built libleapmap.a in LEAPMAP_BUILD.
-"""
+The solvers are compiled with the error and judged against src/referee, which is of the paper's equations (7)
+to (9) alone and includes nothing of src/physics: that is looked at first. An error that is not found, or a
+right solver that is found wrong, ends this with status 1. Needs a built libleapmap.a in LEAPMAP_BUILD."""
 import argparse
 import concurrent.futures
 import os
@@ -17,10 +17,13 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SOURCES = ["src/" + name + ".cpp" for name in
-           ("rolling/clock", "rolling/exact", "rolling/find", "rolling/halved_time", "rolling/leg", "rolling/prepare", "rolling/rolling_time",
-            "rolling/take_off", "rolling/rolling_integration", "physics/three_coordinates", "coulomb/rolling_leg",
-            "coulomb/sliding_leg", "coulomb/sliding_panel", "coulomb/coulomb", "coulomb/coulomb_integration")] + ["tests/mutation/judge.cpp"]
+SOURCES = [
+    "src/" + name + ".cpp"
+    for name in ("rolling/clock", "rolling/exact", "rolling/find", "rolling/halved_time", "rolling/leg",
+                 "rolling/prepare", "rolling/rolling_time", "rolling/take_off", "rolling/rolling_integration",
+                 "physics/three_coordinates", "coulomb/rolling_leg", "coulomb/sliding_leg",
+                 "coulomb/sliding_panel", "coulomb/coulomb", "coulomb/coulomb_integration")
+] + ["tests/mutation/judge.cpp"]
 LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
 OFF = "T(1.001)"
 
@@ -32,50 +35,78 @@ MUTATIONS = {
     "Ic": ("parameters", ".Ic = kappa * hub", f".Ic = {OFF} * kappa * hub"),
     "least J": ("parameters", ".J_min = (kappa + T(1))", ".J_min = (kappa + T(1.001))"),
     "J": ("rolling", "return hoop.J_min + T(2) * hoop.rho", "return hoop.J_min + T(2.002) * hoop.rho"),
-    "sin(theta + phi)": ("rolling", "hoop.sin_slope * phi.cos + hoop.cos_slope * phi.sin", f"hoop.sin_slope * phi.cos + {OFF} * hoop.cos_slope * phi.sin"),
-    "cos(theta + phi)": ("rolling", "hoop.cos_slope * phi.cos - hoop.sin_slope * phi.sin", f"hoop.cos_slope * phi.cos - {OFF} * hoop.sin_slope * phi.sin"),
-    "phi'' rolling (10)": ("rolling", "(hoop.thrust - hoop.rho * (sin_from", f"({OFF} * hoop.thrust - hoop.rho * (sin_from"),
-    "N rolling (11)": ("rolling", "return hoop.cos_slope + hoop.rho * (phi.sin * acceleration", f"return hoop.cos_slope + hoop.rho * ({OFF} * phi.sin * acceleration"),
-    "F rolling (12)": ("rolling", "+ hoop.rho * phi.sin * spin * spin - hoop.sin_slope", f"+ {OFF} * hoop.rho * phi.sin * spin * spin - hoop.sin_slope"),
+    "sin(theta + phi)": ("rolling", "hoop.sin_slope * phi.cos + hoop.cos_slope * phi.sin",
+                         f"hoop.sin_slope * phi.cos + {OFF} * hoop.cos_slope * phi.sin"),
+    "cos(theta + phi)": ("rolling", "hoop.cos_slope * phi.cos - hoop.sin_slope * phi.sin",
+                         f"hoop.cos_slope * phi.cos - {OFF} * hoop.sin_slope * phi.sin"),
+    "phi'' rolling (10)": ("rolling", "(hoop.thrust - hoop.rho * (sin_from",
+                           f"({OFF} * hoop.thrust - hoop.rho * (sin_from"),
+    "N rolling (11)": ("rolling", "return hoop.cos_slope + hoop.rho * (phi.sin * acceleration",
+                       f"return hoop.cos_slope + hoop.rho * ({OFF} * phi.sin * acceleration"),
+    "F rolling (12)": ("rolling", "+ hoop.rho * phi.sin * spin * spin - hoop.sin_slope",
+                       f"+ {OFF} * hoop.rho * phi.sin * spin * spin - hoop.sin_slope"),
     "w^2 by angle": ("rolling_by_angle", "T(2) * (roll.push * x +", "T(2.002) * (roll.push * x +"),
-    "level of energy": ("rolling_by_angle", "released - T(2) * (release *", "released - T(2.002) * (release *"),
-    "energy's slope": ("rolling_by_angle", "return hoop.thrust - hoop.rho * sin_from", f"return hoop.thrust - {OFF} * hoop.rho * sin_from"),
+    "level of energy": ("rolling_by_angle", "released - T(2) * (release *",
+                        "released - T(2.002) * (release *"),
+    "energy's slope": ("rolling_by_angle", "return hoop.thrust - hoop.rho * sin_from",
+                       f"return hoop.thrust - {OFF} * hoop.rho * sin_from"),
     "G, rest": ("rolling_by_angle", "h.cos_slope * (h.Ic + q * q)", f"h.cos_slope * ({OFF} * h.Ic + q * q)"),
     "G, energy": ("rolling_by_angle", ".K = h.J_min * c - h.rho", f".K = {OFF} * h.J_min * c - h.rho"),
-    "stick, F": ("stick", "const T pull = t.q * push - h.sin_slope * t.J", f"const T pull = t.q * push - {OFF} * h.sin_slope * t.J"),
+    "stick, F": ("stick", "const T pull = t.q * push - h.sin_slope * t.J",
+                 f"const T pull = t.q * push - {OFF} * h.sin_slope * t.J"),
     "thrust": ("parameters", ".thrust = direction.sin + tau", f".thrust = direction.sin + {OFF} * tau"),
-    "G, motor": ("rolling_by_angle", "h.rho * s * (h.sin_slope * q + h.drive)", f"h.rho * s * (h.sin_slope * q + {OFF} * h.drive)"),
+    "G, motor": ("rolling_by_angle", "h.rho * s * (h.sin_slope * q + h.drive)",
+                 f"h.rho * s * (h.sin_slope * q + {OFF} * h.drive)"),
     "slide, motor": ("sliding", "at.turn * n0 + hoop.drive", f"at.turn * n0 + {OFF} * hoop.drive"),
-    "seen from behind": ("parameters", "seen.drive = way * hoop.drive", f"seen.drive = {OFF} * way * hoop.drive"),
-    "slide, lever": ("sliding", "return hoop.rho * phi.sin - friction", f"return {OFF} * hoop.rho * phi.sin - friction"),
+    "seen from behind": ("parameters", "seen.drive = way * hoop.drive",
+                         f"seen.drive = {OFF} * way * hoop.drive"),
+    "slide, lever": ("sliding", "return hoop.rho * phi.sin - friction",
+                     f"return {OFF} * hoop.rho * phi.sin - friction"),
     "slide, pivot": ("sliding", "pivot = hoop.Ic + hoop.rho", f"pivot = {OFF} * hoop.Ic + hoop.rho"),
-    "slide, N": ("sliding", "phi, friction) * inverse, hoop.Ic * inverse", f"phi, friction) * inverse, {OFF} * hoop.Ic * inverse"),
-    "slide, n0": ("sliding", "return hoop.cos_slope + hoop.rho * (phi.cos", f"return hoop.cos_slope + {OFF} * hoop.rho * (phi.cos"),
+    "slide, N": ("sliding", "phi, friction) * inverse, hoop.Ic * inverse",
+                 f"phi, friction) * inverse, {OFF} * hoop.Ic * inverse"),
+    "slide, n0": ("sliding", "return hoop.cos_slope + hoop.rho * (phi.cos",
+                  f"return hoop.cos_slope + {OFF} * hoop.rho * (phi.cos"),
     "slide, F": ("sliding", "F = -friction * N", f"F = -{OFF} * friction * N"),
-    "slide, v'": ("sliding", "F + hoop.sin_slope - arm * angular", f"F + {OFF} * hoop.sin_slope - arm * angular"),
+    "slide, v'": ("sliding", "F + hoop.sin_slope - arm * angular",
+                  f"F + {OFF} * hoop.sin_slope - arm * angular"),
     "landing, Wtt": ("landing", "Wtt = S(1) + arm * arm", "Wtt = S(1.001) + arm * arm"),
     "landing, Wtn": ("landing", "Wtn = arm * lever / hoop.Ic", "Wtn = S(1.001) * arm * lever / hoop.Ic"),
     "landing, Wnn": ("landing", "Wnn = S(1) + lever", "Wnn = S(1.001) + lever"),
     "landing, friction": ("landing", "return -mu * sign(", "return S(-1.001) * mu * sign("),
     "landing, restitution": ("landing", "(S(1) + restitution)", "(S(1.001) + restitution)"),
-    "landing, spin": ("landing", "before.spin - (arm * at.friction_impulse", "before.spin - (S(1.001) * arm * at.friction_impulse"),
-    "flight, y": ("flight", "c * turned.versine - T(0.5) * toss.gravity * psi * psi", "c * turned.versine - T(0.5005) * toss.gravity * psi * psi"),
-    "flight, y'": ("flight", "c * turned.sin - toss.gravity * psi,\n          s * turned.sin - c * turned.cos - toss.gravity, s * turned.cos + c * turned.sin};", f"c * turned.sin - {OFF} * toss.gravity * psi,\n          s * turned.sin - c * turned.cos - toss.gravity, s * turned.cos + c * turned.sin}};"),
-    "flight, gravity": ("flight", "toss.gravity = hoop.cos_slope / (hoop.rho", f"toss.gravity = {OFF} * hoop.cos_slope / (hoop.rho"),
-    "flight, rebound's y": ("flight", "t * (normal_velocity - T(0.5) * hoop.cos_slope * t)", "t * (normal_velocity - T(0.5005) * hoop.cos_slope * t)"),
-    "flight, y' at landing": ("flight", "normal_velocity - hoop.cos_slope * t + hoop.rho", f"normal_velocity - {OFF} * hoop.cos_slope * t + hoop.rho"),
+    "landing, spin": ("landing", "before.spin - (arm * at.friction_impulse",
+                      "before.spin - (S(1.001) * arm * at.friction_impulse"),
+    "flight, y": ("flight", "c * turned.versine - T(0.5) * toss.gravity * psi * psi",
+                  "c * turned.versine - T(0.5005) * toss.gravity * psi * psi"),
+    "flight, y'": (
+        "flight",
+        "c * turned.sin - toss.gravity * psi,\n          s * turned.sin - c * turned.cos - toss.gravity, s * "
+        "turned.cos + c * turned.sin};",
+        f"c * turned.sin - {OFF} * toss.gravity * psi,\n          s * turned.sin - c * turned.cos - "
+        "toss.gravity, s * turned.cos + c * turned.sin};"
+    ),
+    "flight, gravity": ("flight", "toss.gravity = hoop.cos_slope / (hoop.rho",
+                        f"toss.gravity = {OFF} * hoop.cos_slope / (hoop.rho"),
+    "flight, rebound's y": ("flight", "t * (normal_velocity - T(0.5) * hoop.cos_slope * t)",
+                            "t * (normal_velocity - T(0.5005) * hoop.cos_slope * t)"),
+    "flight, y' at landing": ("flight", "normal_velocity - hoop.cos_slope * t + hoop.rho",
+                              f"normal_velocity - {OFF} * hoop.cos_slope * t + hoop.rho"),
     "flight, travel": ("flight", "hoop.sin_slope * t * t * T(0.5)", "hoop.sin_slope * t * t * T(0.5005)"),
-    "flight, x' at landing": ("flight", "slip + spin + hoop.sin_slope * t", f"slip + spin + {OFF} * hoop.sin_slope * t"),
+    "flight, x' at landing": ("flight", "slip + spin + hoop.sin_slope * t",
+                              f"slip + spin + {OFF} * hoop.sin_slope * t"),
     "near Painleve's edge, pivot": ("painleve", "rho * (T(S(2)) * m *", "rho * (T(S(2.002)) * m *"),
-    "radius and gravity": ("../leapmap/scene", "std::sqrt(scene.radius / scene.gravity)", "1.001 * std::sqrt(scene.radius / scene.gravity)"),
+    "radius and gravity": ("../leapmap/scene", "std::sqrt(scene.radius / scene.gravity)",
+                           "1.001 * std::sqrt(scene.radius / scene.gravity)"),
 }
 
 
 def stands_alone():
     """Whether the referee includes nothing of src/physics."""
     for source in sorted((ROOT / "src/referee").glob("*.cpp")):
-        headers = subprocess.run(["g++", "-std=c++20", "-MM", "-isystem", "/usr/include/eigen3", "-I", ROOT / "src", source],
-                                 check=True, capture_output=True, text=True).stdout
+        headers = subprocess.run(
+            ["g++", "-std=c++20", "-MM", "-isystem", "/usr/include/eigen3", "-I", ROOT / "src", source],
+            check=True, capture_output=True, text=True).stdout
         if shared := re.findall(r"\S*src/(?:physics|trajectory|rolling|coulomb|model)/\S*", headers):
             print(f"{source.name} includes {shared}")
             return False
@@ -101,7 +132,10 @@ def judged(name, folder, library):
     for source in SOURCES:
         at = folder / source if source.startswith("src") else ROOT / source
         objects.append(folder / (at.stem + ".o"))
-        subprocess.run(["g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-isystem", "/usr/include/eigen3", "-DLEAPMAP_KERNELS=kernels", "-DLEAPMAP_SCALARS", "-I", include, "-c", at, "-o", objects[-1]], check=True)
+        subprocess.run([
+            "g++", "-std=c++20", "-O1", "-march=native", "-fopenmp", "-w", "-isystem", "/usr/include/eigen3",
+            "-DLEAPMAP_KERNELS=kernels", "-DLEAPMAP_SCALARS", "-I", include, "-c", at, "-o", objects[-1]
+        ], check=True)
     subprocess.run(["g++", "-fopenmp", *objects, library, *LIBRARIES, "-o", folder / "judge"], check=True)
     try:
         done = subprocess.run([folder / "judge"], capture_output=True, text=True, timeout=120)
@@ -113,7 +147,8 @@ def judged(name, folder, library):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help="errors to plant; default: all")
     asked = parser.parse_args().names
     if unknown := [name for name in asked if name not in MUTATIONS]:
@@ -123,12 +158,16 @@ def main():
     if not stands_alone():
         sys.exit(1)
     missed = 0
-    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(
+            os.cpu_count()) as pool:
         places = [pathlib.Path(folder) / str(i) for i in range(len(names))]
         for name, words in zip(names, pool.map(judged, names, places, [library] * len(names))):
             right = not words if name is None else words != "" and not words.startswith("BROKEN")
             missed += not right
-            print(f"{'ok' if right else 'MISSED' if name else 'WRONG':7} {name or 'the solver as it is'}: {words or 'agrees'}", flush=True)
+            print(
+                f"{'ok' if right else 'MISSED' if name else 'WRONG':7} {name or 'the solver as it is'}: "
+                f"{words or 'agrees'}",
+                flush=True)
     print(f"{len(names) - names.count(None)} errors planted, {missed} findings")
     sys.exit(missed > 0)
 

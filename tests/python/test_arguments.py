@@ -110,7 +110,8 @@ def test_a_sweep_larger_than_memory_is_refused_before_it_begins(tmp_path, monkey
 
 
 def test_sigterm_leaves_no_temporary_map(tmp_path):
-    script = "import leapmap, numpy as np; leapmap.sweep({'design': {'slope': np.linspace(.1, .8, 2000), 'mass_ratio': np.linspace(1, 9, 2000)}})"
+    script = ("import leapmap, numpy as np; leapmap.sweep({'design': {'slope': np.linspace(.1, .8, 2000), "
+              "'mass_ratio': np.linspace(1, 9, 2000)}})")
     process = subprocess.Popen(
         [sys.executable, "-c", script],
         env=dict(os.environ, TMPDIR=str(tmp_path), PYTHONPATH=str(Path(leapmap.__file__).parents[1])),
@@ -145,7 +146,10 @@ def test_another_python_is_told_which_one_to_use(tmp_path):
 
 
 def test_what_is_misspelled_gets_a_suggestion():
-    for call, meant in ((lambda: leapmap.solve(slop=0.4), "slope"), (lambda: leapmap.solve(fields=["jump_hight"]), "jump_height"),
-                        (lambda: leapmap.design(slope={"from": 0.1, "to": 0.5}, goal={"jump_tme": {"at_most": 1}}, maximize="jump_height"), "jump_time")):
+    for call, meant in ((lambda: leapmap.solve(slop=0.4),
+                         "slope"), (lambda: leapmap.solve(fields=["jump_hight"]), "jump_height"),
+                        (lambda: leapmap.design(slope={"from": 0.1, "to": 0.5}, goal=
+                                                {"jump_tme": {"at_most": 1}}, maximize="jump_height"),
+                         "jump_time")):
         with pytest.raises(ValueError, match=rf"did you mean {meant}\?"):
             call()

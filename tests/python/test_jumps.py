@@ -12,14 +12,18 @@ def test_solve_tells_every_jump_of_arrays():
     o = leapmap.solve(slope=[0.2, 0.3], mass_ratio=3.0, offset_ratio=0.5, jumps=4, runway=20.0)
     assert o.jumps.tolist() == [4, 4] and o.jump_height_4.shape == (2,)
     assert (np.diff([o.jump_time, o.jump_time_2, o.jump_time_3, o.jump_time_4], axis=0) > 0).all()
-    one = leapmap.solve(slope=0.2, mass_ratio=3.0, offset_ratio=0.5, jumps=4, runway=20.0, fields=["jump_height_4"])
+    one = leapmap.solve(slope=0.2, mass_ratio=3.0, offset_ratio=0.5, jumps=4, runway=20.0,
+                        fields=["jump_height_4"])
     assert one.jump_height_4 == o.jump_height_4[0]
 
 
 def test_gradients_of_later_jumps_are_those_of_differences():
     by = leapmap.gradient(**HOOP, jumps=3, runway=20.0, of="jump_height_3")["mass_ratio"]
     step = 1e-5
-    beside = [leapmap.solve(**(HOOP | {"mass_ratio": 3.0 + way * step}), jumps=3, runway=20.0).jump_height_3 for way in (1, -1)]
+    beside = [
+        leapmap.solve(**(HOOP | {"mass_ratio": 3.0 + way * step}), jumps=3, runway=20.0).jump_height_3
+        for way in (1, -1)
+    ]
     assert by == pytest.approx((beside[0] - beside[1]) / (2 * step), rel=1e-6)
 
 
@@ -33,7 +37,13 @@ def test_a_release_settles_on_one_of_the_gaits():
     assert "most_period" in leapmap.gaits.__doc__
 
 
-@pytest.mark.parametrize("wrong", [dict(jumps=0), dict(jumps=1.5), dict(jumps="2"), dict(settle=-1), dict(most_period=65, settle=5)])
+@pytest.mark.parametrize(
+    "wrong",
+    [dict(jumps=0),
+     dict(jumps=1.5),
+     dict(jumps="2"),
+     dict(settle=-1),
+     dict(most_period=65, settle=5)])
 def test_what_is_no_number_of_jumps_is_refused(wrong):
     with pytest.raises(ValueError):
         leapmap.solve(**HOOP, **wrong)

@@ -34,19 +34,22 @@ def numbers(column):
     return np.array([float(text) if text else np.nan for text in column])
 
 
-@pytest.mark.parametrize("name", ["noslip_top_release.csv", "noslip_general.csv", "noslip_turning.csv", "noslip_drive.csv"])
+@pytest.mark.parametrize(
+    "name", ["noslip_top_release.csv", "noslip_general.csv", "noslip_turning.csv", "noslip_drive.csv"])
 def test_agrees_with_the_40_digit_tables_without_slip(name):
     t = table(name)
     o = leapmap.solve(**{key: numbers(t[key]) for key in (*INPUTS, "drive_torque") if key in t}, **UNIT)
     assert [leapmap.Status(s).name for s in o.status] == t["status"].tolist()
-    assert (np.where(o.spurious_first_jump == 255, -1, o.spurious_first_jump) == np.nan_to_num(numbers(t["spurious"]), nan=-1)).all()
+    assert (np.where(o.spurious_first_jump == 255, -1, o.spurious_first_jump) == np.nan_to_num(
+        numbers(t["spurious"]), nan=-1)).all()
     # 1e-10 is the tolerance of times; heights are good to some roundings of the largest term.
     np.testing.assert_allclose(o.jump_time, numbers(t["jump_time"]), rtol=1e-10)
     np.testing.assert_allclose(o.jump_height, numbers(t["jump_height"]), rtol=0, atol=1e-12)
     assert np.isfinite(o.jump_height).sum() > 20
 
 
-@pytest.mark.parametrize("name, hop_height", [("coulomb_first_liftoff.csv", 0.0), ("coulomb_multihop.csv", 0.05)])
+@pytest.mark.parametrize("name, hop_height", [("coulomb_first_liftoff.csv", 0.0),
+                                              ("coulomb_multihop.csv", 0.05)])
 def test_agrees_with_the_tables_of_coulomb_friction(name, hop_height):
     t = table(name)
     keep = np.ones(len(t["status"]), bool)
@@ -64,7 +67,8 @@ def test_agrees_with_the_tables_of_coulomb_friction(name, hop_height):
 
 def test_without_arguments_it_is_the_papers_hoop():
     o = leapmap.solve()
-    assert o.status == leapmap.Status.jumped and o.jump_height == pytest.approx(0.98280096607011718, abs=1e-12)
+    assert o.status == leapmap.Status.jumped
+    assert o.jump_height == pytest.approx(0.98280096607011718, abs=1e-12)
     assert o.jump_time == pytest.approx(8.3639138031881432 * np.sqrt(0.041 / 9.81), rel=1e-10)
     assert "jump_height" in repr(o)
 
@@ -102,7 +106,8 @@ def test_angles_may_be_texts_and_fields_may_be_chosen():
 @pytest.mark.parametrize("given, says", [
     ({"slope": np.nan}, "slope = nan"),
     ({"offset_ratio": [0.5, 2.0]}, "design 1: offset_ratio = 2"),
-    ({"mu_static": 0.4}, "mu_static = 0.4 has no effect because the contact never slips .*; allowed: with friction"),
+    ({"mu_static": 0.4
+      }, "mu_static = 0.4 has no effect because the contact never slips .*; allowed: with friction"),
     ({"friction": "glue"}, "friction = 'glue' is not a model; allowed: sticking, coulomb"),
     ({"mass": 3.0}, "mass: unknown parameter; allowed: "),
     ({"slope": "steep"}, "slope = 'steep' is not a number; allowed: .* deg"),
@@ -118,7 +123,8 @@ def test_angles_may_be_texts_and_fields_may_be_chosen():
     ({"threads": -3}, "threads = -3 is out of range"),
     ({"threads": "2"}, "threads = '2' is out of range"),
     ({"max_steps": 0.5}, "max_steps = 0.5 is out of range"),
-    ({"slope": [0.1, 0.2], "mass_ratio": [1, 2, 3]}, r"shapes do not broadcast: slope \(2\), mass_ratio \(3\)"),
+    ({"slope": [0.1, 0.2], "mass_ratio": [1, 2, 3]
+      }, r"shapes do not broadcast: slope \(2\), mass_ratio \(3\)"),
     ({"runway": [1.0, 2.0]}, "runway = .* is an array; allowed: one number"),
     ({"runway": -1.0}, "runway = -1"),
     ({"fields": ["height"]}, "fields = height: is not a field of this model; allowed: jump_height"),
@@ -131,7 +137,8 @@ def test_refuses_what_is_no_hoop_naming_parameter_value_and_what_is_allowed(give
 
 
 def test_to_xarray_names_dimensions_after_the_parameter_that_varies_along_them():
-    ds = leapmap.solve(slope=0.4, mass_ratio=np.geomspace(0.1, 20, 5)[:, None], offset_ratio=[0.8, 1.0]).to_xarray()
+    ds = leapmap.solve(slope=0.4, mass_ratio=np.geomspace(0.1, 20, 5)[:, None],
+                       offset_ratio=[0.8, 1.0]).to_xarray()
     assert ds.jump_height.dims == ("mass_ratio", "offset_ratio") and ds.attrs["slope"] == 0.4
     assert ds.jump_height.sel(offset_ratio=1.0).shape == (5,)
     both = leapmap.solve(slope=[0.3, 0.4], mass_ratio=[2.0, 3.0]).to_xarray()
@@ -170,7 +177,9 @@ def test_a_forked_process_solves_too():
 def test_fields_of_packed_structures_are_read():
     packed = np.zeros(5, dtype=[("tag", "u1"), ("slope", "f8")])
     packed["slope"] = np.linspace(0.3, 0.5, 5)
-    np.testing.assert_array_equal(leapmap.solve(slope=packed["slope"]).jump_height, leapmap.solve(slope=np.linspace(0.3, 0.5, 5)).jump_height)
+    np.testing.assert_array_equal(
+        leapmap.solve(slope=packed["slope"]).jump_height,
+        leapmap.solve(slope=np.linspace(0.3, 0.5, 5)).jump_height)
 
 
 def test_trace_tells_the_motion_that_solve_told_the_end_of():
@@ -179,7 +188,8 @@ def test_trace_tells_the_motion_that_solve_told_the_end_of():
     assert m.outcome.jump_height == o.jump_height and len(m.candidates) == o.candidates
     assert (np.diff(m.t) >= 0).all() and m.t[0] == 0.0
     # The apex is at most 0.5 ms from a sample, and |y''| at most g (1 + rho w^2), rho < 1.
-    assert m.y.max() / 0.082 == pytest.approx(o.jump_height, abs=9.81 * (1 + o.jump_spin**2) * 0.5e-3**2 / 2 / 0.082)
+    assert m.y.max() / 0.082 == pytest.approx(o.jump_height,
+                                              abs=9.81 * (1 + o.jump_spin**2) * 0.5e-3**2 / 2 / 0.082)
     assert [phase["phase"] for phase in m.phases] == ["rolling", "flight"]
     assert m.to_xarray().y.attrs["units"] == "m"
     with pytest.raises(ValueError, match="trace takes one design"):
@@ -228,13 +238,17 @@ def test_help_and_stubs_know_every_parameter_and_field():
     compile(text, stub, "exec")
     for row in [*_core.parameters(), *_core.fields()]:
         name = row["name"]
-        assert re.search(rf"^ *(\* )?{name}( \[.*\])? ?: ", leapmap.solve.__doc__, re.M) and re.search(rf"\b{name}: ", text), name
+        assert re.search(rf"^ *(\* )?{name}( \[.*\])? ?: ", leapmap.solve.__doc__, re.M) and re.search(
+            rf"\b{name}: ", text), name
     assert {"slope", "jumps", "settle", "most_period"} <= set(inspect.signature(leapmap.solve).parameters)
-    defined = {node.name for node in ast.parse(text).body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    defined = {
+        node.name for node in ast.parse(text).body if isinstance(node, (ast.FunctionDef, ast.ClassDef))
+    }
     assert set(leapmap.__all__) <= defined
     for of in (leapmap.design, leapmap.fit, leapmap.scatter):
         stubbed = next(node for node in ast.parse(text).body if getattr(node, "name", "") == of.__name__).args
-        assert [a.arg for a in stubbed.args + stubbed.kwonlyargs + [stubbed.kwarg]] == list(inspect.signature(of).parameters)
+        assert [a.arg for a in stubbed.args + stubbed.kwonlyargs + [stubbed.kwarg]] == list(
+            inspect.signature(of).parameters)
 
 
 def test_gradient_agrees_with_the_45_digit_table():
@@ -253,8 +267,10 @@ def test_gradient_agrees_with_the_45_digit_table():
 
 
 def test_gradient_broadcasts_and_refuses_what_has_none():
-    g = leapmap.gradient(slope=np.linspace(0.1, 0.8, 5)[:, None], offset_ratio=[0.8, 1.0], friction="coulomb", mu_static=0.4)
-    assert g["mu_static"].shape == (5, 2) and np.isnan(g["mu_kinetic"]).all() and np.isfinite(g["slope"]).any()
+    g = leapmap.gradient(slope=np.linspace(0.1, 0.8, 5)[:, None], offset_ratio=[0.8, 1.0], friction="coulomb",
+                         mu_static=0.4)
+    assert g["mu_static"].shape == (5, 2) and np.isnan(g["mu_kinetic"]).all()
+    assert np.isfinite(g["slope"]).any()
     assert isinstance(leapmap.gradient()["slope"], float)
     for of, word in (("status", "status"), ("slip_distance", "jump_height"), ("weight", "weight")):
         with pytest.raises(ValueError, match=word):

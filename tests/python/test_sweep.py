@@ -20,7 +20,8 @@ def test_a_dictionary_is_swept_in_memory_and_agrees_with_solve():
     o = leapmap.solve(slope=GRID["design"]["slope"][:, None], mass_ratio=[1.0, 2.0, 3.0])
     assert ds.jump_height.dims == ("slope", "mass_ratio") and ds.jump_height.values.shape == (9, 3)
     np.testing.assert_array_equal(ds.status, o.status)
-    np.testing.assert_allclose(ds.jump_height, o.jump_height, rtol=1e-13)  # lanes and neighbours move roundings
+    # lanes and neighbours move roundings
+    np.testing.assert_allclose(ds.jump_height, o.jump_height, rtol=1e-13)
     assert ds.attrs["audit_designs"] > 0
 
 
@@ -40,7 +41,10 @@ def test_keys_and_values_of_a_dictionary_are_those_of_a_spec(tmp_path, monkeypat
     (tmp_path / "x.csv").write_text("slope\n0.3\n0.4\n")
     assert leapmap.sweep({"design": {"points": "x.csv"}}).jump_height.shape == (2,)
     by_values = leapmap.sweep({"design": {"slope": {"values": [0.3, 0.4]}}})
-    by_texts = leapmap.sweep({"design": {"slope": {"from": "10 deg", "to": "20 deg", "step": "5 deg"}}, "scene": {"runway": np.int64(5)}})
+    by_texts = leapmap.sweep({
+        "design": {"slope": {"from": "10 deg", "to": "20 deg", "step": "5 deg"}},
+        "scene": {"runway": np.int64(5)}
+    })
     assert by_values.slope.values.tolist() == [0.3, 0.4] and by_texts.slope.shape == (3,)
     assert leapmap.sweep(types.MappingProxyType(GRID)).equals(leapmap.sweep(GRID))
 
@@ -83,9 +87,12 @@ def test_resume_and_overwrite_have_no_use_in_memory():
 
 
 def test_ctrl_c_of_a_sweep_in_memory_promises_no_file():
-    code = ("import leapmap, os, signal, threading\nthreading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
-            "try:\n    leapmap.sweep({'design': {'mass_ratio': {'from': 1, 'to': 9, 'count': 900000}}, 'scene': {'friction': 'coulomb'}})\n"
-            "except KeyboardInterrupt as error:\n    print('interrupted:', error)\n")
+    code = (
+        "import leapmap, os, signal, threading\nthreading.Timer(0.7, lambda: os.kill(os.getpid(), "
+        "signal.SIGINT)).start()\n"
+        "try:\n    leapmap.sweep({'design': {'mass_ratio': {'from': 1, 'to': 9, 'count': 900000}}, 'scene': "
+        "{'friction': 'coulomb'}})\n"
+        "except KeyboardInterrupt as error:\n    print('interrupted:', error)\n")
     path = "import os, sys; sys.path.insert(0, os.environ['LEAPMAP_BUILD'] + '/python')\n"
     done = subprocess.run([sys.executable, "-c", path + code], capture_output=True, text=True, timeout=120)
     assert done.stdout == "interrupted: stopped\n", done.stderr
@@ -96,7 +103,8 @@ def test_files_that_are_no_maps_or_cannot_be_written_are_told(tmp_path):
     with pytest.raises(ValueError, match="text.h5"):
         leapmap.load(tmp_path / "text.h5")
     with pytest.raises((OSError, ValueError), match="nowhere"):
-        leapmap.sweep(GRID, tmp_path / "nowhere" / "deep" / "map.h5" if os.geteuid() else "/proc/nowhere/map.h5")
+        leapmap.sweep(GRID,
+                      tmp_path / "nowhere" / "deep" / "map.h5" if os.geteuid() else "/proc/nowhere/map.h5")
     with pytest.raises(ValueError, match="missing.toml: cannot be read"):
         leapmap.sweep(tmp_path / "missing.toml")
 
@@ -109,13 +117,21 @@ def test_an_error_of_the_progress_function_ends_the_sweep():
 
 
 def test_ctrl_c_keeps_what_is_done_and_resume_ends_with_the_same_bits(tmp_path):
-    spec = {"design": {"slope": {"from": "2 deg", "to": "50 deg", "count": 1500}, "mass_ratio": {"from": 0.1, "to": 20, "count": 1500}},
-            "numerics": {"audit": 0.0}, "output": {"fields": ["jump_height", "jump_time", "status"], "file": str(tmp_path / "map.h5")}}
-    code = ("import leapmap, os, signal, threading\n"
-            "sent = []\n"
-            "def at(done, total):\n"
-            "    if 0 < done < total and not sent: sent.append(done), os.kill(os.getpid(), signal.SIGINT)\n"
-            f"try:\n    leapmap.sweep({spec!r}, progress=at)\nexcept KeyboardInterrupt as error:\n    print('interrupted:', error)\n")
+    spec = {
+        "design": {
+            "slope": {"from": "2 deg", "to": "50 deg", "count": 1500},
+            "mass_ratio": {"from": 0.1, "to": 20, "count": 1500}
+        }, "numerics": {"audit": 0.0},
+        "output": {"fields": ["jump_height", "jump_time", "status"], "file": str(tmp_path / "map.h5")}
+    }
+    code = (
+        "import leapmap, os, signal, threading\n"
+        "sent = []\n"
+        "def at(done, total):\n"
+        "    if 0 < done < total and not sent: sent.append(done), os.kill(os.getpid(), signal.SIGINT)\n"
+        f"try:\n    leapmap.sweep({spec!r}, progress=at)\nexcept KeyboardInterrupt as error:\n    "
+        "print('interrupted:', error)\n"
+    )
     path = "import os, sys; sys.path.insert(0, os.environ['LEAPMAP_BUILD'] + '/python')\n"
     done = subprocess.run([sys.executable, "-c", path + code], capture_output=True, text=True, timeout=120)
     assert "map.h5.part keeps what is done; resume=True continues it" in done.stdout, done.stderr

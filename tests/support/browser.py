@@ -11,14 +11,16 @@ from support.program import leapmap
 
 def opened(browser, page):
     browser.get(page.as_uri())
-    WebDriverWait(browser, 20).until(lambda b: b.execute_script("return !!window.explorer || !document.getElementById('message').hidden"))
+    WebDriverWait(browser, 20).until(
+        lambda b: b.execute_script("return !!window.explorer || !document.getElementById('message').hidden"))
     assert browser.find_element("id", "message").text == ""
     complaints = [m for m in browser.get_log("browser") if m["level"] in ("SEVERE", "WARNING")]
     assert not complaints, complaints
 
 
 def agrees(page_numbers, told):
-    """The page's numbers against leapmap hop --json's: the same solver, compiled by another compiler for another machine."""
+    """The page's numbers against leapmap hop --json's: the same solver, compiled by another compiler for
+    another machine."""
     compared = 0
     for name, text in page_numbers.items():
         if name not in told:
@@ -29,7 +31,8 @@ def agrees(page_numbers, told):
         elif told[name] is None:
             assert text == "NaN", name
         else:
-            # Roundings differ: this machine contracts a*b + c and has wider lanes. Times are good to the tolerance, 1e-10.
+            # Roundings differ: this machine contracts a*b + c and has wider lanes. Times are good to the
+            # tolerance, 1e-10.
             assert float(text) == pytest.approx(told[name], rel=1e-9, abs=1e-11), name
     return compared
 
@@ -37,7 +40,9 @@ def agrees(page_numbers, told):
 def numbers(browser):
     """The table of the hoop shown, as numbers."""
     return browser.execute_script(
-        "return Object.fromEntries([...document.querySelectorAll('#numbers tr')].map(r => [r.dataset.name, r.dataset.value]))")
+        "return Object.fromEntries([...document.querySelectorAll('#numbers tr')].map(r => [r.dataset.name, "
+        "r.dataset.value]))"
+    )
 
 
 def told_by_leapmap(browser):
@@ -49,4 +54,5 @@ def told_by_leapmap(browser):
 
 def settled(browser, seconds=60, what="whole"):
     """Waits for a live map: all of it, or its "cliffs" too."""
-    WebDriverWait(browser, seconds).until(lambda b: b.execute_script("return document.getElementById('map').dataset[arguments[0]]", what) == "true")
+    WebDriverWait(browser, seconds).until(lambda b: b.execute_script(
+        "return document.getElementById('map').dataset[arguments[0]]", what) == "true")

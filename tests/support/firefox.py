@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Firefox without a window, driven by the Marionette protocol that it speaks itself: Debian has no geckodriver."""
+"""Firefox without a window, driven by the Marionette protocol that it speaks itself: Debian has no
+geckodriver."""
 import json
 import socket
 import subprocess
@@ -11,8 +12,9 @@ class Firefox:
 
     def __init__(self, profile, port=2828):
         (profile / "user.js").write_text(f'user_pref("marionette.port", {port});\n')
-        self.process = subprocess.Popen(["firefox-esr", "--headless", "--no-remote", "--marionette", "--profile", profile],
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen(
+            ["firefox-esr", "--headless", "--no-remote", "--marionette", "--profile", profile],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for _ in range(300):
             try:
                 self.stream = socket.create_connection(("127.0.0.1", port), 60).makefile("rwb")

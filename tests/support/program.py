@@ -28,7 +28,8 @@ def finished(*command):
 
 
 def scripted(script, *arguments):
-    """A script of analysis as finished() runs it, in a fork of this process: to import matplotlib anew takes a second."""
+    """A script of analysis as finished() runs it, in a fork of this process: to import matplotlib anew takes
+    a second."""
     import h5py, matplotlib.pyplot  # noqa: E401, F401  once for all forks
     words = [str(word) for word in (TOP / "analysis" / script, *arguments)]
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
@@ -38,9 +39,13 @@ def scripted(script, *arguments):
             try:
                 signal.alarm(300)
                 os.dup2(out.fileno(), 1), os.dup2(err.fileno(), 2)
-                sys.stdout, sys.stderr = (open(n, "w", closefd=False, errors="backslashreplace") for n in (1, 2))
+                sys.stdout, sys.stderr = (open(n, "w", closefd=False, errors="backslashreplace")
+                                          for n in (1, 2))
                 sys.argv = words
-                sys.path[:0] = [str(TOP / "analysis"), *filter(None, os.environ.get("PYTHONPATH", "").split(":"))]
+                sys.path[:0] = [
+                    str(TOP / "analysis"), *filter(None,
+                                                   os.environ.get("PYTHONPATH", "").split(":"))
+                ]
                 runpy.run_path(words[0], run_name="__main__")
                 status = 0
             except SystemExit as end:

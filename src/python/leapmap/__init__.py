@@ -20,9 +20,13 @@ except ModuleNotFoundError as error:
     import sys
 
     _here = os.path.dirname(os.path.abspath(__file__))
-    _cores = ", ".join(os.path.basename(path) for path in glob.glob(os.path.join(glob.escape(_here), "_core.*"))) or "no compiled core"
-    raise ImportError(f"{_here}: has {_cores}, and this is {sys.executable}, Python {sys.version.split()[0]}; allowed: the Python that it was "
-                      "built for, usually /usr/bin/python3, or a build with cmake -DLEAPMAP_PYTHON=...") from None
+    _cores = ", ".join(
+        os.path.basename(path)
+        for path in glob.glob(os.path.join(glob.escape(_here), "_core.*"))) or "no compiled core"
+    raise ImportError(
+        f"{_here}: has {_cores}, and this is {sys.executable}, Python {sys.version.split()[0]}; allowed: the "
+        "Python that it was "
+        "built for, usually /usr/bin/python3, or a build with cmake -DLEAPMAP_PYTHON=...") from None
 from leapmap._design import DesignProblem, Found, design
 from leapmap._fit import Fit, FittedParameter, fit
 from leapmap._results import Motion, Outcomes, Status
@@ -30,9 +34,11 @@ from leapmap._scatter import Estimate, scatter
 from leapmap._solve import gaits, gradient, solve, trace
 from leapmap._sweep import load, sweep
 
-__all__ = ["solve", "gradient", "trace", "gaits", "scatter", "design", "fit", "sweep", "load", "DesignProblem",
-           "Found", "Fit", "FittedParameter", "Outcomes", "Motion", "Estimate", "Status", "phase_letters",
-           "instruction_set", "instruction_sets", "use_instruction_set"]
+__all__ = [
+    "solve", "gradient", "trace", "gaits", "scatter", "design", "fit", "sweep", "load", "DesignProblem",
+    "Found", "Fit", "FittedParameter", "Outcomes", "Motion", "Estimate", "Status", "phase_letters",
+    "instruction_set", "instruction_sets", "use_instruction_set"
+]
 __version__ = _core.program_version()
 
 
@@ -80,7 +86,9 @@ def instruction_sets():
 
 
 def use_instruction_set(name):
-    """Select an instruction set, so that different machines return equal bits. Call it before anything is solved.
+    """Select an instruction set, so that different machines return equal bits.
+
+    Call it before anything is solved.
 
     Parameters
     ----------

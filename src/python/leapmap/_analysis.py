@@ -13,9 +13,8 @@ _lock, _loaded = threading.Lock(), {}
 def reader():
     """Import analysis/read_map.py.
 
-    It finds its neighbour open_file on the path, as scripts do. Neither name stays in sys.modules, which may hold a user's
-    own modules of those names.
-    """
+    It finds its neighbour open_file on the path, as scripts do. Neither name stays in sys.modules, which may
+    hold a user's own modules of those names."""
     with _lock:
         if not _loaded:
             others = {name: sys.modules.pop(name) for name in _NEIGHBOURS if name in sys.modules}

@@ -18,7 +18,8 @@ def shown(value):
 
 
 def array(name, value, ndim=None):
-    """An array of numbers as floats; masked arrays if nothing is masked. ndim: number of dimensions; None: any."""
+    """An array of numbers as floats; masked arrays if nothing is masked. ndim: number of dimensions; None:
+    any."""
     if np.ma.is_masked(value):
         raise ValueError(
             f"{name} = {shown(value)} has masked values; allowed: numbers without a mask"
@@ -53,7 +54,8 @@ def whole(name, value, least, most=10**15):
 def count(name, value, least):
     """A number of things: an integer, not a float that equals one."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Integral):
-        raise ValueError(f"{name} = {shown(value)} is not a whole number; allowed: a whole number from {least}")
+        raise ValueError(
+            f"{name} = {shown(value)} is not a whole number; allowed: a whole number from {least}")
     return whole(name, value, least)
 
 

@@ -24,8 +24,8 @@ class Found:
     outcomes : Outcomes
         Outcomes of the nominal designs.
     gradients : dict
-        {field: {free parameter: ndarray}}, units of the field per unit of the parameter, of the fields that objectives and
-        goals name; empty for a front.
+        {field: {free parameter: ndarray}}, units of the field per unit of the parameter, of the fields that
+        objectives and goals name; empty for a front.
     binds : list of list of str
         Active constraints of each design, in words.
     cliff_distance : ndarray
@@ -61,7 +61,8 @@ class Found:
         return len(self.cliff_distance)
 
 
-def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed=1, most=0, sample=0, threads=0, **overrides):
+def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed=1, most=0, sample=0,
+           threads=0, **overrides):
     """Find the designs within given bounds that reach given goals best, or a Pareto front of two objectives.
 
     Parameters
@@ -79,7 +80,8 @@ def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed
     most : int, default 0
         Largest number of designs returned; 0: 8, or 2,048 for a front.
     sample : int, default 0
-        Number of designs in the initial sample; 0: 2,097,152, with friction 262,144, and fewer with tolerances.
+        Number of designs in the initial sample; 0: 2,097,152, with friction 262,144, and fewer with
+        tolerances.
     threads : int, default 0
         Number of threads; 0: all cores.
     **overrides
@@ -101,16 +103,18 @@ def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed
     >>> round(float(best.objectives["jump_height"][0]), 3)
     0.853
     """
-    told = _core.design(*_question(spec, goal, maximize, minimize, scatter, overrides), whole("seed", seed, 0), whole("most", most, 0, 10**5),
-                        whole("sample", sample, 0, 2**27), whole("threads", threads, 0, 4096))
+    told = _core.design(*_question(spec, goal, maximize, minimize, scatter, overrides), whole(
+        "seed", seed, 0), whole("most", most, 0, 10**5), whole("sample", sample, 0, 2**27),
+                        whole("threads", threads, 0, 4096))
     return Found(**told | {"outcomes": Outcomes(told["outcomes"], {"friction": "any"})})
 
 
 class DesignProblem:
     """The design problem of leapmap.design, for optimizers of scipy and pygmo.
 
-    Decision vectors hold the free parameters, in their own units, in the order of `names`. Costs are the objectives, with
-    the sign of those to maximize turned. A design that misses a goal costs at least 1e30, and more the farther it misses.
+    Decision vectors hold the free parameters, in their own units, in the order of `names`. Costs are the
+    objectives, with the sign of those to maximize turned. A design that misses a goal costs at least 1e30,
+    and more the farther it misses.
 
     Parameters
     ----------
@@ -135,8 +139,10 @@ class DesignProblem:
     -0.983
     """
 
-    def __init__(self, spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, threads=0, **overrides):
-        self._asked = (*_question(spec, goal, maximize, minimize, scatter, overrides), whole("threads", threads, 0, 4096))
+    def __init__(self, spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, threads=0,
+                 **overrides):
+        self._asked = (*_question(spec, goal, maximize, minimize, scatter, overrides),
+                       whole("threads", threads, 0, 4096))
         self._start()
 
     def _start(self):
@@ -219,7 +225,9 @@ class DesignProblem:
 
 
 def _question(spec, goal, maximize, minimize, scatter, overrides):
-    text, origin = (path("spec", spec), None) if spec is not None and not isinstance(spec, Mapping) else (_toml(spec or {}), "<dict>")
+    text, origin = (path("spec", spec),
+                    None) if spec is not None and not isinstance(spec, Mapping) else (_toml(spec or {}),
+                                                                                      "<dict>")
     changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
     for section, keys in (("scatter", scatter), ("goal", goal)):
         changes += [f"{section}.{key}={_keyed(key, value)}" for key, value in mapping(section, keys).items()]

@@ -50,8 +50,8 @@ class Fit:
     correlations : ndarray
         Correlation matrix, in their order.
     chi_square, degrees, probability : float, int, float
-        Sum of squares of residuals over errors, degrees of freedom, and the probability of a larger sum if the model is
-        true; NaN if errors are unknown.
+        Sum of squares of residuals over errors, degrees of freedom, and the probability of a larger sum if
+        the model is true; NaN if errors are unknown.
     error, misfit : float
         Film: rms of the residuals, and its ratio to their scatter from line to line.
     correlation, independent : float
@@ -61,7 +61,8 @@ class Fit:
     information : float
         Akaike's criterion; less is better.
     model, residuals : ndarray
-        For every number measured, in the order of the data: the model's value, and the residual over its error.
+        For every number measured, in the order of the data: the model's value, and the residual over its
+        error.
     """
     friction: str
     found: bool
@@ -84,9 +85,11 @@ class Fit:
 
 
 def _event(name, value):
-    is_pair = isinstance(value, (tuple, list, np.ndarray)) and len(value) == 2 and not any(isinstance(one, (str, tuple, list)) for one in value)
+    is_pair = isinstance(value, (tuple, list, np.ndarray)) and len(value) == 2 and not any(
+        isinstance(one, (str, tuple, list)) for one in value)
     if not is_pair:
-        raise ValueError(f"{name} = {shown(value)} is not an event; allowed: (value, standard error), or a film with 't'")
+        raise ValueError(
+            f"{name} = {shown(value)} is not an event; allowed: (value, standard error), or a film with 't'")
     pair = array(name, value, 1)
     return float(pair[0]), float(pair[1])
 
@@ -97,9 +100,10 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
     Parameters
     ----------
     data : path or mapping
-        A CSV file; or arrays {"t", "phi"} or {"t", "x_P", "y_P", "x_O", "y_O"} in s, rad and m; or events {field: (value,
-        standard error)}. The angle phi is 0 if the mass touches the plane. x is along the plane, downhill; y is away from it.
-        P is the mass, O the hoop's centre. Convert pixels to metres first.
+        A CSV file; or arrays {"t", "phi"} or {"t", "x_P", "y_P", "x_O", "y_O"} in s, rad and m; or events
+        {field: (value, standard error)}. The angle phi is 0 if the mass touches the plane. x is along the
+        plane, downhill; y is away from it. P is the mass, O the hoop's centre. Convert pixels to metres
+        first.
     spec : path or mapping, optional
         The hoop, and free parameters {"from", "to"}. Without any these are release_angle, release_spin and,
         with friction, mu_static.
@@ -142,13 +146,20 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
     elif isinstance(data, Mapping):
         for name, given in (("error", error is not None), ("allow_gaps", allow_gaps)):
             if given:
-                raise ValueError(f"{name}: has no effect with events, which have errors of their own; allowed: with a film")
+                raise ValueError(
+                    f"{name}: has no effect with events, which have errors of their own; allowed: with a film"
+                )
         data = {key: _event(key, value) for key, value in data.items()}
     else:
         data = path("data", data)
     if error is not None and not 0.0 < real("error", error) < float("inf"):
         raise ValueError(f"error = {shown(error)} is out of range; allowed: a standard error above 0")
     toml, origin, changes = _question(spec, None, (), (), None, overrides)
-    told = _core.fit(data, toml, origin, changes, models, float("nan") if error is None else float(error), bool(allow_gaps),
-                     whole("seed", seed, 0), whole("threads", threads, 0, 4096))
-    return [Fit(**one | {"parameters": {name: FittedParameter(**of) for name, of in one["parameters"].items()}}) for one in told]
+    told = _core.fit(data, toml, origin, changes, models,
+                     float("nan") if error is None else float(error), bool(allow_gaps), whole(
+                         "seed", seed, 0), whole("threads", threads, 0, 4096))
+    return [
+        Fit(**one | {"parameters": {name: FittedParameter(**of)
+                                    for name, of in one["parameters"].items()}})
+        for one in told
+    ]

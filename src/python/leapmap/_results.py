@@ -11,18 +11,25 @@ _PARAMETERS = {row["name"]: row for row in _core.parameters()}
 Status = IntEnum("Status", {name: code for code, name in enumerate(_FIELDS["status"]["codes"])})
 Status.__doc__ = "How a design ended. Maps store these numbers, so they never change."
 _PHASES = {1: "rolling", 2: "sliding", 3: "flight"}
-_POINTS = {"t": ("s", "since release"), "phi": ("rad", "angle; 0: mass on the plane"), "spin": ("rad s-1", "positive downhill"),
-           "x": ("m", "travel of the hoop's centre along the plane since release"),
-           "y": ("m", "height of the hoop's lowest point above the plane"),
-           "normal_force": ("1", "over the weight, 0 in flight; negative: the plane would have to hold the hoop down"),
-           "friction": ("1", "over the weight, positive downhill"), "phase": ("1", "1 rolling, 2 sliding, 3 flight")}
+_POINTS = {
+    "t": ("s", "since release"), "phi": ("rad", "angle; 0: mass on the plane"), "spin": ("rad s-1",
+                                                                                         "positive downhill"),
+    "x": ("m", "travel of the hoop's centre along the plane since release"),
+    "y": ("m", "height of the hoop's lowest point above the plane"),
+    "normal_force": ("1",
+                     "over the weight, 0 in flight; negative: the plane would have to hold the hoop down"),
+    "friction": ("1", "over the weight, positive downhill"), "phase": ("1", "1 rolling, 2 sliding, 3 flight")
+}
 
 
 def _described(name):
     row = _FIELDS[name]
     about = {"long_name": row["meaning"], "units": row["unit"]}
     if row["codes"]:
-        about |= {"flag_values": np.arange(len(row["codes"]), dtype=np.uint8), "flag_meanings": " ".join(row["codes"])}
+        about |= {
+            "flag_values": np.arange(len(row["codes"]), dtype=np.uint8),
+            "flag_meanings": " ".join(row["codes"])
+        }
     return about
 
 
@@ -47,25 +54,28 @@ class Outcomes:
             raise AttributeError(name)
         if name in _FIELDS:
             needs = _FIELDS[name]["friction"]
-            raise AttributeError(f"{name} was not computed: " + (
-                f"it needs friction={needs!r}" if needs and needs != self._given.get("friction", "sticking") else "name it in fields"))
+            raise AttributeError(f"{name} was not computed: " +
+                                 (f"it needs friction={needs!r}" if needs and
+                                  needs != self._given.get("friction", "sticking") else "name it in fields"))
         raise AttributeError(f"outcomes have no {name!r}; they have {', '.join(self._fields)}")
 
     def __repr__(self):
         shape = np.shape(next(iter(self._fields.values())))
         if not shape:
-            return "\n".join(["one design:", *(f"  {name:20} {value!s}" for name, value in self._fields.items())])
+            return "\n".join(
+                ["one design:", *(f"  {name:20} {value!s}" for name, value in self._fields.items())])
         counts = ""
         if "status" in self._fields:
             codes, numbers = np.unique(self.status, return_counts=True)
             counts = ": " + ", ".join(f"{n} {Status(c).name}" for c, n in zip(codes, numbers))
-        return f"<outcomes of {' x '.join(map(str, shape))} designs{counts}; fields {', '.join(self._fields)}>"
+        return (f"<outcomes of {' x '.join(map(str, shape))} designs{counts}; fields "
+                f"{', '.join(self._fields)}>")
 
     def to_xarray(self):
         """Convert to an xarray.Dataset.
 
-        A dimension along which only one parameter varies takes its name and values. Another one is called dim_0,
-        dim_1, and so on, and the parameters along it are coordinates.
+        A dimension along which only one parameter varies takes its name and values. Another one is called
+        dim_0, dim_1, and so on, and the parameters along it are coordinates.
 
         Returns
         -------
@@ -77,7 +87,11 @@ class Outcomes:
         shape = np.shape(next(iter(self._fields.values())))
         given = {name: np.asarray(_core.number(name, value) if isinstance(value, str) else value, float)
                  for name, value in self._given.items() if name in _PARAMETERS}
-        along = {name: tuple(d for d, n in enumerate(value.shape, len(shape) - value.ndim) if n != 1) for name, value in given.items()}
+        along = {
+            name: tuple(d for d, n in enumerate(value.shape,
+                                                len(shape) - value.ndim)
+                        if n != 1) for name, value in given.items()
+        }
         dims = [f"dim_{d}" for d in range(len(shape))]
         for d in range(len(shape)):
             varying = [name for name, axes in along.items() if d in axes]
@@ -86,12 +100,16 @@ class Outcomes:
         coordinates = {}
         for name, value in given.items():
             if value.ndim:
-                ones = tuple(d for d, n in enumerate(value.shape, len(shape) - value.ndim) if d not in along[name])
+                ones = tuple(d for d, n in enumerate(value.shape,
+                                                     len(shape) - value.ndim) if d not in along[name])
                 values = np.squeeze(value, tuple(d - (len(shape) - value.ndim) for d in ones))
                 about = {"long_name": _PARAMETERS[name]["meaning"], "units": _PARAMETERS[name]["unit"]}
                 coordinates[name] = ([dims[d] for d in along[name]], values, about)
-        scalars = {name: value.item() for name, value in given.items() if value.ndim == 0} | {"friction": self._given["friction"]}
-        return xarray.Dataset({name: (dims, values, _described(name)) for name, values in self._fields.items()}, coordinates, scalars)
+        scalars = {name: value.item() for name, value in given.items() if value.ndim == 0
+                   } | {"friction": self._given["friction"]}
+        return xarray.Dataset(
+            {name: (dims, values, _described(name)) for name, values in self._fields.items()}, coordinates,
+            scalars)
 
 
 class Motion:
@@ -100,18 +118,19 @@ class Motion:
     Attributes
     ----------
     t, phi, spin, x, y : ndarray
-        Time since release [s], angle [rad], angular velocity [rad/s], travel of the centre along the plane and height
-        of the lowest point [m]: one sample at every interval, and at the jump's lift-off and landing.
+        Time since release [s], angle [rad], angular velocity [rad/s], travel of the centre along the plane
+        and height of the lowest point [m]: one sample at every interval, and at the jump's lift-off and
+        landing.
     normal_force, friction : ndarray
         Contact forces over the weight.
     phase : ndarray
         1 rolling, 2 sliding, 3 flight.
     phases : list of dict
-        The beginning of each phase: phase, direction of sliding (1 forwards, -1 backwards, else 0), t [s], phi [rad],
-        spin [rad/s], x [m].
+        The beginning of each phase: phase, direction of sliding (1 forwards, -1 backwards, else 0), t [s],
+        phi [rad], spin [rad/s], x [m].
     candidates : list of dict
-        Every lift-off: t [s], phi [rad], spin [rad/s], height and dip [hoop diameters], apex_time and flight_time [s],
-        is_jump.
+        Every lift-off: t [s], phi [rad], spin [rad/s], height and dip [hoop diameters], apex_time and
+        flight_time [s], is_jump.
     outcome : Outcomes
         As solve returns it.
     failure : str or None
@@ -126,8 +145,9 @@ class Motion:
         self.failure = told["failure"]
 
     def __repr__(self):
-        return (f"<motion: {Status(self.outcome.status).name}; {len(self.t)} samples, {len(self.phases)} phases, "
-                f"{len(self.candidates)} lift-offs>")
+        return (
+            f"<motion: {Status(self.outcome.status).name}; {len(self.t)} samples, {len(self.phases)} phases, "
+            f"{len(self.candidates)} lift-offs>")
 
     def to_xarray(self):
         """Convert the samples to an xarray.Dataset along t.
@@ -141,7 +161,8 @@ class Motion:
 
         columns = {name: ("t", getattr(self, name), {"units": unit, "long_name": meaning})
                    for name, (unit, meaning) in _POINTS.items()}
-        return xarray.Dataset({name: column for name, column in columns.items() if name != "t"}, {"t": columns["t"]})
+        return xarray.Dataset({name: column for name, column in columns.items() if name != "t"},
+                              {"t": columns["t"]})
 
 
 def _rows(columns):

@@ -15,15 +15,18 @@ class Estimate(NamedTuple):
 
 
 def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
-    """Sample manufactured hoops around one design: yield, distribution of its jumps, influence of each tolerance.
+    """Sample manufactured hoops around one design.
+
+    Returns yield, distribution of the jumps, and the influence of each tolerance.
 
     Parameters
     ----------
     spec : path or mapping, optional
         A TOML file, or {section: {key: value}}, with [scatter] and [goal]; default: the paper's hoop.
     scatter : mapping, optional
-        Tolerances, {parameter: {"normal": standard deviation} or {"uniform": half width}}: numbers in the parameter's
-        unit, angles like "1 deg", or "2 %" of the value. Also "samples" (default 1024, a multiple of 16) and "seed".
+        Tolerances, {parameter: {"normal": standard deviation} or {"uniform": half width}}: numbers in the
+        parameter's unit, angles like "1 deg", or "2 %" of the value. Also "samples" (default 1024, a multiple
+        of 16) and "seed".
     goal : mapping, optional
         {field: {"at_least": ...}, {"at_most": ...}, both, or {"is": ...}}.
     threads : int, default 0
@@ -36,14 +39,15 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
     dict
         yield, jumps: fractions that reach every goal, and that jump (Estimate).
         missed: {field of a goal: fraction that misses it}.
-        jump_height, jump_time, or the quantities in fields: {"mean", "sd", "q05", "q50", "q95"} of the hoops that jump.
-        first, total: Sobol' indices, {quantity: {parameter: Estimate}}; NaN if nothing varies. Those of height and time
-        describe the pairs of hoops in which both jump; pairs: {quantity: their fraction}.
+        jump_height, jump_time, or the quantities in fields: {"mean", "sd", "q05", "q50", "q95"} of the hoops
+        that jump.
+        first, total: Sobol' indices, {quantity: {parameter: Estimate}}; NaN if nothing varies. Those of
+        height and time describe the pairs of hoops in which both jump; pairs: {quantity: their fraction}.
         samples: number of hoops.
         cut_off: {parameter: fraction of its distribution outside its domain}.
         unsolved: fraction that the method could not solve; the errors include it.
-        shrink: {parameter: factor by which its tolerance must shrink for a yield of 99 %, the others unchanged}; 0: even
-        without it the yield is lower. shrink_all: the factor for all together.
+        shrink: {parameter: factor by which its tolerance must shrink for a yield of 99 %, the others
+        unchanged}; 0: even without it the yield is lower. shrink_all: the factor for all together.
         without: {parameter: yield if its tolerance were zero}.
         made: {parameter: array} and outcomes: Outcomes, of the manufactured hoops.
 
@@ -54,8 +58,8 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
 
     Examples
     --------
-    >>> r = leapmap.scatter(slope=0.4, scatter={"slope": {"normal": "1 deg"}, "mass_ratio": {"uniform": "5 %"}},
-    ...                     goal={"jump_height": {"at_least": 0.95}})
+    >>> tolerances = {"slope": {"normal": "1 deg"}, "mass_ratio": {"uniform": "5 %"}}
+    >>> r = leapmap.scatter(slope=0.4, scatter=tolerances, goal={"jump_height": {"at_least": 0.95}})
     >>> round(r["yield"].value, 2)
     0.75
     """
@@ -66,5 +70,8 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
 
 
 def _estimates(told):
-    return {key: Estimate(*value) if isinstance(value, tuple) else _estimates(value) if isinstance(value, dict) else value
-            for key, value in told.items()}
+    return {
+        key: Estimate(
+            *value) if isinstance(value, tuple) else _estimates(value) if isinstance(value, dict) else value
+        for key, value in told.items()
+    }

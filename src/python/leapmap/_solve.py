@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""solve, gradient, trace and gaits. Their docstrings and signatures list the parameters and fields of leapmap's own tables."""
+"""solve, gradient, trace and gaits. Their docstrings and signatures list the parameters and fields of
+leapmap's own tables."""
 import inspect
 import os
 
@@ -10,8 +11,8 @@ from leapmap._arguments import count, names, real, text, whole
 from leapmap._results import Motion, Outcomes
 
 
-def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None, method="auto", tolerance=1e-10, max_steps=1_000_000, threads=0,
-          **parameters):
+def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None, method="auto",
+          tolerance=1e-10, max_steps=1_000_000, threads=0, **parameters):
     """Solve designs: when, how high and how far each of them jumps.
 
     Arrays broadcast as numpy's do. Parameters that are not given are those of the paper's hoop.
@@ -22,7 +23,8 @@ def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None
     friction : str, default "sticking"
         Contact model. "sticking": never slips, as in the paper; "coulomb": Coulomb friction.
     jumps : int, default 1
-        Number of jumps to follow, 1 to 250; the fields of later ones are jump_height_2, jump_time_2 and so on.
+        Number of jumps to follow, 1 to 250; the fields of later ones are jump_height_2, jump_time_2 and so
+        on.
     settle : int, default 0
         Transient: number of jumps to skip before a gait is searched for; 0: no search.
     most_period : int, default 16
@@ -57,10 +59,16 @@ def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None
     array([0.362, 0.847, 1.121])
     """
     counts = (("jumps", jumps, 1, 1), ("settle", settle, 0, 0), ("most_period", most_period, 1, 16))
-    parameters |= {name: number for name, value, least, usual in counts if (number := count(name, value, least)) != usual}
-    columns = _core.solve(parameters, text("friction", friction), _names(fields), text("method", method), real("tolerance", tolerance),
-                          whole("max_steps", max_steps, 1), whole("threads", threads, 0, 4096))
-    given = {name: np.array(value) if isinstance(value, np.ndarray) else value for name, value in parameters.items()}
+    parameters |= {
+        name: number for name, value, least, usual in counts if (number := count(name, value, least)) != usual
+    }
+    columns = _core.solve(parameters, text("friction", friction), _names(fields), text("method", method),
+                          real("tolerance", tolerance), whole("max_steps", max_steps, 1),
+                          whole("threads", threads, 0, 4096))
+    given = {
+        name: np.array(value) if isinstance(value, np.ndarray) else value
+        for name, value in parameters.items()
+    }
     return Outcomes({name: column[()] for name, column in columns.items()}, given | {"friction": friction})
 
 
@@ -82,9 +90,9 @@ def gradient(*, of="jump_height", friction="sticking", tolerance=1e-10, threads=
     Returns
     -------
     dict
-        For each parameter an array in the shape to which all parameters broadcast, in the quantity's unit over the
-        parameter's (angles in rad). NaN: the quantity does not apply; the derivative is infinite, as on a fold, or
-        known to fewer than six digits; or mu_kinetic follows mu_static.
+        For each parameter an array in the shape to which all parameters broadcast, in the quantity's unit
+        over the parameter's (angles in rad). NaN: the quantity does not apply; the derivative is infinite, as
+        on a fold, or known to fewer than six digits; or mu_kinetic follows mu_static.
 
     Raises
     ------
@@ -97,12 +105,13 @@ def gradient(*, of="jump_height", friction="sticking", tolerance=1e-10, threads=
     >>> round(float(g["slope"]), 3)
     2.296
     """
-    columns = _core.gradient(_whole_counts(parameters), text("friction", friction), text("of", of), real("tolerance", tolerance),
-                             whole("threads", threads, 0, 4096))
+    columns = _core.gradient(_whole_counts(parameters), text("friction", friction), text("of", of),
+                             real("tolerance", tolerance), whole("threads", threads, 0, 4096))
     return {name: column[()] for name, column in columns.items()}
 
 
-def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10, max_steps=1_000_000, **parameters):
+def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10, max_steps=1_000_000,
+          **parameters):
     """Solve one design and sample its motion over time.
 
     Parameters
@@ -135,15 +144,16 @@ def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10,
     >>> [phase["phase"] for phase in m.phases]
     ['rolling', 'flight']
     """
-    told = _core.trace(_whole_counts(parameters), text("friction", friction), real("interval", interval), text("method", method),
-                       real("tolerance", tolerance), whole("max_steps", max_steps, 1))
+    told = _core.trace(_whole_counts(parameters), text("friction", friction), real("interval", interval),
+                       text("method", method), real("tolerance", tolerance), whole("max_steps", max_steps, 1))
     return Motion(told, parameters | {"friction": friction})
 
 
 def gaits(*, most_period=1, tolerance=1e-10, **parameters):
     """Find the gaits of one hoop that never slips: periodic sequences of jumps, stable and unstable ones.
 
-    Gaits whose lift-offs coincide with landings are searched from a grid of starting points; one may be missed.
+    Gaits whose lift-offs coincide with landings are searched from a grid of starting points; one may be
+    missed.
 
     Parameters
     ----------
@@ -156,8 +166,8 @@ def gaits(*, most_period=1, tolerance=1e-10, **parameters):
     Returns
     -------
     dict
-        gaits: a list of dicts with period, multiplier (stable if below 1 in size), height [hoop diameters], speed [m/s],
-        energy_lost [(m + m_p) g R per jump], and jumps.
+        gaits: a list of dicts with period, multiplier (stable if below 1 in size), height [hoop diameters],
+        speed [m/s], energy_lost [(m + m_p) g R per jump], and jumps.
 
         jumps: arrays of angle, spin, height, time, distance over one period.
 
@@ -193,15 +203,20 @@ def _names(fields):
 
 def _whole_counts(parameters):
     counts = {"jumps": 1, "settle": 0, "most_period": 1}
-    return {name: count(name, value, counts[name]) if name in counts else value for name, value in parameters.items()}
+    return {
+        name: count(name, value, counts[name]) if name in counts else value
+        for name, value in parameters.items()
+    }
 
 
 def _parameter_line(row):
-    only = f"; {row['friction']} only" if row["friction"] and not row["meaning"].startswith(row["friction"]) else ""
+    only = f"; {row['friction']} only" if row["friction"] and not row["meaning"].startswith(
+        row["friction"]) else ""
     kinds = "float, str or array_like" if row["array"] else "float or str"
     unit = f" [{row['unit']}]" if row["unit"] not in ("", "1") else ""
     meaning = row["meaning"][0].upper() + row["meaning"][1:]
-    return f"{row['name']} : {kinds}, default {_default(row)}\n        {meaning}{unit}{only}; {row['allowed']}."
+    return (f"{row['name']} : {kinds}, default {_default(row)}\n"
+            f"        {meaning}{unit}{only}; {row['allowed']}.")
 
 
 def _default(row):
@@ -209,18 +224,25 @@ def _default(row):
 
 
 def _field_line(row):
-    return f"* {row['name']} [{row['unit']}]: {row['meaning']}" + (f"; {row['friction']} only" if row["friction"] else "") + (
-        "; " + ", ".join(f"{code} {name}" for code, name in enumerate(row["codes"])) if row["codes"] else "")
+    return f"* {row['name']} [{row['unit']}]: {row['meaning']}" + (
+        f"; {row['friction']} only" if row["friction"] else
+        "") + ("; " + ", ".join(f"{code} {name}"
+                                for code, name in enumerate(row["codes"])) if row["codes"] else "")
 
 
 def _document(function):
     rows = _core.parameters()
-    lines = {"parameters": "\n    ".join(map(_parameter_line, rows)), "fields": "\n        ".join(map(_field_line, _core.fields()))}
+    lines = {
+        "parameters": "\n    ".join(map(_parameter_line, rows)), "fields": "\n        ".join(
+            map(_field_line, _core.fields()))
+    }
     for name, text in lines.items():
         function.__doc__ = function.__doc__.replace("{" + name + "}", text)
     signature = inspect.signature(function)
     own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
-    of_hoop = [inspect.Parameter(row["name"], inspect.Parameter.KEYWORD_ONLY, default=row["default"]) for row in rows]
+    of_hoop = [
+        inspect.Parameter(row["name"], inspect.Parameter.KEYWORD_ONLY, default=row["default"]) for row in rows
+    ]
     function.__signature__ = signature.replace(parameters=of_hoop + own)
 
 

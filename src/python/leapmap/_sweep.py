@@ -25,7 +25,8 @@ except ImportError:
     _hdf5 = threading.RLock()
 
 
-def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, threads=0, progress=None, **overrides):
+def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, threads=0, progress=None,
+          **overrides):
     """Solve the designs of a spec into a map, as `leapmap sweep` does.
 
     Parameters
@@ -43,7 +44,8 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
     threads : int, default 0
         Number of threads; 0: all cores. A forked process uses one.
     progress : callable, optional
-        Called with (designs done, number of designs), from a thread of its own. h5py is locked during a sweep.
+        Called with (designs done, number of designs), from a thread of its own. h5py is locked during a
+        sweep.
     **overrides
         Keys of the spec, for example tolerance=1e-12.
 
@@ -73,7 +75,8 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
     changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
     if in_memory and file is not None:
         raise ValueError(f"file = {file!r} has no effect with in_memory=True; allowed: one of the two")
-    target = None if in_memory else os.fspath(file) if file is not None else _core.spec_file(text, origin, changes) or None
+    target = None if in_memory else os.fspath(file) if file is not None else _core.spec_file(
+        text, origin, changes) or None
     if target is None and (resume or overwrite):
         raise ValueError("resume and overwrite have no effect in memory; allowed: with a file")
     threads = whole("threads", threads, 0, 4096)
@@ -84,8 +87,11 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
         return work.into(target, kept=True)
     free = shutil.disk_usage(tempfile.gettempdir()).free
     if size > free:
-        raise OSError(errno.ENOSPC, f"a map of {size / 1e9:.3g} GB in a folder with {free / 1e9:.3g} GB free; allowed: fewer designs or fields, or "
-                                    "file= on a disk with more room", tempfile.gettempdir())
+        raise OSError(
+            errno.ENOSPC,
+            f"a map of {size / 1e9:.3g} GB in a folder with {free / 1e9:.3g} GB free; allowed: fewer designs "
+            "or fields, or "
+            "file= on a disk with more room", tempfile.gettempdir())
     with _ends_by_signal(), tempfile.TemporaryDirectory(prefix="leapmap-") as folder:
         return work.into(os.path.join(folder, "map.h5"), kept=False)
 
@@ -101,8 +107,10 @@ def _refuse_beyond_memory(size):
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     free = min(free, math.inf if limit == resource.RLIM_INFINITY else limit)
     if size > free:
-        raise MemoryError(f"a map of {size / 1e9:.3g} GB exceeds {free / 1e9:.3g} GB of memory; allowed: fewer designs or fields, or the command "
-                          "leapmap sweep, which does not keep the map in memory")
+        raise MemoryError(
+            f"a map of {size / 1e9:.3g} GB exceeds {free / 1e9:.3g} GB of memory; allowed: fewer designs or "
+            "fields, or the command "
+            "leapmap sweep, which does not keep the map in memory")
 
 
 class _Ended(BaseException):
@@ -120,8 +128,10 @@ def _ends_by_signal():
         caught.append(number)
         raise _Ended
 
-    mine = [number for number in (signal.SIGTERM, signal.SIGHUP)
-            if threading.current_thread() is threading.main_thread() and signal.getsignal(number) is signal.SIG_DFL]
+    mine = [
+        number for number in (signal.SIGTERM, signal.SIGHUP) if
+        threading.current_thread() is threading.main_thread() and signal.getsignal(number) is signal.SIG_DFL
+    ]
     for number in mine:
         signal.signal(number, end)
     try:
@@ -137,7 +147,8 @@ class _Sweep:
     """One sweep, and the thread that reports its progress."""
 
     def __init__(self, text, origin, changes, resume, overwrite, threads, progress):
-        self.spec, self.options, self.progress = (text, origin, changes), (resume, overwrite, threads), progress
+        self.spec, self.options, self.progress = (text, origin, changes), (resume, overwrite,
+                                                                           threads), progress
         self.watch, self.finished, self.failure = _core.Watch(), threading.Event(), None
 
     def into(self, target, kept):
@@ -149,7 +160,8 @@ class _Sweep:
                 durable = _core.sweep(*self.spec, target, *self.options, self.watch)
         except KeyboardInterrupt:
             part = kept and os.path.exists(target + ".part")
-            raise KeyboardInterrupt(f"stopped; {target}.part keeps what is done; resume=True continues it" if part else "stopped") from None
+            raise KeyboardInterrupt(f"stopped; {target}.part keeps what is done; resume=True continues it"
+                                    if part else "stopped") from None
         finally:
             self.finished.set()
             if self.progress:
@@ -157,7 +169,9 @@ class _Sweep:
         if self.failure is not None:
             raise self.failure
         if kept and not durable:
-            warnings.warn(f"{target}: its folder could not be synced; a power failure may undo the map's renaming", stacklevel=3)
+            warnings.warn(
+                f"{target}: its folder could not be synced; a power failure may undo the map's renaming",
+                stacklevel=3)
         return load(target)
 
     def _tell(self):
@@ -206,13 +220,17 @@ def load(path):
     except reader.NotAMap as error:
         raise ValueError(str(error)) from None
     plain = ("units", "long_name", "flag_values", "flag_meanings")
-    about = {name: {key: value for key, value in attributes.items() if key in plain} for name, attributes in m.about.items()}
+    about = {
+        name: {key: value for key, value in attributes.items() if key in plain}
+        for name, attributes in m.about.items()
+    }
     dims = tuple(m.dims)
     fields = {name: (dims, values, about[name]) for name, values in m.fields.items()}
     if m.labels is not None:
         fields = {"label": (dims, m.labels, about["label"])} | fields
     axes = {name: (name, values, about.get(name, {})) for name, values in m.dims.items()}
-    return xarray.Dataset(fields, axes, {key: value for key, value in m.attributes.items() if not key.startswith("_")})
+    return xarray.Dataset(fields, axes,
+                          {key: value for key, value in m.attributes.items() if not key.startswith("_")})
 
 
 def _text(text):
@@ -227,13 +245,17 @@ def _key(key):
 def _value(value, in_table=False, depth=0):
     """A value as TOML; an array is an axis, but for one inside an axis."""
     if depth > 8:
-        raise ValueError("{...} holds dictionaries nine deep, or itself; allowed: a number, a text, or { from, to } and the like")
+        raise ValueError(
+            "{...} holds dictionaries nine deep, or itself; allowed: a number, a text, or { from, to } and "
+            "the like"
+        )
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (str, os.PathLike)):
         return _text(value)
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(key)} = {_value(item, True, depth + 1)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{_key(key)} = {_value(item, True, depth + 1)}"
+                                for key, item in value.items()) + " }"
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (list, tuple)) and value and all(isinstance(item, str) for item in value):
@@ -245,7 +267,10 @@ def _value(value, in_table=False, depth=0):
     except ValueError:  # rows of different lengths
         array = np.asarray(None)
     if array.dtype.kind not in "fiu" or array.ndim > 1:
-        raise ValueError(f"{shown(value)} is not a value of a spec; allowed: a number, a text, or one list of numbers for an axis")
+        raise ValueError(
+            f"{shown(value)} is not a value of a spec; allowed: a number, a text, or one list of numbers for "
+            "an axis"
+        )
     if array.ndim == 0:
         return repr(float(array))
     numbers = "[" + ", ".join(repr(float(number)) for number in array) + "]"
@@ -263,6 +288,11 @@ def _toml(spec):
     lines = []
     for section, keys in spec.items():
         if not isinstance(keys, Mapping):
-            raise ValueError(f"{section} = {keys!r} is not a section; allowed: {{section: {{key: value}}}}, as in a spec's TOML")
-        lines += [f"[{_key(section)}]", *(f"{_key(key)} = {_keyed(key, value)}" for key, value in keys.items())]
+            raise ValueError(
+                f"{section} = {keys!r} is not a section; allowed: {{section: {{key: value}}}}, as in a "
+                "spec's TOML"
+            )
+        lines += [
+            f"[{_key(section)}]", *(f"{_key(key)} = {_keyed(key, value)}" for key, value in keys.items())
+        ]
     return "\n".join(lines) + "\n"
