@@ -41,6 +41,7 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
   for (const Field& field : map_fields()) {
     const auto* quantity = std::get_if<Quantity>(&field.source);
     if (!quantity || field.of_sequence || field.of_gait) continue;  // judged elsewhere
+    if (field.unnamed != Unnamed::stored && !stores(output, field)) continue;
     const double a = ours.*quantity->member, b = theirs.*quantity->member;
     if (std::isnan(a) && std::isnan(b)) continue;
     // After as many phases as a sequence holds, only some methods see that a hoop rocks to rest.
@@ -54,7 +55,7 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
     if (measure == Measure::other) error /= 1.0 + std::abs(b);
     if (!std::isnan(error)) {
       most = std::max(most, error);
-    } else if (stores(output, field.name)) {
+    } else if (stores(output, field)) {
       most = std::numeric_limits<double>::infinity();
     }
   }

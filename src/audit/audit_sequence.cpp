@@ -44,7 +44,7 @@ double SequenceAuditor::error_of(const Outcome& ours, const Outcome& theirs, std
                                  bool stored_only) const {
   const Jump &a = ours.later_jumps[jump - 2], &b = theirs.later_jumps[jump - 2];
   const auto error = [&](const char* field, double x, double y, double size) {
-    if (stored_only && !stores(spec_.output, field + std::to_string(jump))) return 0.0;
+    if (stored_only && !stores(spec_.output, *find_field(field + std::to_string(jump)))) return 0.0;
     return std::isnan(x) && std::isnan(y) ? 0.0
            : std::isnan(x - y)            ? std::numeric_limits<double>::infinity()
                                           : std::abs(x - y) / size;

@@ -14,6 +14,7 @@
 #include "physics/sliding.hpp"
 #include "physics/stick.hpp"
 #include "support/stop.hpp"
+#include "trajectory/jump_measures.hpp"
 #include "trajectory/jump_rule.hpp"
 #include "trajectory/units.hpp"
 
@@ -120,10 +121,15 @@ class PhaseMachine {
     if (sinks_without_motor()) return ended_as(Status::indeterminate);
     begin_phase(Phase::flight, 0);
     const bool jumps = look_at(lift_off, flight);
+    const S left_at = at_.travel;
     at_ = after_flight(hoop_, at_, flight.flight_time);
     if (!jumps && !(std::abs(at_.travel) < runway_)) return ended_as(Status::no_jump);
     const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
+    if (jumps)
+      put_measures(
+          measures_of(hoop_, S(at_.travel - left_at), at_, landing), S(1),
+          [&](double Outcome::*kept, const S& value) { outcome_.*kept = static_cast<double>(value); });
     at_.spin = landing.after.spin, at_.slip = landing.after.slip;
     at_.normal = landing.after.normal;
     if (jumps) {

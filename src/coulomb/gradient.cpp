@@ -11,6 +11,7 @@
 #include "physics/landing.hpp"
 #include "physics/sliding.hpp"
 #include "physics/stick.hpp"
+#include "trajectory/jump_measures.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap {
@@ -259,9 +260,13 @@ class Chain {
           D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
     }
+    const D left_at = at_.travel;
     at_ = after_flight(hoop_, at_, flown.flight_time);
     const Landing<D> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
+    if (jumps)
+      put_measures(measures_of(hoop_, D(at_.travel - left_at), at_, landing), D(1.0),
+                   [&](double Outcome::*kept, const D& value) { put(kept, value, 1.0); });
     at_.spin = landing.after.spin, at_.slip = landing.after.slip, at_.normal = landing.after.normal;
     if (jumps) put(&Outcome::landing_spin, at_.spin, 1.0);
   }

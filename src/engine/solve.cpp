@@ -68,7 +68,7 @@ Outcome solve(const Design& design, const Scene& scene, const SolveOptions& opti
   const Spec spec = spec_of(scene, options);
   check_design(design, scene);
   Outcome outcome;
-  make_solver(request_of(spec))({&design, 1}, {&outcome, 1});
+  make_solver(request_of_outcomes(spec))({&design, 1}, {&outcome, 1});
   return outcome;
 }
 
@@ -79,7 +79,7 @@ void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, co
         fmt::format("{} outcomes for {} designs; allowed: equal numbers", outcomes.size(), designs.size()));
   const Spec spec = spec_of(scene, options);
   in_blocks("solve", designs.size(), designs_a_block(spec), options, [&] {
-    return [&, solver = make_solver(request_of(spec))](std::size_t first, std::size_t size) {
+    return [&, solver = make_solver(request_of_outcomes(spec))](std::size_t first, std::size_t size) {
       check_designs(designs.subspan(first, size), scene, first, designs.size());
       solver(designs.subspan(first, size), outcomes.subspan(first, size));
     };

@@ -53,7 +53,8 @@ bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const De
                    const Landed& start, Orbit& orbit);
 
 /// Of a jump its flight, and no time before it.
-inline constexpr Wanted untimed{.first_jump_time = false, .jump_time = false, .descent = true};
+inline constexpr Wanted untimed{
+    .first_jump_time = false, .jump_time = false, .descent = true, .landing = false};
 
 /// How designs go on from one landing to the next, each jump alone.
 struct JumpSolvers {

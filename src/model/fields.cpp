@@ -20,11 +20,24 @@ constexpr std::array<std::string_view, status_count> status_names = [] {
 constexpr std::array<std::string_view, 2> spurious_names{"first_lift_off_is_the_jump",
                                                          "first_lift_off_is_spurious"};
 
+/// A row with what a solver has to be asked for.
+Field needing(bool Wanted::*what, Field field) {
+  field.needs = what;
+  return field;
+}
+
+/// A measure of the jump's landing: told wherever one looks, but stored only if it is named.
+Field of_landing(std::string_view name, double Outcome::*member, std::string_view meaning) {
+  Field field{name, Quantity{member}, "1", meaning, 12};
+  field.unnamed = Unnamed::told;
+  return needing(&Wanted::landing, field);
+}
+
 const std::array fields{
     Field{"jump_height", Quantity{&Outcome::jump_height, Measure::height}, "1",
           "apex of the jump above the plane, in hoop diameters"},
-    Field{"jump_time", Quantity{&Outcome::jump_time, Measure::time}, "s",
-          "time from release to the lift-off of the jump"},
+    needing(&Wanted::jump_time, Field{"jump_time", Quantity{&Outcome::jump_time, Measure::time}, "s",
+                                      "time from release to the lift-off of the jump"}),
     Field{"spurious_first_jump",
           Code{[](const Outcome& o) { return o.spurious_first_jump; },
                [](Outcome& o, std::uint8_t code) { o.spurious_first_jump = code; }, Outcome::no_lift_off,
@@ -43,15 +56,17 @@ const std::array fields{
           "distance travelled by the hoop's centre from release to the lift-off of the jump, in R"},
     Field{"apex_time", Quantity{&Outcome::apex_time, Measure::time}, "s",
           "time from the lift-off of the jump to its apex"},
-    Field{"flight_time", Quantity{&Outcome::flight_time, Measure::time}, "s",
-          "time from the lift-off of the jump to its landing"},
+    needing(&Wanted::descent, Field{"flight_time", Quantity{&Outcome::flight_time, Measure::time}, "s",
+                                    "time from the lift-off of the jump to its landing"}),
     Field{"first_jump_height", Quantity{&Outcome::first_jump_height, Measure::height}, "1",
           "apex of the first lift-off above the plane, in hoop diameters"},
-    Field{"first_jump_time", Quantity{&Outcome::first_jump_time, Measure::time}, "s",
-          "time from release to the first lift-off"},
-    Field{"dip", Quantity{&Outcome::dip, Measure::height}, "1",
-          "lowest height of the hoop right after the lift-off of the jump, in hoop diameters; negative: its "
-          "penetration depth"},
+    needing(&Wanted::first_jump_time,
+            Field{"first_jump_time", Quantity{&Outcome::first_jump_time, Measure::time}, "s",
+                  "time from release to the first lift-off"}),
+    needing(&Wanted::descent,
+            Field{"dip", Quantity{&Outcome::dip, Measure::height}, "1",
+                  "lowest height of the hoop right after the lift-off of the jump, in hoop diameters; "
+                  "negative: its penetration depth"}),
     Field{"candidates",
           Code{[](const Outcome& o) { return o.candidates; },
                [](Outcome& o, std::uint8_t code) { o.candidates = code; },
@@ -71,6 +86,15 @@ const std::array fields{
           "spin after the landing of the jump, in sqrt(g/R)", 3, Friction::coulomb},
     Field{"energy_lost", Quantity{&Outcome::energy_lost}, "1",
           "energy lost from release to the lift-off of the jump, in (m + m_p) g R", 3, Friction::coulomb},
+    of_landing("jump_range", &Outcome::jump_range,
+               "travel of the hoop's centre from the lift-off of the jump to its landing, in R"),
+    of_landing("landing_tangential_speed", &Outcome::landing_tangential_speed,
+               "velocity of the contact point along the plane just before the landing, positive downhill, in "
+               "sqrt(g R)"),
+    of_landing("landing_impulse", &Outcome::landing_impulse,
+               "normal impulse of the whole landing, in (m + m_p) sqrt(g R)"),
+    of_landing("landing_energy_lost", &Outcome::landing_energy_lost,
+               "kinetic energy lost in the landing, in (m + m_p) g R"),
     Field{"jumps",
           Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.jumps()); },
                [](Outcome& o, std::uint8_t code) { o.later_jumps.resize(code > 1 ? code - 1u : 0u); },
@@ -86,7 +110,7 @@ const std::array fields{
           "1", "how the sequence of jumps ended; jumped: all scene.jumps were made", 9, std::nullopt, true},
     Field{"sequence_condition", Quantity{&Outcome::sequence_condition}, "1",
           "growth factor, up to the last landing, of errors at the release and at every landing", 10,
-          std::nullopt, true, false, true},
+          std::nullopt, true, false, Unnamed::left_out},
     Field{"gait_period",
           Code{[](const Outcome& o) { return o.gait_period; },
                [](Outcome& o, std::uint8_t code) { o.gait_period = code; },
@@ -136,6 +160,7 @@ struct JumpTable {
         const RowTexts& text = texts.emplace_back(RowTexts{std::move(name) + number, {}, meaning});
         rows.push_back(
             Field{text.name, OfJump{{member, jump}, measure}, unit, text.long_name, 9, std::nullopt, true});
+        if (measure == Measure::time) rows.back().needs = &Wanted::jump_time;
       };
       add("jump_height_", &Jump::height, Measure::height, "1",
           "apex of " + which + " above the plane, in hoop diameters");
@@ -174,7 +199,7 @@ std::optional<OutcomeNumber> number_of(const Field& field) {
 }
 
 bool can_be_differentiated(const Field& field) {
-  return number_of(field) && !field.of_gait && !field.by_name;
+  return number_of(field) && !field.of_gait && field.unnamed != Unnamed::left_out;
 }
 
 namespace {

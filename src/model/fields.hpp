@@ -14,6 +14,7 @@
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
+#include "trajectory/solver.hpp"
 
 namespace leapmap {
 
@@ -63,6 +64,10 @@ struct OfMade {
   bool error;
 };
 
+/// Where a field is found if nobody names the fields wanted: in maps and in what solve and hop tell; in the
+/// latter only; or nowhere, as it costs too much.
+enum class Unnamed : std::uint8_t { stored, told, left_out };
+
 struct Field {
   std::string_view name;
   std::variant<Quantity, Code, Word, OfJump, Derivative, OfMade> source;
@@ -72,7 +77,8 @@ struct Field {
   std::optional<Friction> only_of{};  ///< the one model that fills it; unset: every model
   bool of_sequence = false;           ///< of scenes with more jumps than one
   bool of_gait = false;               ///< of scenes that look for gaits
-  bool by_name = false;               ///< not among the fields of who names none: it costs too much
+  Unnamed unnamed = Unnamed::stored;
+  bool Wanted::*needs = nullptr;  ///< what a solver has to be asked for; nullptr: nothing
 };
 
 /// Whether a design of the scene has it.

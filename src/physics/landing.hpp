@@ -41,6 +41,17 @@ struct Landing {
   bool sticks;  ///< slip is zero, held by friction
 };
 
+/// A landing that holds at once, as without slip: the impulse stops the contact point in both directions.
+template <class T>
+Landing<T> hold(const Hoop<T>& hoop, const Trig<T>& phi, const ContactVelocity<T>& before) {
+  const T spin = spin_after_holding(hoop, phi, before.slip + before.spin, before.normal, before.spin);
+  const T gained = spin - before.spin;
+  // What the centre of mass gains along the plane and away from it.
+  return {{T(0), T(0), spin},
+          {height_of_mass(hoop, phi) * gained - before.slip, hoop.rho * phi.sin * gained - before.normal},
+          true};
+}
+
 /// The contact velocities answer impulses by W: slip += Wtt Pt + Wtn Pn, normal += Wtn Pt + Wnn Pn. The
 /// impulses go Routh's path: while the normal impulse grows, friction opposes slip with mu times it, until
 /// slip is used up; then it holds the contact if |Wtn / Wtt| <= mu, else slip goes on towards sign(Wtn).

@@ -80,8 +80,16 @@ double energy(const Body& body, const Motion& at) {
          m_p * g * L * std::cos(slope + at.phi);
 }
 
-Motion after_landing(const Body& body, const Motion& before, double mu_kinetic, double restitution,
-                     double rest_speed) {
+Landed land_without_slip(const Body& body, const Motion& before) {
+  const Matrix A = equations(body, {Mode::rolls}, before.phi);
+  Vector momenta = Vector::Zero();
+  momenta.head<3>() = A.topLeftCorner<3, 3>() * Eigen::Vector3d{before.x_rate, before.y_rate, before.spin};
+  const Vector z = A.partialPivLu().solve(momenta);  // the rates after it, and the impulses
+  return {{before.x, before.y, before.phi, z[0], z[1], z[2]}, z[4]};
+}
+
+Landed land(const Body& body, const Motion& before, double mu_kinetic, double restitution,
+            double rest_speed) {
   // Masses of (7) to (9), and how the contact's two velocities come of the coordinates' rates.
   Eigen::Matrix3d masses = equations(body, {}, before.phi).topLeftCorner<3, 3>();
   Eigen::Matrix<double, 2, 3> contact;
@@ -122,7 +130,7 @@ Motion after_landing(const Body& body, const Motion& before, double mu_kinetic, 
   after.spin = rates[2];
   after.x_rate = velocity[0] + body.R * after.spin;
   after.y_rate = velocity[1] >= rest_speed ? velocity[1] : 0.0;
-  return after;
+  return {after, impulse[1]};
 }
 
 }  // namespace leapmap::referee

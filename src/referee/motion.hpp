@@ -63,10 +63,16 @@ inline double slip_of(const Body& body, const Motion& at) {
   return std::abs(slip) > 4.0 * std::numeric_limits<double>::epsilon() * std::abs(at.x_rate) ? slip : 0.0;
 }
 
-/// What a landing changes: along Routh's path of impulses, with Poisson's restitution. Rebounds slower than
-/// rest_speed [m/s] count as none. Returns the motion after it; slip is exactly zero where friction held it.
-Motion after_landing(const Body& body, const Motion& before, double mu_kinetic, double restitution,
-                     double rest_speed);
+/// A landing: the motion after it, and the plane's normal impulse [N s].
+struct Landed {
+  Motion after;
+  double impulse;
+};
+/// Along Routh's path of impulses, with Poisson's restitution. Rebounds slower than rest_speed [m/s] count as
+/// none. Slip is exactly zero after it where friction held it.
+Landed land(const Body& body, const Motion& before, double mu_kinetic, double restitution, double rest_speed);
+/// With both constraints from then on, (1) and (2): what (7) to (9) make of the two impulses.
+Landed land_without_slip(const Body& body, const Motion& before);
 
 /// A flight from a lift-off.
 struct Flown {

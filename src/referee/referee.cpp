@@ -128,6 +128,15 @@ bool Referee::count_lift_off(const Flown& flown) {
   return true;
 }
 
+void Referee::measure(const Motion& lift_off, const Motion& before, const Landed& landed) {
+  const Body& body = system_.body;
+  const double R = scene_.radius, speed = R / second_, weight = body.mass() * body.g;
+  outcome_.jump_range = (before.x - lift_off.x) / R;
+  outcome_.landing_tangential_speed = (before.x_rate - R * before.spin) / speed;
+  outcome_.landing_impulse = landed.impulse / (body.mass() * speed);
+  outcome_.landing_energy_lost = (energy(body, before) - energy(body, landed.after)) / (weight * R);
+}
+
 Outcome Referee::solve_sticking() {
   const Body& body = system_.body;
   const Mode rolls{Mode::rolls};
@@ -155,7 +164,12 @@ Outcome Referee::solve_sticking() {
       if (guard > 0) return true;
       const Flown flown = fly(body, at_);
       gave_up = flown.failed;
-      return gave_up || count_lift_off(flown);
+      if (gave_up) return true;
+      if (!count_lift_off(flown)) return false;
+      Motion before = flying(body, at_, flown.landing_time);
+      before.y = scene_.radius;
+      measure(at_, before, land_without_slip(body, before));
+      return true;
     };
     if (!follow(rolls, guards, happens) || gave_up) return failed_outcome("the reference solver failed");
     if (!turned) return outcome_;

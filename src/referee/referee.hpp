@@ -42,6 +42,8 @@ class Referee {
   class Slipping;
   /// Counts a lift-off; true if it is the jump.
   bool count_lift_off(const Flown& flown);
+  /// Tells how far the jump goes and how hard it lands: from the lift-off to just before the landing.
+  void measure(const Motion& lift_off, const Motion& before, const Landed& landed);
 
   Scene scene_;
   double second_;  ///< sqrt(R/g) [s], in which spins are given

@@ -149,11 +149,13 @@ class Referee::Slipping {
     begin(Phase::flight);
     const bool jumps = referee_.count_lift_off(flown);
     if (jumps) outcome_.energy_lost = (released_ + driven_ - energy(body_, at_)) / (weight * R);
-    Motion landed = flying(body_, at_, flown.landing_time);
-    landed.y = R;
+    Motion before = flying(body_, at_, flown.landing_time);
+    before.y = R;
     referee_.time_ += flown.landing_time;
     const double rest_speed = referee_.scene_.rest_speed * std::sqrt(referee_.scene_.gravity * R);
-    at_ = after_landing(body_, landed, mu_kinetic_, restitution_, rest_speed);
+    const Landed landed = land(body_, before, mu_kinetic_, restitution_, rest_speed);
+    if (jumps) referee_.measure(at_, before, landed);
+    at_ = landed.after;
     if (jumps) {
       outcome_.landing_spin = at_.spin * referee_.second_;
       return ended(Status::jumped);

@@ -16,10 +16,6 @@ namespace {
 /// Quantities whose statistics a map of manufactured hoops has by default.
 constexpr double Outcome::*usual[]{&Outcome::jump_height, &Outcome::jump_time};
 
-bool is_stored(const Spec& spec, const Field& field) {
-  return spec.output.fields.empty() ? !field.by_name : stores(spec.output, field.name);
-}
-
 bool is_asked_for(const Spec& spec, const Field& row) {
   if (std::ranges::find(spec.output.fields, row.name) != spec.output.fields.end()) return true;
   const OfMade& made = std::get<OfMade>(row.source);
@@ -45,7 +41,7 @@ bool is_of_later_jumps(const Field* column) {
 std::vector<const Field*> columns_of(const Spec& spec) {
   std::vector<const Field*> columns;
   for (const Field* field : fields_of(spec.scene))
-    if (is_stored(spec, *field)) columns.push_back(field);
+    if (stores(spec.output, *field)) columns.push_back(field);
   std::vector<OutcomeNumber> derived;
   for (const std::string& name : spec.output.gradients) derived.push_back(*number_of(*find_field(name)));
   std::ranges::copy(derivative_columns(spec.scene, derived, spec.output.gradients_by),
@@ -64,6 +60,12 @@ Request request_of(const Spec& spec, std::vector<const Field*> columns) {
           .columns = std::move(columns),
           .scatter = spec.scatter,
           .goals = spec.goals};
+}
+
+Request request_of_outcomes(const Spec& spec) {
+  std::vector<const Field*> columns = fields_of(spec.scene);
+  std::erase_if(columns, [](const Field* field) { return field->unnamed == Unnamed::left_out; });
+  return request_of(spec, std::move(columns));
 }
 
 Request request_of_everything(const Spec& spec) { return request_of(spec, fields_of(spec.scene)); }

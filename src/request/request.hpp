@@ -31,6 +31,8 @@ std::vector<const Field*> columns_of(const Spec& spec);
 Request request_of(const Spec& spec);
 /// What these columns ask of the spec's designs.
 Request request_of(const Spec& spec, std::vector<const Field*> columns);
+/// What solve tells of designs if nobody names fields.
+Request request_of_outcomes(const Spec& spec);
 /// Every field that the scene has, even those that must be named.
 Request request_of_everything(const Spec& spec);
 

@@ -25,13 +25,10 @@ constexpr std::string_view semi_analytic = "semi-analytic solver", integrator = 
 bool is_exact(const Request& request) { return resolved_method(request.numerics) == "exact"; }
 
 Wanted wanted_of(const Request& request) {
-  const bool of_later_times = std::ranges::any_of(request.columns, [](const Field* column) {
-    const auto* later = std::get_if<OfJump>(&column->source);
-    return later && later->number.of_jump == &Jump::time;
-  });
-  return {.first_jump_time = wants(request, "first_jump_time"),
-          .jump_time = wants(request, "jump_time") || of_later_times,
-          .descent = wants(request, "flight_time") || wants(request, "dip")};
+  Wanted wanted{.first_jump_time = false, .jump_time = false, .descent = false, .landing = false};
+  for (const Field* column : request.columns)
+    if (column->needs) wanted.*column->needs = true;
+  return wanted;
 }
 
 /// Fills in what comes of whole sequences, once the designs are solved; empty: nothing is asked for.

@@ -41,7 +41,8 @@ template <class T>
 void ExactSolver<T>::solve_block(Start start, std::span<const Design> designs,
                                  std::span<ContactState<ScalarOf<T>>> states, const Scene& scene,
                                  std::span<Outcome> outcomes) {
-  take_off_.keeps_flights = wanted_.descent || !states.empty();
+  const bool lands = wanted_.descent || wanted_.landing || !states.empty();
+  take_off_.keeps_flights = lands;
   take_off_.landed = {};
   if (start == Start::landing) take_off_.landed = states;
   prepare(designs, take_off_.landed, scene, block_, outcomes);
@@ -68,7 +69,7 @@ void ExactSolver<T>::solve_block(Start start, std::span<const Design> designs,
       outcomes[i].first_jump_time += static_cast<double>(states[i].time);
       outcomes[i].jump_time += static_cast<double>(states[i].time);
     }
-  if (wanted_.descent || !states.empty()) land(block_, jumped_, outcomes, states);
+  if (lands) land(block_, jumped_, outcomes, states, wanted_.landing);
   const double second = time_unit(scene);
   for (const std::uint32_t i : lifted_) to_seconds(outcomes[i], second);
 }

@@ -8,6 +8,7 @@
 
 #include "rolling/lift_off_dual.hpp"
 #include "rolling/model.hpp"
+#include "trajectory/jump_measures.hpp"
 #include "trajectory/sequence_gradient.hpp"
 #include "trajectory/units.hpp"
 
@@ -48,13 +49,14 @@ RollingGradients::RollingGradients(double tolerance, const Wanted& wanted, const
       of_time_(gradients.wants(&Outcome::jump_time)),
       of_first_time_(gradients.wants(&Outcome::first_jump_time)),
       of_dip_(gradients.wants(&Outcome::dip)),
+      of_landing_(std::any_of(gradients.of.begin(), gradients.of.end(), is_measure)),
       solver_(tolerance,
               [&] {
                 Wanted all = wanted;
-                all.descent = all.descent || gradients.wants(&Outcome::flight_time);
+                all.descent = all.descent || of_landing_ || gradients.wants(&Outcome::flight_time);
                 return all;
               }()),
-      teller_(tolerance, {.first_jump_time = false, .jump_time = false, .descent = false}),
+      teller_(tolerance, {.first_jump_time = false, .jump_time = false, .descent = false, .landing = false}),
       clock_(finest) {
   of_jump_ = std::any_of(gradients.of.begin(), gradients.of.end(), [](const OutcomeNumber& quantity) {
     return quantity != &Outcome::first_jump_height && quantity != &Outcome::first_jump_time;
@@ -148,6 +150,9 @@ void RollingGradients::in_lanes(const Lot& lot, std::span<const LiftOffAt> lift_
     const D seen_from(way);
     put_jump(put, seen_from * off.angle, seen_from * off.spin, seen_from * (off.angle - roll.release), flight,
              lot.second);
+    if (of_landing_)
+      put_measures(measures_of(roll.hoop, off.angle, off.spin, flight.flight_time), seen_from,
+                   [&](double Outcome::*kept, const D& value) { put(kept, value, 1.0); });
     if (of_dip_) {
       const Toss<T> toss = toss_from(plain(roll).hoop, angle, off.spin.value);
       const T lowest = lowest_before(toss, T(apex * off.spin.value)) / off.spin.value;
@@ -253,6 +258,9 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
     if (!jumps) return;
     put_jump(put, off.angle, off.spin, off.angle - roll.release, flight, lot.second);
     put(&Outcome::jump_time, time, lot.second);
+    if (of_landing_)
+      put_measures(measures_of(hoop, off.angle, off.spin, flight.flight_time), S(1.0),
+                   [&](double Outcome::*kept, const S& value) { put(kept, value, 1.0); });
     if (!of_dip_) return;
     const double lowest = lowest_before(toss, tossed.apex_time) / spin;
     put(&Outcome::dip, S(0.5) * height_above_plane(hoop, phi, off.spin, S(lowest)).value, 1.0);

@@ -10,6 +10,7 @@
 #include "physics/landing.hpp"
 #include "physics/rolling_by_angle.hpp"
 #include "support/stop.hpp"
+#include "trajectory/jump_measures.hpp"
 #include "trajectory/jump_rule.hpp"
 #include "trajectory/units.hpp"
 
@@ -143,6 +144,9 @@ bool Integration<Model>::take(Rolling& rolling, const LiftOff<double>& lift_off,
   const Flight<double> flight = fly(system_.model.hoop, lift_off);
   const bool is_jump = consider(rolling.outcome, rolling.scene, lift_off, flight,
                                 lift_off.angle - (rolling.from.angle - rolling.from.travel));
+  if (is_jump)
+    keep_measures(measures_of(system_.model.hoop, lift_off.angle, lift_off.spin, flight.flight_time),
+                  rolling.outcome);
   if (rolling.observer.step && is_jump && tau > 0.0) rolling.observer.step(integrator_, tau);
   if (rolling.observer.lift_off) rolling.observer.lift_off(lift_off, flight);
   return is_jump;

@@ -7,6 +7,7 @@
 #include "physics/flight_search.hpp"
 #include "physics/landing.hpp"
 #include "rolling/find.hpp"
+#include "trajectory/jump_measures.hpp"
 #include "trajectory/jump_rule.hpp"
 
 namespace leapmap {
@@ -102,7 +103,7 @@ void TakeOff<T>::fly(Block<T>& block, const DesignLanes<WideOf<T>>& index, std::
 
 template <class T>
 void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes,
-          std::span<ContactState<ScalarOf<T>>> states) {
+          std::span<ContactState<ScalarOf<T>>> states, bool measures) {
   using W = WideOf<T>;
   for (std::size_t first = 0; first < jumped.size(); first += Lanes<W>::count) {
     const std::size_t count = std::min(Lanes<W>::count, jumped.size() - first);
@@ -116,6 +117,15 @@ void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> ou
     for (std::size_t i = 0; i < count; ++i) {
       outcomes[index[i]].flight_time = static_cast<double>(landings[i]);
       outcomes[index[i]].dip = static_cast<double>(dips[i]);
+    }
+    if (measures) {
+      const W way = gathered<W>([&](std::size_t i) { return block.found[index[i]].way; });
+      put_measures(measures_of(roll.hoop, off.angle, off.spin, flight.flight_time), way,
+                   [&](double Outcome::*kept, const W& value) {
+                     const auto numbers = lanes_of(value);
+                     for (std::size_t i = 0; i < count; ++i)
+                       outcomes[index[i]].*kept = static_cast<double>(numbers[i]);
+                   });
     }
     if (states.empty()) continue;
     const ContactState<W> end =
@@ -138,15 +148,15 @@ void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> ou
 #ifdef LEAPMAP_KERNELS
 template struct TakeOff<Batch>;
 template void land(const Block<Batch>&, const DesignList&, std::span<Outcome>,
-                   std::span<ContactState<double>>);
+                   std::span<ContactState<double>>, bool);
 #endif
 #ifdef LEAPMAP_SCALARS
 template struct TakeOff<double>;
 template struct TakeOff<long double>;
 template void land(const Block<double>&, const DesignList&, std::span<Outcome>,
-                   std::span<ContactState<double>>);
+                   std::span<ContactState<double>>, bool);
 template void land(const Block<long double>&, const DesignList&, std::span<Outcome>,
-                   std::span<ContactState<long double>>);
+                   std::span<ContactState<long double>>, bool);
 #endif
 
 }  // namespace leapmap

@@ -47,10 +47,10 @@ struct TakeOff {
            std::span<Outcome> outcomes, const Low& low);
 };
 
-/// Flight time and dip of the jumps. states: of all designs where they set out, moved to just after the
-/// landing of their jump, which holds at once; empty: not asked for.
+/// Flight time and dip of the jumps, and if asked for their measures. states: of all designs where they set
+/// out, moved to just after the landing of their jump, which holds at once; empty: not asked for.
 template <class T>
 void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes,
-          std::span<ContactState<ScalarOf<T>>> states);
+          std::span<ContactState<ScalarOf<T>>> states, bool measures);
 
 }  // namespace leapmap

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "leapmap/spec.hpp"
+#include "model/fields.hpp"
 
 namespace leapmap {
 
@@ -26,8 +27,8 @@ std::string readable_text(const Spec& spec);
 std::string text_of(const Spread& spread);
 std::string text_of(const Goal& goal);
 
-/// Whether output.fields names that field, or is left out.
-bool stores(const Output& output, std::string_view field);
+/// Whether maps hold a field: whether output.fields names it or, where that names none, it is stored then.
+bool stores(const Output& output, const Field& field);
 
 /// The name of the method that numerics.method stands for: "auto" is settled here. Rolling conserves energy
 /// and sliding reduces to quadratures, so that it is exact.

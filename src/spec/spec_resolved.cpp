@@ -129,8 +129,9 @@ std::string resolved_text(const Spec& spec) { return text_of(spec, false); }
 
 std::string readable_text(const Spec& spec) { return text_of(spec, true); }
 
-bool stores(const Output& output, std::string_view field) {
-  return output.fields.empty() || std::ranges::find(output.fields, field) != output.fields.end();
+bool stores(const Output& output, const Field& field) {
+  return output.fields.empty() ? field.unnamed == Unnamed::stored
+                               : std::ranges::find(output.fields, field.name) != output.fields.end();
 }
 
 std::string resolved_method(const Numerics& numerics) {

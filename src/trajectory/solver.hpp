@@ -28,6 +28,7 @@ struct Wanted {
   bool first_jump_time = true;
   bool jump_time = true;
   bool descent = true;  ///< flight_time and dip
+  bool landing = true;  ///< what is in jump_measures.hpp
 };
 
 /// How an integration steps (integration_options.hpp).

@@ -53,7 +53,7 @@ void compare(const char* name, const std::vector<Design>& designs, const Solver&
 
 int main(int argc, char** argv) {
   const int runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 7;
-  const Wanted wanted{.first_jump_time = false, .jump_time = true, .descent = false};
+  const Wanted wanted{.first_jump_time = false, .jump_time = true, .descent = false, .landing = false};
   GradientWanted asked{{&Outcome::jump_height, &Outcome::jump_time}, {}};
   for (std::size_t k = 0; k < without_slip; ++k) asked.by.push_back(k);
   const Scene sticking;

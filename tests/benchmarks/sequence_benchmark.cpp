@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
     const std::vector<Design> designs = lively(count, friction), few(designs.begin(), designs.begin() + 40);
     const double integrated =
         jumps_a_second(model.integration(scene, adaptive("gsl-rk8pd", 1e-12)), few, std::min(runs, 3));
-    const Wanted heights{.first_jump_time = false, .jump_time = false, .descent = false};
+    const Wanted heights{.first_jump_time = false, .jump_time = false, .descent = false, .landing = false};
     tell("heights, exact", jumps_a_second(model.exact(scene, 1e-12, heights), designs, runs), "jumps",
          integrated);
     tell("heights and times, exact", jumps_a_second(model.exact(scene, 1e-12, {}), designs, runs), "jumps",

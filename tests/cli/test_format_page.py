@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """docs/reference/file_format.md names every dataset and attribute of a map with its type and unit, and
 nothing else."""
+import json
 import re
 
 import h5py
@@ -46,6 +47,7 @@ def maps(tmp_path_factory):
     assert leapmap("sweep", "-o", linked, "--shard", "1/1").returncode == 0
     assert leapmap("join", linked, "--virtual").returncode == 0
     slipping = '[scene]\nfriction = "coulomb"\n[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n'
+    named = [name for name, cells in rows("Fields").items() if cells[3].startswith("if named")]
     return [
         grid, joined, linked,
         sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
@@ -57,7 +59,7 @@ def maps(tmp_path_factory):
             "[numerics]\naudit = 1\n", name="gaits.h5"),
         sweep(
             folder, "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n"
-            "[output]\nfields = [\"status\", \"sequence_condition\"]\n", name="growth.h5")
+            f"[output]\nfields = {json.dumps(['status', 'sequence_condition', *named])}\n", name="named.h5")
     ]
 
 

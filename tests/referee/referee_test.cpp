@@ -120,7 +120,8 @@ TEST(Referee, LandsAsTheSolversDoAndSlidesIntoTheSameEdge) {
     const Hoop<double> hoop = reduce<double>(design);
     const Motion before = any_motion(random, body);
     const double mu = uniform(random, 0.0, 1.5), restitution = uniform(random, 0.0, 0.9);
-    const Motion after = after_landing(body, before, mu, restitution, 0.0);
+    const Landed landed = referee::land(body, before, mu, restitution, 0.0);
+    const Motion& after = landed.after;
     const Landing<double> landing =
         land<double>(hoop, trig(before.phi), {before.x_rate - before.spin, before.y_rate, before.spin}, mu,
                      restitution, 0.0);
@@ -128,6 +129,12 @@ TEST(Referee, LandsAsTheSolversDoAndSlidesIntoTheSameEdge) {
     EXPECT_NEAR(after.spin, landing.after.spin, rounding);
     EXPECT_NEAR(after.y_rate, landing.after.normal, rounding);
     EXPECT_NEAR(slip_of(body, after), landing.after.slip, rounding);
+    EXPECT_NEAR(landed.impulse / body.mass(), landing.impulse.normal, rounding);
+    const Landed held = land_without_slip(body, before);
+    const Landing<double> holding =
+        hold<double>(hoop, trig(before.phi), {before.x_rate - before.spin, before.y_rate, before.spin});
+    EXPECT_NEAR(held.after.spin, holding.after.spin, rounding);
+    EXPECT_NEAR(held.impulse / body.mass(), holding.impulse.normal, rounding);
 
     const double D =
         1.0 + hoop.rho * std::sin(before.phi) / hoop.Ic * sliding_lever(hoop, trig(before.phi), mu);
