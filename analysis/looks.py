@@ -83,6 +83,7 @@ LOOKS = {
     "slip_distance": Look("distance slid", "R"),
     "landing_spin": Look("spin after landing", "√(g/R)"),
     "jump_range": Look("range of the jump along the plane", "R"),
+    "landing_normal_speed": Look("landing speed towards the plane", "√(g R)"),
     "landing_tangential_speed": Look("landing velocity along the plane", "√(g R)"),
     "landing_impulse": Look("normal impulse of the landing", "(m + mₚ) √(g R)"),
     "landing_energy_lost": Look("energy lost in the landing", "(m + mₚ) g R"),

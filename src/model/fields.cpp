@@ -88,6 +88,8 @@ const std::array fields{
           "energy lost from release to the lift-off of the jump, in (m + m_p) g R", 3, Friction::coulomb},
     of_landing("jump_range", &Outcome::jump_range,
                "travel of the hoop's centre from the lift-off of the jump to its landing, in R"),
+    of_landing("landing_normal_speed", &Outcome::landing_normal_speed,
+               "speed of the contact point towards the plane just before the landing, in sqrt(g R)"),
     of_landing("landing_tangential_speed", &Outcome::landing_tangential_speed,
                "velocity of the contact point along the plane just before the landing, positive downhill, in "
                "sqrt(g R)"),

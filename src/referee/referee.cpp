@@ -132,6 +132,7 @@ void Referee::measure(const Motion& lift_off, const Motion& before, const Landed
   const Body& body = system_.body;
   const double R = scene_.radius, speed = R / second_, weight = body.mass() * body.g;
   outcome_.jump_range = (before.x - lift_off.x) / R;
+  outcome_.landing_normal_speed = -before.y_rate / speed;
   outcome_.landing_tangential_speed = (before.x_rate - R * before.spin) / speed;
   outcome_.landing_impulse = landed.impulse / (body.mass() * speed);
   outcome_.landing_energy_lost = (energy(body, before) - energy(body, landed.after)) / (weight * R);

@@ -15,7 +15,8 @@ namespace leapmap {
 template <class T>
 struct JumpMeasures {
   T range;             ///< travel of the centre from lift-off to landing [R]
-  T tangential_speed;  ///< of the contact point just before the landing, along the plane [sqrt(g R)]
+  T normal_speed;      ///< of the contact point just before the landing, towards the plane [sqrt(g R)]
+  T tangential_speed;  ///< the same along the plane
   T impulse;           ///< of the plane in the whole landing, normal [(m + m_p) sqrt(g R)]
   T energy_lost;       ///< in the landing [(m + m_p) g R]
 };
@@ -30,6 +31,7 @@ struct MeasureRow {
 template <class T>
 inline constexpr std::array measure_rows{
     MeasureRow<T>{&JumpMeasures<T>::range, &Outcome::jump_range, true},
+    MeasureRow<T>{&JumpMeasures<T>::normal_speed, &Outcome::landing_normal_speed, false},
     MeasureRow<T>{&JumpMeasures<T>::tangential_speed, &Outcome::landing_tangential_speed, true},
     MeasureRow<T>{&JumpMeasures<T>::impulse, &Outcome::landing_impulse, false},
     MeasureRow<T>{&JumpMeasures<T>::energy_lost, &Outcome::landing_energy_lost, false}};
@@ -55,7 +57,7 @@ JumpMeasures<T> measures_of(const Hoop<T>& hoop, const T& range, const ContactSt
                             const Landing<T>& landing) {
   const Trig<T> phi = trig(before.angle);
   const ContactVelocity<T> velocity{before.slip, before.normal, before.spin};
-  return {range, before.slip, landing.impulse.normal,
+  return {range, -before.normal, before.slip, landing.impulse.normal,
           kinetic_energy(hoop, phi, velocity) - kinetic_energy(hoop, phi, landing.after)};
 }
 
