@@ -30,6 +30,9 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
     add("jump_angle", "angle at lift-off", `${short(outcome.jump_angle * 180 / Math.PI, 5)}°`);
     add("jump_distance", slips ? "travelled until lift-off" : "rolled until lift-off",
       measure.length(outcome.jump_distance * R));
+    add("jump_range", "range of the jump", measure.length(outcome.jump_range * R));
+    const unit = Math.sqrt(design.gravity * R);
+    add("landing_normal_speed", "lands with", measure.speed(outcome.landing_normal_speed * unit));
     if (!slips) add("dip", "penetration depth", measure.length(-2 * R * outcome.dip, 3));
   }
   if (jumped && chosen.jumps > 1) {

@@ -81,8 +81,10 @@ std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b)
   if (!same_flags(a, b))
     return fmt::format("Check: {} DISAGREES: {}, {} lift-offs.", by, name_of(b.status), b.candidates);
   if (a.status != Status::jumped) return fmt::format("Check: {} agrees.", by);
+  Spec all = spec;  // hop shows what maps hold only if it is named
+  for (const Field* field : fields_of(spec.scene)) all.output.fields.emplace_back(field->name);
   AuditReport report;
-  Auditor(spec, 1).look_at({0, a}, report);
+  Auditor(all, 1).look_at({0, a}, report);
   const bool disagrees = report.first_mismatch || report.first_inaccurate;
   const std::string later = later_jumps_line(report, a);
   return fmt::format("Check: {} {} {:.1e} diameters, time {} {:.1e}.{}{}", by,
@@ -119,6 +121,12 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
         jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time, jump.flight_time);
     if (jump.dip < 0.0) say("; penetration depth {:.4g} diameters", -jump.dip);
     say(".\n");
+    const double speed = std::sqrt(spec.scene.gravity * spec.scene.radius);
+    say("Flies {:.6g} R ({:.4g} m) along the plane; lands with {:.4g} m/s towards it and {:.4g} m/s along "
+        "it, "
+        "impulse {:.4g} (m + m_p) sqrt(g R), {:.4g} (m + m_p) g R lost.\n",
+        jump.jump_range, jump.jump_range * spec.scene.radius, jump.landing_normal_speed * speed,
+        jump.landing_tangential_speed * speed, jump.landing_impulse, jump.landing_energy_lost);
     if (std::isfinite(jump.energy_lost)) {
       say("Slid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
           "rad/s.\n",
