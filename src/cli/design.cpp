@@ -137,8 +137,7 @@ std::vector<std::size_t> called_out(const FoundDesigns& found) {
 }
 
 void print_found(const Question& question, const FoundDesigns& found) {
-  say("{} designs solved in {}{}\n", grouped(found.evaluations), spoken_duration(found.seconds),
-      found.engines ? "" : "; this build lacks pagmo and NLopt");
+  say("{} designs solved in {}\n", grouped(found.evaluations), spoken_duration(found.seconds));
   if (question.objectives.size() == 2 && found.reached) {
     say("front: {} designs; improving {} or {} makes the other worse", grouped(found.designs.size()),
         question.objectives[0].name, question.objectives[1].name);

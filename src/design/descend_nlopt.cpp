@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlopt.hpp>
 
-#include "design/engines.hpp"
+#include "design/descend.hpp"
 #include "leapmap/errors.hpp"
 #include "request/solver.hpp"
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "design/engines.hpp"
+#include "design/descend.hpp"
 #include "design/front.hpp"
 #include "design/improve.hpp"
 #include "design/judge.hpp"
@@ -143,16 +143,14 @@ void leave_one_a_basin(Judge& judge, std::vector<Place>& places, std::size_t mos
 
 std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps) {
   std::vector<Place> places = starts_of(sampled(judge, effort, options, steps), effort.starts);
-  // Each start on a thread of its own: CMA-ES asks for one design at a time.
+  // Each start on a thread of its own.
   parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {
     return [&, own = std::shared_ptr<Judge>(judge.alone())](std::size_t i) {
-      const std::uint64_t seed = options.seed * 1000 + i;
-      evolve(*own, places[i], seed);
       descend(*own, places[i]);
       improve(*own, places[i],
               {.most_rounds = 40,
                .a_round = std::size_t{own->makes_hoops() ? 8u : 128u},
-               .seed = seed,
+               .seed = options.seed * 1000 + i,
                .widest = 0.03});
       return true;
     };
@@ -185,10 +183,6 @@ std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOp
   }
   fronts.thin(effort.front);
   steps.done(effort.starts / 4);
-  std::vector<Place> places = fronts.of_all().places();
-  evolve_front(judge, places, options.seed);
-  steps.done(effort.starts / 2);
-  fronts.add(std::move(places));
   refine(judge, fronts, effort.front, effort.sample / 32, options.seed);
   Front front = fronts.of_all();
   front.thin(effort.told);
@@ -318,7 +312,6 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
   const Effort effort = effort_of(judge, options);
   Steps steps(options, sample_steps + effort.starts + effort.improved);
   FoundDesigns found;
-  found.engines = has_engines();
   const std::vector<Place> places = question.objectives.size() == 2
                                         ? front_places(judge, effort, options, steps, found.hypervolume)
                                         : best_places(judge, effort, options, steps);

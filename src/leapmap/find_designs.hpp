@@ -48,7 +48,6 @@ struct FoundDesigns {
   double seconds = 0.0;          ///< duration [s]
   /// With two objectives: fraction of the rectangle between the front's ends that the front dominates.
   double hypervolume = std::numeric_limits<double>::quiet_NaN();
-  bool engines = false;  ///< whether this build has pagmo and NLopt
 };
 
 /// Options of find_designs.
@@ -66,9 +65,9 @@ struct FindOptions {
 
 /// Searches the bounds of the spec's free parameters for the designs that reach its goals best.
 ///
-/// Starts with a dense Sobol' sample. From its best points it continues by pagmo's CMA-ES (for two objectives
-/// NSGA-II), by NLopt's SLSQP with exact derivatives, and by steps along discontinuities and goals that never
-/// cross them. Every design returned reaches every goal when it is solved alone.
+/// Starts with a dense Sobol' sample. From its best points it continues by NLopt's SLSQP with exact
+/// derivatives, and by random steps whose shape follows past successes. Then it steps along discontinuities
+/// and goals, and never crosses them. Every design returned reaches every goal when it is solved alone.
 /// @throws InputError for a spec without a free parameter, without an objective or with goals that contradict
 ///         each other, and as check_spec does; Stopped
 FoundDesigns find_designs(const Spec& spec, const FindOptions& options = {});

@@ -64,7 +64,7 @@ py::dict dict_of(const FoundDesigns& found, const Spec& spec) {
   });
   told["yield_"] = column_of(found, [](const FoundDesign& one) { return one.yield.value; });
   told["missed"] = missed, told["hypervolume"] = found.hypervolume;
-  told["evaluations"] = found.evaluations, told["seconds"] = found.seconds, told["engines"] = found.engines;
+  told["evaluations"] = found.evaluations, told["seconds"] = found.seconds;
   return told;
 }
 

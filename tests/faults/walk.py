@@ -104,7 +104,7 @@ def argv(words, folder):
     if words.startswith("EXPLORER"):
         return ["/usr/bin/python3", str(TOP / "analysis/explorer"), *shlex.split(words.format(folder))[1:]]
     if words.startswith("PYTHON"):
-        # Allocations of libraries that are being loaded (pagmo's) end the program by their own doing: later
+        # Allocations of libraries that are being loaded end the program by their own doing: later
         # ones count.
         script = (
             "import ctypes, os, sys, leapmap\nif 'FAULT_WAITS' in os.environ: "

@@ -40,8 +40,6 @@ class Found:
         Number of designs solved.
     seconds : float
         Duration [s].
-    engines : bool
-        Whether this build has pagmo and NLopt.
     """
     reached: bool
     parameters: dict
@@ -55,7 +53,6 @@ class Found:
     hypervolume: float
     evaluations: int
     seconds: float
-    engines: bool
 
     def __len__(self):
         return len(self.cliff_distance)
