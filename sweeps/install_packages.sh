@@ -18,13 +18,13 @@ if [ "${1:-main}" = docs ] || [ "${1:-main}" = all ]; then
   packages="$packages doxygen python3-sphinx python3-myst-parser python3-breathe furo codespell"
 fi
 if [ "${1:-main}" = tests ] || [ "${1:-main}" = all ]; then
-  packages="$packages libgtest-dev clang-format hdf5-tools netcdf-bin python3-scipy
+  packages="$packages libgtest-dev clang-format clang-tidy hdf5-tools netcdf-bin python3-scipy
     python3-openturns python3-pytest python3-netcdf4 python3-h5netcdf python3-selenium
     chromium chromium-driver poppler-utils parallel"
 fi
 if [ "${1:-main}" = all ]; then
   packages="$packages libbenchmark-dev clang libclang-rt-14-dev libomp-dev qemu-user slurm-wlm munge
-    firefox-esr clang-tidy"
+    firefox-esr"
 fi
 missing=""
 for package in $packages; do

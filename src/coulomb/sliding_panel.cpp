@@ -92,6 +92,8 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
   return nodes_at;
 }
 
+// One panel from end to end: its steps share some twenty arrays of nodes.
+// NOLINTBEGIN(readability-function-size)
 template <class S>
 void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                                       Panel& panel) const {
@@ -195,6 +197,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const Value excess = largest<Value>({spin_tail, time_tail, slip_tail}) / (Value(tolerance_) + noise);
   panel.excess = select(panel.indeterminate | panel.spin_vanishes, panel.excess, excess);
 }
+// NOLINTEND(readability-function-size)
 
 template <class S>
 auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
@@ -254,6 +257,7 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
   return inside;
 }
 
+// NOLINTBEGIN(readability-function-size)
 template <class S>
 void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration,
                                      Panel& panel) const {
@@ -344,6 +348,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
                                     grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
                    (tolerance_ + slide.rounding_at_end(at_end.pivot));
 }
+// NOLINTEND(readability-function-size)
 
 #ifdef LEAPMAP_KERNELS
 template class SlidingPanels<double>;

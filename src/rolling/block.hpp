@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -42,24 +43,25 @@ template <class T>
 struct Block {
   using S = ScalarOf<T>;
   static constexpr std::size_t most_designs = 1024;
+  static constexpr S none = std::numeric_limits<S>::quiet_NaN();
 
   /// The way of a design so far. Its first leg ends where it turns round, its second where it does again, its
   /// third where it set out: that is all there is to see. On each leg it is seen from the side where it rolls
   /// downhill (physics/parameters.hpp), so that angles grow and the spin is above zero.
   struct Found {
-    S turned_back;        ///< whole turns removed from the release angle; added back on output
-    S release, released;  ///< angle, as seen on the first leg, and vis viva of the release
-    S way;                ///< 1, or -1 where the leg is uphill
-    int leg;              ///< 1 to 3
-    bool turns;           ///< the leg ends in a turn, rather than at the runway's end
-    S turn;               ///< the angle of the leg's end, if it turns
-    S reach;              ///< from the release to where it turned first
-    S first_angle,
-        jump_angle;     ///< of the lift-offs so far: the first one, and the last one on this leg or NaN
-    bool first_on_leg;  ///< the first one is on this leg, or there is none yet
-    S first_time;       ///< else its time
-    S jump_time;        ///< of the jump, from where the design set out, if it was asked for
-    S travelled;        ///< before it set out, as seen on the first leg
+    S turned_back;             ///< whole turns removed from the release angle; added back on output
+    S release, released;       ///< angle, as seen on the first leg, and vis viva of the release
+    S way;                     ///< 1, or -1 where the leg is uphill
+    S travelled;               ///< before it set out, as seen on the first leg
+    int leg = 1;               ///< 1 to 3
+    bool turns = false;        ///< the leg ends in a turn, rather than at the runway's end
+    S turn = S(0);             ///< the angle of the leg's end, if it turns
+    S reach = S(0);            ///< from the release to where it turned first
+    S first_angle = S(0);      ///< of the first lift-off
+    S jump_angle = none;       ///< of the last one on this leg; NaN: there is none
+    bool first_on_leg = true;  ///< the first one is on this leg, or there is none yet
+    S first_time = S(0);       ///< else its time
+    S jump_time = none;        ///< of the jump, from where the design set out, if it was asked for
 
     /// Whether the leg ends where the design set out: from rest it turns there a second time.
     bool returns() const { return leg == 3 || (leg == 2 && turns && released == S(0)); }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "rolling/leg.hpp"
 
@@ -59,15 +58,6 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
                              .release = releases[i],
                              .released = released[i],
                              .way = ways[i],
-                             .leg = 1,
-                             .turns = false,
-                             .turn = 0,
-                             .reach = 0,
-                             .first_angle = 0,
-                             .jump_angle = std::numeric_limits<S>::quiet_NaN(),
-                             .first_on_leg = true,
-                             .first_time = 0,
-                             .jump_time = std::numeric_limits<S>::quiet_NaN(),
                              .travelled = travels[i]};
       if (in_the_air >> i & 1u) {
         if (landed.empty())

@@ -4,7 +4,6 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <tuple>
 
 #include "physics/flight_search.hpp"
 #include "rolling/exact.hpp"
@@ -35,8 +34,8 @@ struct Rule {
 /// the paper, which ends at the first sample at or below the plane once the event is armed, the lift-off
 /// being the first of all. A flight that has not risen by then has no height.
 Flight<double> simulate(const Subject& subject, const Rule& rule) {
-  const auto& [hoop, lift_off] = std::tie(subject.hoop, subject.lift_off);
-  const double phi = lift_off.angle, w = lift_off.spin;
+  const Hoop<double>& hoop = subject.hoop;
+  const double phi = subject.lift_off.angle, w = subject.lift_off.spin;
   const auto height = [&](double t) {
     return -hoop.rho * std::cos(phi) + hoop.rho * std::sin(phi) * w * t - hoop.cos_slope * t * t / 2.0 +
            hoop.rho * std::cos(phi + w * t);

@@ -83,7 +83,7 @@ Seen simulate(const Work& work, std::size_t threads, std::size_t tiles) {
   return {took.count() / slower, writing / took, static_cast<std::size_t>(most)};
 }
 
-void tell(const Work& work) {
+void report(const Work& work) {
   fmt::print("{}: {:.3g} designs/s and core, the writer {:.3g} designs/s, which {:.0f} cores fill\n",
              work.name, work.solved, work.written, work.written / work.solved);
   for (const std::size_t threads : {8u, 32u, 64u, 128u}) {
@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
   if (words.size() == 4) {
     const double solved = std::atof(words[1]), written = std::atof(words[2]), bytes = std::atof(words[3]);
     if (solved > 0.0 && written > 0.0 && bytes > 0.0) {
-      leapmap::tell({"asked", solved, written, static_cast<std::size_t>(bytes), 0.5});
+      leapmap::report({"asked", solved, written, static_cast<std::size_t>(bytes), 0.5});
       return 0;
     }
   }
@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
                "writer, bytes of a tile\n");
     return 2;
   }
-  leapmap::tell({"never slip, three fields in f4", 3.6e6, 1.35e8, 56'000, 0.3});
-  leapmap::tell({"slip, three fields in f8", 2.0e5, 1.35e8, 300'000, 1.0});
+  leapmap::report({"never slip, three fields in f4", 3.6e6, 1.35e8, 56'000, 0.3});
+  leapmap::report({"slip, three fields in f8", 2.0e5, 1.35e8, 300'000, 1.0});
   return 0;
 }
