@@ -38,8 +38,11 @@ function noteAddress() {
 /** first: the page has only just begun, and with this address. */
 function readAddress(first = false) {
   address.reading = true;
-  try { for (const part of address.parts) part.read(addressWords(), first);
-    } finally { address.reading = false; }
+  try {
+    for (const part of address.parts) part.read(addressWords(), first);
+  } finally {
+    address.reading = false;
+  }
 }
 
 function showSteps() {
@@ -60,8 +63,8 @@ function addressButtons() {
   element("undo").addEventListener("click", () => history.back());
   element("redo").addEventListener("click", () => history.forward());
   document.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase()
-        !== "z" || event.target.matches("input[type=number], input[type=text]")) return;
+    const isUndo = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z";
+    if (!isUndo || event.target.matches("input[type=number], input[type=text]")) return;
     if (event.shiftKey ? !element("redo").disabled : !element("undo").disabled) { event.preventDefault();
         event.shiftKey ? history.forward() : history.back(); }
   });

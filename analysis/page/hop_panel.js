@@ -186,9 +186,14 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     if (wanted.length === 0) return;
     let begun = performance.now();
     for (const each of wanted) {
-      try { found.push({ ...each, story: solver.solve(each.design, map.slips, map.tolerance, 0, ghostsAsked())
-        }); } catch (error) { element("ghosts-told").textContent = "";
-        notice(`A hoop beside cannot be shown: ${error.message ?? error}`); return; }
+      try {
+        const story = solver.solve(each.design, map.slips, map.tolerance, 0, ghostsAsked());
+        found.push({ ...each, story });
+      } catch (error) {
+        element("ghosts-told").textContent = "";
+        notice(`A hoop beside cannot be shown: ${error.message ?? error}`);
+        return;
+      }
       if (performance.now() - begun < SLICE) continue;
       await new Promise((go) => { setTimeout(go); });
       if (mine !== now.haunting) return;  // others are wanted by now

@@ -56,7 +56,7 @@ function drawGhosts(context, ghosts, time, turned, px, scale) {
 function drawForces(context, design, motion, time, turned, px, scale) {
   const R = design.radius, x = valueAt(motion, "x", time), y = valueAt(motion, "y", time),
     phi = valueAt(motion, "phi", time), { low } = sampleAt(motion, time);
-  // 1: a weight
+  // At least the weight, which is 1.
   const most = motion.normal_force.reduce((a, b) => Math.max(a, b), 1),
     length = Math.min(0.9 * R, 2.4 * R / Math.sqrt(most)), along = (force) =>
     length * Math.sign(force) * Math.sqrt(Math.abs(force));

@@ -62,7 +62,7 @@ function madeWanted(map) {
   const { made } = map.asked, isSame = (wanted) => JSON.stringify(wanted) === JSON.stringify(made),
     whole = madeAsked(map, map.hoopGoals());
   if (isSame(whole)) return made;
-  // which goals that change leave as it is
+  // Without the yield: goals that change leave what is asked as it is.
   const wanted = map.wanted().some(({ name }) => name === "yield") ? whole : madeAsked(map, [], false);
   return isSame(wanted) ? made : wanted;
 }

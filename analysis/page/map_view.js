@@ -81,7 +81,7 @@ function mapView(canvas, map, onPoint, onPick) {
   /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where
       the lines of sub-threshold lift-offs run. */
   function colouring() {
-    // which what fails is dimmed towards
+    // What fails is dimmed towards the ground.
     const { table, place } = view.field, own = isOfFirstJump(view.field), back = rgbOf(tones.ground);
     const word = (rgb, dark, dim) => rgb.map((v, at) => back[at] + (v * dark - back[at]) * dim)
       .reduceRight((all, v) => all << 8 | v, 255) >>> 0;
@@ -145,17 +145,16 @@ function mapView(canvas, map, onPoint, onPick) {
   function isolinesHere() {
     if (isCrisp) {
       const step = 2, { x0, y0, w, h } = box, at = (i, j) => step * j * w + step * i;
-      const near = (i, j) =>
-        pixels.torn[at(i, j)] | pixels.torn[at(i + 1, j)] | pixels.torn[at(i, j + 1)] | pixels.torn[at(i + 1,
-        j + 1)];
+      const torn = (i, j) => pixels.torn[at(i, j)];
+      const near = (i, j) => torn(i, j) | torn(i + 1, j) | torn(i, j + 1) | torn(i + 1, j + 1);
       const centre = (first) => (i) => first + step * i + 0.5;
       const plane = planeOf((i, j) => pixels.value[at(i, j)], Math.ceil(w / step), Math.ceil(h / step));
       return (level) => isolines(plane, level, centre(x0), centre(y0), near);
     }
     const bitX = 1 << view.x, bitY = 1 << view.y;
+    const has = (i, j, bits) => (cliffs.values[offset(i, j)] & bits) !== 0;
     const torn = (i, j) => cliffs !== undefined && isOfFirstJump(view.field) &&
-      ((cliffs.values[offset(i, j)] & (bitX | bitY)) !== 0 || (cliffs.values[offset(i + 1, j)] & bitY)
-        !== 0 || (cliffs.values[offset(i, j + 1)] & bitX) !== 0);
+      (has(i, j, bitX | bitY) || has(i + 1, j, bitY) || has(i, j + 1, bitX));
     const plane = planeOf((i, j) => view.field.values[offset(i, j)], sx.n, sy.n);
     return (level) => isolines(plane, level, sx.centre, sy.centre, torn);
   }

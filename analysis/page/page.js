@@ -462,9 +462,9 @@ function liveFrom(map) {
   if (map.spreads.length > 0 && map.seed !== 1) words.set("seed", map.seed);
   for (const { field, least, most } of map.goals) {
     if (field === "spurious_first_jump" && least === "first_lift_off_is_the_jump") words.set("real", "");
-    // what any other goal takes, and what counts where there is none
+    // What any other goal takes, and what counts where there is none.
     else if (field === "status" && least === "jumped") continue;
-    // which is said to be left out
+    // A live map says that it leaves such a goal out.
     else if (typeof (least ?? most) === "string") words.append("goal", `${field}:is:${least}`);
     else for (const [sign, bound] of [["least", least], ["most", most]]) if (bound !== null)
       words.append("goal", `${field}:${sign}:${bound}`);

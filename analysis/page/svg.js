@@ -47,8 +47,8 @@ function svgCanvas(canvas) {
       group(`clip-path="url(#clip${clips})"`); },
     stroke() { if (path) parts.push(`<path d="${path}" ${stroke()}/>`); },
     fill() { if (path) parts.push(`<path d="${path}" ${fill()}/>`); },
-    strokeRect(x, y, w,
-      h) { parts.push(`<rect x="${number(x)}" y="${number(y)}" width="${number(w)}" height="${number(h)}" ` +
+    strokeRect(x, y, w, h) {
+      parts.push(`<rect x="${number(x)}" y="${number(y)}" width="${number(w)}" height="${number(h)}" ` +
       `${stroke()}/>`); },
     fillRect(x, y, w, h) {
       parts.push(`<rect x="${number(x)}" y="${number(y)}" width="${number(w)}" height="${number(h)}" ` +

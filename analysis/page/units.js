@@ -32,7 +32,8 @@ function shownIn(unit, { radius: R, gravity: g }) {
   const second = Math.sqrt(R / g), rows = units.pure
     ? { s: [1 / second, "√(R/g)"], "m/s": [second / R, "√(g R)"] }
     : { "hoop diameters": [2000 * R, "mm"], diameters: [2000 * R, "mm"], R: [1000 * R, "mm"],
-      "√(g/R)": [1 / second, "rad/s"], rad: [180 / Math.PI, "°"],
+      "√(g/R)": [1 / second, "rad/s"], rad: [180 / Math.PI, "°"], "√(g R)": [R / second, "m/s"],
+      "(m + mₚ) √(g R)": [1000 * units.mass * R / second, "mN s"],
       "(m + mₚ) g R": [1000 * units.mass * g * R, "mJ"] };
   return rows[unit] ?? [1, unit];
 }

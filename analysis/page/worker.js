@@ -52,6 +52,7 @@ onmessage = async ({ data }) => {
     }
     const rows = data.ends ? bisected(data) : data.asked ? solvedAsAsked(data) : solvedAsMade(data);
     postMessage({ generation: data.generation, rows }, [rows.buffer]);
-  // of an async function onerror hears nothing
-  } catch (error) { postMessage({ error: String(error.message ?? error), generation: data.generation }); }
+  } catch (error) {  // of an async function onerror hears nothing
+    postMessage({ error: String(error.message ?? error), generation: data.generation });
+  }
 };

@@ -55,8 +55,10 @@ TableColumn axis_column(const Axis& axis, const std::string& prefix, std::vector
           std::move(values)};
 }
 
-/// Every cliff a row.
-Table cliffs_table(const Boundaries& found) {
+using Places = std::vector<std::vector<double>>;
+
+/// Every cliff a row. places: of each.
+Table cliffs_table(const Boundaries& found, const Places& places) {
   Table cliffs{numbered_rows(found.cliffs.size())};
   cliffs[0].name = "cliff";
   std::vector<std::string> axis_names;
@@ -68,7 +70,7 @@ Table cliffs_table(const Boundaries& found) {
   };
   for (std::size_t k = 0; k < found.axes.size(); ++k) {
     std::vector<double> values;
-    for (const Cliff& cliff : found.cliffs) values.push_back(place_of(found, cliff)[k]);
+    for (const std::vector<double>& place : places) values.push_back(place[k]);
     cliffs.push_back(axis_column(found.axes[k], "", std::move(values)));
   }
   add_numbers("along",
@@ -97,7 +99,7 @@ Table cliffs_table(const Boundaries& found) {
 }
 
 /// Every place of every curve a row.
-Table curves_table(const Boundaries& found) {
+Table curves_table(const Boundaries& found, const Places& places) {
   std::vector<double> curve, number, kinds;
   std::vector<std::vector<double>> at(found.axes.size());
   const auto add = [&](std::size_t i, double cliff, const std::vector<double>& place) {
@@ -106,15 +108,14 @@ Table curves_table(const Boundaries& found) {
     for (std::size_t k = 0; k < at.size(); ++k) at[k].push_back(place[k]);
   };
   const auto meeting = [&](std::size_t i, const std::vector<double>& there, std::size_t beside) {
-    std::vector<double> place = place_of(found, found.cliffs[beside]);
+    std::vector<double> place = places[beside];
     for (std::size_t k = 0; k < 2; ++k) place[found.plane[k]] = there[k];
     add(i, -1.0, place);
   };
   for (std::size_t i = 0; i < found.curves.size(); ++i) {
     const CliffCurve& one = found.curves[i];
     if (!one.meeting_from.empty()) meeting(i, one.meeting_from, one.cliffs.front());
-    for (const std::size_t cliff : one.cliffs)
-      add(i, static_cast<double>(cliff), place_of(found, found.cliffs[cliff]));
+    for (const std::size_t cliff : one.cliffs) add(i, static_cast<double>(cliff), places[cliff]);
     if (!one.meeting_to.empty()) meeting(i, one.meeting_to, one.cliffs.back());
   }
   Table curves{numbered_rows(curve.size())};
@@ -130,8 +131,10 @@ Table curves_table(const Boundaries& found) {
 }
 
 std::vector<Table> tables_of(const Boundaries& found) {
-  if (found.curves.empty()) return {cliffs_table(found)};
-  return {cliffs_table(found), curves_table(found)};
+  Places places;
+  for (const Cliff& cliff : found.cliffs) places.push_back(place_of(found, cliff));
+  if (found.curves.empty()) return {cliffs_table(found, places)};
+  return {cliffs_table(found, places), curves_table(found, places)};
 }
 
 constexpr std::string_view csv_head = "curve,kind,along";

@@ -81,7 +81,7 @@ std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b)
   if (!same_flags(a, b))
     return fmt::format("Check: {} DISAGREES: {}, {} lift-offs.", by, name_of(b.status), b.candidates);
   if (a.status != Status::jumped) return fmt::format("Check: {} agrees.", by);
-  Spec all = spec;  // hop shows what maps hold only if it is named
+  Spec all = spec;  // hop also shows fields that maps hold only if named
   for (const Field* field : fields_of(spec.scene)) all.output.fields.emplace_back(field->name);
   AuditReport report;
   Auditor(all, 1).look_at({0, a}, report);
@@ -123,8 +123,7 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
     say(".\n");
     const double speed = std::sqrt(spec.scene.gravity * spec.scene.radius);
     say("Flies {:.6g} R ({:.4g} m) along the plane; lands with {:.4g} m/s towards it and {:.4g} m/s along "
-        "it, "
-        "impulse {:.4g} (m + m_p) sqrt(g R), {:.4g} (m + m_p) g R lost.\n",
+        "it, impulse {:.4g} (m + m_p) sqrt(g R), {:.4g} (m + m_p) g R lost.\n",
         jump.jump_range, jump.jump_range * spec.scene.radius, jump.landing_normal_speed * speed,
         jump.landing_tangential_speed * speed, jump.landing_impulse, jump.landing_energy_lost);
     if (std::isfinite(jump.energy_lost)) {

@@ -109,7 +109,7 @@ void print_place(const Spec& original, const std::string& at) {
   one.output = {};
   check_scatter(one);  // a percentage may be one of nothing just here
   Outcome outcome;
-  make_solver(request_of(one))({&one.design, 1}, {&outcome, 1});
+  make_solver(request_of_outcomes(one))({&one.design, 1}, {&outcome, 1});
   print_outcome(outcome, one.scene);
   if (!original.scatter.spreads.empty()) print_made(original, one.design);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);

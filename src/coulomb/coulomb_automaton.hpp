@@ -126,10 +126,7 @@ class PhaseMachine {
     if (!jumps && !(std::abs(at_.travel) < runway_)) return ended_as(Status::no_jump);
     const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
-    if (jumps)
-      put_measures(
-          measures_of(hoop_, S(at_.travel - left_at), at_, landing), S(1),
-          [&](double Outcome::*kept, const S& value) { outcome_.*kept = static_cast<double>(value); });
+    if (jumps) keep_measures(measures_of(hoop_, S(at_.travel - left_at), at_, landing), outcome_);
     at_.spin = landing.after.spin, at_.slip = landing.after.slip;
     at_.normal = landing.after.normal;
     if (jumps) {

@@ -209,7 +209,7 @@ bool Explained::film_residuals(std::span<const double> at, std::span<const std::
 
 bool Explained::event_residuals(std::span<const double> at, std::span<double> residuals,
                                 std::span<double> jacobian) const {
-  Request request = request_of(spec_);
+  Request request = request_of_outcomes(spec_);
   if (!jacobian.empty()) {
     std::vector<OutcomeNumber> of;
     for (const MeasuredEvent& event : measured_.events)
@@ -262,7 +262,7 @@ void Explained::coarse_sums(std::span<const std::vector<double>> places, std::sp
   std::vector<Design> designs;
   for (const std::vector<double>& place : places) designs.push_back(design_at(place));
   std::vector<Outcome> outcomes(designs.size());
-  make_solver(request_of(spec_))(designs, outcomes);
+  make_solver(request_of_outcomes(spec_))(designs, outcomes);
   for (std::size_t i = 0; i < places.size(); ++i) {
     double sum = 0.0;
     for (const MeasuredEvent& event : measured_.events) {

@@ -182,8 +182,8 @@ std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOp
     fronts.add(best);
   }
   fronts.thin(effort.front);
-  steps.done(effort.starts / 4);
   refine(judge, fronts, effort.front, effort.sample / 32, options.seed);
+  steps.done(effort.starts + effort.improved);
   Front front = fronts.of_all();
   front.thin(effort.told);
   hypervolume = front.hypervolume();
@@ -252,7 +252,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
   const std::vector<GoalCheck> goals = goal_checks(question.one.goals);
   const bool made = judge.makes_hoops() && !question.one.goals.empty();
   const Spec grid = question.grid();
-  const Request all = request_of(question.one);
+  const Request all = request_of_outcomes(question.one);
   std::vector<FoundDesign> told(places.size());
   std::vector<char> stays(places.size(), 1);
   parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {

@@ -67,7 +67,8 @@ Size size_of(const Field& field, const Spec& spec) {
     return {field.name == "dip" ? -highest : 0.0, field.name == "dip" ? 0.0 : highest, "hoop diameters"};
   if (field.unit == "rad") return {-release - farthest, release + farthest, "radians"};
   if (field.name.ends_with("_spin")) return {-fastest, fastest, "sqrt(g/R)"};
-  if (field.name.ends_with("_distance")) return {-farthest, farthest, "hoop radii"};
+  if (field.name.ends_with("_distance") || field.name == "jump_range")
+    return {-farthest, farthest, "hoop radii"};
   return {-farthest * (1.0 + torque) - fastest, farthest * (1.0 + torque) + fastest, field.unit};
 }
 

@@ -89,11 +89,12 @@ struct Outcome {
   double first_jump_height = none;             ///< apex of the first lift-off [hoop diameters]
   double first_jump_time = none;               ///< from release to the first lift-off [s]
   double jump_range = none;                    ///< travel of the centre from lift-off to landing [R]
-  double landing_normal_speed =
-      none;  ///< of the contact point before the landing, towards the plane [sqrt(g R)]
-  double landing_tangential_speed = none;  ///< the same along the plane, positive downhill
-  double landing_impulse = none;           ///< normal, of the whole landing [(m + m_p) sqrt(g R)]
-  double landing_energy_lost = none;       ///< kinetic energy lost in the landing [(m + m_p) g R]
+  double landing_normal_speed = none;          ///< of the contact point, towards the plane [sqrt(g R)]
+  double landing_tangential_speed = none;      ///< the same along the plane, positive downhill
+  /// Normal, of the whole landing [(m + m_p) sqrt(g R)]; below zero without slip: the plane would have to
+  /// pull.
+  double landing_impulse = none;
+  double landing_energy_lost = none;  ///< kinetic energy lost in the landing [(m + m_p) g R]
   // With Coulomb friction.
   std::uint64_t phase_sequence = 0;  ///< two bits a phase, the first lowest, up to 32; see Phase
   double slip_distance = none;       ///< slid until the jump, or the end [R]; NaN if the hoop rocks to rest

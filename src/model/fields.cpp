@@ -29,7 +29,7 @@ Field needing(bool Wanted::*what, Field field) {
 /// A measure of the jump's landing: told wherever one looks, but stored only if it is named.
 Field of_landing(std::string_view name, double Outcome::*member, std::string_view meaning) {
   Field field{name, Quantity{member}, "1", meaning, 12};
-  field.unnamed = Unnamed::told;
+  field.by_default = ByDefault::told;
   return needing(&Wanted::landing, field);
 }
 
@@ -94,7 +94,8 @@ const std::array fields{
                "velocity of the contact point along the plane just before the landing, positive downhill, in "
                "sqrt(g R)"),
     of_landing("landing_impulse", &Outcome::landing_impulse,
-               "normal impulse of the whole landing, in (m + m_p) sqrt(g R)"),
+               "normal impulse of the whole landing, in (m + m_p) sqrt(g R); below zero without slip: the "
+               "plane would have to pull"),
     of_landing("landing_energy_lost", &Outcome::landing_energy_lost,
                "kinetic energy lost in the landing, in (m + m_p) g R"),
     Field{"jumps",
@@ -112,7 +113,7 @@ const std::array fields{
           "1", "how the sequence of jumps ended; jumped: all scene.jumps were made", 9, std::nullopt, true},
     Field{"sequence_condition", Quantity{&Outcome::sequence_condition}, "1",
           "growth factor, up to the last landing, of errors at the release and at every landing", 10,
-          std::nullopt, true, false, Unnamed::left_out},
+          std::nullopt, true, false, ByDefault::left_out},
     Field{"gait_period",
           Code{[](const Outcome& o) { return o.gait_period; },
                [](Outcome& o, std::uint8_t code) { o.gait_period = code; },
@@ -201,7 +202,7 @@ std::optional<OutcomeNumber> number_of(const Field& field) {
 }
 
 bool can_be_differentiated(const Field& field) {
-  return number_of(field) && !field.of_gait && field.unnamed != Unnamed::left_out;
+  return number_of(field) && !field.of_gait && field.by_default != ByDefault::left_out;
 }
 
 namespace {

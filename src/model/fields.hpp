@@ -66,7 +66,7 @@ struct OfMade {
 
 /// Where a field is found if nobody names the fields wanted: in maps and in what solve and hop tell; in the
 /// latter only; or nowhere, as it costs too much.
-enum class Unnamed : std::uint8_t { stored, told, left_out };
+enum class ByDefault : std::uint8_t { stored, told, left_out };
 
 struct Field {
   std::string_view name;
@@ -77,7 +77,7 @@ struct Field {
   std::optional<Friction> only_of{};  ///< the one model that fills it; unset: every model
   bool of_sequence = false;           ///< of scenes with more jumps than one
   bool of_gait = false;               ///< of scenes that look for gaits
-  Unnamed unnamed = Unnamed::stored;
+  ByDefault by_default = ByDefault::stored;
   bool Wanted::*needs = nullptr;  ///< what a solver has to be asked for; nullptr: nothing
 };
 

@@ -51,7 +51,7 @@ Columns::Columns(const std::vector<std::string>& fields, const Scene& scene,
       throw InputError(fmt::format("fields = {}: is not a field of this model{}; allowed: {}", name,
                                    did_you_mean(name, known), fmt::join(known, ", ")));
   for (const Field* field : there) {
-    if (fields.empty() ? field->unnamed == Unnamed::left_out
+    if (fields.empty() ? field->by_default == ByDefault::left_out
                        : std::ranges::find(fields, field->name) == fields.end())
       continue;
     py::array array(type_of(*field), shape);

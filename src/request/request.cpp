@@ -64,7 +64,7 @@ Request request_of(const Spec& spec, std::vector<const Field*> columns) {
 
 Request request_of_outcomes(const Spec& spec) {
   std::vector<const Field*> columns = fields_of(spec.scene);
-  std::erase_if(columns, [](const Field* field) { return field->unnamed == Unnamed::left_out; });
+  std::erase_if(columns, [](const Field* field) { return field->by_default == ByDefault::left_out; });
   return request_of(spec, std::move(columns));
 }
 

@@ -53,6 +53,7 @@ RollingGradients::RollingGradients(double tolerance, const Wanted& wanted, const
       solver_(tolerance,
               [&] {
                 Wanted all = wanted;
+                all.landing = all.landing || of_landing_;
                 all.descent = all.descent || of_landing_ || gradients.wants(&Outcome::flight_time);
                 return all;
               }()),

@@ -118,9 +118,14 @@ void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> ou
       outcomes[index[i]].flight_time = static_cast<double>(landings[i]);
       outcomes[index[i]].dip = static_cast<double>(dips[i]);
     }
+    if (states.empty() && !measures) continue;
+    const ContactState<W> end =
+        after_flight(roll.hoop, ContactState<W>{.angle = off.angle, .spin = off.spin}, flight.flight_time);
+    const Landing<W> landing =
+        hold(roll.hoop, trig(end.angle), ContactVelocity<W>{end.slip, end.normal, end.spin});
     if (measures) {
       const W way = gathered<W>([&](std::size_t i) { return block.found[index[i]].way; });
-      put_measures(measures_of(roll.hoop, off.angle, off.spin, flight.flight_time), way,
+      put_measures(measures_of(roll.hoop, end.travel, end, landing), way,
                    [&](double Outcome::*kept, const W& value) {
                      const auto numbers = lanes_of(value);
                      for (std::size_t i = 0; i < count; ++i)
@@ -128,11 +133,8 @@ void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> ou
                    });
     }
     if (states.empty()) continue;
-    const ContactState<W> end =
-        after_flight(roll.hoop, ContactState<W>{.angle = off.angle, .spin = off.spin}, flight.flight_time);
-    const W spin = spin_after_holding(roll.hoop, trig(end.angle), end.slip + end.spin, end.normal, end.spin);
     const auto lift_offs = lanes_of(off.angle), angles = lanes_of(end.angle), travels = lanes_of(end.travel),
-               spins = lanes_of(spin), turned = lanes_of(end.turned_in_flight);
+               spins = lanes_of(landing.after.spin), turned = lanes_of(end.turned_in_flight);
     for (std::size_t i = 0; i < count; ++i) {
       const auto& found = block.found[index[i]];
       auto& state = states[index[i]];

@@ -94,8 +94,8 @@ std::string text_of(const Spec& original, bool spaced) {
   };
   for (const Option& option : spec_options()) {
     if (option.section == "gait" && spec.scene.settle == 0) continue;
-    if (option.key ==
-        "points")  // axes after all numbers of the section, in the order of the map's dimensions
+    // Axes come after all numbers of the section, in the order of the map's dimensions.
+    if (option.key == "points")
       for (const Axis& axis : spec.axes) line("design", axis.key, text_of(axis, spaced));
     const bool parameter = std::holds_alternative<ParameterSlot>(option.slot);
     if (parameter && std::ranges::find(spec.axes, option.key, &Axis::key) != spec.axes.end()) continue;
@@ -130,7 +130,7 @@ std::string resolved_text(const Spec& spec) { return text_of(spec, false); }
 std::string readable_text(const Spec& spec) { return text_of(spec, true); }
 
 bool stores(const Output& output, const Field& field) {
-  return output.fields.empty() ? field.unnamed == Unnamed::stored
+  return output.fields.empty() ? field.by_default == ByDefault::stored
                                : std::ranges::find(output.fields, field.name) != output.fields.end();
 }
 

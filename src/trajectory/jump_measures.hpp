@@ -11,7 +11,7 @@
 
 namespace leapmap {
 
-/// Along the plane and about the axis positive downhill.
+/// Along the plane positive downhill.
 template <class T>
 struct JumpMeasures {
   T range;             ///< travel of the centre from lift-off to landing [R]
@@ -77,8 +77,10 @@ void put_measures(const JumpMeasures<T>& measures, const T& way, const Put& put)
     put(row.kept, row.has_direction ? T(way * (measures.*row.number)) : measures.*row.number);
 }
 
-inline void keep_measures(const JumpMeasures<double>& measures, Outcome& outcome) {
-  put_measures(measures, 1.0, [&](double Outcome::*kept, double value) { outcome.*kept = value; });
+template <class S>
+void keep_measures(const JumpMeasures<S>& measures, Outcome& outcome) {
+  put_measures(measures, S(1),
+               [&](double Outcome::*kept, const S& value) { outcome.*kept = static_cast<double>(value); });
 }
 
 }  // namespace leapmap

@@ -203,6 +203,14 @@ TEST(Audit, LooksAtEveryQuantity) {
         report_on({"friction=coulomb"}, [&](Outcome& o) { o.*member = o.*member * (1.0 + 1e-7) + 1e-7; });
     EXPECT_EQ(report.beyond_tolerance, 1u);
   }
+  for (const Field& field : map_fields()) {
+    if (field.by_default != ByDefault::told) continue;
+    const auto member = std::get<Quantity>(field.source).member;
+    const AuditReport report =
+        report_on({"friction=coulomb", fmt::format("fields=[\"status\",\"{}\"]", field.name)},
+                  [&](Outcome& o) { o.*member = o.*member * (1.0 + 1e-7) + 1e-7; });
+    EXPECT_EQ(report.beyond_tolerance, 1u) << field.name;
+  }
 }
 
 /// The solver recognises a hoop that rocks to rest long before it rests. What the hoop has slid until then is

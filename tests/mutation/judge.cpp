@@ -12,6 +12,7 @@
 #include "referee/referee.hpp"
 #include "rolling/exact.hpp"
 #include "rolling/rolling_integration.hpp"
+#include "trajectory/jump_measures.hpp"
 
 namespace leapmap {
 namespace {
@@ -61,6 +62,7 @@ double difference(const Outcome& ours, const Outcome& right, double second) {
                             &Outcome::jump_angle, &Outcome::jump_spin, &Outcome::jump_distance,
                             &Outcome::slip_distance, &Outcome::landing_spin, &Outcome::energy_lost})
     look(member, 1.0);
+  for (const auto& row : measure_rows<double>) look(row.kept, 1.0);
   return largest;
 }
 

@@ -96,6 +96,10 @@ MUTATIONS = {
     "flight, x' at landing": ("flight", "slip + spin + hoop.sin_slope * t",
                               f"slip + spin + {OFF} * hoop.sin_slope * t"),
     "near Painleve's edge, pivot": ("painleve", "rho * (T(S(2)) * m *", "rho * (T(S(2.002)) * m *"),
+    "landing, speed": ("../trajectory/jump_measures", "return {range, -before.normal,",
+                       f"return {{range, -{OFF} * before.normal,"),
+    "landing, held impulse": ("landing", "hoop.rho * phi.sin * gained - before.normal",
+                              f"{OFF} * hoop.rho * phi.sin * gained - before.normal"),
     "radius and gravity": ("../leapmap/scene", "std::sqrt(scene.radius / scene.gravity)",
                            "1.001 * std::sqrt(scene.radius / scene.gravity)"),
 }
