@@ -41,7 +41,7 @@ Difference difference(const Outcome& ours, const Outcome& theirs, const Output& 
   for (const Field& field : map_fields()) {
     const auto* quantity = std::get_if<Quantity>(&field.source);
     if (!quantity || field.of_sequence || field.of_gait) continue;  // judged elsewhere
-    // Nobody asked a sweep for what is only told, so that it may or may not have it.
+    // A sweep need not compute what its map does not hold.
     if (field.by_default != ByDefault::stored && !stores(output, field)) continue;
     const double a = ours.*quantity->member, b = theirs.*quantity->member;
     if (std::isnan(a) && std::isnan(b)) continue;
