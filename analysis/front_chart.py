@@ -2,17 +2,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draw the Pareto front of a design problem with two objectives, and a cloud of designs that it dominates.
 
+The front is read from the map that leapmap design -o wrote; of a spec it is searched for.
 Colours show the number of the lift-off that jumps. Three designs are marked, each with the hoop in its jump.
 A gap: neighbours on the front are far apart within the bounds, or another lift-off jumps. Needs leapmap's
 Python module."""
 import textwrap
+from dataclasses import dataclass
 
+import h5py
 import numpy as np
 
 import looks
 import planes
 import style
-from read_map import NotAMap
+from read_map import NotAMap, read_map
 from style import plt
 
 CLOUD, SHOWN = 200_000, 15_000
@@ -35,12 +38,53 @@ def called_out(x, y):
     return sorted({0, int(np.argmax(np.abs(u - v))), len(x) - 1})
 
 
-def pieces(problem, found):
+@dataclass
+class Front:
+    """Designs in the order of the first objective. parameters: those that were free; fixed: the others and
+    the scene, as leapmap.trace takes them; bounds: of the parameters, low and high of each."""
+    objectives: list
+    parameters: dict
+    values: dict
+    candidates: np.ndarray
+    jump_height: np.ndarray
+    fixed: dict
+    bounds: list
+
+
+def searched(path, problem, seed):
+    """The front of a design problem, which is searched for."""
+    found = style.leapmap_module().design(path, seed=seed)
+    if not found.reached:
+        raise NotAMap(
+            f"{path}: no design within the bounds reaches the goals; leapmap design shows the nearest miss")
+    return Front(problem.objectives, {n: found.parameters[n] for n in problem.names}, found.objectives,
+                 found.outcomes.candidates, found.outcomes.jump_height, problem.fixed, problem.bounds)
+
+
+def stored(path):
+    """The front that leapmap design -o wrote."""
+    m = read_map(path)
+    spec, design = m.spec(), m.fields
+    goal, scene = spec.get("goal", {}), spec["scene"]
+    objectives = [*goal.get("maximize", ()), *goal.get("minimize", ())]
+    if list(m.dims) != ["design"] or len(objectives) != 2:
+        raise NotAMap(f"{path}: is no Pareto front; allowed: a map that leapmap design -o wrote for two "
+                      "objectives, or a spec of two")
+    columns = {n: design[n] for n in looks.PARAMETERS if n in design}
+    free = {n: v for n, v in columns.items() if np.ptp(v) > 0 or n in objectives}
+    of_contact = ("rest_speed", ) if m.slips else ()
+    fixed = {n: scene[n] for n in ("friction", "runway", "hop_height", "radius", "gravity", *of_contact)}
+    fixed |= {n: float(v[0]) for n, v in columns.items() if n not in free}
+    return Front(objectives, free, {n: design[n] for n in objectives}, design["candidates"],
+                 design["jump_height"], fixed, [(v.min(), v.max()) for v in free.values()])
+
+
+def pieces(front):
     """The front cut where it has a gap: slices."""
-    low, high = np.array(problem.bounds).T
-    places = (np.stack([found.parameters[n] for n in problem.names], axis=1) - low) / (high - low)
+    low, high = np.array(front.bounds).T
+    places = (np.stack(list(front.parameters.values()), axis=1) - low) / np.where(high > low, high - low, 1)
     far = np.abs(np.diff(places, axis=0)).max(axis=1) > 0.05
-    other = np.diff(found.outcomes.candidates.astype(int)) != 0
+    other = np.diff(front.candidates.astype(int)) != 0
     ends = [0, *(np.flatnonzero(far | other) + 1), len(places)]
     return [slice(a, b) for a, b in zip(ends, ends[1:])]
 
@@ -67,48 +111,62 @@ def draw_hoop(axis, leapmap, design, fixed, colour):
     axis.axis("off")
 
 
-def chart(path, seed):
-    leapmap = style.leapmap_module()
-    problem = leapmap.DesignProblem(path)
-    if len(problem.objectives) != 2:
-        raise NotAMap(f"{path}: has {len(problem.objectives)} objectives; allowed: two")
-    found = leapmap.design(path, seed=seed)
-    if not found.reached:
-        raise NotAMap(
-            f"{path}: no design within the bounds reaches the goals; leapmap design shows the nearest miss")
-    first, second = problem.objectives
-    x, y = shown(second, found.objectives[second]), shown(first, found.objectives[first])
+def cloud_of(problem, front):
+    """Designs by chance that reach every goal: rows of both objectives."""
     low, high = np.array(problem.bounds).T
     costs, violations = problem.judge(low + (high - low) * np.random.default_rng(1).random((CLOUD, len(low))))
     signs = np.array([
-        np.sign(np.nanmedian(costs[:, k])) * np.sign(np.nanmedian(found.objectives[n]))
-        for k, n in enumerate(problem.objectives)
+        np.sign(np.nanmedian(costs[:, k])) * np.sign(np.nanmedian(front.values[n]))
+        for k, n in enumerate(front.objectives)
     ])
-    cloud = (costs * np.where(signs == 0, 1, signs))[violations == 0][:SHOWN]
+    return (costs * np.where(signs == 0, 1, signs))[violations == 0][:SHOWN]
 
-    spec = problem.fixed
+
+def front_and_cloud(path, question, seed):
+    """What a file tells; the cloud only with a question, which has the bounds."""
+    from_map = h5py.is_hdf5(path)
+    front = stored(path) if from_map else None
+    question = question if from_map else path
+    if question is None:
+        return front, np.empty((0, 2))
+    problem = style.leapmap_module().DesignProblem(question)
+    if len(problem.objectives) != 2:
+        raise NotAMap(f"{question}: has {len(problem.objectives)} objectives; allowed: two")
+    if front is None:
+        front = searched(path, problem, seed)
+    elif (problem.objectives, set(problem.names)) != (front.objectives, set(front.parameters) | {
+            n for n in problem.names if n in front.fixed}):
+        raise NotAMap(f"{question}: is not the question that {path} answers")
+    return front, cloud_of(problem, front)
+
+
+def chart(path, question, seed):
+    leapmap = style.leapmap_module()
+    front, cloud = front_and_cloud(path, question, seed)
+    first, second = front.objectives
+    x, y = shown(second, front.values[second]), shown(first, front.values[first])
     figure = plt.figure(figsize=(9.6, 5.6), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(2.1, 1))
     axis = figure.add_subplot(grid[:, 0])
     axis.plot(shown(second, cloud[:, 1]), shown(first, cloud[:, 0]), ",", color="#b8b8b8", rasterized=True)
-    for piece in pieces(problem, found):
-        number = int(found.outcomes.candidates[piece.start])
+    colour = lambda number: plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3)
+    for piece in pieces(front):
         axis.plot(x[piece], y[piece], ".-", markersize=2, linewidth=1.4,
-                  color=plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3))
-    for number in sorted({int(c) for c in found.outcomes.candidates}):
-        axis.plot([], [], color=plt.get_cmap("viridis")(0.15 + 0.7 * min(number - 1, 3) / 3),
-                  label=f"lift-off {number} is the jump")
-    axis.plot([], [], "o", markersize=3, color="#b8b8b8", label="designs by chance")
+                  color=colour(int(front.candidates[piece.start])))
+    for number in sorted({int(c) for c in front.candidates}):
+        axis.plot([], [], color=colour(number), label=f"lift-off {number} is the jump")
+    if len(cloud):
+        axis.plot([], [], "o", markersize=3, color="#b8b8b8", label="designs by chance")
     for k, i in enumerate(called_out(x, y)):
         axis.annotate(str(k + 1), (x[i], y[i]), xytext=(7, 5), textcoords="offset points", color=NUMBERS[k],
                       weight="bold", fontsize=11)
         axis.plot(x[i], y[i], "o", color=NUMBERS[k], markersize=6, markeredgecolor="white")
-        design = {n: float(found.parameters[n][i]) for n in problem.names}
+        design = {n: float(values[i]) for n, values in front.parameters.items()}
         beside = figure.add_subplot(grid[k, 1])
-        if found.outcomes.jump_height[i] > 0:
-            draw_hoop(beside, leapmap, design, spec, NUMBERS[k])
+        if front.jump_height[i] > 0:
+            draw_hoop(beside, leapmap, design, front.fixed, NUMBERS[k])
         words = ", ".join(f"{planes.axis_label(n)} {shown(n, v):.4g}" for n, v in design.items()
-                          if n not in problem.objectives)
+                          if n not in front.objectives)
         beside.set_title(
             textwrap.fill(f"{k + 1}: {words}; {label(first)} {y[i]:.4g}, {label(second)} {x[i]:.4g}", 52),
             fontsize=7.5, color=NUMBERS[k])
@@ -117,17 +175,21 @@ def chart(path, seed):
     axis.margins(0.04)
     axis.legend(loc="best")
     axis.set_title(
-        f"{len(found):,} designs; improving one objective makes the other worse; gaps: discontinuities")
+        f"{len(x):,} designs; improving one objective makes the other worse; gaps: discontinuities")
     return figure
 
 
 def main():
     p = style.parser(
-        __doc__, "a spec of two objectives, for example sweeps/questions/height_against_time.toml", "_front")
-    p.add_argument("--seed", type=int, default=1)
+        __doc__, "a Pareto front by leapmap design -o, or a spec of two objectives, which is searched first, "
+        "for example sweeps/questions/height_against_time.toml", "_front")
+    p.add_argument("--question", metavar="SPEC", help="the spec that a map answers: for the cloud of designs")
+    p.add_argument("--seed", type=int, default=1, help="of the search (default: 1)")
     arguments = p.parse_args()
+    if arguments.question and not h5py.is_hdf5(arguments.source):
+        raise NotAMap(f"--question {arguments.question}: has no effect beside a spec; allowed: beside a map")
     try:
-        figure = chart(arguments.source, arguments.seed)
+        figure = chart(arguments.source, arguments.question, arguments.seed)
     except ValueError as error:
         raise NotAMap(str(error)) from None
     style.save(figure, arguments.output)

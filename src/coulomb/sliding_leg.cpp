@@ -185,7 +185,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
   if (!(sliding_coefficients(hoop, released, friction).pivot > S(0))) return PhaseEnd::indeterminate;
   slide.free_force = free_normal_force(hoop, released, S(at.spin * at.spin));
   EdgesAround<S> edges;
-  Step step{S(first_angle), S(first_time)};
+  Step step;
   const Panel& panel = step.panel;
   int refined = 0, shortened = 0;
   for (int tried = 0; tried < most_panels; ++tried) {

@@ -69,10 +69,11 @@ class SlidingLeg {
 
   /// Panel after panel: the one in hand, and how long the next one may be.
   struct Step {
-    S length, duration;  ///< an angle, or a time, whichever a panel goes by
+    // An angle, or a time, whichever a panel goes by.
+    S length{panel_lengths::first_angle}, duration{panel_lengths::first_time};
     bool by_angle = false;
     typename Panels::Stretch stretch{};  ///< of the panel in hand, if by angle
-    Panel panel{};
+    Panel panel;                         // 2 KiB that solving it fills
 
     S& extent() { return by_angle ? length : duration; }
     /// The panel in hand as far as a share of it.

@@ -529,8 +529,17 @@ minimize = ["mass_ratio"]
 def test_a_front_has_its_gaps_its_cloud_and_three_designs_called_out(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
     (tmp_path / "q.toml").write_text(QUESTION)
-    done = draw("front_chart.py", tmp_path / "q.toml", "-o", tmp_path / "front")
+    assert leapmap("design", tmp_path / "q.toml", "--most", 400, "--sample", 16384, "-o",
+                   tmp_path / "best.h5").returncode == 0
+    before = (tmp_path / "best.h5").read_bytes()
+    done = draw("front_chart.py", tmp_path / "best.h5", "--question", tmp_path / "q.toml", "-o",
+                tmp_path / "front")
     assert done.returncode == 0, done.stderr
+    assert (tmp_path / "best.h5").read_bytes() == before and "400 designs" in " ".join(
+        texts(tmp_path / "front.svg")), "the file's front is drawn, not another one"
+    alone = draw("front_chart.py", tmp_path / "best.h5", "-o", tmp_path / "alone")
+    assert alone.returncode == 0, alone.stderr
+    assert "designs by chance" not in texts(tmp_path / "alone.svg")
     words = texts(tmp_path / "front.svg")
     for word in ("mass ratio mₚ/m", "jump height [hoop diameters]", "designs by chance", "1", "2", "3"):
         assert word in words, word
@@ -546,6 +555,22 @@ def test_a_front_has_its_gaps_its_cloud_and_three_designs_called_out(tmp_path, m
     (tmp_path / "bad.toml").write_text(QUESTION.replace("jump_height", "jump_hight"))
     refused = draw("front_chart.py", tmp_path / "bad.toml", "-o", tmp_path / "x")
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "jump_hight" in refused.stderr
+    other = QUESTION.replace('minimize = ["mass_ratio"]', 'minimize = ["jump_time"]')
+    (tmp_path / "other.toml").write_text(other)
+    refused = draw("front_chart.py", tmp_path / "best.h5", "--question", tmp_path / "other.toml", "-o",
+                   tmp_path / "x")
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "best.h5 answers" in refused.stderr
+    refused = draw("front_chart.py", sweep(tmp_path), "-o", tmp_path / "x")
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "Pareto front" in refused.stderr
+
+
+@pytest.mark.slow
+def test_the_front_of_a_spec_is_searched_for(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
+    (tmp_path / "q.toml").write_text(QUESTION)
+    done = draw("front_chart.py", tmp_path / "q.toml", "-o", tmp_path / "front")
+    assert done.returncode == 0, done.stderr
+    assert "designs by chance" in texts(tmp_path / "front.svg")
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
-from selenium.webdriver.support.ui import Select, WebDriverWait
-from support.browser import agrees, numbers, opened, told_by_leapmap
+from selenium.webdriver.support.ui import Select
+from support.browser import agrees, numbers, opened, told_by_leapmap, waited
 from support.program import PROGRAM, finished, leapmap, scripted, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
@@ -268,7 +268,7 @@ def test_an_address_opens_a_design_at_a_moment_and_says_if_there_is_none(page, m
                                                                          "not on this map")):
         page.get("about:blank")
         page.get(address + place)
-        WebDriverWait(page, 60).until(lambda b: b.execute_script("return !!window.explorer"))
+        waited(page, lambda b: b.execute_script("return !!window.explorer"))
         assert index in (None, readout(page)["index"]) and text in page.find_element("id", "message").text
         if index:
             assert page.find_element("id", "clock").text == "0.100 s"
@@ -330,7 +330,7 @@ def test_the_page_fits_a_phone_and_a_screenshot_is_kept(page):
         page.execute_script("window.scrollTo(0, 0)")
         point(page, [10, 35, 1], click=True)
         # A tap on the map brings the hoop, which is further down, into sight.
-        WebDriverWait(page, 60).until(lambda b: 0 <= b.execute_script(
+        waited(page, lambda b: 0 <= b.execute_script(
             "return document.getElementById('scene').getBoundingClientRect().top") < 800)
         page.execute_script("window.scrollTo(0, 0)")
     finally:
@@ -471,13 +471,13 @@ fields = ["jump_height"]
     )
     alone = pixels(browser, "scene")
     browser.find_element("id", "ghosts").click()
-    WebDriverWait(browser, 60).until(lambda b: "reach every goal" in b.find_element("id", "ghosts-told").text)
+    waited(browser, lambda b: "reach every goal" in b.find_element("id", "ghosts-told").text)
     assert pixels(browser, "scene") != alone != before
     told = browser.find_element("id", "ghosts-told").text
     jump, reach = int(told.split(" of ")[0].split()[-1]), int(told.split(", ")[1].split()[0])
     assert jump == 20 and abs(reach / 20 - share) < 4 * math.sqrt(0.25 / 20), told
     browser.find_element("id", "ghosts").click()
-    WebDriverWait(browser, 60).until(lambda b: pixels(b, "scene") == alone)
+    waited(browser, lambda b: pixels(b, "scene") == alone)
     assert browser.find_element("id", "ghosts-told").text == ""
 
 
@@ -618,7 +618,7 @@ def test_a_damaged_page_says_so(browser, map_file, tmp_path):
     start = text.index('"data": "') + 9
     (tmp_path / "cut.html").write_text(text[:start] + "eJwDAAAAAAE=" + text[text.index('"', start):])
     browser.get((tmp_path / "cut.html").as_uri())
-    WebDriverWait(browser, 60).until(lambda b: b.find_element("id", "message").text != "")
+    waited(browser, lambda b: b.find_element("id", "message").text != "")
     assert "cannot be shown" in browser.find_element("id", "message").text
 
 
@@ -696,11 +696,11 @@ def test_the_bifurcation_picture_is_drawn_once_it_is_opened(page):
     picture = page.find_element("id", "gaits-picture")
     assert picture.get_attribute("data-hoops") is None, "nothing is computed before anybody asks"
     page.execute_script("document.getElementById('gaits').open = true")
-    WebDriverWait(page, 60).until(lambda b: picture.get_attribute("data-hoops") == "512")
+    waited(page, lambda b: picture.get_attribute("data-hoops") == "512")
     lively = int(picture.get_attribute("data-lively"))
     assert 50 < lively < 512 and f"{lively} of 512" in page.find_element("id", "gaits-told").text
     Select(page.find_element("id", "gaits-over")).select_by_value("offset_ratio")
-    WebDriverWait(page, 60).until(lambda b: picture.get_attribute("data-hoops") == "512" and picture.
+    waited(page, lambda b: picture.get_attribute("data-hoops") == "512" and picture.
                                   get_attribute("data-lively") != str(lively))
     ActionChains(page).move_to_element_with_offset(picture, 0, 0).click().perform()
     assert "L/R" in page.find_element("id", "hop-title").text or "offset" in page.find_element(

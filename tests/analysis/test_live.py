@@ -9,8 +9,8 @@ import h5py
 import numpy as np
 import pytest
 from selenium.webdriver.common.keys import Keys
-from selenium.webdriver.support.ui import Select, WebDriverWait
-from support.browser import agrees, opened, settled, told_by_leapmap
+from selenium.webdriver.support.ui import Select
+from support.browser import agrees, opened, settled, told_by_leapmap, waited
 from support.program import leapmap, scripted, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
@@ -204,7 +204,7 @@ def test_cuts_go_through_the_design_pointed_at(live):
     )
     height = np.array(live.execute_script("return [...window.explorer.map.fields[0].values].map(String)"),
                       float).reshape(200, 150)
-    WebDriverWait(live, 60).until(lambda b: b.find_element("id", "cut-y").get_attribute("data-values") == str(
+    waited(live, lambda b: b.find_element("id", "cut-y").get_attribute("data-values") == str(
         np.isfinite(height[100]).sum()))
     assert live.find_element("id", "cut-x").get_attribute("data-values") == str(
         np.isfinite(height[:, 40]).sum())
@@ -241,14 +241,10 @@ def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(
     along = live.execute_script("return document.getElementById('scene').toDataURL()")
     marked = live.execute_script("return document.getElementById('map').toDataURL()")
     live.find_element("id", "pins-along").click()
-    WebDriverWait(
-        live,
-        60).until(lambda b: b.execute_script("return document.getElementById('scene').toDataURL()") != along)
+    waited(live, lambda b: b.execute_script("return document.getElementById('scene').toDataURL()") != along)
     traced = live.execute_script("return document.getElementById('plots').toDataURL()")
     live.find_element("id", "pins-along").click()
-    WebDriverWait(
-        live,
-        60).until(lambda b: b.execute_script("return document.getElementById('plots').toDataURL()") != traced)
+    waited(live, lambda b: b.execute_script("return document.getElementById('plots').toDataURL()") != traced)
     live.find_element("css selector", "#pins-table button").click()
     assert len(live.find_elements("css selector", "#pins-table tr:first-child th")) == 4
     assert live.execute_script(
@@ -269,7 +265,7 @@ def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(fri
     settled(live, 200)
     assert not live.execute_script(option)
     Select(live.find_element("id", "field")).select_by_visible_text("number of jumps")
-    WebDriverWait(live, 60).until(lambda b: "jumps=4" in b.execute_script("return location.hash") and
+    waited(live, lambda b: "jumps=4" in b.execute_script("return location.hash") and
                                   "field=jumps" in b.execute_script("return location.hash"))
     made = []
     for cell in designs(live, [int(k) for k in np.random.default_rng(11).integers(0, 30000, 30)]):
@@ -296,7 +292,7 @@ def first_picture(browser, field, seconds=120):
     told = """const f = window.explorer?.map.fields.find((f) => f.name === arguments[1]);
         return document.getElementById('map').dataset.coarse === 'true' && f &&
           arguments[0].some((k) => f.values[k] === f.values[k])"""
-    WebDriverWait(browser, seconds).until(lambda b: b.execute_script(told, COARSE, field))
+    waited(browser, lambda b: b.execute_script(told, COARSE, field), seconds)
 
 
 @pytest.mark.parametrize(
@@ -422,9 +418,7 @@ def test_without_a_goal_the_yield_counts_hoops_that_jump_and_a_tolerance_changed
     live.execute_script("""for (const [name, value] of [['slope', 22], ['mass_ratio', 3]]) {
         const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value;
         input.dispatchEvent(new Event('change')); }""")
-    WebDriverWait(
-        live,
-        60).until(lambda b: b.find_element("id", "readout").get_attribute("data-value") not in ("", None))
+    waited(live, lambda b: b.find_element("id", "readout").get_attribute("data-value") not in ("", None))
     own = {**cells[0], "design": {**cells[0]["design"], "slope": math.radians(22), "mass_ratio": 3.0}}
     told = told_as_made([own], tmp_path, "scatter.samples=32", 'scatter.mass_ratio={normal="20%"}', *usual,
                         'goal.status={is="jumped"}')
@@ -460,14 +454,12 @@ mass_ratio = {from = 1, to = 9, count = 5}
           arguments[0]]]) {
         const input = document.querySelector(`#own [data-parameter=${name}]`); input.value = value;
         input.dispatchEvent(new Event('change')); }""", at[2])
-    WebDriverWait(
-        browser,
-        60).until(lambda b: b.find_element("id", "readout").get_attribute("data-value") not in ("", None))
+    waited(browser, lambda b: b.find_element("id", "readout").get_attribute("data-value") not in ("", None))
     # Rounded on the map to a 60,000th of what it holds; the slope typed in has as many digits as are shown.
     assert float(browser.find_element("id", "readout").get_attribute("data-value")) == pytest.approx(
         at[0], abs=1e-4)
     browser.find_element("id", "live-toggle").click()
-    WebDriverWait(browser, 60).until(lambda b: b.execute_script("return !!window.explorer?.map.live"))
+    waited(browser, lambda b: b.execute_script("return !!window.explorer?.map.live"))
     asked = browser.execute_script(
         "const { map } = window.explorer; return [map.spreads, map.samples, map.seed, map.hoopGoals()]")
     assert asked == [[{
@@ -513,8 +505,7 @@ def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps,
         page_at(tmp_path).as_uri() +
         "#live&x=slope:0.05:0.45&y=mass_ratio:0.3:20&offset_ratio=0.5&runway=20&settle=%d&field=gait_height" %
         jumps)
-    WebDriverWait(live,
-                  60).until(lambda b: b.execute_script("return window.explorer?.map.asked.settle") == jumps)
+    waited(live, lambda b: b.execute_script("return window.explorer?.map.asked.settle") == jumps)
     settled(live)
     # A hoop of one's own is told the same, by the command that the page shows too.
     gait_of_a_hoop_of_ones_own(live)
@@ -595,8 +586,7 @@ def test_the_animation_goes_frame_by_frame_and_is_saved_as_a_film(live):
     assert float(clock.text.split()[0]) == pytest.approx(0.1 - 0.25 / 30, abs=6e-4)
     Select(live.find_element("id", "speed")).select_by_value("1")
     live.find_element("id", "film").click()
-    WebDriverWait(
-        live, 240).until(lambda b: int(b.find_element("id", "film").get_attribute("data-bytes") or 0) > 3000)
+    waited(live, lambda b: int(b.find_element("id", "film").get_attribute("data-bytes") or 0) > 3000, 240)
 
 
 def test_a_link_to_the_paper_s_hoop_shows_the_hoop_first_on_a_phone(live, tmp_path):
@@ -637,6 +627,5 @@ def test_a_file_s_map_goes_live_where_it_is_and_back(browser, tmp_path):
     assert axes[1][1:] == pytest.approx([0.5, 10])
     compare(browser, np.random.default_rng(9), 10)
     browser.find_element("id", "live-toggle").click()
-    WebDriverWait(browser,
-                  60).until(lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
+    waited(browser, lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
     assert browser.execute_script("return window.explorer.map.axes[0].values.length") == 20

@@ -15,8 +15,8 @@ import h5py
 import numpy as np
 import pytest
 from selenium.webdriver.common.keys import Keys
-from selenium.webdriver.support.ui import Select, WebDriverWait
-from support.browser import agrees, numbers, opened, settled, told_by_leapmap
+from selenium.webdriver.support.ui import Select
+from support.browser import agrees, numbers, opened, settled, told_by_leapmap, waited
 from support.program import TOP, scripted, sweep
 
 BUILD = Path(os.environ["LEAPMAP_BUILD"])
@@ -44,7 +44,7 @@ def page(browser, html):
 def at(browser, html, address):
     browser.get("about:blank")
     browser.get(html.as_uri() + address)
-    WebDriverWait(browser, 60).until(lambda b: b.execute_script("return !!window.explorer"))
+    waited(browser, lambda b: b.execute_script("return !!window.explorer"))
     settled(browser, 120)
 
 
@@ -119,7 +119,7 @@ def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, 
         jumped += told["status"] == "jumped"
         turned += design["release_spin"] < 0
     assert jumped >= 0.4 * count and turned >= count // 20
-    WebDriverWait(page, 60).until(lambda b: "hoop=slope:" in b.execute_script("return location.hash"))
+    waited(page, lambda b: "hoop=slope:" in b.execute_script("return location.hash"))
 
 
 def test_a_number_that_no_hoop_has_is_refused_and_changes_nothing(page):
@@ -173,7 +173,7 @@ def test_what_was_done_is_undone_and_done_again(page):
     first = page.execute_script(state)
     assert not undo.is_enabled() and not redo.is_enabled()
     # well after the page began
-    WebDriverWait(page, 60).until(lambda b: b.execute_script("return performance.now() > 1500"))
+    waited(page, lambda b: b.execute_script("return performance.now() > 1500"))
     page.execute_script("document.getElementById('map').dataset.whole = 'false'")
     give(page, "#live-sliders input[type=number][data-parameter=offset_ratio]", "0.7")
     settled(page)
@@ -181,14 +181,14 @@ def test_what_was_done_is_undone_and_done_again(page):
     assert second[1] == 0.7 and second[0] != first[0] and undo.is_enabled()
     page.execute_script("document.getElementById('map').dataset.whole = 'false'")
     undo.click()
-    WebDriverWait(page, 60).until(lambda b: b.execute_script(state) == first)
+    waited(page, lambda b: b.execute_script(state) == first)
     settled(page)
     assert redo.is_enabled() and not undo.is_enabled()
     assert page.find_element(
         "css selector",
         "#live-sliders input[type=number][data-parameter=offset_ratio]").get_attribute("value") == "1"
     page.find_element("tag name", "body").send_keys(Keys.CONTROL + Keys.SHIFT + "z")
-    WebDriverWait(page, 60).until(lambda b: b.execute_script(state) == second)
+    waited(page, lambda b: b.execute_script(state) == second)
 
 
 def test_a_link_is_all_that_was_found(page, html):
@@ -223,7 +223,7 @@ def test_a_link_is_all_that_was_found(page, html):
             clock: document.getElementById('clock').textContent, ways: ['speed', 'follow',
               'forces'].map((id) => { const e = document.getElementById(id);
               return e.type === 'checkbox' ? e.checked : e.value; }) }""")
-    WebDriverWait(page, 60).until(lambda b: "time=0.31" in b.execute_script("return location.hash"))
+    waited(page, lambda b: "time=0.31" in b.execute_script("return location.hash"))
     before, address = seen(), page.execute_script("return location.hash")
     assert before["field"] == "agility" and "of 30,000" in before["goals"]
     assert before["commands"].count("leapmap hop") == 2 and "--jumps 3" in before["command"]
@@ -281,7 +281,7 @@ def test_forces_are_drawn_at_the_contact_and_may_be_left_out(page):
 def test_hoops_as_made_jump_along_on_a_live_map(page):
     show(page, [87, 29])
     page.find_element("id", "ghosts").click()
-    told = lambda words: WebDriverWait(page, 60).until(lambda b: words in b.find_element("id", "ghosts-told").
+    told = lambda words: waited(page, lambda b: words in b.find_element("id", "ghosts-told").
                                                        text)
     told("of 20 jump")
     give(page, "#spreads input", "20")
@@ -294,7 +294,7 @@ def test_hoops_as_made_jump_along_on_a_live_map(page):
     give(page, "#goals input", "1000", "input")
     told(" 0 reach every goal")
     page.find_element("css selector", "#goals button").click()
-    WebDriverWait(page, 60).until(lambda b: "reach" not in b.find_element("id", "ghosts-told").text)
+    waited(page, lambda b: "reach" not in b.find_element("id", "ghosts-told").text)
     page.find_element("id", "ghosts").click()
     assert page.find_element("id", "ghosts-told").text == ""
 
@@ -316,7 +316,7 @@ def saved(page, button):
                           ("gaits-svg", ["jump height [mm]", "slope [°]"], 1)])
 def test_charts_are_saved_as_svg_with_texts_that_are_texts(button, words, images, page):
     page.execute_script("for (const id of ['cuts', 'gaits']) document.getElementById(id).open = true")
-    WebDriverWait(page, 60).until(lambda b: b.find_element("id", "cut-x").get_attribute("data-values"))
+    waited(page, lambda b: b.find_element("id", "cut-x").get_attribute("data-values"))
     root = ElementTree.fromstring(saved(page, button))
     named = lambda kind: root.findall(f".//{{http://www.w3.org/2000/svg}}{kind}")
     texts = [text.text for text in named("text")]
@@ -371,26 +371,24 @@ def test_a_file_s_map_has_its_axes_and_slices_in_the_address_and_goes_back_from_
     give(browser, "#sliders input", "0", "input")
     state = ("return [window.explorer.view.view.x, window.explorer.view.view.y, "
              "window.explorer.view.view.index[2], location.hash]")
-    WebDriverWait(browser, 60).until(lambda b: "at=offset_ratio:0" in b.execute_script(state)[3])
+    waited(browser, lambda b: "at=offset_ratio:0" in b.execute_script(state)[3])
     before = browser.execute_script(state)
     assert before[:3] == [1, 0, 0]
     browser.get("about:blank")
     opened_at = (tmp_path / "map.html").as_uri() + before[3]
     browser.get(opened_at)
-    WebDriverWait(browser, 60).until(lambda b: b.execute_script("return !!window.explorer"))
+    waited(browser, lambda b: b.execute_script("return !!window.explorer"))
     assert browser.execute_script(state) == before
     browser.find_element("id", "live-toggle").click()
     settled(browser)
     browser.execute_script("history.back()")
-    WebDriverWait(browser,
-                  60).until(lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
+    waited(browser, lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
     assert browser.execute_script(state) == before
 
 
 def test_a_picture_is_saved_as_png(page):
     page.find_element("id", "map-png").click()
-    WebDriverWait(
-        page, 60).until(lambda b: int(b.execute_script("return document.body.dataset.bytes ?? 0")) > 10000)
+    waited(page, lambda b: int(b.execute_script("return document.body.dataset.bytes ?? 0")) > 10000)
 
 
 def test_nothing_moves_when_numbers_change(page):
@@ -412,7 +410,7 @@ def test_nothing_moves_when_numbers_change(page):
             part)
         assert places() == before
     page.find_element("id", "copy").click()
-    WebDriverWait(page, 60).until(lambda b: b.find_element("id", "copy").text != "copy")
+    waited(page, lambda b: b.find_element("id", "copy").text != "copy")
     assert places() == before
     give(page, "#hoop-inputs input[data-parameter=offset_ratio]", "1.5")
     assert page.find_element("id", "message").text != "" and places() == before

@@ -9,10 +9,15 @@ from selenium.webdriver.support.ui import WebDriverWait
 from support.program import leapmap
 
 
+def waited(browser, condition, seconds=60):
+    """Waits until the condition holds. Selenium by itself looks every half second, which most pages do not need."""
+    return WebDriverWait(browser, seconds, poll_frequency=0.05).until(condition)
+
+
 def opened(browser, page):
     browser.get(page.as_uri())
-    WebDriverWait(browser, 20).until(
-        lambda b: b.execute_script("return !!window.explorer || !document.getElementById('message').hidden"))
+    waited(browser, lambda b: b.execute_script(
+        "return !!window.explorer || !document.getElementById('message').hidden"), 20)
     assert browser.find_element("id", "message").text == ""
     complaints = [m for m in browser.get_log("browser") if m["level"] in ("SEVERE", "WARNING")]
     assert not complaints, complaints
@@ -54,5 +59,5 @@ def told_by_leapmap(browser):
 
 def settled(browser, seconds=60, what="whole"):
     """Waits for a live map: all of it, or its "cliffs" too."""
-    WebDriverWait(browser, seconds).until(lambda b: b.execute_script(
-        "return document.getElementById('map').dataset[arguments[0]]", what) == "true")
+    waited(browser, lambda b: b.execute_script(
+        "return document.getElementById('map').dataset[arguments[0]]", what) == "true", seconds)
