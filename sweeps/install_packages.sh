@@ -11,7 +11,7 @@ case "${1:-main}" in
   *) echo "install_packages.sh: '$1' is unknown; allowed: main, tests, docs, all" >&2; exit 2 ;;
 esac
 packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev
-  libcli11-dev libxsimd-dev nlohmann-json3-dev libdeflate-dev zlib1g-dev libeigen3-dev
+  libcli11-dev libxsimd-dev nlohmann-json3-dev libdeflate-dev zlib1g-dev libudunits2-dev libeigen3-dev
   libnlopt-cxx-dev libboost-dev emscripten pybind11-dev python3-dev python3 python3-numpy python3-h5py
   python3-matplotlib python3-xarray"
 if [ "${1:-main}" = docs ] || [ "${1:-main}" = all ]; then

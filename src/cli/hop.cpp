@@ -36,14 +36,12 @@ namespace {
 struct HopArguments {
   std::string spec, trace;
   double trace_interval = 1e-3;
-  double mass = 0.0;                          // 0: not given
   std::vector<std::string> overrides, flags;  // KEY=VALUE; flags hold whatever their place on the line
   bool json = false, gradient = false, scatter = false;
   Locking locking = Locking::required;
 };
 
 constexpr double check_tolerance = 1e-12;  // of the method that checks
-constexpr double papers_mass = 0.0282;     // [kg]: a hoop of 8.2 g and a weight of 20 g
 
 constexpr double in_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
@@ -114,6 +112,14 @@ std::string sequence_line(const Spec& spec, const Outcome& outcome) {
   return fmt::format("{} jumps of {}: {} diameters; {}.", outcome.jumps(), spec.scene.jumps, heights, end);
 }
 
+/// "0.2515 N s", or in leapmap's own unit where no mass is known.
+std::string with_mass(double value, int digits, std::string_view own, std::string_view si,
+                      const Scene& scene) {
+  const OwnUnit& unit = *find_own_unit(own);
+  return scene.mass > 0.0 ? fmt::format("{:.{}g} {}", value * unit.size(scales_of(scene)), digits, si)
+                          : fmt::format("{:.{}g} {}", value, digits, own);
+}
+
 void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) {
   const Outcome& jump = motion.outcome;
   if (jump.status == Status::jumped) {
@@ -123,13 +129,15 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
     say(".\n");
     const double speed = std::sqrt(spec.scene.gravity * spec.scene.radius);
     say("Flies {:.6g} R ({:.4g} m) along the plane; lands with {:.4g} m/s towards it and {:.4g} m/s along "
-        "it, impulse {:.4g} (m + m_p) sqrt(g R), {:.4g} (m + m_p) g R lost.\n",
+        "it, impulse {}, {} lost.\n",
         jump.jump_range, jump.jump_range * spec.scene.radius, jump.landing_normal_speed * speed,
-        jump.landing_tangential_speed * speed, jump.landing_impulse, jump.landing_energy_lost);
+        jump.landing_tangential_speed * speed,
+        with_mass(jump.landing_impulse, 4, "(m + m_p) sqrt(g R)", "N s", spec.scene),
+        with_mass(jump.landing_energy_lost, 4, "(m + m_p) g R", "J", spec.scene));
     if (std::isfinite(jump.energy_lost)) {
-      say("Slid {:.6g} R, lost {:.6g} (m + m_p) g R until lift-off, spin after the landing {:.6g} "
-          "rad/s.\n",
-          jump.slip_distance, jump.energy_lost, jump.landing_spin / time_unit(spec.scene));
+      say("Slid {:.6g} R, lost {} until lift-off, spin after the landing {:.6g} rad/s.\n", jump.slip_distance,
+          with_mass(jump.energy_lost, 6, "(m + m_p) g R", "J", spec.scene),
+          jump.landing_spin / time_unit(spec.scene));
     }
   }
   if (spec.scene.jumps > 1 && jump.status == Status::jumped) say("{}\n", sequence_line(spec, jump));
@@ -171,15 +179,19 @@ void print_phases(const Motion& motion) {
   print_low_ones(HUGE_VAL);
 }
 
-void print_motor(const Motor& motor, bool is_example) {
-  say("Motor, for a total mass of {:g} kg{}: {:.4g} N m, at most {:.4g} W and {:.4g} rpm, {:.4g} J in "
-      "all{}.\n",
-      motor.mass, is_example ? " (change it by --mass)" : "", motor.torque, motor.power, motor.spin,
-      motor.work, motor.power <= 0.0 ? "; it only brakes" : "");
+void print_motor(const Motor& motor) {
+  const std::string_view brakes = motor.only_brakes ? "; it only brakes" : "";
+  if (motor.mass > 0.0)
+    say("Motor, for a total mass of {:g} kg: {:.4g} N m, at most {:.4g} W and {:.4g} rpm, {:.4g} J in "
+        "all{}.\n",
+        motor.mass, motor.torque, motor.power, motor.spin, motor.work, brakes);
+  else
+    say("Motor: at most {:.4g} rpm{}. With --mass: torque, power and energy in N m, W and J.\n", motor.spin,
+        brakes);
 }
 
 void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
-                 const std::optional<Motor>& motor, bool is_example) {
+                 const std::optional<Motor>& motor) {
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters(spec)) {
     double value = effective_value(*parameter, spec.design);
@@ -193,6 +205,11 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
   }
   say("{:<15} {:<12.8g} m, gravity {:g} m/s^2, sqrt(R/g) = {:.6g} s\n", "radius", spec.scene.radius,
       spec.scene.gravity, second);
+  if (spec.hoop) {
+    const ReducedBody body = reduce_body(*spec.hoop);
+    say("{:<15} {:<12.8g} kg in all, centre of mass at {:.6g} R, moment of inertia {:.6g} M R^2\n", "hoop",
+        body.total_mass, body.eccentricity, body.inertia);
+  }
   say("{:<15} {}, tolerance {:g}\n\n", "method", resolved_method(spec.numerics), spec.numerics.tolerance);
 
   say("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]", "spin [rad/s]",
@@ -201,7 +218,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
   if (motion.outcome.phase_sequence != 0) say("\n{}", phase_letters(motion.outcome.phase_sequence));
   say("\n{}\n", verdict(motion, spec.scene));
   print_jump(spec, motion, checked);
-  if (motor) print_motor(*motor, is_example);
+  if (motor) print_motor(*motor);
   for (const Graze& graze : motion.grazes)
     say("Grazing contact: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",
         graze.t, graze.minimum ? "minimum" : "maximum", graze.normal_force,
@@ -227,6 +244,7 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
               {"hop_height", scene.hop_height},
               {"radius", scene.radius},
               {"gravity", scene.gravity},
+              {"mass", scene.mass > 0.0 ? Json(scene.mass) : Json()},
               {"rest_speed", scene.rest_speed}}},
             {"method", resolved_method(spec.numerics)},
             {"tolerance", spec.numerics.tolerance}};
@@ -265,7 +283,7 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
 }
 
 Json json_of(const Motor& motor) {
-  return {{"mass", motor.mass},
+  return {{"mass", motor.mass > 0.0 ? Json(motor.mass) : Json()},
           {"torque", motor.torque},
           {"power", motor.power},
           {"rpm", motor.spin},
@@ -303,9 +321,6 @@ int run(const HopArguments& arguments) {
   if (!spec.points.empty())
     throw InputError(fmt::format("{}: design.points is a list; allowed: one design", origin_of(spec)));
 
-  const bool driven = spec.design.drive_torque != 0.0, is_example = arguments.mass == 0.0;
-  if (!driven && !is_example)
-    throw InputError("--mass: has no effect without a motor; allowed: with --drive-torque");
   const std::array inputs{NamedPath{"SPEC", arguments.spec}};
   const std::array outputs{NamedPath{"--trace", arguments.trace, true}};
   refuse_same_files(inputs, outputs);
@@ -329,11 +344,11 @@ int run(const HopArguments& arguments) {
   }
   const bool moves = !motion.phases.empty() && motion.outcome.status != Status::failed;
   std::optional<Motor> motor;
-  if (driven && moves) motor = motor_of(spec, motion, is_example ? papers_mass : arguments.mass);
+  if (spec.design.drive_torque != 0.0 && moves) motor = motor_of(spec, motion);
   if (arguments.json) {
     print_json(spec, motion, check.outcome, motor, arguments.gradient, made);
   } else {
-    print_table(spec, motion, check.outcome, motor, is_example);
+    print_table(spec, motion, check.outcome, motor);
     if (arguments.gradient) print_gradient(spec);
     if (made) print_scatter(spec, *made);
     if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
@@ -355,10 +370,6 @@ void add_hop(CommandLine& line, int& status) {
   command.value("SPEC", arguments->spec, "a spec without axes (TOML); default: the paper's hoop")
       .check(named_file());
   add_flags_of_a_hoop(command, arguments->flags);
-  command
-      .value("--mass", arguments->mass,
-             "total mass of hoop and weight [kg], for the motor's N m, W and J; default: 0.0282")
-      .check(number({1e-9, 1e9}));
   command.group("Report");
   command.flag("--gradient", arguments->gradient, "report the derivatives of every quantity");
   command.flag(

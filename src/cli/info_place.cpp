@@ -40,7 +40,7 @@ Design design_at(const Spec& spec, const std::string& at) {
     given.push_back(name);
     const Option& option = *find_option("", name);
     try {
-      design.*member_of(option) = parse_number(option, part.substr(equals + 1));
+      design.*member_of(option) = parse_number(option, part.substr(equals + 1), scales_of(spec.scene));
     } catch (const InputError& error) {
       throw InputError(fmt::format("--at {}: {}: {}", at, name, error.what()));
     }

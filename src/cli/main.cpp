@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   add_fit(line, status);
   add_gait(line, status);
   add_check(line, status);
+  add_export(line, status);
   add_join(line, status);
   add_precision(line, status);
   add_stability(line, status);

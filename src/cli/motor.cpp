@@ -10,17 +10,20 @@
 
 namespace leapmap::cli {
 
-Motor motor_of(const Spec& spec, const Motion& motion, double mass) {
+Motor motor_of(const Spec& spec, const Motion& motion) {
   constexpr double samples = 4000.0, most_samples = 1e6;
   const auto tell = model_of(spec.scene).tell_exactly;
   const double tolerance = std::max(spec.numerics.tolerance, 1e-10);
   const double whole = tell(spec.design, spec.scene, tolerance, std::numeric_limits<double>::infinity()).end;
   const double end = std::isnan(motion.outcome.jump_time) ? whole : motion.outcome.jump_time;
-  Motor motor{.mass = mass,
-              .torque = spec.design.drive_torque * mass * spec.scene.gravity * spec.scene.radius,
+  const Scene& scene = spec.scene;
+  const double newton_metres = scene.mass * scene.gravity * scene.radius;
+  Motor motor{.mass = scene.mass,
+              .torque = spec.design.drive_torque * (scene.mass > 0.0 ? newton_metres : NAN),
               .power = -std::numeric_limits<double>::infinity(),
               .spin = 0.0,
-              .work = 0.0};
+              .work = 0.0,
+              .only_brakes = true};
   // A flight may last ten million times as long as the contact before it. However few samples that leaves to
   // the contact, its ends are among them.
   const double interval = std::max({end / samples, whole / most_samples, 1e-10});
@@ -39,7 +42,8 @@ Motor motor_of(const Spec& spec, const Motion& motion, double mass) {
       motor.work += motor.torque * (at.phi - before->phi);
     before = &at;
     if (at.phase == Phase::flight) continue;
-    motor.power = std::max(motor.power, motor.torque * at.spin);
+    if (!(motor.torque * at.spin < motor.power)) motor.power = motor.torque * at.spin;
+    if (spec.design.drive_torque * at.spin > 0.0) motor.only_brakes = false;
     motor.spin = std::max(motor.spin, std::abs(at.spin) * 30.0 / std::numbers::pi);
   }
   return motor;

@@ -9,14 +9,15 @@ namespace leapmap::cli {
 
 /// Largest values while the hoop touches the plane, up to the jump's lift-off or the motion's end.
 struct Motor {
-  double mass;    ///< of hoop and weight together [kg]
+  double mass;    ///< of hoop and weight together [kg]; 0: not known, and torque, power and work are NaN
   double torque;  ///< [N m]
   double power;   ///< of the torque on the hoop [W]; below zero: it only brakes
   double spin;    ///< [rpm], of the hoop
   double work;    ///< done in all [J]
+  bool only_brakes;
 };
 
 /// motion: the design's, for how long it takes. It is solved once more, with samples.
-Motor motor_of(const Spec& spec, const Motion& motion, double mass);
+Motor motor_of(const Spec& spec, const Motion& motion);
 
 }  // namespace leapmap::cli

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "leapmap/audit.hpp"
+#include "leapmap/body.hpp"
 #include "leapmap/boundaries.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/errors.hpp"

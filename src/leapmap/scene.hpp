@@ -27,6 +27,7 @@ struct Scene {
   double rest_speed = 1e-3;      ///< Coulomb only: a slower rebound counts as zero [sqrt(g R)], >= 0
   double radius = 0.041;         ///< R [m], in [1e-9, 1e9]; scales lengths, times and speeds only
   double gravity = 9.81;         ///< g [m/s^2], in [1e-9, 1e9]; scales times and speeds only
+  double mass = 0.0;  ///< m + m_p [kg], in [0, 1e9]; scales forces, torques and energies only; 0: not known
 };
 
 /// The unit of time of the dimensionless equations, sqrt(R/g) [s].

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "model/own_units.hpp"
 #include "model/parameters.hpp"
 
 namespace leapmap {
@@ -135,6 +136,16 @@ const std::array fields{
 }  // namespace
 
 std::span<const Field> map_fields() { return fields; }
+
+std::string_view own_unit(const Field& field) {
+  if (field.unit != "1") return field.unit;
+  std::string_view found = field.unit;
+  for (const OwnUnit& own : own_units) {
+    const bool said = field.long_name.find(", in " + std::string(own.name)) != std::string_view::npos;
+    if (said && (found == "1" || own.name.size() > found.size())) found = own.name;
+  }
+  return found;
+}
 
 bool has(const Scene& scene, const Field& field) {
   if (const auto* later = std::get_if<OfJump>(&field.source);

@@ -84,6 +84,9 @@ struct Field {
 /// Whether a design of the scene has it.
 bool has(const Scene& scene, const Field& field);
 
+/// The unit of a field's numbers, of model/own_units.hpp: "hoop diameters", "sqrt(g R)", "s", "1" and so on.
+std::string_view own_unit(const Field& field);
+
 /// A field's value where it is a number, NaN where it does not apply. Words have none.
 double stored_number(const Field& field, const Outcome& outcome);
 

@@ -8,6 +8,7 @@
 #include "leapmap/outcome.hpp"
 #include "leapmap/units.hpp"
 #include "model/model.hpp"
+#include "model/own_units.hpp"
 #include "model/parameters.hpp"
 
 namespace leapmap {
@@ -55,9 +56,10 @@ const Parameter* first_refused(const Design& design, const Scene& scene) {
 }  // namespace
 
 std::string allowed_values(const Range& range, std::string_view unit, std::string_view what) {
+  const OwnUnit* own = find_own_unit(unit);
   return fmt::format("{} in {}{}, {}{}{}", what, range.least_allowed ? '[' : '(', shown(range.least, unit),
                      shown(range.most, unit), range.most_allowed ? ']' : ')',
-                     unit == "rad" ? ", in rad or as \"... deg\"" : "");
+                     own ? fmt::format(", in {} or as \"... {}\"", own->name, own->example) : "");
 }
 
 std::string meant_degrees(const Range& range, std::string_view unit, double value) {

@@ -27,7 +27,7 @@ struct Parameter {
   std::string_view name;
   /// A design's own, so that it takes an axis or a column of a list; or of the scene, the same for all.
   std::variant<double Design::*, double Scene::*> member;
-  std::string_view unit;  ///< "rad" marks an angle, which may be written "30 deg"; "1": a pure number
+  std::string_view unit;  ///< of model/own_units.hpp; "1": a pure number
   std::string_view meaning;
   Range range;
   std::optional<Friction> only_of{};  ///< the one model that has it; unset: every model

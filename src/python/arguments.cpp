@@ -46,7 +46,13 @@ const Parameter& parameter_of(const std::string& name) {
 }  // namespace
 
 Designs::Designs(const py::dict& given, Scene scene) : scene_(scene) {
-  for (const auto& [key, value] : given) take(py::cast<std::string>(key), value);
+  // What other numbers' units hang on comes first.
+  constexpr std::array scales{"radius", "gravity", "mass"};
+  for (const char* name : scales)
+    if (given.contains(name)) take(name, given[name]);
+  for (const auto& [key, value] : given)
+    if (const auto name = py::cast<std::string>(key); std::ranges::find(scales, name) == scales.end())
+      take(name, value);
   broadcast();
 }
 
@@ -73,7 +79,7 @@ void Designs::take(const std::string& name, const py::handle& value) {
   if (PyFloat_Check(value.ptr())) return put(PyFloat_AS_DOUBLE(value.ptr()));
   if (py::isinstance<py::str>(value)) {
     try {
-      return put(parse_number(*find_option({}, name), py::cast<std::string>(value)));
+      return put(parse_number(*find_option({}, name), py::cast<std::string>(value), scales_of(scene_)));
     } catch (const py::cast_error&) {  // no UTF-8
       throw InputError(fmt::format("{} = {} is not a number", name, shown(value)));
     } catch (const InputError& error) {

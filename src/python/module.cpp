@@ -20,6 +20,7 @@
 #include "python/results.hpp"
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
+#include "spec/quantity.hpp"
 #include "spec/spec.hpp"
 #include "support/printable.hpp"
 
@@ -237,6 +238,18 @@ py::list field_rows() {
   return rows;
 }
 
+/// What a body comes to: total mass, eccentricity, inertia; mass_ratio, offset_ratio, inertia_factor.
+/// Weights: name, mass, at, angle, inertia.
+std::tuple<double, double, double, double, double, double> reduced(
+    double diameter, double mass, double inertia,
+    const std::vector<std::tuple<std::string, double, double, double, double>>& weights) {
+  Body body{.diameter = diameter, .mass = mass, .inertia = inertia, .weights = {}};
+  for (const auto& [name, of_weight, at, angle, own] : weights)
+    body.weights.push_back({name, of_weight, at, angle, own});
+  const ReducedBody to = reduce_body(body);
+  return {to.total_mass, to.eccentricity, to.inertia, to.mass_ratio, to.offset_ratio, to.inertia_factor};
+}
+
 }  // namespace
 }  // namespace leapmap::python
 
@@ -275,9 +288,18 @@ PYBIND11_MODULE(_core, module) {
   module.def("spec_keys", &python::spec_key_rows);
   module.def("phase_letters", &phase_letters);
   module.def("program_version", &program_version);
-  module.def("number", [](const std::string& name, const std::string& text) {
-    return parse_number(*find_option({}, name), text);
+  module.def("number", [](const std::string& name, const std::string& text, const py::dict& beside) {
+    return parse_number(*find_option({}, name), text, scales_of(python::Designs(beside, {}).scene()));
   });
+  module.def("quantity", [](const std::string& text, const std::string& unit) {
+    return number_in_own_unit(text, unit, {});
+  });
+  module.def("units_in_own", [](const std::string& unit, const std::string& field, const py::dict& beside) {
+    const Field* known = find_field(field);
+    return known ? units_in_own(unit, own_unit(*known), scales_of(python::Designs(beside, {}).scene()))
+                 : std::nullopt;
+  });
+  module.def("reduce_body", &python::reduced);
   module.def("after_fork_in_child", [] { python::forked() = true; });
   py::class_<python::Watch>(module, "Watch")
       .def(py::init<>())

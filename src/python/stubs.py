@@ -45,8 +45,21 @@ __version__: str
 class Status(IntEnum):
 {statuses}
 
+class Weight:
+    def __init__(self, mass: Numbers, at: Numbers, angle: Numbers = ..., inertia: Numbers = ...,
+                 name: str = ...) -> None: ...
+
+class Hoop:
+    total_mass: NDArray[np.float64]
+    eccentricity: NDArray[np.float64]
+    inertia_ratio: NDArray[np.float64]
+    parameters: dict[str, Any]
+    def __init__(self, diameter: Number, mass: Numbers, inertia: Optional[Numbers] = ...,
+                 weights: Sequence[Weight] = ...) -> None: ...
+
 class Outcomes:
 {fields}
+    def to(self, units: str) -> "Outcomes": ...
     def to_xarray(self) -> xarray.Dataset: ...
 
 class Motion:
@@ -58,16 +71,20 @@ class Motion:
     def to_xarray(self) -> xarray.Dataset: ...
 
 def solve(*,{arguments(True)}
+          hoop: Optional[Hoop] = ...,
           friction: str = ..., jumps: int = ..., settle: int = ..., most_period: int = ...,
           fields: Optional[Sequence[str]] = ..., method: str = ..., tolerance: float = ...,
           max_steps: int = ..., threads: int = ...) -> Outcomes: ...
 def gradient(*,{arguments(True)}
+             hoop: Optional[Hoop] = ...,
              of: str = ..., friction: str = ..., tolerance: float = ...,
              threads: int = ...) -> dict[str, NDArray[np.float64]]: ...
 def trace(*,{arguments(False)}
+          hoop: Optional[Hoop] = ...,
           interval: float = ..., friction: str = ..., method: str = ..., tolerance: float = ...,
           max_steps: int = ...) -> Motion: ...
 def gaits(*,{arguments(False)}
+          hoop: Optional[Hoop] = ...,
           most_period: int = ..., tolerance: float = ...) -> dict[str, Any]: ...
 class Found:
 {attributes(leapmap.Found)}

@@ -88,7 +88,8 @@ std::string hop_command(const Spec& spec, const Design& design) {
     command += fmt::format(" --friction {}", model_of(spec.scene).name);
   for (const Parameter& parameter : parameters())
     if (const auto* member = std::get_if<double Scene::*>(&parameter.member);
-        member && has(spec.scene.friction, parameter.only_of))
+        member && has(spec.scene.friction, parameter.only_of) &&
+        !(*member == &Scene::mass && spec.scene.mass == 0.0))
       command += fmt::format(" --set {}={}", parameter.name, spec.scene.**member);
   if (spec.scene.jumps > 1) command += fmt::format(" --set scene.jumps={}", spec.scene.jumps);
   if (spec.scene.settle > 0)

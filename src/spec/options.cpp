@@ -10,10 +10,10 @@
 #include <limits>
 
 #include "leapmap/errors.hpp"
-#include "leapmap/units.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "numerics/gsl_integrator.hpp"
+#include "spec/quantity.hpp"
 #include "support/closest.hpp"
 #include "support/number.hpp"
 
@@ -224,8 +224,9 @@ Option objective(std::string_view key, TextsSlot slot, std::string_view meaning)
 
 /// [goal] has one for each field.
 Option goal_of(const Field& field) {
-  return {"goal", field.name,   GoalSlot{}, field.unit, field.long_name, {-infinity, infinity, false, false},
-          {},     field.only_of};
+  return {
+      "goal", field.name,   GoalSlot{}, own_unit(field), field.long_name, {-infinity, infinity, false, false},
+      {},     field.only_of};
 }
 
 Option option_of(const Parameter& parameter) {
@@ -350,26 +351,16 @@ bool is_choice(const Option& option, std::string_view text) {
 
 bool in_range(const Option& option, double value) { return option.range.holds(value); }
 
-double parse_number(const Option& option, std::string_view text) {
-  const auto trim = [](std::string_view s) {
-    const auto first = s.find_first_not_of(" \t\r"), last = s.find_last_not_of(" \t\r");
-    return first == std::string_view::npos ? std::string_view{} : s.substr(first, last - first + 1);
-  };
-  std::string_view digits = trim(text);
-  double unit = 1.0;
-  for (const auto& [suffix, factor] : {std::pair{"deg", degrees(1.0)}, std::pair{"rad", 1.0}}) {
-    if (option.unit != "rad" || !digits.ends_with(suffix)) continue;
-    digits = trim(digits.substr(0, digits.size() - 3));
-    unit = factor;
-    break;
+double parse_number(const Option& option, std::string_view text, const Scales& scales) {
+  double value = 0.0;
+  try {
+    value = number_in_own_unit(text, option.unit, scales);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}; allowed: {}", error.what(), allowed_values(option)));
   }
-  const auto number = number_in(digits);
-  if (!number)
-    throw InputError(fmt::format("'{}' is not a number; allowed: {}", text, allowed_values(option)));
-  const double value = *number * unit;
   if (!in_range(option, value))
     throw InputError(fmt::format("'{}' is out of range{}; allowed: {}", text,
-                                 unit == 1.0 ? meant_degrees(option.range, option.unit, value) : "",
+                                 number_in(text) ? meant_degrees(option.range, option.unit, value) : "",
                                  allowed_values(option)));
   return value;
 }

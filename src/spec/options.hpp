@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "model/own_units.hpp"
 #include "model/parameters.hpp"
 #include "spec/spec.hpp"
 
@@ -41,7 +42,7 @@ struct Option {
   std::variant<ParameterSlot, SceneSlot, FrictionSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot,
                SpreadSlot, GoalSlot>
       slot;
-  std::string_view unit;  ///< "rad" marks an angle, which may be written "30 deg"; "1": a pure number
+  std::string_view unit;  ///< of model/own_units.hpp; "1": a pure number
   std::string_view meaning;
   Range range{};                                    ///< numbers and integers
   std::vector<std::string_view> (*choices)() = {};  ///< texts: what is allowed; unset: anything
@@ -51,8 +52,8 @@ struct Option {
 };
 
 /// The sections of a spec, in the order of the documentation.
-inline constexpr std::array<std::string_view, 7> spec_sections{"scene",  "design",  "numerics", "gait",
-                                                               "output", "scatter", "goal"};
+inline constexpr std::array<std::string_view, 8> spec_sections{"scene", "hoop",   "design",  "numerics",
+                                                               "gait",  "output", "scatter", "goal"};
 
 /// All keys, in the order of the documentation.
 std::span<const Option> spec_options();
@@ -104,9 +105,8 @@ bool is_choice(const Option& option, std::string_view text);
 /// True if a number is finite and inside the option's range.
 bool in_range(const Option& option, double value);
 
-/// "0.5", "30 deg", "-1.2e3 rad" as a number in the option's own unit; throws InputError saying what is
-/// wrong.
-double parse_number(const Option& option, std::string_view text);
+/// "0.5", "30 deg", "60 mm" as a number in the option's own unit; throws InputError saying what is wrong.
+double parse_number(const Option& option, std::string_view text, const Scales& scales);
 
 /// An option's default as a spec writes it, or what it follows: "180 deg", "all", "mu_static".
 std::string default_value(const Option& option);

@@ -6,6 +6,7 @@
 
 #include "model/model.hpp"
 #include "spec/options.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/wrapped.hpp"
 
 namespace leapmap {
@@ -50,6 +51,7 @@ std::string options_help() {
     const bool spread = std::holds_alternative<SpreadSlot>(option.slot),
                goal = std::holds_alternative<GoalSlot>(option.slot);
     const bool begins = option.section != section;
+    if (begins && section == "scene") help += hoop_help();
     if (begins) help += fmt::format("\n[{}]\n", section = option.section);
     if (begins && spread)
       help +=

@@ -27,16 +27,28 @@ const Option* column_option(const std::string& place, std::string_view name) {
   return *found;
 }
 
+/// "slope [deg]" as "slope" and "deg".
+std::pair<std::string, std::string> name_and_unit(const std::string& header) {
+  const std::size_t open = header.find('[');
+  if (open == header.npos || !header.ends_with(']')) return {header, ""};
+  const std::size_t end = header.find_last_not_of(' ', open - (open > 0 ? 1 : 0));
+  return {header.substr(0, open == 0 || end == header.npos ? 0 : end + 1),
+          header.substr(open + 1, header.size() - open - 2)};
+}
+
 }  // namespace
 
-PointList read_points(const std::string& path, const std::string& origin) {
+PointList read_points(const std::string& path, const std::string& origin, const Scales& scales) {
   CsvFile file(path, fmt::format("a CSV file as design.points of {}", origin));
   PointList list;
   list.path = path;
   list.count = 0;
   std::vector<const Option*> columns;  // null: the labels
-  for (const std::string& name : file.header()) {
-    columns.push_back(name == label_name ? nullptr : column_option(file.place(), name));
+  std::vector<std::string> units;
+  for (const std::string& text : file.header()) {
+    const auto [name, unit] = name_and_unit(text);
+    columns.push_back(text == label_name ? nullptr : column_option(file.place(), name));
+    units.push_back(unit.empty() ? "" : " " + unit);
     if (columns.back()) list.columns.push_back({name, {}});
   }
   if (!columns.empty() && list.columns.empty())
@@ -51,7 +63,7 @@ PointList read_points(const std::string& path, const std::string& origin) {
         continue;
       }
       try {
-        (column++)->values.push_back(parse_number(*columns[i], cells[i]));
+        (column++)->values.push_back(parse_number(*columns[i], cells[i] + units[i], scales));
       } catch (const InputError& error) {
         throw InputError(fmt::format("{}: column {} = {}", place, columns[i]->key, error.what()));
       }

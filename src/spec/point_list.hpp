@@ -4,14 +4,15 @@
 
 #include <string>
 
+#include "model/own_units.hpp"
 #include "spec/spec.hpp"
 
 namespace leapmap {
 
 /// Reads a list of designs. The header names parameters of a design; each line below holds one number for
-/// each (angles in rad, or written "23 deg"), and what stands in a column `label` names the design; origin,
-/// the spec's file, is for messages. Throws InputError naming line and column, IoError if the file cannot be
-/// read.
-PointList read_points(const std::string& path, const std::string& origin);
+/// each, in the parameter's own unit, in one written after it ("23 deg") or in that of the header
+/// ("slope [deg]"); what stands in a column `label` names the design; origin, the spec's file, is for
+/// messages. Throws InputError naming line and column, IoError if the file cannot be read.
+PointList read_points(const std::string& path, const std::string& origin, const Scales& scales = {});
 
 }  // namespace leapmap

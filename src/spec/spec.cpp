@@ -15,6 +15,7 @@
 #include "model/model.hpp"
 #include "spec/point_list.hpp"
 #include "spec/spec_entry.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/closest.hpp"
 #include "support/csv.hpp"
 #include "support/number.hpp"
@@ -97,6 +98,7 @@ struct Assign {
 std::vector<Entry> entries_of(const toml::table& file, const std::string& origin) {
   std::vector<Entry> entries;
   for (const auto& [section, node] : file) {
+    if (section.str() == "hoop") continue;  // read_hoop's
     const std::string place = fmt::format("{}:{}", origin, node.source().begin.line);
     const toml::table* table = node.as_table();
     const bool known = std::ranges::any_of(
@@ -167,6 +169,14 @@ void refuse_what_has_no_use(const std::vector<Entry>& entries, const Spec& spec)
       refuse(entry, no_use(spec.scene), with_model(*entry.option->only_of));
 }
 
+/// What [hoop] determines is given once.
+void refuse_beside_hoop(const std::vector<Entry>& entries) {
+  for (const Entry& entry : entries)
+    for (const std::string_view key : {"mass_ratio", "offset_ratio", "inertia_factor", "radius", "mass"})
+      if (entry.option->key == key && !std::holds_alternative<SpreadSlot>(entry.option->slot))
+        refuse(entry, "[hoop] determines it already", "one of the two");
+}
+
 /// A points file is looked for beside the spec first, then from the working folder.
 std::string find_points(const Spec& spec) {
   namespace fs = std::filesystem;
@@ -183,7 +193,7 @@ void read_points_of(Spec& spec) {
   if (spec.points.empty()) return;
   spec.points =
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
-  spec.list = read_points(spec.points, origin_of(spec));
+  spec.list = read_points(spec.points, origin_of(spec), scales_of(spec.scene));
   for (const Axis& column : spec.list.columns) {
     const Option& option = *find_option("design", column.key);
     if (!has(spec.scene.friction, option.only_of))
@@ -233,6 +243,7 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
 
   std::vector<toml::table> values;
   values.reserve(overrides.size());  // entries point into it
+  std::vector<HoopOverride> of_hoop;
   for (const std::string& set : overrides) {
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos) throw InputError(fmt::format("--set {}: allowed: KEY=VALUE", set));
@@ -241,8 +252,12 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
     const std::string section = dot == std::string::npos ? "" : name.substr(0, dot);
     const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
     const Option* option = find_option(section, key);
-    if (!option) refuse_key("--set " + set, section, key);
+    if (!option && section != "hoop") refuse_key("--set " + set, section, key);
     values.push_back(parse_override(set, std::string_view(set).substr(equals + 1)));
+    if (section == "hoop") {
+      of_hoop.push_back({key, values.back().get("v")});
+      continue;
+    }
     override_with(entries, {option, command_line, {}, values.back().get("v")});
   }
 
@@ -251,7 +266,23 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
       return e.option->key == key && std::holds_alternative<SpreadSlot>(e.option->slot) == scattered;
     });
   };
-  for (const Entry& entry : entries) std::visit(Assign{entry, spec}, entry.option->slot);
+  spec.hoop = read_hoop(file.get("hoop"), origin, of_hoop);
+  if (spec.hoop) {
+    refuse_beside_hoop(entries);
+    apply_body(reduce_body(*spec.hoop), *spec.hoop, spec.design, spec.scene);
+  }
+  // What other numbers' units hang on comes first.
+  const auto sets_scale = [](const Entry& entry) {
+    const auto* slot = std::get_if<SceneSlot>(&entry.option->slot);
+    return slot && (slot->member == &Scene::radius || slot->member == &Scene::gravity ||
+                    slot->member == &Scene::mass);
+  };
+  for (const Entry& entry : entries)
+    if (sets_scale(entry)) std::visit(Assign{entry, spec}, entry.option->slot);
+  for (Entry& entry : entries) {
+    entry.scales = scales_of(spec.scene);
+    std::visit(Assign{entry, spec}, entry.option->slot);
+  }
   const bool asks_for_gaits =
       std::ranges::any_of(entries, [](const Entry& e) { return e.option->section == "gait"; });
   if ((asks_for_gaits || file.contains("gait")) && !given("settle")) spec.scene.settle = 500;

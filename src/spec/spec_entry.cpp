@@ -36,9 +36,9 @@ void refuse(const Entry& entry, std::string_view what, std::string_view allowed)
 double to_number(const Entry& entry, const toml::node& node, std::string_view part) {
   const Option& option = *entry.option;
   const std::string where = part.empty() ? "" : fmt::format("'{}' ", part);
-  if (const auto* text = node.as_string(); text && option.unit == "rad") {
+  if (const auto* text = node.as_string()) {
     try {
-      return parse_number(option, text->get());
+      return parse_number(option, text->get(), entry.scales);
     } catch (const InputError& error) {
       throw InputError(
           fmt::format("{}: {}.{}: {}{}", entry.place, option.section, option.key, where, error.what()));

@@ -21,6 +21,7 @@ struct Entry {
   std::string place;  // "file:line" or "--set"
   toml::source_position position;
   const toml::node* node;
+  Scales scales{};  // of the scene, for numbers with units
 };
 
 /// Throws InputError with the entry's place, key and value.

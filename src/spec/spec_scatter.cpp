@@ -75,7 +75,7 @@ Spread to_spread(const Entry& entry) {
                 .law = law == "normal" ? Spread::Law::normal : Spread::Law::uniform};
   const auto percent = to_percent(node);
   spread.percent = percent.has_value();
-  if (!percent && node.is_string() && entry.option->unit != "rad")
+  if (!percent && node.is_string() && !find_own_unit(entry.option->unit))
     refuse(entry, fmt::format("'{}' is not a width", law),
            fmt::format("{}, or as \"2 %\"", allowed_values(*entry.option)));
   spread.width = percent ? *percent : to_number(entry, node, law);

@@ -63,7 +63,7 @@ def test_what_is_misspelled_gets_a_suggestion(arguments, meant):
 
 def test_a_section_that_is_misspelled_gets_a_suggestion(tmp_path):
     (tmp_path / "bad.toml").write_text("[desing]\nslope = 0.4\n")
-    assert "[desing]: unknown section (did you mean design?); allowed: [scene], [design]" in leapmap(
+    assert "[desing]: unknown section (did you mean design?); allowed: [scene], [hoop], [design]" in leapmap(
         "hop", tmp_path / "bad.toml").stderr
 
 

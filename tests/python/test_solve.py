@@ -109,7 +109,7 @@ def test_angles_may_be_texts_and_fields_may_be_chosen():
     ({"mu_static": 0.4
       }, "mu_static = 0.4 has no effect because the contact never slips .*; allowed: with friction"),
     ({"friction": "glue"}, "friction = 'glue' is not a model; allowed: sticking, coulomb"),
-    ({"mass": 3.0}, "mass: unknown parameter; allowed: "),
+    ({"colour": 3.0}, "colour: unknown parameter; allowed: "),
     ({"slope": "steep"}, "slope = 'steep' is not a number; allowed: .* deg"),
     ({"slope": object()}, "slope = <object object at"),
     ({"slope": True}, "slope = True is not a number"),

@@ -10,7 +10,7 @@ from support.program import leapmap
 
 
 def waited(browser, condition, seconds=60):
-    """Waits until the condition holds. Selenium by itself looks every half second, which most pages do not need."""
+    """Waits until the condition holds. By itself Selenium looks every half second only."""
     return WebDriverWait(browser, seconds, poll_frequency=0.05).until(condition)
 
 

@@ -32,6 +32,8 @@ def _described(name):
         }
     return about
 
+_SCALES = ("radius", "gravity", "mass")  # what own units hang on
+
 
 class Outcomes:
     """Outcomes of designs: one attribute for each field, an array or, for one design, a number.
@@ -71,6 +73,46 @@ class Outcomes:
         return (f"<outcomes of {' x '.join(map(str, shape))} designs{counts}; fields "
                 f"{', '.join(self._fields)}>")
 
+    def to(self, units):
+        """Convert to other units.
+
+        Parameters
+        ----------
+        units : str
+            Names of units with spaces between them, for example "mm deg ms rpm N.s". Each field takes the
+            first one that fits; the others keep their own.
+
+        Returns
+        -------
+        Outcomes
+            The same outcomes.
+
+        Raises
+        ------
+        ValueError
+            For an unknown unit, and for one that no field can be given in: newtons and joules need the
+            parameter mass.
+
+        Examples
+        --------
+        >>> o = leapmap.solve(slope=0.4, radius="60 mm")
+        >>> round(float(o.to("mm").jump_height), 2)
+        117.94
+        """
+        given = {name: self._given[name] for name in _SCALES if name in self._given}
+        wanted, used, fields = units.split(), set(), {}
+        for name, column in self._fields.items():
+            factors = {unit: _core.units_in_own(unit, name, given) for unit in wanted}
+            fits = [unit for unit in wanted if factors[unit] is not None]
+            fields[name] = column * factors[fits[0]] if fits else column
+            used |= set(fits[:1])
+        for unit in wanted:
+            if unit not in used:
+                raise ValueError(f"units: no field can be given in {unit}" +
+                                 ("" if "mass" in given else " without the parameter mass") +
+                                 "; allowed: units such as mm, deg, ms, rpm, N.s")
+        return Outcomes(fields, self._given)
+
     def to_xarray(self):
         """Convert to an xarray.Dataset.
 
@@ -85,8 +127,11 @@ class Outcomes:
         import xarray
 
         shape = np.shape(next(iter(self._fields.values())))
-        given = {name: np.asarray(_core.number(name, value) if isinstance(value, str) else value, float)
-                 for name, value in self._given.items() if name in _PARAMETERS}
+        scales = {name: self._given[name] for name in _SCALES if name in self._given}
+        given = {
+            name: np.asarray(_core.number(name, value, scales) if isinstance(value, str) else value, float)
+            for name, value in self._given.items() if name in _PARAMETERS
+        }
         along = {
             name: tuple(d for d, n in enumerate(value.shape,
                                                 len(shape) - value.ndim)

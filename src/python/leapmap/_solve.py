@@ -8,10 +8,11 @@ import numpy as np
 
 from leapmap import _core
 from leapmap._arguments import count, names, real, text, whole
+from leapmap._hoop import with_hoop
 from leapmap._results import Motion, Outcomes
 
 
-def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None, method="auto",
+def solve(*, hoop=None, friction="sticking", jumps=1, settle=0, most_period=16, fields=None, method="auto",
           tolerance=1e-10, max_steps=1_000_000, threads=0, **parameters):
     """Solve designs: when, how high and how far each of them jumps.
 
@@ -20,6 +21,8 @@ def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None
     Parameters
     ----------
     {parameters}
+    hoop : Hoop, optional
+        A hoop as a drawing has it, instead of mass_ratio, offset_ratio, inertia_factor, radius and mass.
     friction : str, default "sticking"
         Contact model. "sticking": never slips, as in the paper; "coulomb": Coulomb friction.
     jumps : int, default 1
@@ -58,6 +61,7 @@ def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None
     >>> o.jump_height.round(3)
     array([0.362, 0.847, 1.121])
     """
+    parameters = with_hoop(hoop, parameters)
     counts = (("jumps", jumps, 1, 1), ("settle", settle, 0, 0), ("most_period", most_period, 1, 16))
     parameters |= {
         name: number for name, value, least, usual in counts if (number := count(name, value, least)) != usual
@@ -72,11 +76,13 @@ def solve(*, friction="sticking", jumps=1, settle=0, most_period=16, fields=None
     return Outcomes({name: column[()] for name, column in columns.items()}, given | {"friction": friction})
 
 
-def gradient(*, of="jump_height", friction="sticking", tolerance=1e-10, threads=0, **parameters):
+def gradient(*, hoop=None, of="jump_height", friction="sticking", tolerance=1e-10, threads=0, **parameters):
     """Differentiate one quantity by every parameter of the designs, by dual numbers, to machine precision.
 
     Parameters
     ----------
+    hoop : Hoop, optional
+        As in solve.
     of : str, default "jump_height"
         Name of the quantity.
     friction : str, default "sticking"
@@ -105,17 +111,19 @@ def gradient(*, of="jump_height", friction="sticking", tolerance=1e-10, threads=
     >>> round(float(g["slope"]), 3)
     2.296
     """
-    columns = _core.gradient(_whole_counts(parameters), text("friction", friction), text("of", of),
-                             real("tolerance", tolerance), whole("threads", threads, 0, 4096))
+    columns = _core.gradient(_whole_counts(with_hoop(hoop, parameters)), text("friction", friction),
+                             text("of", of), real("tolerance", tolerance), whole("threads", threads, 0, 4096))
     return {name: column[()] for name, column in columns.items()}
 
 
-def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10, max_steps=1_000_000,
-          **parameters):
+def trace(*, hoop=None, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10,
+          max_steps=1_000_000, **parameters):
     """Solve one design and sample its motion over time.
 
     Parameters
     ----------
+    hoop : Hoop, optional
+        As in solve.
     interval : float, default 0.001
         Time between samples [s]; 0: phases and lift-offs only.
     friction : str, default "sticking"
@@ -144,12 +152,13 @@ def trace(*, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10,
     >>> [phase["phase"] for phase in m.phases]
     ['rolling', 'flight']
     """
+    parameters = with_hoop(hoop, parameters)
     told = _core.trace(_whole_counts(parameters), text("friction", friction), real("interval", interval),
                        text("method", method), real("tolerance", tolerance), whole("max_steps", max_steps, 1))
     return Motion(told, parameters | {"friction": friction})
 
 
-def gaits(*, most_period=1, tolerance=1e-10, **parameters):
+def gaits(*, hoop=None, most_period=1, tolerance=1e-10, **parameters):
     """Find the gaits of one hoop that never slips: periodic sequences of jumps, stable and unstable ones.
 
     Gaits whose lift-offs coincide with landings are searched from a grid of starting points; one may be
@@ -157,6 +166,8 @@ def gaits(*, most_period=1, tolerance=1e-10, **parameters):
 
     Parameters
     ----------
+    hoop : Hoop, optional
+        As in solve.
     most_period : int, default 1
         Longest period to search for, in jumps, 1 to 16.
     tolerance : float, default 1e-10
@@ -189,7 +200,8 @@ def gaits(*, most_period=1, tolerance=1e-10, **parameters):
     for name in ("friction", "mu_static", "mu_kinetic", "restitution", "jumps", "settle"):
         if name in parameters:
             raise ValueError(f"{name}: has no effect here; allowed: solve(..., settle=500)")
-    return _core.gaits(parameters, whole("most_period", most_period, 1, 16), real("tolerance", tolerance))
+    return _core.gaits(with_hoop(hoop, parameters), whole("most_period", most_period, 1, 16),
+                       real("tolerance", tolerance))
 
 
 def _names(fields):

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap export: a map as a table for spreadsheets, a row a design, units in its header.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/spoken.hpp"
+#include "leapmap/errors.hpp"
+#include "map/layout.hpp"
+#include "map/reader.hpp"
+#include "spec/map_spec.hpp"
+#include "spec/quantity.hpp"
+#include "support/closest.hpp"
+#include "support/output_file.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+constexpr std::size_t most_rows = (1 << 20) - 1;  // what a spreadsheet has below its header
+
+struct ExportArguments {
+  std::string map, output, units;
+  std::vector<std::string> fields;
+  bool overwrite = false, quiet = false;
+  Locking locking = Locking::required;
+};
+
+struct Column {
+  std::string name{};
+  const Field* field = nullptr;        ///< none: a parameter
+  std::optional<std::size_t> along{};  ///< the axis whose values it has; none: a dataset
+  std::string unit{};                  ///< as the header names it; empty: a pure number, or words
+  double factor = 1.0;                 ///< of what the map holds to what is written
+};
+
+/// The first of the units asked for that fits; else the column's own.
+void choose_unit(Column& column, std::string_view own, std::span<const std::string> units,
+                 const Scales& scales, std::vector<bool>& used) {
+  if (own != "1" && !own.empty()) column.unit = own;
+  for (std::size_t k = 0; k < units.size(); ++k) {
+    const auto factor = units_in_own(units[k], own, scales);
+    if (!factor) continue;
+    used[k] = true;
+    column.unit = units[k], column.factor = *factor;
+    return;
+  }
+}
+
+/// What is not found along the map is no column of it.
+[[noreturn]] void refuse_field(const MapReader& map, const std::string& name) {
+  std::vector<std::string_view> names(map.fields().begin(), map.fields().end());
+  throw InputError(fmt::format("--fields: {} has no '{}'{}; allowed: {}", map.path(), name,
+                               did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
+std::vector<Column> columns_of(const MapReader& map, const ExportArguments& arguments) {
+  std::vector<Column> columns;
+  if (!map.is_list())
+    for (std::size_t k = 0; k < map.dimensions().size(); ++k)
+      columns.push_back({.name = map.dimensions()[k].name, .along = k});
+  for (const std::string& name : map.fields()) {
+    const Field* field = find_field(name);
+    const bool asked = !field || arguments.fields.empty() ||
+                       std::ranges::find(arguments.fields, name) != arguments.fields.end();
+    if (asked) columns.push_back({.name = name, .field = field});
+  }
+  for (const std::string& name : arguments.fields)
+    if (!map.has(name) || !find_field(name)) refuse_field(map, name);
+  return columns;
+}
+
+/// "mm g deg N" as its words; a unit of several words is written with points: "N.m".
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+void choose_units(std::vector<Column>& columns, const std::string& asked, const Scales& scales) {
+  const std::vector<std::string> units = words_of(asked);
+  std::vector<bool> used(units.size());
+  try {
+    for (Column& column : columns) {
+      const Option* parameter = column.field ? nullptr : find_option("", column.name);
+      choose_unit(column,
+                  column.field ? own_unit(*column.field)
+                  : parameter  ? parameter->unit
+                               : "1",
+                  units, scales, used);
+    }
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("--units: {}; allowed: units such as mm, deg, ms, rpm, N.m", error.what()));
+  }
+  for (std::size_t k = 0; k < units.size(); ++k)
+    if (!used[k])
+      throw InputError(fmt::format(
+          "--units: no column can be given in {}{}; allowed: units of the columns, {}", units[k],
+          scales.mass > 0.0 ? "" : " (the map's spec has no scene.mass)", "such as mm, deg, ms, rpm, N.m"));
+}
+
+/// A column's texts for the designs of a block.
+std::vector<std::string> texts_of(const MapReader& map, const Column& column, const Tile& block) {
+  std::vector<std::string> texts(block.count);
+  if (column.field && std::holds_alternative<Word>(column.field->source)) {
+    const std::vector<std::uint64_t> words = map.read_words(column.name, block);
+    std::ranges::transform(words, texts.begin(), phase_letters);
+    return texts;
+  }
+  const auto* code = column.field ? std::get_if<Code>(&column.field->source) : nullptr;
+  const std::vector<double> values = column.along ? std::vector<double>{} : map.read(column.name, block);
+  for (std::size_t i = 0; i < block.count; ++i) {
+    if (column.along) {
+      const std::size_t k = *column.along;
+      const std::size_t place = block.start[k] + place_along(block.extent, i, k);
+      texts[i] = fmt::format("{}", map.dimensions()[k].values[place] * column.factor);
+    } else if (code) {
+      const auto number = static_cast<std::size_t>(values[i]);
+      if (number < code->names.size())
+        texts[i] = code->names[number];
+      else if (code->names.empty() && number != code->fill)
+        texts[i] = fmt::format("{}", number);
+    } else if (std::isfinite(values[i])) {
+      texts[i] = fmt::format("{}", values[i] * column.factor);
+    }
+  }
+  return texts;
+}
+
+/// A map's designs in their order, some rows of its first dimension at a time.
+template <class F>
+void for_each_block(const std::vector<std::size_t>& shape, std::size_t rows, const F& f) {
+  for (std::size_t first = 0; first < shape[0]; first += rows) {
+    Tile block{std::vector<std::size_t>(shape.size(), 0), shape, 0};
+    block.start[0] = first, block.extent[0] = std::min(rows, shape[0] - first);
+    block.count = designs_of(block.extent);
+    f(block);
+  }
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == text.npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string table_of(const MapReader& map, const std::vector<Column>& columns) {
+  const std::vector<std::string> labels = map.is_list() ? map.labels() : std::vector<std::string>{};
+  std::vector<std::string> header;
+  if (!labels.empty()) header.emplace_back(label_name);
+  for (const Column& column : columns)
+    header.push_back(column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit));
+  std::string text = fmt::format("{}\n", fmt::join(header, ","));
+  const std::size_t rows = map.blocks(map.fields()[0]).tile_shape()[0];
+  for_each_block(map.shape(), rows, [&](const Tile& block) {
+    std::vector<std::vector<std::string>> cells;
+    for (const Column& column : columns) cells.push_back(texts_of(map, column, block));
+    for (std::size_t i = 0; i < block.count; ++i) {
+      if (!labels.empty()) text += quoted(labels[block.start[0] + i]) + ",";
+      for (std::size_t k = 0; k < cells.size(); ++k) (text += k > 0 ? "," : "") += cells[k][i];
+      text += '\n';
+    }
+    if (noted_signal() != 0) throw Stopped("the export was stopped");
+  });
+  return text;
+}
+
+int run(const ExportArguments& arguments) {
+  const std::array inputs{NamedPath{"MAP", arguments.map}};
+  const std::array outputs{NamedPath{"-o", arguments.output}};
+  refuse_same_files(inputs, outputs);
+  const MapReader map(arguments.map, arguments.locking);
+  const std::size_t designs = designs_of(map.shape());
+  if (designs > most_rows)
+    throw InputError(
+        fmt::format("{}: has {} designs; allowed: at most {}, the rows of a spreadsheet; Python "
+                    "reads larger maps",
+                    arguments.map, grouped(designs), grouped(most_rows)));
+  const Spec spec = spec_of(map, arguments.map);
+  std::vector<Column> columns = columns_of(map, arguments);
+  choose_units(columns, arguments.units, scales_of(spec.scene));
+  note_signals();
+  TextOutput file("-o", arguments.output, {}, arguments.overwrite);
+  try {
+    file.commit(table_of(map, columns));
+  } catch (const Stopped&) {
+    tell("interrupted; nothing was written");
+    return 128 + noted_signal();
+  }
+  if (!arguments.quiet) say("table    {}: {} designs\n", arguments.output, grouped(designs));
+  return 0;
+}
+
+}  // namespace
+
+void add_export(CommandLine& line, int& status) {
+  Command command = line.command("export", "write a map as a CSV table, with units in its header");
+  command.examples(
+      {{"leapmap export maps/best.h5 -o best.csv --units \"mm deg ms\"", "for a spreadsheet"},
+       {"leapmap export maps/best.h5 -o best.csv --fields jump_height,status", "two fields alone"}});
+  auto arguments = std::make_shared<ExportArguments>();
+  command.value("MAP", arguments->map, "a map, or the .part of an unfinished one (HDF5)")
+      .required()
+      .check(named_file());
+  command.value("-o,--output", arguments->output, "the CSV file").required().check(named_file());
+  command.value(
+      "--units", arguments->units,
+      "units to convert to, for example \"mm deg ms rpm N.m\"; each column takes the first that fits; "
+      "default: the map's");
+  command.value("--fields", arguments->fields, "fields to write, separated by commas; default: all")
+      .with_commas();
+  command.flag("--overwrite", arguments->overwrite, "replace an existing file");
+  command.flag("--quiet", arguments->quiet, "print errors only");
+  add_no_lock(command, arguments->locking);
+  command.footer(
+      "A row for each design, in the map's order: its parameters, then the fields. Codes are words, phase "
+      "sequences letters; a cell without a value is empty. leapmap sweep --points reads the parameters' "
+      "columns, with their units.");
+  command.runs([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli

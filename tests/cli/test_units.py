@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A hoop from a drawing, numbers with units, and tables for spreadsheets."""
+import csv
+import itertools
+import json
+import math
+
+import h5py
+import numpy as np
+import pytest
+from support.program import leapmap, sweep
+
+# A hoop of 120 mm from CAD: a ring, a slug, a battery opposite.
+HOOP = """
+[hoop]
+diameter = "120 mm"
+mass = "61 g"
+inertia = "1.9e-4 kg m2"
+[[hoop.weight]]
+name = "slug"
+mass = "85 g"
+at = "47 mm"
+[[hoop.weight]]
+name = "battery"
+mass = "12 g"
+at = "30 mm"
+angle = "180 deg"
+"""
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    (tmp_path / "hoop.toml").write_text(HOOP)
+    return tmp_path / "hoop.toml"
+
+
+def told(*words):
+    done = leapmap("hop", *words, "--json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize(("slope", "model", "millimetres", "phases"), [
+    ("33.58 deg", ("--friction", "coulomb", "--mu-static", 0.6), 60.0, None),
+    ("34.80 deg", (), 60.0, None),
+    ("18 deg", ("--friction", "coulomb", "--mu-static", 0.6), 10.3, "RSRSF"),
+])
+def test_a_drawing_jumps_as_an_independent_integration_says(slope, model, millimetres, phases, drawing):
+    """The heights were found by hand reduction and by integrating three coordinates elsewhere, to the digits
+    shown."""
+    hop = told(drawing, "--slope", slope, *model)
+    assert 120 * hop["jump_height"] == pytest.approx(millimetres, abs=0.06 if millimetres < 20 else 0.3)
+    assert phases is None or hop["phase_sequence"] == phases
+    shown = leapmap("hop", drawing, "--slope", slope, *model).stdout
+    assert "0.158        kg in all, centre of mass at 0.383439 R, moment of inertia 0.683131 M R^2" in shown
+
+
+def test_one_weight_is_changed_by_its_name(drawing):
+    heavier = told(drawing, "--set", "hoop.slug.mass=90g", "--slope", "30deg")
+    assert heavier["scene"]["mass"] == pytest.approx(0.163, rel=1e-14)
+    assert heavier["design"]["mass_ratio"] == pytest.approx(102 / 61, rel=1e-14)
+
+
+def test_a_number_is_the_same_in_every_unit(drawing):
+    ways = [("--hop-height", "6 mm"), ("--hop-height", "0.05"), ("--hop-height", "0.6cm"),
+            ("--set", 'hop_height="0.006 m"'), ("--set", "scene.hop_height=6000 µm")]
+    assert {told(drawing, "--slope", "30deg", *way)["scene"]["hop_height"] for way in ways} == {0.05}
+    spin = told(drawing, "--slope", "30deg", "--release-spin", "60 rpm")["design"]["release_spin"]
+    assert spin == pytest.approx(2 * math.pi * math.sqrt(0.06 / 9.81), rel=1e-14)
+    torque = told(drawing, "--slope", "30deg", "--drive-torque", "4 mN m")
+    assert torque["design"]["drive_torque"] == pytest.approx(0.004 / (0.158 * 9.81 * 0.06), rel=1e-14)
+    assert torque["motor"]["torque"] == pytest.approx(0.004, rel=1e-14)
+
+
+def test_newtons_need_a_mass():
+    refused = leapmap("hop", "--drive-torque", "0.04 N m")
+    assert refused.returncode == 2 and "needs the total mass too, scene.mass" in refused.stderr
+    assert told("--drive-torque", "0.04 N m", "--mass", "158 g")["motor"]["torque"] == pytest.approx(0.04)
+    motor = told("--drive-torque", "0.1")["motor"]
+    assert motor["mass"] is None and motor["torque"] is None and motor["rpm"] > 0
+    assert "With --mass: torque, power and energy" in leapmap("hop", "--drive-torque", "0.1").stdout
+
+
+def test_tolerances_goals_axes_and_lists_have_units_too(tmp_path):
+    spec = """
+[scene]
+radius = "60 mm"
+[design]
+slope = { from = "10 deg", to = "40 deg", count = 7 }
+release_spin = { values = ["0 rpm", "30 rpm"] }
+[scatter]
+release_spin = { normal = "3 rpm" }
+samples = 32
+[goal]
+jump_height = { at_least = "30 mm" }
+jump_time = { at_most = "900 ms" }
+"""
+    with h5py.File(sweep(tmp_path, spec)) as m:
+        assert m["release_spin"][1] == pytest.approx(math.pi * math.sqrt(0.06 / 9.81), rel=1e-14)
+        text = m.attrs["spec"]
+    assert "at_least = 0.25" in text and "at_most = 0.9" in text
+    (tmp_path / "list.csv").write_text("slope [deg],release_spin [rpm]\n20,30\n0.5 rad,0\n")
+    refused = leapmap("sweep", "--points", tmp_path / "list.csv", "-o", tmp_path / "l.h5", "--quiet")
+    assert refused.returncode == 2 and "'0.5 rad deg'" in refused.stderr, "a unit twice"
+    (tmp_path / "list.csv").write_text("slope [deg],release_spin [rpm]\n20,30\n30,0\n")
+    done = leapmap("sweep", "--points", tmp_path / "list.csv", "-o", tmp_path / "l.h5", "--quiet")
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "l.h5") as m:
+        assert m["slope"][:].tolist() == [math.radians(20), math.radians(30)]
+        assert m["release_spin"][0] == pytest.approx(math.pi * math.sqrt(0.041 / 9.81), rel=1e-14)
+
+
+KEYS = {
+    "diameter": ("m", "mm"), "mass": ("kg", "g"), "inertia": ("kg m2", "g mm2"), "slug.mass": ("kg", "g"),
+    "slug.at": ("m", "mm"), "slug.angle": ("rad", "deg"), "battery.inertia": ("kg m2", "g mm2"),
+    "battery.mass": ("kg", "g"),
+    "battery.at": ("m", "mm"),
+    "battery.angle": ("rad", "deg"),
+    "slug.inertia": ("kg m2", "g mm2")
+}
+WRONG_UNITS = {
+    "m": ("3 s", "3 g", "60 mmm", "3 deg", "60 mm mm", "-60 mm"),
+    "kg": ("85 mm", "85 gg", "85 N", "-85 g", "1 m"), "kg m2": ("1 kg", "1 kg m", "1 g m3", "-1 kg m2"),
+    "rad": ("3 mm", "180", "3 %", "4 turn s")
+}
+BODIES = [(f"hoop.{key}={value}", f"hoop.{key}", value) for key, (unit, _) in KEYS.items()
+          for value in (*WRONG_UNITS[unit], "nan mm", "abc", "1e999 mm", "{from=1,to=2,count=3}")]
+FLAGS = [(f"{key}={value}", key, value) for key, values in {
+    "hop_height": ("3 s", "3 kg", "-1 mm", "5 mmm",
+                   "3 deg"), "radius": ("3 s", "-4 mm", "0 mm", "41 g", "41 K"), "gravity": (
+                       "9.81 m/s", "9.81", "-1 m/s2",
+                       "3 N")[2:], "runway": ("3 kg", "-1 m",
+                                              "4 s"), "slope": ("3 mm", "95 deg", "30 degg", "1 s",
+                                                                "20 %"), "release_spin": ("30 Hz", "3 s",
+                                                                                          "1 m/s", "3 rmp"),
+    "drive_torque": ("0.04 N", "3 s",
+                     "1 N m s"), "mass_ratio": ("3 g", "2 m",
+                                                "3 rad"), "restitution": ("0.5 m",
+                                                                          "3 s"), "rest_speed": ("3 m",
+                                                                                                 "-1 m/s",
+                                                                                                 "1 mm/ss")
+}.items() for value in values]
+PLACES = [("axis", 'slope={{from="1 deg",to="{}",count=3}}'), ("list", 'slope={{values=["{}"]}}'),
+          ("tolerance", 'scatter.slope={{normal="{}"}}'), ("goal", 'goal.jump_angle={{at_least="{}"}}'),
+          ("time", 'goal.jump_time={{at_most="{}"}}'), ("height", 'goal.jump_height={{at_least="{}"}}')]
+SPEC_TEXTS = [(text.format(value), text.split("=")[0].split(".")[-1], value) for (_, text), value in
+              itertools.product(PLACES, ("3 kg", "4 furlongss", "5 K", "x mm", "--3 deg"))]
+
+
+def test_bad_units_and_bodies_are_a_line_each_with_key_value_and_what_is_allowed(drawing):
+    cases = BODIES + FLAGS + SPEC_TEXTS
+    wrong = []
+    for given, key, value in cases:
+        done = leapmap("sweep" if "{" in given and "hoop" not in given else "hop", drawing, "--friction",
+                       "coulomb", "--set", given,
+                       *(("-o", "x.h5", "--dry-run") if "{" in given and "hoop" not in given else ()))
+        line = done.stderr
+        fine = done.returncode == 2 and line.count("\n") == 1 and key in line and "allowed: " in line
+        as_typed = value in line or value[0] in "{-1"  # bounds of a body are told in the SI's unit
+        if not fine or not as_typed:
+            wrong.append((given, done.returncode, line))
+    assert wrong == []
+    assert len(cases) + len(TEXTS) >= 180
+
+
+TEXTS = [("name = \"slug\"", "name = \"battery\"", "'battery' appears twice"),
+         ('name = "slug"\n', "", "'name' is missing"), ('mass = "85 g"\n', "", "'mass' is missing"),
+         ('at = "47 mm"\n', "", "'at' is missing"),
+         ('diameter = "120 mm"\n', "", "hoop.diameter: is missing"),
+         ('mass = "61 g"\n', "", "hoop.mass: is missing"), ('"47 mm"', '"61 mm"', "up to the radius"),
+         ('"47 mm"', "47", "up to the radius"), ('name = "slug"', 'name = "a.b"', "cannot be part of a key"),
+         ('name = "slug"', "name = 3", "'name' is missing"), ("at = ", "radius = ", "unknown key"),
+         ("inertia = ", "inertai = ", "did you mean inertia?"),
+         ("[[hoop.weight]]", "[[hoop.wieght]]", "did you mean weight?"),
+         ('"180 deg"', "180", "[-2 pi, 2 pi]"), ('mass = "61 g"', "mass = true", "is not a number"),
+         ('mass = "61 g"', "mass = { from = 1, to = 2 }", "is an axis"),
+         ("[hoop]\n", "[scene]\nradius = 0.06\n[hoop]\n", "[hoop] determines it already"),
+         ("[hoop]\n", "[design]\nmass_ratio = 3\n[hoop]\n", "[hoop] determines it already")]
+
+
+@pytest.mark.parametrize(("old", "new", "word"), TEXTS)
+def test_a_drawing_that_cannot_be_is_refused_in_a_line(old, new, word, tmp_path):
+    (tmp_path / "bad.toml").write_text(HOOP.replace(old, new))
+    done = leapmap("hop", tmp_path / "bad.toml")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+    assert word in done.stderr and "bad.toml" in done.stderr and "allowed: " in done.stderr
+
+
+def test_hoop_keys_need_a_drawing():
+    done = leapmap("hop", "--set", "hoop.slug.mass=85g")
+    assert done.returncode == 2 and "there is no [hoop]" in done.stderr
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_a_table_has_the_map_s_numbers_in_the_units_asked_for(tmp_path):
+    spec = """
+[scene]
+friction = "coulomb"
+radius = "60 mm"
+mass = "158 g"
+[design]
+slope = { from = "10 deg", to = "40 deg", count = 4 }
+mass_ratio = { values = [0.2, 2, 8] }
+[output]
+fields = ["jump_height", "jump_time", "status", "phase_sequence", "candidates", "landing_impulse",
+          "landing_normal_speed"]
+"""
+    path = sweep(tmp_path, spec)
+    done = leapmap("export", path, "-o", tmp_path / "t.csv", "--units", "mm deg ms N.s mm/s")
+    assert done.returncode == 0, done.stderr
+    table = rows(tmp_path / "t.csv")
+    assert list(table[0]) == ["slope [deg]", "mass_ratio", "jump_height [mm]", "jump_time [ms]", "status",
+                              "candidates", "phase_sequence", "landing_normal_speed [mm/s]",
+                              "landing_impulse [N.s]"]
+    with h5py.File(path) as m:
+        values = {name: m[name][()].ravel() for name in m if isinstance(m[name], h5py.Dataset)}
+    jumped = 0
+    for i, row in enumerate(table):
+        assert float(row["slope [deg]"]) == pytest.approx(10 + 10 * (i // 3), rel=1e-13)
+        assert float(row["mass_ratio"]) == [0.2, 2, 8][i % 3]
+        for name, unit, factor in (("jump_height", "mm", 120), ("jump_time", "ms", 1000),
+                                   ("landing_impulse", "N.s", 0.158 * math.sqrt(9.81 * 0.06)),
+                                   ("landing_normal_speed", "mm/s", 1000 * math.sqrt(9.81 * 0.06))):
+            cell, value = row[f"{name} [{unit}]"], values[name][i]
+            assert (cell == "") == bool(np.isnan(value))
+            assert cell == "" or float(cell) == pytest.approx(value * factor, rel=1e-13)
+            jumped += cell != ""
+        assert (row["status"] == "jumped") == (values["status"][i] == 1)
+        assert row["phase_sequence"].strip("RSF") == ""
+    assert 8 <= jumped < 4 * len(table)
+    (tmp_path / "again.csv").write_text("\n".join(
+        ",".join((r["slope [deg]"], r["mass_ratio"]))
+        for r in [{"slope [deg]": "slope [deg]", "mass_ratio": "mass_ratio"}, *table]))
+    again = leapmap("sweep", "--points", tmp_path / "again.csv", "-o", tmp_path / "a.h5", "--friction",
+                    "coulomb", "--radius", "60mm", "--quiet")
+    assert again.returncode == 0, again.stderr
+    with h5py.File(tmp_path / "a.h5") as m:
+        assert np.allclose(m["jump_height"][:], values["jump_height"], rtol=1e-9, atol=0, equal_nan=True)
+
+
+def test_a_table_is_refused_where_it_cannot_be(tmp_path):
+    path = sweep(tmp_path)
+    (tmp_path / "there.csv").write_text("mine\n")
+    for words, says in ((("--units", "mmm"), "the unit 'mmm' is unknown"),
+                        (("--units", "kg"), "no column can be given in kg"), (("--units", "N"),
+                                                                              "no column can be given in N"),
+                        (("--fields", "jump_hieght"), "did you mean jump_height?"), (("--fields", "slope"),
+                                                                                     "no 'slope'")):
+        done = leapmap("export", path, "-o", tmp_path / "new.csv", *words)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and says in done.stderr, done.stderr
+        assert not (tmp_path / "new.csv").exists()
+    done = leapmap("export", path, "-o", tmp_path / "there.csv")
+    assert done.returncode == 2 and (tmp_path / "there.csv").read_text() == "mine\n"
+    assert leapmap("export", path, "-o", tmp_path / "there.csv", "--overwrite", "--quiet").returncode == 0
+    assert len(rows(tmp_path / "there.csv")) == 264
+    done = leapmap("export", path, "-o", path)
+    assert done.returncode == 2, "never over its input"
+
+
+def test_a_list_s_table_has_its_labels(tmp_path):
+    (tmp_path / "list.csv").write_text('label,slope\n"steep, bare",0.8\nflat,0.1\n')
+    assert leapmap("sweep", "--points", tmp_path / "list.csv", "-o", tmp_path / "l.h5",
+                   "--quiet").returncode == 0
+    assert leapmap("export", tmp_path / "l.h5", "-o", tmp_path / "t.csv", "--units", "deg").returncode == 0
+    table = rows(tmp_path / "t.csv")
+    assert [row["label"] for row in table] == ["steep, bare", "flat"]
+    assert float(table[0]["slope [deg]"]) == pytest.approx(math.degrees(0.8), rel=1e-14)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hoops as a drawing has them, and outcomes in its units."""
+import math
+
+import leapmap
+import numpy as np
+import pytest
+
+SLUG, BATTERY = leapmap.Weight("85 g", at="47 mm"), leapmap.Weight("12 g", at="30 mm", angle="180 deg")
+
+
+def drawing(slug=SLUG):
+    return leapmap.Hoop(diameter="120 mm", mass="61 g", inertia="1.9e-4 kg m2", weights=[slug, BATTERY])
+
+
+def test_a_drawing_solves_as_its_ratios():
+    hoop = drawing()
+    assert hoop.total_mass == pytest.approx(0.158, rel=1e-15)
+    assert hoop.eccentricity == pytest.approx(3635e-6 / (0.158 * 0.06), rel=1e-14)
+    assert hoop.inertia_ratio == pytest.approx(
+        (1.9e-4 + 0.085 * 0.047**2 + 0.012 * 0.03**2) / (0.158 * 0.06**2), rel=1e-14)
+    asked = {"slope": "18 deg", "friction": "coulomb", "mu_static": 0.6}
+    o = leapmap.solve(hoop=hoop, **asked)
+    assert o.jump_height == leapmap.solve(**hoop.parameters, **asked).jump_height
+    assert leapmap.phase_letters(o.phase_sequence) == "RSRSF"
+    # One design is solved by other instructions than many.
+    assert leapmap.trace(hoop=hoop, **asked).outcome.jump_height == pytest.approx(o.jump_height, rel=1e-12)
+    assert leapmap.gradient(hoop=hoop, **asked)["slope"] == leapmap.gradient(**hoop.parameters,
+                                                                             **asked)["slope"]
+    assert len(leapmap.gaits(hoop=hoop, slope="12 deg", runway=20)["gaits"]) == len(
+        leapmap.gaits(**hoop.parameters, slope="12 deg", runway=20)["gaits"])
+
+
+def test_a_weight_may_be_an_array():
+    masses = np.linspace(0.04, 0.16, 13)
+    hoop = drawing(leapmap.Weight(masses, at="47 mm"))
+    o = leapmap.solve(hoop=hoop, slope=np.radians([20.0, 30.0])[:, None])
+    assert o.jump_height.shape == (2, 13) and "mass" not in hoop.parameters
+    for k in (0, 6, 12):
+        one = leapmap.solve(hoop=drawing(leapmap.Weight(masses[k], at="47 mm")), slope="30 deg")
+        # times of many share their number of nodes, heights do not
+        assert o.jump_height[1, k] == pytest.approx(one.jump_height, rel=1e-14, nan_ok=True)
+
+
+def test_outcomes_are_shown_in_a_drawing_s_units():
+    o = leapmap.solve(hoop=drawing(), slope=[0.5, 0.01], friction="coulomb", mu_static=0.6)
+    shown = o.to("mm deg ms rpm N.s J mm/s")
+    speed = math.sqrt(9.81 * 0.06)
+    for name, factor in (("jump_height", 120), ("jump_distance", 60), ("jump_angle", 180 / math.pi),
+                         ("jump_time", 1000), ("jump_spin", 30 / math.pi * speed / 0.06), ("landing_impulse",
+                                                                                           0.158 * speed),
+                         ("energy_lost", 0.158 * 9.81 * 0.06), ("landing_normal_speed", 1000 * speed)):
+        assert getattr(shown, name) == pytest.approx(getattr(o, name) * factor, rel=1e-13, nan_ok=True), name
+    assert (shown.status == o.status).all() and np.isnan(shown.jump_height[1]) and o.jump_height[0] < 2
+
+
+@pytest.mark.parametrize(("make", "says"), [
+    (lambda: leapmap.Weight("85 mm", at=0.01), "'85 mm' cannot be converted to kg; allowed: "),
+    (lambda: leapmap.Weight("85 gg", at=0.01), "the unit 'gg' is unknown"),
+    (lambda: leapmap.Weight(None, at=0.01), "weight.mass = None is not a valid value"),
+    (lambda: leapmap.Hoop("120 mm", mass="-1 g"), "hoop.mass = -0.001 is out of range"),
+    (lambda: leapmap.Hoop([0.1, 0.2], mass=1), "allowed: one number"),
+    (lambda: leapmap.Hoop("120 mm", mass=1, weights=["85 g"]), "a list of leapmap.Weight"),
+    (lambda: leapmap.Hoop("90 mm", mass=1, weights=[SLUG, BATTERY]),
+     "hoop.weight_1.at = 0.047 is out of range"),
+    (lambda: leapmap.solve(hoop="120 mm"), "allowed: a leapmap.Hoop"),
+    (lambda: leapmap.solve(hoop=drawing(), mass_ratio=3), "mass_ratio = 3 has no effect beside hoop"),
+    (lambda: leapmap.solve(hoop=drawing(), radius="60 mm"), "radius = '60 mm' has no effect beside hoop"),
+    (lambda: leapmap.solve().to("mmm"), "the unit 'mmm' is unknown"),
+    (lambda: leapmap.solve().to("N.s"), "in N.s without the parameter mass"),
+    (lambda: leapmap.solve(mass=1).to("kg"), "no field can be given in kg; allowed: "),
+    (lambda: leapmap.solve(drive_torque="0.1 N m"), "needs the total mass too"),
+    (lambda: leapmap.solve(release_spin="30 Hz"), "cannot be converted to rad s-1"),
+])
+def test_what_is_no_hoop_and_no_unit_is_refused_in_a_line(make, says):
+    with pytest.raises(ValueError) as refused:
+        make()
+    assert says in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_units_hang_on_the_call_s_own_radius_in_any_order():
+    one = leapmap.solve(hop_height="6 mm", radius="60 mm")
+    two = leapmap.solve(radius=0.06, hop_height=0.05)
+    assert one.jump_height == two.jump_height
+    ds = leapmap.solve(slope=[0.3, 0.4], release_spin="60 rpm", radius="60 mm").to_xarray()
+    assert ds.attrs.get("release_spin", ds.get("release_spin")) == pytest.approx(
+        2 * math.pi * math.sqrt(0.06 / 9.81))
