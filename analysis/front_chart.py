@@ -75,7 +75,13 @@ def stored(path):
     of_contact = ("rest_speed", ) if m.slips else ()
     fixed = {n: scene[n] for n in ("friction", "runway", "hop_height", "radius", "gravity", *of_contact)}
     fixed |= {n: float(v[0]) for n, v in columns.items() if n not in free}
-    return Front(objectives, free, {n: design[n] for n in objectives}, design["candidates"],
+    values = {n: design[n] for n in objectives}
+    along, across = (np.diff(v) for v in values.values())
+    is_front = all((d >= 0).all() or (d <= 0).all() for d in (along, across))
+    if not free or not is_front:
+        raise NotAMap(
+            f"{path}: is no Pareto front of several designs; allowed: a map that leapmap design -o wrote")
+    return Front(objectives, free, values, design["candidates"],
                  design["jump_height"], fixed, [(v.min(), v.max()) for v in free.values()])
 
 
@@ -122,6 +128,17 @@ def cloud_of(problem, front):
     return (costs * np.where(signs == 0, 1, signs))[violations == 0][:SHOWN]
 
 
+def answers(problem, front):
+    """Whether a stored front may be the answer to a question: the same objectives, parameters within the
+    bounds, and what is fixed alike."""
+    bounds = dict(zip(problem.names, problem.bounds))
+    at = front.parameters | {n: np.array([v]) for n, v in front.fixed.items() if n in bounds}
+    return (problem.objectives == front.objectives and set(front.parameters) <= set(bounds) and all(
+        low <= at[n].min() and at[n].max() <= high
+        for n, (low, high) in bounds.items()) and all(
+        front.fixed.get(n, v) == v for n, v in problem.fixed.items()))
+
+
 def front_and_cloud(path, question, seed):
     """What a file tells; the cloud only with a question, which has the bounds."""
     from_map = h5py.is_hdf5(path)
@@ -134,8 +151,7 @@ def front_and_cloud(path, question, seed):
         raise NotAMap(f"{question}: has {len(problem.objectives)} objectives; allowed: two")
     if front is None:
         front = searched(path, problem, seed)
-    elif (problem.objectives, set(problem.names)) != (front.objectives, set(front.parameters) | {
-            n for n in problem.names if n in front.fixed}):
+    elif not answers(problem, front):
         raise NotAMap(f"{question}: is not the question that {path} answers")
     return front, cloud_of(problem, front)
 

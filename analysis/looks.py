@@ -87,6 +87,8 @@ LOOKS = {
     "landing_tangential_speed": Look("landing velocity along the plane", "√(g R)"),
     "landing_impulse": Look("normal impulse of the landing", "(m + mₚ) √(g R)"),
     "landing_energy_lost": Look("energy lost in the landing", "(m + mₚ) g R"),
+    "clears_from": Look("first place where the wall is cleared", "R"),
+    "clears_to": Look("last place where the wall is cleared", "R"),
     "jump_distance": Look("distance travelled until the jump", "R"),
     "energy_lost": Look("energy lost until the jump", "(m + mₚ) g R"),
     "jumps": Look("number of jumps", "", levels=()),

@@ -26,9 +26,10 @@ PUBLIC = (
     "instruction_sets",
     "use_instruction_set",
 )
-CLASSES = ("Outcomes", "Motion", "Status", "Estimate", "Found", "DesignProblem", "Fit", "FittedParameter")
+CLASSES = ("Hoop", "Weight", "Outcomes", "Motion", "Status", "Estimate", "Found", "DesignProblem", "Fit",
+           "FittedParameter")
 HEADERS = (
-    ("Designs and scenes", ("design", "scene", "units")),
+    ("Designs and scenes", ("body", "design", "scene", "units")),
     ("Solving", ("outcome", "solve", "gradient", "motion", "trace", "gait")),
     ("Sweeps and maps", ("spec", "sweep", "audit", "join", "map")),
     (
@@ -74,7 +75,8 @@ def parameters():
     return (
         "# Parameters\n\nOne design is a value of each of these. All take an axis in a spec but those of the "
         "scene\n"
-        "(`rest_speed`, `runway`, `hop_height`, `radius`, `gravity`), which are the same for all designs. "
+        "(`rest_speed`, `runway`, `hop_height`, `clear_height`, `radius`, `gravity`, `mass`), which are the "
+        "same for all designs. "
         "Angles are\n"
         'in radians, or written `"30 deg"`.\n\n' + table(
             ("name", "meaning", "unit", "allowed", "default"), rows))

@@ -25,8 +25,8 @@ async function solverOf(module) {
   const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name),
     rowNames = namesBy(leapmap.row_name), madeNames = namesBy(leapmap.made_name);
   const doubles = (pointer, n) => new Float64Array(leapmap.memory.buffer, pointer, n);
-  // The mass is the page's own: it changes no motion.
-  const { mass: unknown, ...defaults } = Object.fromEntries(parameters.map((name, i) =>
+  // The mass is the page's own: it changes no motion. Walls are not for the page yet.
+  const { mass: unknown, clear_height: noWall, ...defaults } = Object.fromEntries(parameters.map((name, i) =>
     [name, doubles(leapmap.parameter_values(), parameters.length)[i]]));
   const rows = (names, pointer, n) => {
     const values = doubles(pointer, n * names.length).slice();
@@ -38,7 +38,7 @@ async function solverOf(module) {
   const codes = Object.fromEntries(fields.map((name, i) =>
     [name, namesBy((code) => leapmap.code_name(i, code))]));
   const give = (design) => doubles(leapmap.parameter_values(), parameters.length)
-    .set(parameters.map((name) => design[name] ?? defaults[name] ?? unknown));
+    .set(parameters.map((name) => design[name] ?? defaults[name] ?? (name === "mass" ? unknown : noWall)));
   const ask = ({ jumps = 1, settle = 0, growth = false }) => leapmap.ask(jumps, settle, Number(growth));
   return {
     defaults, ranges, codes,

@@ -40,22 +40,35 @@ struct Column {
   double factor = 1.0;                 ///< of what the map holds to what is written
 };
 
-/// The first of the units asked for that fits; else the column's own.
+/// Derivatives stay in the map's units. Of others the first of the units asked for that fits; else the
+/// column's own. J and N.m measure the same: J is better for energies, N.m for torques.
 void choose_unit(Column& column, std::string_view own, std::span<const std::string> units,
                  const Scales& scales, std::vector<bool>& used) {
-  if (own != "1" && !own.empty()) column.unit = own;
+  const bool is_derivative = column.field && std::holds_alternative<Derivative>(column.field->source);
+  if (is_derivative) own = column.field->unit;
+  if (own != "1") column.unit = own;
+  if (is_derivative) return;
+  const bool is_torque = !column.field;
+  bool found = false, is_odd = true;
   for (std::size_t k = 0; k < units.size(); ++k) {
     const auto factor = units_in_own(units[k], own, scales);
     if (!factor) continue;
     used[k] = true;
+    const bool odd = own == "(m + m_p) g R" && units[k].ends_with('J') == is_torque;
+    if (found && (odd || !is_odd)) continue;
+    found = true, is_odd = odd;
     column.unit = units[k], column.factor = *factor;
-    return;
   }
 }
 
 /// What is not found along the map is no column of it.
 [[noreturn]] void refuse_field(const MapReader& map, const std::string& name) {
-  std::vector<std::string_view> names(map.fields().begin(), map.fields().end());
+  if (find_option("design", name))
+    throw InputError(
+        fmt::format("--fields: {} is a parameter, which is always written; allowed: fields", name));
+  std::vector<std::string_view> names;
+  for (const std::string& field : map.fields())
+    if (find_field(field)) names.emplace_back(field);
   throw InputError(fmt::format("--fields: {} has no '{}'{}; allowed: {}", map.path(), name,
                                did_you_mean(name, names), fmt::join(names, ", ")));
 }
@@ -97,13 +110,18 @@ void choose_units(std::vector<Column>& columns, const std::string& asked, const 
                   units, scales, used);
     }
   } catch (const InputError& error) {
-    throw InputError(fmt::format("--units: {}; allowed: units such as mm, deg, ms, rpm, N.m", error.what()));
+    throw InputError(
+        fmt::format("--units: {}; allowed: units with blanks between them, for example "
+                    "\"mm deg ms rpm N.m\"",
+                    error.what()));
   }
   for (std::size_t k = 0; k < units.size(); ++k)
     if (!used[k])
-      throw InputError(fmt::format(
-          "--units: no column can be given in {}{}; allowed: units of the columns, {}", units[k],
-          scales.mass > 0.0 ? "" : " (the map's spec has no scene.mass)", "such as mm, deg, ms, rpm, N.m"));
+      throw InputError(
+          fmt::format("--units: no column can be given in {}{}; allowed: units of the columns with blanks "
+                      "between them, for "
+                      "example \"mm deg ms rpm N.m\"",
+                      units[k], scales.mass > 0.0 ? "" : " (the map's spec has no scene.mass)"));
 }
 
 /// A column's texts for the designs of a block.
@@ -111,7 +129,8 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
   std::vector<std::string> texts(block.count);
   if (column.field && std::holds_alternative<Word>(column.field->source)) {
     const std::vector<std::uint64_t> words = map.read_words(column.name, block);
-    std::ranges::transform(words, texts.begin(), phase_letters);
+    std::ranges::transform(words, texts.begin(),
+                           [](std::uint64_t word) { return word == 0 ? "" : phase_letters(word); });
     return texts;
   }
   const auto* code = column.field ? std::get_if<Code>(&column.field->source) : nullptr;
@@ -176,6 +195,12 @@ std::string table_of(const MapReader& map, const std::vector<Column>& columns) {
 int run(const ExportArguments& arguments) {
   const std::array inputs{NamedPath{"MAP", arguments.map}};
   const std::array outputs{NamedPath{"-o", arguments.output}};
+  for (const std::string_view ending : {".xlsx", ".xls", ".ods", ".h5"})
+    if (arguments.output.ends_with(ending))
+      throw InputError(
+          fmt::format("-o {}: is no name of a CSV file; allowed: one that ends in .csv, which "
+                      "spreadsheets open",
+                      arguments.output));
   refuse_same_files(inputs, outputs);
   const MapReader map(arguments.map, arguments.locking);
   const std::size_t designs = designs_of(map.shape());
@@ -187,10 +212,12 @@ int run(const ExportArguments& arguments) {
   const Spec spec = spec_of(map, arguments.map);
   std::vector<Column> columns = columns_of(map, arguments);
   choose_units(columns, arguments.units, scales_of(spec.scene));
-  note_signals();
+  if (!map.is_whole()) tell(arguments.map + ": is INCOMPLETE: designs not computed have empty cells");
   TextOutput file("-o", arguments.output, {}, arguments.overwrite);
+  note_signals();
   try {
-    file.commit(table_of(map, columns));
+    const std::string table = table_of(map, columns);
+    file.commit(table);
   } catch (const Stopped&) {
     tell("interrupted; nothing was written");
     return 128 + noted_signal();
@@ -214,7 +241,7 @@ void add_export(CommandLine& line, int& status) {
   command.value(
       "--units", arguments->units,
       "units to convert to, for example \"mm deg ms rpm N.m\"; each column takes the first that fits; "
-      "default: the map's");
+      "default: the map's own, as of derivatives");
   command.value("--fields", arguments->fields, "fields to write, separated by commas; default: all")
       .with_commas();
   command.flag("--overwrite", arguments->overwrite, "replace an existing file");
@@ -222,8 +249,8 @@ void add_export(CommandLine& line, int& status) {
   add_no_lock(command, arguments->locking);
   command.footer(
       "A row for each design, in the map's order: its parameters, then the fields. Codes are words, phase "
-      "sequences letters; a cell without a value is empty. leapmap sweep --points reads the parameters' "
-      "columns, with their units.");
+      "sequences letters; a cell without a value is empty. To solve designs of the table again, keep the "
+      "parameters' columns, and give them to leapmap sweep --points.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

@@ -120,6 +120,15 @@ std::string with_mass(double value, int digits, std::string_view own, std::strin
                           : fmt::format("{:.{}g} {}", value, digits, own);
 }
 
+void print_wall(const Scene& scene, const Outcome& jump) {
+  const double wall = 2.0 * scene.radius * scene.clear_height;
+  if (std::isnan(jump.clears_from))
+    say("Clears no wall of {:.4g} m.\n", wall);
+  else
+    say("Clears a wall of {:.4g} m that stands {:.4g} m to {:.4g} m from the lift-off along the plane.\n",
+        wall, jump.clears_from * scene.radius, jump.clears_to * scene.radius);
+}
+
 void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) {
   const Outcome& jump = motion.outcome;
   if (jump.status == Status::jumped) {
@@ -134,6 +143,7 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
         jump.landing_tangential_speed * speed,
         with_mass(jump.landing_impulse, 4, "(m + m_p) sqrt(g R)", "N s", spec.scene),
         with_mass(jump.landing_energy_lost, 4, "(m + m_p) g R", "J", spec.scene));
+    if (spec.scene.clear_height > 0.0) print_wall(spec.scene, jump);
     if (std::isfinite(jump.energy_lost)) {
       say("Slid {:.6g} R, lost {} until lift-off, spin after the landing {:.6g} rad/s.\n", jump.slip_distance,
           with_mass(jump.energy_lost, 6, "(m + m_p) g R", "J", spec.scene),
@@ -184,7 +194,7 @@ void print_motor(const Motor& motor) {
   if (motor.mass > 0.0)
     say("Motor, for a total mass of {:g} kg: {:.4g} N m, at most {:.4g} W and {:.4g} rpm, {:.4g} J in "
         "all{}.\n",
-        motor.mass, motor.torque, motor.power, motor.spin, motor.work, brakes);
+        motor.mass, motor.torque, motor.power + 0.0, motor.spin, motor.work, brakes);
   else
     say("Motor: at most {:.4g} rpm{}. With --mass: torque, power and energy in N m, W and J.\n", motor.spin,
         brakes);
@@ -242,6 +252,7 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
              {{"friction", model_of(scene).name},
               {"runway", scene.runway},
               {"hop_height", scene.hop_height},
+              {"clear_height", scene.clear_height},
               {"radius", scene.radius},
               {"gravity", scene.gravity},
               {"mass", scene.mass > 0.0 ? Json(scene.mass) : Json()},

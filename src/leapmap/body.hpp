@@ -24,10 +24,10 @@ struct Weight {
 /// A ring with any number of weights.
 struct Body {
   double diameter = 0.0;  ///< 2 R [m], > 0
-  double mass = 0.0;      ///< of the ring and all that is fixed to it but the weights [kg], > 0
+  double mass = 0.0;      ///< of the ring and everything on it except the weights [kg], > 0
   /// Of the same about the axis [kg m^2], >= 0; NaN: of a thin ring, m R^2.
   double inertia = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Weight> weights{};
+  std::vector<Weight> weights{};  ///< any number of them
 };
 
 /// What matters to the motion of a body, and a design of the same motion.

@@ -95,6 +95,10 @@ struct Outcome {
   /// pull.
   double landing_impulse = none;
   double landing_energy_lost = none;  ///< kinetic energy lost in the landing [(m + m_p) g R]
+  // With Scene::clear_height > 0: where along the plane, from the lift-off, a thin wall of that height may
+  // stand so that the hoop flies over it. A box of width b is cleared if clears_to - clears_from >= b.
+  double clears_from = none;  ///< first place [R]; NaN: none
+  double clears_to = none;    ///< last place [R]; NaN: none
   // With Coulomb friction.
   std::uint64_t phase_sequence = 0;  ///< two bits a phase, the first lowest, up to 32; see Phase
   double slip_distance = none;       ///< slid until the jump, or the end [R]; NaN if the hoop rocks to rest

@@ -34,6 +34,13 @@ Field of_landing(std::string_view name, double Outcome::*member, std::string_vie
   return needing(&Wanted::landing, field);
 }
 
+/// Of a wall to clear, which the flight determines.
+Field of_wall(std::string_view name, double Outcome::*member, std::string_view meaning) {
+  Field field{name, Quantity{member}, "1", meaning, 12};
+  field.of_wall = true;
+  return needing(&Wanted::landing, field);
+}
+
 const std::array fields{
     Field{"jump_height", Quantity{&Outcome::jump_height, Measure::height}, "1",
           "apex of the jump above the plane, in hoop diameters"},
@@ -99,6 +106,11 @@ const std::array fields{
                "plane would have to pull"),
     of_landing("landing_energy_lost", &Outcome::landing_energy_lost,
                "kinetic energy lost in the landing, in (m + m_p) g R"),
+    of_wall("clears_from", &Outcome::clears_from,
+            "first place along the plane, from the lift-off of the jump, at which the hoop flies over a thin "
+            "wall "
+            "of scene.clear_height, in R"),
+    of_wall("clears_to", &Outcome::clears_to, "last such place, in R"),
     Field{"jumps",
           Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.jumps()); },
                [](Outcome& o, std::uint8_t code) { o.later_jumps.resize(code > 1 ? code - 1u : 0u); },
@@ -141,7 +153,10 @@ std::string_view own_unit(const Field& field) {
   if (field.unit != "1") return field.unit;
   std::string_view found = field.unit;
   for (const OwnUnit& own : own_units) {
-    const bool said = field.long_name.find(", in " + std::string(own.name)) != std::string_view::npos;
+    const std::string words = ", in " + std::string(own.name);
+    const std::size_t at = field.long_name.find(words), end = at + words.size();
+    const bool said =
+        at != std::string_view::npos && (end == field.long_name.size() || field.long_name[end] == ';');
     if (said && (found == "1" || own.name.size() > found.size())) found = own.name;
   }
   return found;
@@ -152,7 +167,7 @@ bool has(const Scene& scene, const Field& field) {
       later && later->number.jump > static_cast<std::size_t>(scene.jumps))
     return false;
   return (!field.only_of || *field.only_of == scene.friction) && (!field.of_sequence || scene.jumps > 1) &&
-         (!field.of_gait || scene.settle > 0);
+         (!field.of_gait || scene.settle > 0) && (!field.of_wall || scene.clear_height > 0.0);
 }
 
 namespace {
@@ -213,7 +228,7 @@ std::optional<OutcomeNumber> number_of(const Field& field) {
 }
 
 bool can_be_differentiated(const Field& field) {
-  return number_of(field) && !field.of_gait && field.by_default != ByDefault::left_out;
+  return number_of(field) && !field.of_gait && !field.of_wall && field.by_default != ByDefault::left_out;
 }
 
 namespace {

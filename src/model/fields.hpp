@@ -78,6 +78,7 @@ struct Field {
   bool of_sequence = false;           ///< of scenes with more jumps than one
   bool of_gait = false;               ///< of scenes that look for gaits
   ByDefault by_default = ByDefault::stored;
+  bool of_wall = false;           ///< of scenes with a clear_height
   bool Wanted::*needs = nullptr;  ///< what a solver has to be asked for; nullptr: nothing
 };
 

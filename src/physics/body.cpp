@@ -17,25 +17,25 @@ namespace {
 }
 
 void check(const Body& body) {
-  constexpr double largest = 1e9, turn = 2.0 * std::numbers::pi;
-  if (!(body.diameter >= 1e-9 && body.diameter <= largest))
-    refuse("diameter", body.diameter, "a number in [1e-09, 1e+09], in m or as \"... mm\"");
-  if (!(body.mass >= 1e-12 && body.mass <= largest))
-    refuse("mass", body.mass, "a number in [1e-12, 1e+09], in kg or as \"... g\"");
+  constexpr double largest = 1e6, turn = 2.0 * std::numbers::pi;
+  if (!(body.diameter >= 2e-9 && body.diameter <= largest))
+    refuse("diameter", body.diameter, "a number in [2e-09, 1e+06], in m or as \"... mm\"");
+  if (!(body.mass >= 1e-9 && body.mass <= largest))
+    refuse("mass", body.mass, "a number in [1e-09, 1e+06], in kg or as \"... g\"");
   if (!std::isnan(body.inertia) && !(body.inertia >= 0.0 && body.inertia <= largest))
-    refuse("inertia", body.inertia, "a number in [0, 1e+09], in kg m2 or as \"... g mm2\"");
+    refuse("inertia", body.inertia, "a number in [0, 1e+06], in kg m2 or as \"... g mm2\"");
   const double radius = 0.5 * body.diameter;
   for (const Weight& weight : body.weights) {
     const auto key = [&](const char* part) { return fmt::format("{}.{}", weight.name, part); };
     if (!(weight.mass >= 0.0 && weight.mass <= largest))
-      refuse(key("mass"), weight.mass, "a number in [0, 1e+09], in kg or as \"... g\"");
+      refuse(key("mass"), weight.mass, "a number in [0, 1e+06], in kg or as \"... g\"");
     if (!(weight.at >= 0.0 && weight.at <= radius))
       refuse(key("at"), weight.at,
              fmt::format("a number in [0, {}], up to the radius, in m or as \"... mm\"", radius));
     if (!(std::abs(weight.angle) <= turn))
       refuse(key("angle"), weight.angle, "a number in [-2 pi, 2 pi], in rad or as \"... deg\"");
     if (!(weight.inertia >= 0.0 && weight.inertia <= largest))
-      refuse(key("inertia"), weight.inertia, "a number in [0, 1e+09], in kg m2 or as \"... g mm2\"");
+      refuse(key("inertia"), weight.inertia, "a number in [0, 1e+06], in kg m2 or as \"... g mm2\"");
     if (std::ranges::count(body.weights, weight.name, &Weight::name) > 1)
       throw InputError(fmt::format("hoop.weight: the name '{}' appears twice; allowed: once", weight.name));
   }
@@ -60,13 +60,16 @@ ReducedBody reduce_body(const Body& body) {
     spread += weight.inertia + weight.mass * (dx * dx + dy * dy);
   }
   const double total = body.mass + weights, offset = std::min(std::hypot(x, y) / radius, 1.0);
-  const double share = weights / total;
+  const double share = weights / total, own = spread / (body.mass * radius * radius);
+  constexpr double most_ratio = 1e12;  // as of a design
+  if (!(weights / body.mass <= most_ratio && own <= most_ratio))
+    refuse("mass", body.mass, "a mass that is no trillionth of the weights', and of the inertia over R^2");
   return {.total_mass = total,
           .eccentricity = share * offset,
           .inertia = spread / (total * radius * radius) + share * offset * offset,
           .mass_ratio = weights / body.mass,
           .offset_ratio = offset,
-          .inertia_factor = spread / (body.mass * radius * radius)};
+          .inertia_factor = own};
 }
 
 void apply_body(const ReducedBody& reduced, const Body& body, Design& design, Scene& scene) {

@@ -46,8 +46,8 @@ class Status(IntEnum):
 {statuses}
 
 class Weight:
-    def __init__(self, mass: Numbers, at: Numbers, angle: Numbers = ..., inertia: Numbers = ...,
-                 name: str = ...) -> None: ...
+    def __init__(self, mass: Numbers, at: Numbers, angle: Numbers = ...,
+                 inertia: Numbers = ...) -> None: ...
 
 class Hoop:
     total_mass: NDArray[np.float64]

@@ -136,6 +136,42 @@ void Referee::measure(const Motion& lift_off, const Motion& before, const Landed
   outcome_.landing_tangential_speed = (before.x_rate - R * before.spin) / speed;
   outcome_.landing_impulse = landed.impulse / (body.mass() * speed);
   outcome_.landing_energy_lost = (energy(body, before) - energy(body, landed.after)) / (weight * R);
+  if (scene_.clear_height > 0.0) clear(lift_off);
+}
+
+/// Looks along the flight in small steps, and between the best one's neighbours by thirds.
+void Referee::clear(const Motion& lift_off) {
+  constexpr int looks = 4'000;
+  const double R = scene_.radius, wall = 2.0 * R * scene_.clear_height;
+  const double way = outcome_.jump_range < 0.0 ? -1.0 : 1.0;
+  if (!(outcome_.jump_height > scene_.clear_height)) return;
+  // side 1: how far the circle reaches ahead on its way up; -1: how far behind, with the other sign, down
+  const auto farthest = [&](double side, double from, double to) {
+    const auto reach = [&](double time) {
+      const Motion at = flying(system_.body, lift_off, time);
+      if (!(at.y - R < wall)) return -HUGE_VAL;
+      const double above = std::max(0.0, at.y - wall);
+      return side * way * (at.x - lift_off.x) + std::sqrt(R * R - above * above);
+    };
+    const double step = (to - from) / looks;
+    int best = 0;
+    for (int k = 1; k <= looks; ++k)
+      if (reach(from + step * k) > reach(from + step * best)) best = k;
+    double low = from + step * std::max(best - 1, 0), high = from + step * std::min(best + 1, looks);
+    while (high - low > 1e-10 * (to - from)) {
+      const double third = (high - low) / 3.0;
+      if (reach(low + third) < reach(high - third))
+        low += third;
+      else
+        high -= third;
+    }
+    return std::max(reach(low), reach(high));
+  };
+  const double from = farthest(1.0, 0.0, outcome_.apex_time) / R,
+               to = -farthest(-1.0, outcome_.apex_time, outcome_.flight_time) / R;
+  if (!(from <= to)) return;
+  outcome_.clears_from = way < 0.0 ? -to : from;
+  outcome_.clears_to = way < 0.0 ? -from : to;
 }
 
 Outcome Referee::solve_sticking() {

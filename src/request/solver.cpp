@@ -7,6 +7,7 @@
 #include "gait/settle.hpp"
 #include "model/model.hpp"
 #include "spec/spec.hpp"
+#include "trajectory/clearance.hpp"
 
 namespace leapmap {
 
@@ -31,7 +32,8 @@ Wanted wanted_of(const Request& request) {
   return wanted;
 }
 
-/// Fills in what comes of whole sequences, once the designs are solved; empty: nothing is asked for.
+/// Fills in what comes of whole flights and sequences, once the designs are solved; empty: nothing is asked
+/// for.
 Solver afterwards(const Request& request) {
   const double tolerance = request.numerics.tolerance;
   std::shared_ptr<ErrorGrowth> growth;
@@ -39,8 +41,11 @@ Solver afterwards(const Request& request) {
   if (request.scene.jumps > 1 && wants(request, "sequence_condition"))
     growth = std::make_shared<ErrorGrowth>(request.scene, tolerance);
   if (wants_gaits(request)) gaits = std::make_shared<GaitSolver>(request.scene, tolerance);
-  if (!growth && !gaits) return {};
-  return [growth, gaits](std::span<const Design> designs, std::span<Outcome> outcomes) {
+  const bool clears = wants(request, "clears_from") || wants(request, "clears_to");
+  if (!growth && !gaits && !clears) return {};
+  return [growth, gaits, clears, scene = request.scene](std::span<const Design> designs,
+                                                        std::span<Outcome> outcomes) {
+    if (clears) find_clearances(scene, designs, outcomes);
     if (growth) growth->tell(designs, outcomes);
     if (gaits) gaits->solve(designs, outcomes);
   };

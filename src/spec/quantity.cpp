@@ -5,6 +5,7 @@
 #include <udunits2.h>
 
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -20,22 +21,39 @@ namespace {
 using Unit = std::unique_ptr<ut_unit, decltype(&ut_free)>;
 using Converter = std::unique_ptr<cv_converter, decltype(&cv_free)>;
 
-/// The units that UDUNITS knows, and "deg", which it calls degree.
+/// Whether a text is of units alone. UDUNITS also takes numbers among them, so that "1 200 mm" would be one
+/// of "200 mm", and offsets, as Celsius thermometers have. A digit may be an exponent: m2, s-1, m^2.
+bool is_plain(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto begins_exponent = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '^'; };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '@' || static_cast<unsigned char>(text[i]) < ' ') return false;
+    if (!is_digit(text[i])) continue;
+    std::size_t before = i;
+    while (before > 0 && is_digit(text[before - 1])) --before;
+    if (before > 1 && (text[before - 1] == '-' || text[before - 1] == '+')) --before;
+    if (before == 0 || !begins_exponent(text[before - 1])) return false;
+  }
+  return true;
+}
+
+/// The units that UDUNITS knows, "deg", which it calls degree, and "Nm".
 class UnitSystem {
  public:
   UnitSystem() : system_(nullptr, &ut_free_system) {
     ut_set_error_message_handler(ut_ignore);
     system_.reset(ut_read_xml(nullptr));
     const Unit degree = parsed("degree");
-    if (!degree || ut_map_name_to_unit("deg", UT_ASCII, degree.get()) != UT_SUCCESS)
+    const Unit torque = parsed("N.m");
+    if (!degree || ut_map_name_to_unit("deg", UT_ASCII, degree.get()) != UT_SUCCESS || !torque ||
+        ut_map_symbol_to_unit("Nm", UT_ASCII, torque.get()) != UT_SUCCESS)
       throw InputError("UDUNITS cannot read its list of units; allowed: with the package libudunits2-data");
   }
 
-  /// Null: unknown. A unit with an offset, as a Celsius thermometer has, is of nothing here.
+  /// Null: unknown.
   Unit parsed(std::string_view text) const {
     const std::string whole(text);
-    const bool usable = system_ && whole.find('@') == whole.npos;
-    return {usable ? ut_parse(system_.get(), whole.c_str(), UT_UTF8) : nullptr, &ut_free};
+    return {system_ && is_plain(text) ? ut_parse(system_.get(), whole.c_str(), UT_UTF8) : nullptr, &ut_free};
   }
 
  private:
@@ -120,7 +138,8 @@ double number_in_own_unit(std::string_view text, std::string_view own, const Sca
   }
   if (!size) throw InputError(fmt::format("'{}' cannot be converted to {}", text, known->si));
   const double ours = known->size(scales);
-  if (!(ours > 0.0)) throw InputError(fmt::format("'{}' needs the total mass too, scene.mass", text));
+  if (!(ours > 0.0))
+    throw InputError(fmt::format("'{}' needs the total mass too, by [hoop], scene.mass or --mass", text));
   return *number * *size / ours;
 }
 

@@ -85,6 +85,10 @@ struct Assign {
     throw InputError(
         fmt::format("{}: goal.{}: is a parameter; allowed: its bounds in [design], {} = {{ from, to }}",
                     place, key, key));
+  if (!section.empty() && std::ranges::find(spec_sections, section) == spec_sections.end())
+    throw InputError(fmt::format("{}: {}.{}: unknown section{}; allowed: {}; of a weight hoop.{}.{}", place,
+                                 section, key, did_you_mean(section, spec_sections),
+                                 fmt::join(spec_sections, ", "), section, key));
   std::vector<std::string_view> keys;
   for (const Option& option : spec_options())
     if ((section.empty() || option.section == section) && std::ranges::find(keys, option.key) == keys.end())
@@ -174,7 +178,7 @@ void refuse_beside_hoop(const std::vector<Entry>& entries) {
   for (const Entry& entry : entries)
     for (const std::string_view key : {"mass_ratio", "offset_ratio", "inertia_factor", "radius", "mass"})
       if (entry.option->key == key && !std::holds_alternative<SpreadSlot>(entry.option->slot))
-        refuse(entry, "[hoop] determines it already", "one of the two");
+        refuse(entry, "[hoop] determines it already", "one of the two: remove the other");
 }
 
 /// A points file is looked for beside the spec first, then from the working folder.
@@ -280,6 +284,7 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
   for (const Entry& entry : entries)
     if (sets_scale(entry)) std::visit(Assign{entry, spec}, entry.option->slot);
   for (Entry& entry : entries) {
+    if (sets_scale(entry)) continue;
     entry.scales = scales_of(spec.scene);
     std::visit(Assign{entry, spec}, entry.option->slot);
   }

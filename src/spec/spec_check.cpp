@@ -57,6 +57,9 @@ void check_names(const Spec& spec) {
     if (field->of_sequence)
       refuse(spec, key, fmt::format("'{}' has no effect with scene.jumps = {}", name, spec.scene.jumps),
              "with scene.jumps at least that number");
+    if (field->of_wall)
+      refuse(spec, key, fmt::format("'{}' has no effect without a wall", name),
+             "with scene.clear_height, for example \"40 mm\"");
     if (field->of_gait)
       refuse(spec, key, fmt::format("'{}' has no effect without [gait]", name),
              "for example with gait.settle = 500");

@@ -28,10 +28,9 @@ struct Key {
 
 constexpr std::array ring_keys{
     Key<Body>{"diameter", "m", &Body::diameter, true, "outer diameter of the hoop"},
-    Key<Body>{"mass", "kg", &Body::mass, true,
-              "mass of the ring and all that is fixed to it but the weights"},
+    Key<Body>{"mass", "kg", &Body::mass, true, "mass of the ring and everything on it except the weights"},
     Key<Body>{"inertia", "kg m2", &Body::inertia, false,
-              "moment of inertia of the same about the axis; default: of a thin ring"}};
+              "moment of inertia of that ring about the axis; default: of a thin ring"}};
 constexpr std::array weight_keys{
     Key<Weight>{"mass", "kg", &Weight::mass, true, "mass of the weight"},
     Key<Weight>{"at", "m", &Weight::at, true, "distance of its centre from the axis"},
@@ -56,7 +55,8 @@ std::string written(const toml::node& node) {
 
 [[noreturn]] void refuse(const std::string& place, const std::string& key, const std::string& what,
                          const std::string& allowed) {
-  throw InputError(fmt::format("{}: hoop.{}: {}; allowed: {}", place, key, what, allowed));
+  throw InputError(
+      fmt::format("{}: {}: {}; allowed: {}", place, key.empty() ? "[hoop]" : "hoop." + key, what, allowed));
 }
 
 double number(const toml::node& node, const std::string& place, const std::string& key,
@@ -72,9 +72,10 @@ double number(const toml::node& node, const std::string& place, const std::strin
   }
   if (node.is_table())
     refuse(place, key, written(node) + " is an axis",
-           "one number; an axis of mass_ratio, offset_ratio or inertia_factor without [hoop]");
-  if (!node.is_number()) refuse(place, key, written(node) + " is not a number", allowed);
-  return *node.value<double>();
+           "one number; in Python a weight may be an array (leapmap.Weight)");
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!value || !std::isfinite(*value)) refuse(place, key, written(node) + " is not a number", allowed);
+  return *value;
 }
 
 /// Gives the part the number of that key; false: it has none of that name.
@@ -102,8 +103,13 @@ Weight read_weight(const toml::table& table, const std::string& origin) {
   if (!name || name->get().empty() || name->get().find_first_of(".=[] \t\n\"'") != std::string::npos)
     refuse(line_of(origin, table), "weight",
            name ? "the name '" + name->get() + "' cannot be part of a key" : "'name' is missing",
-           "a name of its own, for example name = \"slug\"");
+           "a name of letters, digits, - and _, for example name = \"slug\"");
   weight.name = name->get();
+  std::vector<std::string_view> taken = names_of(ring_keys);
+  taken.push_back("weight");
+  if (std::ranges::find(taken, weight.name) != taken.end())
+    refuse(line_of(origin, table), "weight", fmt::format("the name '{}' is a key of [hoop]", weight.name),
+           "a name of its own, for example name = \"slug\"");
   for (const auto& [key, node] : table)
     if (key.str() != "name" &&
         !set(weight, weight_keys, key.str(), weight.name + ".", node, line_of(origin, node))) {
@@ -114,7 +120,7 @@ Weight read_weight(const toml::table& table, const std::string& origin) {
   for (const Key<Weight>& key : weight_keys)
     if (key.needed && !table.contains(key.name))
       refuse(line_of(origin, table), weight.name, fmt::format("'{}' is missing", key.name),
-             fmt::format("with {}, as \"... {}\"", key.name, find_own_unit(key.unit)->example));
+             fmt::format("{} = \"... {}\"", key.name, find_own_unit(key.unit)->example));
   return weight;
 }
 
@@ -130,7 +136,7 @@ Body read_section(const toml::node& section, const std::string& origin) {
       refuse_unknown(line_of(origin, node), std::string(key.str()), key.str(), names);
     }
     const toml::array* weights = node.as_array();
-    if (!weights || !weights->is_array_of_tables())
+    if (!weights || (!weights->empty() && !weights->is_array_of_tables()))
       refuse(line_of(origin, node), "weight", "is no list of weights",
              "[[hoop.weight]] above the keys of each");
     for (const toml::node& one : *weights) body.weights.push_back(read_weight(*one.as_table(), origin));
@@ -138,7 +144,7 @@ Body read_section(const toml::node& section, const std::string& origin) {
   for (const Key<Body>& key : ring_keys)
     if (key.needed && !table->contains(key.name))
       refuse(line_of(origin, section), std::string(key.name), "is missing",
-             fmt::format("with {}, as \"... {}\"", key.name, find_own_unit(key.unit)->example));
+             fmt::format("{} = \"... {}\"", key.name, find_own_unit(key.unit)->example));
   return body;
 }
 
@@ -194,7 +200,7 @@ std::string hoop_help() {
           column);
   };
   add(ring_keys);
-  help += "[[hoop.weight]], any number of them; of --set: hoop.NAME.mass\n";
+  help += "[[hoop.weight]], any number of them; with --set: hoop.NAME.mass=VALUE\n";
   help += list_entry("  name", "a name of its own.", column);
   add(weight_keys);
   return help;

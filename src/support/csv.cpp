@@ -113,8 +113,9 @@ bool CsvFile::next_cells(std::vector<std::string>& cells) {
 /// Spreadsheets write semicolons where the comma is decimal, other programs tabs or blanks.
 void CsvFile::refuse_other_delimiter(std::string_view allowed) const {
   if (header_.size() > 1) return;
+  const std::string name_alone = header_[0].substr(0, header_[0].find(" ["));  // "slope [deg]" is one column
   for (const auto& [mark, name] : {std::pair{';', "semicolons"}, {'\t', "tabs"}, {' ', "blanks"}})
-    if (header_[0].find(mark) != std::string::npos)
+    if (name_alone.find(mark) != std::string::npos)
       throw InputError(
           fmt::format("{}: '{}' looks like columns separated by {}{}; allowed: commas between columns "
                       "and a point in numbers: {}",

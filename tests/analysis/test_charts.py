@@ -560,6 +560,10 @@ def test_a_front_has_its_gaps_its_cloud_and_three_designs_called_out(tmp_path, m
     refused = draw("front_chart.py", tmp_path / "best.h5", "--question", tmp_path / "other.toml", "-o",
                    tmp_path / "x")
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "best.h5 answers" in refused.stderr
+    (tmp_path / "other.toml").write_text(QUESTION.replace("to = 10,", "to = 3,"))
+    refused = draw("front_chart.py", tmp_path / "best.h5", "--question", tmp_path / "other.toml", "-o",
+                   tmp_path / "x")
+    assert refused.returncode == 2 and "best.h5 answers" in refused.stderr, "other bounds"
     refused = draw("front_chart.py", sweep(tmp_path), "-o", tmp_path / "x")
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "Pareto front" in refused.stderr
 

@@ -46,12 +46,14 @@ def maps(tmp_path_factory):
     linked = folder / "linked.h5"
     assert leapmap("sweep", "-o", linked, "--shard", "1/1").returncode == 0
     assert leapmap("join", linked, "--virtual").returncode == 0
+    walled = "[scene]\nclear_height = 0.1\n[design]\nslope = { values = [0.3, 0.4] }\n"
     slipping = '[scene]\nfriction = "coulomb"\n[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n'
     named = [name for name, cells in rows("Fields").items() if cells[3].startswith("if named")]
     return [
         grid, joined, linked,
         sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
         sweep(folder, slipping, name="slipping.h5"),
+        sweep(folder, walled, name="walled.h5"),
         sweep(
             folder,
             "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n[gait]\nsettle = "

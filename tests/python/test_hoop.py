@@ -62,12 +62,20 @@ def test_outcomes_are_shown_in_a_drawing_s_units():
     (lambda: leapmap.Hoop([0.1, 0.2], mass=1), "allowed: one number"),
     (lambda: leapmap.Hoop("120 mm", mass=1, weights=["85 g"]), "a list of leapmap.Weight"),
     (lambda: leapmap.Hoop("90 mm", mass=1, weights=[SLUG, BATTERY]),
-     "hoop.weight_1.at = 0.047 is out of range"),
+     "hoop.weights[0].at = 0.047 is out of range"),
     (lambda: leapmap.solve(hoop="120 mm"), "allowed: a leapmap.Hoop"),
     (lambda: leapmap.solve(hoop=drawing(), mass_ratio=3), "mass_ratio = 3 has no effect beside hoop"),
     (lambda: leapmap.solve(hoop=drawing(), radius="60 mm"), "radius = '60 mm' has no effect beside hoop"),
+    (lambda: leapmap.Hoop("120 mm", mass=1, inertia=np.nan), "inertia = nan is not finite"),
+    (lambda: leapmap.Hoop("120 mm", mass=[1, 2], weights=leapmap.Weight([1, 2, 3], at=0)),
+     "do not broadcast"),
+    (lambda: leapmap.Weight("85 g\udc80", at=0), "no UTF-8"),
+    (lambda: leapmap.Weight("8 5 g", at=0), "the unit '5 g' is unknown"),
+    (lambda: leapmap.solve().to(5), "units = 5 is not a text"),
+    (lambda: leapmap.design(slope={"from": 0.1, "to": 0.5}, maximize="jump_height", sample=64, most=1).
+     outcomes.to("mm"), "do not know their scene"),
     (lambda: leapmap.solve().to("mmm"), "the unit 'mmm' is unknown"),
-    (lambda: leapmap.solve().to("N.s"), "in N.s without the parameter mass"),
+    (lambda: leapmap.solve().to("N.s"), "newtons and joules need the parameter mass"),
     (lambda: leapmap.solve(mass=1).to("kg"), "no field can be given in kg; allowed: "),
     (lambda: leapmap.solve(drive_torque="0.1 N m"), "needs the total mass too"),
     (lambda: leapmap.solve(release_spin="30 Hz"), "cannot be converted to rad s-1"),
@@ -83,5 +91,14 @@ def test_units_hang_on_the_call_s_own_radius_in_any_order():
     two = leapmap.solve(radius=0.06, hop_height=0.05)
     assert one.jump_height == two.jump_height
     ds = leapmap.solve(slope=[0.3, 0.4], release_spin="60 rpm", radius="60 mm").to_xarray()
-    assert ds.attrs.get("release_spin", ds.get("release_spin")) == pytest.approx(
-        2 * math.pi * math.sqrt(0.06 / 9.81))
+    assert ds.attrs["release_spin"] == pytest.approx(2 * math.pi * math.sqrt(0.06 / 9.81))
+
+
+def test_units_chosen_twice_count_from_what_was_solved():
+    o = leapmap.solve(slope=[0.3, 0.4], radius="60 mm")
+    assert (o.to("mm").to("mm").jump_height == o.to("mm").jump_height).all()
+    assert o.to("mm").to("m").jump_height == pytest.approx(o.to("m").jump_height, rel=1e-15)
+    assert (o.to("mm m").jump_height == o.to("mm").jump_height).all(), "the first that fits"
+    ds = o.to("mm ms").to_xarray()
+    assert ds.jump_height.attrs["units"] == "mm" and "diameters" not in ds.jump_height.attrs["long_name"]
+    assert ds.jump_time.attrs["units"] == "ms" and o.to_xarray().jump_time.attrs["units"] == "s"

@@ -43,6 +43,7 @@ TEST(Quantities, OfTheHoopsOwnUnitsAreThoseOfItsSize) {
   is(number("-90 deg/s", "sqrt(g/R)"), -0.5 * std::numbers::pi * time);
   is(number("1.5 m/s", "sqrt(g R)"), 1.5 / std::sqrt(9.81 * 0.06));
   is(number("0.04 N m", "(m + m_p) g R"), 0.04 / (0.158 * 9.81 * 0.06));
+  is(number("40 mNm", "(m + m_p) g R"), 0.04 / (0.158 * 9.81 * 0.06));
   is(number("40 mJ", "(m + m_p) g R"), 0.04 / (0.158 * 9.81 * 0.06));
   is(number("20 N ms", "(m + m_p) sqrt(g R)"), 0.02 / (0.158 * std::sqrt(9.81 * 0.06)));
   is(number("1.9e-4 kg m2", "kg m2"), 1.9e-4);
@@ -81,10 +82,15 @@ TEST(Quantities, OfAnotherKindOrOfNoneAreRefused) {
   EXPECT_EQ(refusal("60 s", "m"), "'60 s' cannot be converted to m");
   EXPECT_EQ(refusal("50 Hz", "sqrt(g/R)"), "'50 Hz' cannot be converted to rad s-1");
   EXPECT_EQ(refusal("3 m", "1"), "'3 m' is not a number without a unit");
+  for (const char* text : {"1 200 mm", "1.5.2 mm", "6 mm 10", "3 1e3mm", "2 m/2", "2 3", "2 1/m", "5 mm -3"})
+    EXPECT_NE(refusal(text, "m").find("is unknown"), std::string::npos) << text;
+  EXPECT_NE(refusal(std::string("5 mm\0m", 7), "m").find("is unknown"), std::string::npos);
+  EXPECT_NEAR(number("3 m s^-1", "sqrt(g R)") * std::sqrt(9.81 * 0.06), 3.0, 1e-14);
+  EXPECT_NEAR(number("3 m.s-1", "sqrt(g R)") * std::sqrt(9.81 * 0.06), 3.0, 1e-14);
   for (const char* text : {"", "mm", "e5", "nan", "inf", "--3", "0x10", "1,5 mm"})
     EXPECT_EQ(refusal(text, "m").find("accepted"), std::string::npos) << text;
   EXPECT_EQ(refusal("0.04 N m", "(m + m_p) g R", {.radius = 0.06, .gravity = 9.81}),
-            "'0.04 N m' needs the total mass too, scene.mass");
+            "'0.04 N m' needs the total mass too, by [hoop], scene.mass or --mass");
 }
 
 TEST(Quantities, GoBackToWhatTheyWere) {

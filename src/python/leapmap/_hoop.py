@@ -3,7 +3,7 @@
 import numpy as np
 
 import leapmap._core as _core
-from leapmap._arguments import array, shown, text
+from leapmap._arguments import array, shown
 
 _OWN = ("mass_ratio", "offset_ratio", "inertia_factor", "radius", "mass")
 
@@ -11,10 +11,14 @@ _OWN = ("mass_ratio", "offset_ratio", "inertia_factor", "radius", "mass")
 def _number(name, value, unit):
     """A number or an array, in the SI's unit; a text has a unit of its own."""
     if not isinstance(value, str):
-        return array(name, value)
+        found = array(name, value)
+        if not np.isfinite(found).all():
+            raise ValueError(f"{name} = {shown(value)} is not finite; allowed: numbers in {unit}")
+        return found
     try:
         return np.asarray(_core.quantity(value, unit))
-    except ValueError as error:
+    except (TypeError, ValueError) as error:
+        error = error if isinstance(error, ValueError) else "a text that is no UTF-8"
         raise ValueError(f"{name} = {error}; allowed: a number in {unit}, or with a unit") from None
 
 
@@ -32,9 +36,6 @@ class Weight:
         the weights' common centre of mass.
     inertia : float, str or array_like, default 0
         Moment of inertia about its own centre, in kg m2.
-    name : str, optional
-        For messages.
-
     Examples
     --------
     >>> slug = leapmap.Weight("85 g", at="47 mm")
@@ -42,16 +43,15 @@ class Weight:
     0.085
     """
 
-    def __init__(self, mass, at, angle=0.0, inertia=0.0, name="weight"):
-        self.name = text("name", name)
-        self.mass = _number(f"{name}.mass", mass, "kg")
-        self.at = _number(f"{name}.at", at, "m")
-        self.angle = _number(f"{name}.angle", angle, "rad")
-        self.inertia = _number(f"{name}.inertia", inertia, "kg m2")
+    def __init__(self, mass, at, angle=0.0, inertia=0.0):
+        self.mass = _number("weight.mass", mass, "kg")
+        self.at = _number("weight.at", at, "m")
+        self.angle = _number("weight.angle", angle, "rad")
+        self.inertia = _number("weight.inertia", inertia, "kg m2")
 
 
 class Hoop:
-    """A ring with weights, for solve, gradient, trace and gaits.
+    """A ring with weights, for solve, gradient, trace and gaits; others take ``**hoop.parameters``.
 
     Numbers may be arrays, which broadcast; the diameter is one number.
 
@@ -60,10 +60,10 @@ class Hoop:
     diameter : float or str
         In m, or with a unit, for example "120 mm".
     mass : float, str or array_like
-        Of the ring and all that is fixed to it but the weights, in kg.
+        Of the ring and everything on it except the weights, in kg.
     inertia : float, str or array_like, optional
-        Moment of inertia of the same about the axis, in kg m2; default: of a thin ring.
-    weights : sequence of Weight
+        Moment of inertia of that ring about the axis, in kg m2; default: of a thin ring.
+    weights : Weight or sequence of Weight
         Any number of them.
 
     Attributes
@@ -95,24 +95,29 @@ class Hoop:
     10.34
     """
 
+    def __repr__(self):
+        return (f"<hoop of {self.total_mass[()]} kg, eccentricity {self.eccentricity[()]}, "
+                f"inertia ratio {self.inertia_ratio[()]}>")
+
     def __init__(self, diameter, mass, inertia=None, weights=()):
-        weights = list(weights)
+        weights = [weights] if isinstance(weights, Weight) else list(weights)
         if not all(isinstance(weight, Weight) for weight in weights):
             raise ValueError(f"weights = {shown(weights)} are no weights; allowed: a list of leapmap.Weight")
         diameter = _number("diameter", diameter, "m")
         if diameter.ndim:
             raise ValueError(f"diameter = {shown(diameter)} is an array; allowed: one number")
-        names = [weight.name for weight in weights]
-        names = [name if names.count(name) == 1 else f"{name}_{k}" for k, name in enumerate(names, 1)]
-
         def reduced(mass, inertia, *numbers):
             return _core.reduce_body(
                 float(diameter), mass, inertia,
-                [(name, *numbers[4 * k:4 * k + 4]) for k, name in enumerate(names)])
+                [(f"weights[{k}]", *numbers[4 * k:4 * k + 4]) for k in range(len(weights))])
 
         numbers = [v for w in weights for v in (w.mass, w.at, w.angle, w.inertia)]
         ring = (_number("mass", mass, "kg"),
                 np.asarray(np.nan) if inertia is None else _number("inertia", inertia, "kg m2"))
+        try:
+            np.broadcast_shapes(*(number.shape for number in (*ring, *numbers)))
+        except ValueError:
+            raise ValueError("the arrays of a hoop do not broadcast; allowed: numpy's rules") from None
         self.total_mass, self.eccentricity, self.inertia_ratio, *ratios = np.vectorize(
             reduced, otypes=[float] * 6)(*ring, *numbers)
         one = {} if self.total_mass.ndim else {"mass": float(self.total_mass)}

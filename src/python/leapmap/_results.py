@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results of solve and trace."""
+import re
 from enum import IntEnum
 
 import numpy as np
 
 from leapmap import _core
+from leapmap._arguments import text
 
 _FIELDS = {row["name"]: row for row in _core.fields()}
 _PARAMETERS = {row["name"]: row for row in _core.parameters()}
@@ -47,9 +49,11 @@ class Outcomes:
     ['jumped', 'jumped']
     """
 
-    def __init__(self, fields, given):
+    def __init__(self, fields, given, original=None, units=None):
         self.__dict__.update(fields)
         self.__dict__["_fields"], self.__dict__["_given"] = fields, given
+        # What it was converted from by `to`, and the units of those fields that were.
+        self.__dict__["_original"], self.__dict__["_units"] = original or self, units or {}
 
     def __getattr__(self, name):
         if name.startswith("_"):  # while it is unpickled there is nothing yet
@@ -99,19 +103,24 @@ class Outcomes:
         >>> round(float(o.to("mm").jump_height), 2)
         117.94
         """
+        if self._given.get("friction") == "any":
+            raise ValueError("units: outcomes of a search do not know their scene; allowed: those of solve")
         given = {name: self._given[name] for name in _SCALES if name in self._given}
-        wanted, used, fields = units.split(), set(), {}
-        for name, column in self._fields.items():
+        wanted, fitting, chosen = text("units", units).split(), set(), {}
+        fields = dict(self._original._fields)
+        for name in fields:
             factors = {unit: _core.units_in_own(unit, name, given) for unit in wanted}
             fits = [unit for unit in wanted if factors[unit] is not None]
-            fields[name] = column * factors[fits[0]] if fits else column
-            used |= set(fits[:1])
+            fitting |= set(fits)
+            if fits:
+                chosen[name] = fits[0]
+                fields[name] = fields[name] * factors[fits[0]]
         for unit in wanted:
-            if unit not in used:
-                raise ValueError(f"units: no field can be given in {unit}" +
-                                 ("" if "mass" in given else " without the parameter mass") +
+            if unit not in fitting:
+                raise ValueError(f"units: no field can be given in {unit}" + (
+                    "" if "mass" in given else " (newtons and joules need the parameter mass)") +
                                  "; allowed: units such as mm, deg, ms, rpm, N.s")
-        return Outcomes(fields, self._given)
+        return Outcomes(fields, self._given, self._original, chosen)
 
     def to_xarray(self):
         """Convert to an xarray.Dataset.
@@ -153,8 +162,14 @@ class Outcomes:
         scalars = {name: value.item() for name, value in given.items() if value.ndim == 0
                    } | {"friction": self._given["friction"]}
         return xarray.Dataset(
-            {name: (dims, values, _described(name)) for name, values in self._fields.items()}, coordinates,
+            {name: (dims, values, self._about(name)) for name, values in self._fields.items()}, coordinates,
             scalars)
+
+    def _about(self, name):
+        about = _described(name)
+        if name in self._units:
+            about |= {"units": self._units[name], "long_name": re.sub(", in [^;]*", "", about["long_name"])}
+        return about
 
 
 class Motion:
