@@ -34,7 +34,7 @@ Progress::~Progress() {
 
 void Progress::update(std::size_t done) {
   const auto now = Clock::now();
-  if (quiet_ || now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::minutes(1))) return;
+  if (quiet_ || now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::seconds(10))) return;
   last_ = now;
   const double passed = std::chrono::duration<double>(now - begin_).count();
   const double rate = static_cast<double>(done - already_) / passed;

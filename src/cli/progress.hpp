@@ -9,7 +9,7 @@
 namespace leapmap::cli {
 
 /// Done, rate and time to go, on stderr: on a terminal one line, rewritten a few times a second; in a log a
-/// new line every minute.
+/// new line every ten seconds.
 class Progress {
  public:
   /// already: of the total, what an earlier session did; it does not count for the rate.

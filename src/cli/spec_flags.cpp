@@ -49,6 +49,7 @@ Spec read_given_spec(const std::string& path, const std::vector<std::string>& ov
                                     : find_option(name.substr(0, dot), name.substr(dot + 1));
   };
   Spec spec = read_spec(path, overrides);  // first, so that what is wrong is said alone
+  for (const std::string& note : spec.notes) tell(note);
   std::vector<const Option*> keys;
   for (const std::string& set : overrides) keys.push_back(key_of(set));
   for (auto key = keys.begin(); key != keys.end(); ++key) {

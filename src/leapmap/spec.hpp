@@ -92,8 +92,8 @@ struct Spec {
   std::vector<Goal> goals{};  ///< all of them are to be reached; at most one for each field
   std::vector<std::string> maximize{};  ///< find_designs: fields or parameters to maximize
   std::vector<std::string> minimize{};  ///< and to minimize; one or two objectives in all
-  std::optional<Body>
-      hoop{};  ///< the body of [hoop], if there is one; `design` and `scene` hold what it comes to
+  std::vector<std::string> notes{};     ///< to be shown, a line each: keys that are not used
+  std::optional<Body> hoop{};           ///< of [hoop]; `design` and `scene` hold what it comes to
 };
 
 /// Reads a spec from a TOML file.

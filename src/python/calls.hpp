@@ -54,9 +54,10 @@ inline int threads_here(int threads) { return forked() ? 1 : threads; }
 /// The spec of a file, or of a text if `origin` is given.
 inline Spec spec_of(const std::string& path_or_text, const std::optional<std::string>& origin,
                     const std::vector<std::string>& overrides) {
-  if (!origin) return read_spec(path_or_text, overrides);
-  Spec spec = parse_spec(path_or_text, *origin, overrides);
-  read_points_of(spec);
+  Spec spec = origin ? parse_spec(path_or_text, *origin, overrides) : read_spec(path_or_text, overrides);
+  if (origin) read_points_of(spec);
+  for (const std::string& note : spec.notes)
+    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
   return spec;
 }
 

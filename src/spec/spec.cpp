@@ -165,12 +165,36 @@ bool is_default(const Option& option, const Entry& entry) {
   return is_usual(*value, of_scene ? Scene{}.*of_scene->member : Design{}.*of_design->member);
 }
 
+/// A number of the file that another model, chosen on the command line, has no use for: its default takes its
+/// place, so that models can be compared on one file.
+bool is_left_out(const Entry& entry, Spec& spec) {
+  const bool of_file = entry.place != command_line && !entry.node->is_table();
+  if (const auto* of_design = std::get_if<ParameterSlot>(&entry.option->slot); of_design && of_file)
+    spec.design.*of_design->member = Design{}.*of_design->member;
+  else if (const auto* of_scene = std::get_if<SceneSlot>(&entry.option->slot); of_scene && of_file)
+    spec.scene.*of_scene->member = Scene{}.*of_scene->member;
+  else
+    return false;
+  return true;
+}
+
 /// Nothing given is ignored without a word. A file may spell defaults out.
-void refuse_what_has_no_use(const std::vector<Entry>& entries, const Spec& spec) {
-  for (const Entry& entry : entries)
-    if (!has(spec.scene.friction, entry.option->only_of) &&
-        (entry.place == command_line || !is_default(*entry.option, entry)))
+void refuse_what_has_no_use(const std::vector<Entry>& entries, Spec& spec) {
+  const bool chosen = std::ranges::any_of(entries, [](const Entry& entry) {
+    return entry.place == command_line && std::holds_alternative<FrictionSlot>(entry.option->slot);
+  });
+  std::vector<std::string_view> left_out;
+  for (const Entry& entry : entries) {
+    if (has(spec.scene.friction, entry.option->only_of) ||
+        (entry.place != command_line && is_default(*entry.option, entry)))
+      continue;
+    if (!chosen || !is_left_out(entry, spec))
       refuse(entry, no_use(spec.scene), with_model(*entry.option->only_of));
+    left_out.push_back(entry.option->key);
+  }
+  if (!left_out.empty())
+    spec.notes.push_back(fmt::format("{}: not used, because the contact {}: {}", origin_of(spec),
+                                     model_of(spec.scene).meaning, fmt::join(left_out, ", ")));
 }
 
 /// What [hoop] determines is given once.

@@ -497,7 +497,7 @@ mass_ratio = { from = 2, to = 4, count = 5 }\noffset_ratio = 0.5
     assert browser.execute_script("return window.explorer.map.settle") == 60
 
 
-@pytest.mark.parametrize("jumps", [24, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("jumps", [6, *(pytest.param(n, marks=pytest.mark.slow) for n in (24, 60))])
 def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps, live, tmp_path):
     asked = "return window.explorer.map.asked.settle"
     live.get("about:blank")
@@ -508,7 +508,8 @@ def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps,
     waited(live, lambda b: b.execute_script("return window.explorer?.map.asked.settle") == jumps)
     settled(live)
     # A hoop of one's own is told the same, by the command that the page shows too.
-    gait_of_a_hoop_of_ones_own(live)
+    if jumps >= 24:  # the hoop takes as many to settle
+        gait_of_a_hoop_of_ones_own(live)
     settle = live.find_element("id", "settle")
     assert settle.is_displayed()
     live.execute_script(

@@ -196,3 +196,25 @@ def test_an_audit_that_disagrees_ends_with_status_1_and_the_command_that_shows_i
     assert any(ours[k] != truth[k] for k in ("status", "spurious_first_jump", "candidates"))
     with h5py.File(tmp_path / "map.h5") as m:
         assert m.attrs["audit_flag_mismatches"] > 0
+
+
+def test_models_are_compared_on_one_file_which_says_what_one_of_them_does_not_use(tmp_path):
+    (tmp_path / "spec.toml").write_text(
+        '[scene]\nfriction = "coulomb"\nmu_static = 0.6\nrestitution = 0.2\nrest_speed = 0.01\n[design]\n'
+        'slope = 0.5\n'
+    )
+    done = leapmap("hop", tmp_path / "spec.toml", "--set", "friction=sticking", "--json")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("\n") == 1 and "mu_static, restitution, rest_speed" in done.stderr
+    assert "not used" in done.stderr and "never slips" in done.stderr
+    assert json.loads(done.stdout)["jump_height"] == json.loads(
+        leapmap("hop", "--slope", "0.5", "--json").stdout)["jump_height"]
+    for given in (("--mu-static", "0.5"), ("--set", "restitution=0.1")):  # on the command line both are meant
+        done = leapmap("hop", tmp_path / "spec.toml", "--set", "friction=sticking", *given)
+        assert done.returncode == 2 and "has no effect" in done.stderr, done.stderr
+    (tmp_path / "spec.toml").write_text('[scene]\nmu_static = 0.6\n')
+    assert leapmap("hop", tmp_path / "spec.toml").returncode == 2, "nobody chose another model"
+    (tmp_path / "spec.toml").write_text(
+        '[scene]\nfriction = "coulomb"\nmu_static = { values = [0.3, 0.6] }\n')
+    done = leapmap("sweep", tmp_path / "spec.toml", "--set", "friction=sticking", "-o", tmp_path / "m.h5")
+    assert done.returncode == 2 and "has no effect" in done.stderr, "an axis cannot be left out"
