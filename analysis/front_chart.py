@@ -140,7 +140,7 @@ def answers(problem, front):
 
 
 def front_and_cloud(path, question, seed):
-    """What a file tells; the cloud only with a question, which has the bounds."""
+    """The front of a file, and the cloud around it, which needs the bounds of a question."""
     from_map = h5py.is_hdf5(path)
     front = stored(path) if from_map else None
     question = question if from_map else path

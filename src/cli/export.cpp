@@ -241,7 +241,7 @@ void add_export(CommandLine& line, int& status) {
   command.value(
       "--units", arguments->units,
       "units to convert to, for example \"mm deg ms rpm N.m\"; each column takes the first that fits; "
-      "default: the map's own, as of derivatives");
+      "default: the map's own, which derivatives keep");
   command.value("--fields", arguments->fields, "fields to write, separated by commas; default: all")
       .with_commas();
   command.flag("--overwrite", arguments->overwrite, "replace an existing file");

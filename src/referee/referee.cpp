@@ -155,8 +155,9 @@ void Referee::clear(const Motion& lift_off) {
     };
     const double step = (to - from) / looks;
     int best = 0;
-    for (int k = 1; k <= looks; ++k)
-      if (reach(from + step * k) > reach(from + step * best)) best = k;
+    double most = -HUGE_VAL;
+    for (int k = 0; k <= looks; ++k)
+      if (const double here = reach(from + step * k); here > most) most = here, best = k;
     double low = from + step * std::max(best - 1, 0), high = from + step * std::min(best + 1, looks);
     while (high - low > 1e-10 * (to - from)) {
       const double third = (high - low) / 3.0;

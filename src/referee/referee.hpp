@@ -44,7 +44,7 @@ class Referee {
   bool count_lift_off(const Flown& flown);
   /// Tells how far the jump goes and how hard it lands: from the lift-off to just before the landing.
   void measure(const Motion& lift_off, const Motion& before, const Landed& landed);
-  /// Tells where a wall is cleared by the jump from that lift-off.
+  /// Finds where the jump from that lift-off clears a wall.
   void clear(const Motion& lift_off);
 
   Scene scene_;

@@ -165,9 +165,9 @@ bool is_default(const Option& option, const Entry& entry) {
   return is_usual(*value, of_scene ? Scene{}.*of_scene->member : Design{}.*of_design->member);
 }
 
-/// A number of the file that another model, chosen on the command line, has no use for: its default takes its
-/// place, so that models can be compared on one file.
-bool is_left_out(const Entry& entry, Spec& spec) {
+/// Puts the default in place of a number of the file, so that models can be compared on one file. False: it
+/// is no number of the file.
+bool leave_out(const Entry& entry, Spec& spec) {
   const bool of_file = entry.place != command_line && !entry.node->is_table();
   if (const auto* of_design = std::get_if<ParameterSlot>(&entry.option->slot); of_design && of_file)
     spec.design.*of_design->member = Design{}.*of_design->member;
@@ -188,7 +188,7 @@ void refuse_what_has_no_use(const std::vector<Entry>& entries, Spec& spec) {
     if (has(spec.scene.friction, entry.option->only_of) ||
         (entry.place != command_line && is_default(*entry.option, entry)))
       continue;
-    if (!chosen || !is_left_out(entry, spec))
+    if (!chosen || !leave_out(entry, spec))
       refuse(entry, no_use(spec.scene), with_model(*entry.option->only_of));
     left_out.push_back(entry.option->key);
   }

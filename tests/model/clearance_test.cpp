@@ -22,23 +22,13 @@ INSTANTIATE_TEST_SUITE_P(BothModels, Clearances, ::testing::Values(Friction::sti
                            return of.param == Friction::coulomb ? "Coulomb" : "Sticking";
                          });
 
-Design any_design(std::mt19937_64& random, Friction friction) {
-  Design design = testing::either_way(random);
-  if (friction == Friction::sticking) return design;
-  design.drive_torque = 0.0;  // a motor that idles in flight leaves most of these without an answer
-  design.mu_static = testing::uniform(random, 0.1, 1.5);
-  design.mu_kinetic = testing::uniform(random, 0.5, 1.0) * design.mu_static;
-  design.restitution = testing::uniform(random, 0.0, 0.8);
-  return design;
-}
-
 TEST_P(Clearances, AreThoseOfTheRefereeWhichLooksAlongTheFlight) {
   std::mt19937_64 random(51);
   Scene scene = testing::unit_scene(GetParam());
   int jumps = 0, cleared = 0;
   std::vector<double> errors;
   for (int i = 0; i < 150; ++i) {
-    const Design design = any_design(random, GetParam());
+    const Design design = testing::either_way(random, GetParam());
     scene.clear_height = testing::uniform(random, 0.005, 0.6);
     const Outcome ours = solve(design, scene, {.tolerance = 1e-12});
     EXPECT_EQ(std::isfinite(ours.clears_from), std::isfinite(ours.clears_to));
@@ -84,7 +74,7 @@ TEST_P(Clearances, AreWhereTheCircleNeverMeetsTheWallAndBeyondItDoes) {
   Scene scene = testing::unit_scene(GetParam());
   int looked_at = 0;
   for (int i = 0; i < 150; ++i) {
-    const Design design = any_design(random, GetParam());
+    const Design design = testing::either_way(random, GetParam());
     scene.clear_height = testing::uniform(random, 0.01, 0.3);
     const Outcome o = solve(design, scene);
     if (!std::isfinite(o.clears_from) || o.candidates > 1 || o.flight_time > 20.0) continue;

@@ -21,16 +21,6 @@ INSTANTIATE_TEST_SUITE_P(BothModels, Measures, ::testing::Values(Friction::stick
                            return of.param == Friction::coulomb ? "Coulomb" : "Sticking";
                          });
 
-Design any_design(std::mt19937_64& random, Friction friction) {
-  Design design = testing::either_way(random);
-  if (friction == Friction::sticking) return design;
-  design.drive_torque = 0.0;  // a motor that idles in flight leaves most of these without an answer
-  design.mu_static = testing::uniform(random, 0.1, 1.5);
-  design.mu_kinetic = testing::uniform(random, 0.5, 1.0) * design.mu_static;
-  design.restitution = testing::uniform(random, 0.0, 0.8);
-  return design;
-}
-
 /// The largest difference of two outcomes' measures, relative to one more than their size.
 double difference(const Outcome& a, const Outcome& b) {
   double most = 0.0;
@@ -46,7 +36,7 @@ TEST_P(Measures, AreThoseOfTheRefereeAndOfIntegration) {
   int jumps = 0;
   std::vector<double> of_referee, of_integration;
   for (int i = 0; i < 400; ++i) {
-    const Design design = any_design(random, GetParam());
+    const Design design = testing::either_way(random, GetParam());
     const Outcome ours = solve(design, scene, {.tolerance = 1e-12});
     for (const auto& row : measure_rows<double>)
       EXPECT_EQ(std::isfinite(ours.*row.kept), ours.status == Status::jumped) << i;
@@ -71,7 +61,7 @@ TEST_P(Measures, KeepMomentumAndLoseEnergy) {
   const Scene scene = testing::unit_scene(GetParam());
   int jumps = 0;
   for (int i = 0; i < 300; ++i) {
-    Design design = any_design(random, GetParam());
+    Design design = testing::either_way(random, GetParam());
     design.restitution = 0.0;
     const Outcome o = solve(design, scene);
     if (o.status != Status::jumped) continue;
@@ -105,7 +95,7 @@ TEST_P(Measures, HaveTheDerivativesOfTheirDifferences) {
   const SolveOptions fine{.tolerance = 1e-13};
   int compared = 0;
   for (int i = 0; i < 25; ++i) {
-    Design design = any_design(random, GetParam());
+    Design design = testing::either_way(random, GetParam());
     design.offset_ratio = std::min(design.offset_ratio, 0.98);
     if (solve(design, scene, fine).status != Status::jumped) continue;
     for (const auto& row : measure_rows<double>) {

@@ -44,6 +44,17 @@ inline Design either_way(std::mt19937_64& random) {
   return design;
 }
 
+/// The same with coefficients of friction and restitution, where the model has them.
+inline Design either_way(std::mt19937_64& random, Friction friction) {
+  Design design = either_way(random);
+  if (friction == Friction::sticking) return design;
+  design.drive_torque = 0.0;  // a motor that idles in flight leaves most of these without an answer
+  design.mu_static = uniform(random, 0.1, 1.5);
+  design.mu_kinetic = uniform(random, 0.5, 1.0) * design.mu_static;
+  design.restitution = uniform(random, 0.0, 0.8);
+  return design;
+}
+
 using leapmap::adaptive;
 
 inline Outcome solve(const Design& design, const Scene& scene = unit_scene(),

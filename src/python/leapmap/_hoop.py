@@ -36,6 +36,7 @@ class Weight:
         the weights' common centre of mass.
     inertia : float, str or array_like, default 0
         Moment of inertia about its own centre, in kg m2.
+
     Examples
     --------
     >>> slug = leapmap.Weight("85 g", at="47 mm")
@@ -106,6 +107,7 @@ class Hoop:
         diameter = _number("diameter", diameter, "m")
         if diameter.ndim:
             raise ValueError(f"diameter = {shown(diameter)} is an array; allowed: one number")
+
         def reduced(mass, inertia, *numbers):
             return _core.reduce_body(
                 float(diameter), mass, inertia,
