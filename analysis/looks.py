@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names, units and colours of a map's quantities and outcomes, on charts and on the page."""
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -123,7 +123,7 @@ def is_of_gait(name):
 def quantity(m, name):
     """A field of the map, or what follows from several; NaN where it does not apply. None if the map cannot
     tell."""
-    if name == "agility":
+    if name == "agility" and name not in m.fields:
         parts = [m.fields.get(k) for k in ("jump_height", "jump_time", "apex_time")]
         if any(p is None for p in parts):
             return None
@@ -132,6 +132,28 @@ def quantity(m, name):
             return 2 * m.numbers()["radius"] * height / (time + apex)
     values = m.fields.get(name)
     return None if values is None or name not in LOOKS else np.asarray(values, float)
+
+
+def use_units(m, text, units_in_own):
+    """Gives the map's quantities in the units of a text such as "mm m/s ms", the first that fits.
+    units_in_own: leapmap's, which tells how many of a unit are one of a field's own."""
+    numbers = m.numbers()
+    scales = {key: numbers[key] for key in ("radius", "gravity", "mass") if numbers.get(key)}
+    agility, used = quantity(m, "agility"), set()
+    for name in set(m.fields) & set(LOOKS):
+        for word in text.split():
+            if (size := units_in_own(word, name, scales)) is None:
+                continue
+            m.fields[name] = np.asarray(m.fields[name], float) * size
+            LOOKS[name] = replace(LOOKS[name], unit=word, levels=LOOKS[name].levels and None)
+            used.add(word)
+            break
+    if agility is not None:
+        m.fields["agility"] = agility
+    if rest := [word for word in text.split() if word not in used]:
+        raise ValueError(
+            f"--units {rest[0]}: fits no quantity of the map; allowed: units with blanks between "
+            "them, for example \"mm m/s ms\"")
 
 
 def levels_of(look, values):
@@ -147,9 +169,33 @@ def levels_of(look, values):
     return np.zeros(0)  # none is of use
 
 
+# of [hoop]: its words, its unit as shown, how many of that are one of the SI's
+BODY = {
+    "mass": ("mass", "g", 1e3), "at": ("distance from the axis", "mm", 1e3),
+    "angle": ("direction", "°", 180 / math.pi), "inertia": ("moment of inertia", "kg mm²", 1e6)
+}
+
+
+def _of_body(name):
+    """The weight and the row of BODY of hoop.slug.mass or hoop.mass; None: another parameter."""
+    parts = name.split(".")
+    if parts[0] != "hoop" or parts[-1] not in BODY or len(parts) > 3:
+        return None
+    return parts[1] if len(parts) == 3 else "ring", BODY[parts[-1]]
+
+
 def parameter(name):
     """A parameter's name on an axis, its symbol, its unit as shown; its own name for one that is unknown."""
+    if body := _of_body(name):
+        weight, (words, unit, _) = body
+        return f"{words} of {weight}", f"{words} of {weight}", unit
     return PARAMETERS.get(name, (name, name, ""))
+
+
+def factor(name):
+    """How many of the unit as shown are one of the map's."""
+    body = _of_body(name)
+    return body[1][2] if body else 180 / math.pi if is_angle(name) else 1.0
 
 
 def is_angle(name):
@@ -157,12 +203,13 @@ def is_angle(name):
 
 
 def as_shown(name, values):
-    """A parameter's values in the unit they are shown in: angles in degrees."""
-    return np.degrees(values) if is_angle(name) else values
+    """A parameter's values in the unit they are shown in: angles in degrees, masses in grams."""
+    return np.degrees(values) if is_angle(name) else values * factor(name) if _of_body(name) else values
 
 
 def shown(name, value):
-    return f"{as_shown(name, value):.4g}{parameter(name)[2]}"
+    unit = parameter(name)[2]
+    return f"{as_shown(name, value):.4g}{unit if unit == '°' else ' ' + unit}".rstrip()
 
 
 def titled(name, value):

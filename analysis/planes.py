@@ -44,8 +44,10 @@ def field_label(field):
 
 def add_at(parser):
     parser.add_argument(
-        "--at", metavar="AXIS=VALUE", action="append", default=[],
-        help="keep only the designs nearest to this value (angles in degrees); may be given again")
+        "--at", metavar="AXIS=VALUE", action="append", default=[], help=
+        "keep only the designs nearest to this value (angles in degrees, weights in g and mm); may be given "
+        "again"
+    )
 
 
 def fixed_at(m, wanted, option="--at"):
@@ -56,11 +58,10 @@ def fixed_at(m, wanted, option="--at"):
         if name not in m.dims:
             raise NotAMap(f"{m.path}: {option} {text}: has no axis {name}; allowed: {', '.join(m.dims)}")
         try:
-            number = float(value.removesuffix("deg").removesuffix("°"))
+            number = float(value.removesuffix("deg").removesuffix(looks.parameter(name)[2].strip() or "°"))
         except ValueError:
             raise NotAMap(f"{m.path}: {option} {text}: is not a number after the =") from None
-        if looks.is_angle(name):
-            number = math.radians(number)
+        number = math.radians(number) if looks.is_angle(name) else number / looks.factor(name)
         values = m.dims[name]
         # half a cell, and labels' rounding
         slack = 0.5 * np.ptp(values) / max(1, len(values) - 1) + 1e-3 * np.abs(values).max()

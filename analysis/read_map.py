@@ -151,13 +151,31 @@ class Map:
     def numbers(self):
         """The numbers of the resolved spec that made it, by key; what an axis varies is not among them."""
         found = {}
-        for line in self.attributes["spec"].splitlines():
-            key, _, value = line.partition(" = ")
-            try:
-                found[key] = float(value)
-            except ValueError:
-                pass
-        return found
+        for section, keys in self.spec().items():
+            if section != "hoop" and isinstance(keys, dict):
+                found |= {key: float(value) for key, value in keys.items() if isinstance(value, (int, float))}
+        return found | self._of_hoop()
+
+    def _of_hoop(self):
+        """What the numbers of [hoop] come to; only the radius where an axis varies one of them."""
+        hoop = self.spec().get("hoop")
+        if hoop is None:
+            return {}
+        try:
+            radius, weights = hoop["diameter"] / 2, hoop.get("weight", [])
+            if any(isinstance(value, dict) for part in (hoop, *weights) for value in part.values()):
+                return {"radius": radius}
+            m, at, angle, own = (np.array([weight[key] for weight in weights], float)
+                                 for key in ("mass", "at", "angle", "inertia"))
+            place = at * np.exp(1j * angle)
+            centre = (m * place).sum() / m.sum() if m.sum() > 0 else 0.0
+            ring = hoop.get("inertia", hoop["mass"] * radius**2)
+            inertia = ring + (own + m * np.abs(place - centre)**2).sum()
+            return {"radius": radius, "mass": hoop["mass"] + m.sum(), "mass_ratio": m.sum() / hoop["mass"],
+                    "offset_ratio": min(abs(centre) / radius, 1.0),
+                    "inertia_factor": inertia / (hoop["mass"] * radius**2)}
+        except (AttributeError, KeyError, TypeError, ValueError):
+            raise NotAMap(f"{self.path}: is damaged: its spec says hoop = {hoop}") from None
 
 
 def _read(path, filetype, most_designs=math.inf, texts=()):
@@ -192,7 +210,7 @@ def _read_open(path, file, most_designs):
     # the group is for viewers
     datasets = {name: file[name] for name in names_in(file) if isinstance(file.get(name), h5py.Dataset)}
     for name, dataset in datasets.items():
-        if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name):
+        if not re.fullmatch(r"[A-Za-z][\w.-]*", name, re.ASCII):
             raise NotAMap(f"{path}: is damaged: it has a dataset of the name {name!r}")
         if dataset.size > most_designs:
             raise NotAMap(

@@ -89,8 +89,6 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
   constexpr std::size_t at_once = 512;
   const DesignSpace space(spec);
   const std::vector<std::size_t> shape = shape_of(spec);
-  std::vector<double Design::*> members;
-  for (const Axis& axis : spec.axes) members.push_back(member_of(axis.key));
   std::vector<std::vector<Cliff>> found((edges.size() + at_once - 1) / at_once);
   std::mutex telling;
   std::size_t done = 0;
@@ -98,12 +96,11 @@ std::vector<Cliff> polish(const Spec& spec, const std::vector<Edge>& edges, cons
     return [&, solve = make_solver(request_for_outcomes(spec))](std::size_t block) {
       const std::span some =
           std::span(edges).subspan(block * at_once, std::min(at_once, edges.size() - block * at_once));
-      std::vector<Design> beginnings;
-      for (const Edge& edge : some) beginnings.push_back(space.at(edge.design));
+      std::vector<std::vector<double>> beginnings;
+      for (const Edge& edge : some) beginnings.push_back(space.values(edge.design));
       const auto design_at = [&](std::size_t line, double value) {
-        Design design = beginnings[line];
-        design.*members[some[line].axis] = value;
-        return design;
+        beginnings[line][some[line].axis] = value;
+        return space.varied().at(beginnings[line]);
       };
       std::vector<Stretch> stretches;
       std::vector<Design> ends;

@@ -10,7 +10,7 @@
 #include "leapmap/boundaries.hpp"
 #include "leapmap/errors.hpp"
 #include "request/solver.hpp"
-#include "spec/options.hpp"
+#include "spec/designs.hpp"
 #include "spec/spacing.hpp"
 
 namespace leapmap {
@@ -29,30 +29,32 @@ Vector unit(Vector direction) {
 /// The box of a spec's axes, in coordinates from 0 to 1 along each, of logarithms where values are spaced so.
 class Box {
  public:
-  Box(const Spec& spec, const Design& design) : design_(design) {
-    for (const Axis& axis : spec.axes) {
+  Box(const Spec& spec, const Vector& place) : designs_(spec, spec.axes), place_(place) {
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      const Axis& axis = spec.axes[k];
       const auto [low, high] = std::ranges::minmax(axis.values);
       const auto spacing = spacing_of(axis.values);
       const bool log = spacing && spacing->log && low > 0.0;
-      members_.push_back(member_of(axis.key));
       sides_.push_back({low, high, log});
-      const double value = design.*members_.back();
-      if (!(value >= low && value <= high))
+      if (!(place[k] >= low && place[k] <= high))
         throw InputError(
-            fmt::format("{} = {} is outside the map; allowed: from {} to {}", axis.key, value, low, high));
-      centre_.push_back(high > low ? sides_.back().coordinate(value) : 0.0);
+            fmt::format("{} = {} is outside the map; allowed: from {} to {}", axis.key, place[k], low, high));
+      centre_.push_back(high > low ? sides_.back().coordinate(place[k]) : 0.0);
     }
   }
 
   std::size_t dimensions() const { return sides_.size(); }
   bool is_flat(std::size_t k) const { return sides_[k].is_flat(); }
 
-  /// The design so far from the centre in a direction.
-  Design at(const Vector& direction, double distance) const {
-    Design design = design_;
+  /// The place so far from the centre in a direction, and its design.
+  Vector place(const Vector& direction, double distance) const {
+    Vector place = place_;
     for (std::size_t k = 0; k < sides_.size(); ++k)
-      if (direction[k] != 0.0) design.*members_[k] = sides_[k].value(centre_[k] + distance * direction[k]);
-    return design;
+      if (direction[k] != 0.0) place[k] = sides_[k].value(centre_[k] + distance * direction[k]);
+    return place;
+  }
+  Design at(const Vector& direction, double distance) const {
+    return designs_.at(place(direction, distance));
   }
   /// How far the box reaches in a direction.
   double reach(const Vector& direction) const {
@@ -71,16 +73,10 @@ class Box {
       direction.push_back(is_flat(k) ? 0.0 : sides_[k].coordinate(place[k]) - centre_[k]);
     return unit(direction);
   }
-  Vector place(const Design& design) const {
-    Vector place;
-    for (const auto member : members_) place.push_back(design.*member);
-    return place;
-  }
 
  private:
-  Design design_;
-  std::vector<double Design::*> members_;
-
+  VariedDesigns designs_;
+  Vector place_;
   std::vector<Side> sides_;
   Vector centre_;
 };
@@ -125,7 +121,7 @@ class Looking {
           if (!(cliff.below.at < nearest.distance)) return;
           const Design below = design_at(cliff.line, cliff.below.at),
                        above = design_at(cliff.line, cliff.above.at);
-          nearest = {box_.place(below), cliff.below.at,
+          nearest = {box_.place(directions[cliff.line], cliff.below.at), cliff.below.at,
                      kind_of(scene_, below, cliff.below, above, cliff.above),
                      discrete(cliff.above.outcome, false)};
         },
@@ -162,12 +158,27 @@ std::vector<Vector> directions_about(const Vector& axis, double spread, std::siz
 
 NearCliffs near_cliffs(const Spec& original, const Design& design) {
   Spec spec = original;
+  if (spec.hoop)
+    throw InputError(origin_of(spec) +
+                     ": has [hoop], which a design does not hold; allowed: values along the axes");
+  spec.design = design;
+  std::vector<double> place;
+  for (const Axis& axis : spec.axes)
+    if (const auto variable = find_variable(axis.key, nullptr)) place.push_back(variable->of(design, {}));
+  return near_cliffs(spec, place);
+}
+
+NearCliffs near_cliffs(const Spec& original, const std::vector<double>& place) {
+  Spec spec = original;
   spec.output = {};  // whatever a map of them stores, even fields that this version refuses
   check_spec(spec);
   if (spec.axes.empty())
     throw InputError(origin_of(spec) + ": has no axes; allowed: axes, whose ranges are searched");
-  const Box box(spec, design);
-  const Looking looking(spec, box, design);
+  if (place.size() != spec.axes.size())
+    throw InputError(fmt::format("{}: {} values for {} axes; allowed: one for each", origin_of(spec),
+                                 place.size(), spec.axes.size()));
+  const Box box(spec, place);
+  const Looking looking(spec, box, VariedDesigns(spec, spec.axes).at(place));
   NearCliffs cliffs;
   const Vector nowhere(box.dimensions(), 0.0);
   bool flat = true;

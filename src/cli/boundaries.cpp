@@ -50,8 +50,10 @@ std::string kinds_told() {
 
 TableColumn axis_column(const Axis& axis, const std::string& prefix, std::vector<double> values) {
   const Option& option = *find_option("", axis.key);
-  const bool own = option.unit != "rad" && option.unit != "1";
-  return {prefix + axis.key, std::string(own ? "1" : option.unit), std::string(option.meaning),
+  const OwnUnit* unit = find_own_unit(option.unit);
+  const BodyNumber* of_body = find_body_number(axis.key);
+  return {prefix + axis.key, std::string(unit && unit->name != unit->si ? "1" : option.unit),
+          of_body ? of_body->meaning_of(weight_of(axis.key)) : std::string(option.meaning),
           std::move(values)};
 }
 

@@ -109,6 +109,33 @@ std::string unknown_words(const CLI::App& app) {
   return fmt::format("{}: unknown command{}; allowed: {}", word, suggestion, fmt::join(names, ", "));
 }
 
+/// "--hoop.slug.mass 85g" as "--set hoop.slug.mass=85g", for commands that take --set: a spec says which
+/// weights there are.
+std::vector<std::string> with_hoop_keys(const CLI::App& app, const std::vector<std::string>& words) {
+  const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
+  const auto command = std::ranges::find_first_of(words, commands, {}, {}, &CLI::App::get_name);
+  const bool takes_set = command != words.end() && std::ranges::any_of(commands, [&](const CLI::App* one) {
+                           return one->get_name() == *command && one->get_option_no_throw("--set");
+                         });
+  if (!takes_set) return words;
+  std::vector<std::string> read;
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    if (!word->starts_with("--hoop.")) {
+      read.push_back(*word);
+      continue;
+    }
+    std::string set = word->substr(2);
+    if (set.find('=') == std::string::npos) {
+      if (word + 1 == words.end())
+        throw InputError(
+            fmt::format("{}: lacks its value; allowed: {} VALUE, for example {} 85g", *word, *word, *word));
+      set += "=" + *++word;
+    }
+    read.insert(read.end(), {"--set", std::move(set)});
+  }
+  return read;
+}
+
 }  // namespace
 
 Check named_file() {
@@ -250,7 +277,9 @@ Command CommandLine::command(const std::string& name, const std::string& descrip
 
 void CommandLine::run(int argc, char** argv) {
   try {
-    app_->parse(argc, argv);
+    std::vector<std::string> words = with_hoop_keys(*app_, {argv + 1, argv + argc});
+    std::ranges::reverse(words);  // as CLI11 takes them
+    app_->parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
       const std::string unknown = unknown_words(*app_);

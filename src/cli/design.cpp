@@ -45,14 +45,11 @@ std::string with_unit(double value, std::string_view unit) {
   return unit == "1" || unit.empty() ? fmt::format("{:.6g}", value) : fmt::format("{:.6g} {}", value, unit);
 }
 
-std::string told_parameter(const FreeParameter& parameter, const Design& design) {
-  return fmt::format("{} {}", parameter.name,
-                     with_unit(design.*parameter.member, find_option("", parameter.name)->unit));
-}
-
-std::string told_parameters(const Question& question, const Design& design) {
+std::string told_parameters(const Question& question, const FoundDesign& found) {
   std::vector<std::string> told;
-  for (const FreeParameter& parameter : question.free) told.push_back(told_parameter(parameter, design));
+  for (std::size_t k = 0; k < question.free.size(); ++k)
+    told.push_back(fmt::format("{} {}", question.free[k].name,
+                               with_unit(found.free[k], question.free[k].variable.unit)));
   return fmt::format("{}", fmt::join(told, ", "));
 }
 
@@ -78,9 +75,10 @@ std::string told_fields(const Question& question, const FoundDesign& found) {
 void print_gradients(const Question& question, const FoundDesign& found) {
   for (const FieldGradient& gradient : found.gradients) {
     std::vector<std::string> parts;
-    for (const FreeParameter& parameter : question.free) {
-      const double by = gradient.by.*parameter.member;
-      const bool angle = find_option("", parameter.name)->unit == "rad";
+    for (std::size_t k = 0; k < question.free.size(); ++k) {
+      const FreeParameter& parameter = question.free[k];
+      const double by = gradient.by_free[k];
+      const bool angle = parameter.variable.unit == "rad";
       if (!std::isnan(by))
         parts.push_back(fmt::format("{:+.4g} {}{}", by * (angle ? std::numbers::pi / 180.0 : 1.0),
                                     angle ? "a degree of " : "a unit of ", parameter.name));
@@ -103,8 +101,7 @@ std::string command_of(const Question& question, const Design& design) {
 }
 
 void print_design(const Question& question, const FoundDesign& found, std::size_t number) {
-  say("\n{:>3}  {}\n     {}\n", number, told_parameters(question, found.design),
-      told_fields(question, found));
+  say("\n{:>3}  {}\n     {}\n", number, told_parameters(question, found), told_fields(question, found));
   if (!std::isnan(found.yield.value))
     say("     yield {:.4f} +- {:.4f}, from {} manufactured hoops\n", found.yield.value, found.yield.error,
         question.one.scatter.samples);
@@ -156,7 +153,7 @@ void print_miss(const Spec& spec, const Question& question, const FoundDesigns& 
   say("No design within the bounds meets all goals; {} were evaluated. The nearest miss:\n",
       grouped(found.evaluations));
   const FoundDesign& nearest = found.designs[0];
-  say("     {}\n     {}\n", told_parameters(question, nearest.design), name_of(nearest.outcome.status));
+  say("     {}\n     {}\n", told_parameters(question, nearest), name_of(nearest.outcome.status));
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
     say("     {} {}: {}\n", spec.goals[k].field, text_of(spec.goals[k]),
         std::isnan(found.missed[k]) ? "does not apply" : fmt::format("{:.10g}", found.missed[k]));
@@ -175,16 +172,16 @@ Json json_of(const Question& question, const FoundDesign& found) {
       {"cliff",
        near ? Json{{"distance", found.cliff[0].distance}, {"kind", name_of(found.cliff[0].kind)}} : Json()},
       {"hop", command_of(question, found.design)}};
-  for (const FreeParameter& parameter : question.free)
-    json["parameters"][parameter.name] = found.design.*parameter.member;
+  for (std::size_t k = 0; k < question.free.size(); ++k)
+    json["parameters"][question.free[k].name] = found.free[k];
   for (std::size_t k = 0; k < question.objectives.size(); ++k)
     json["objectives"][question.objectives[k].name] = found.objectives[k];
   for (const Field* field : fields_of(question.one.scene))
     if (!std::holds_alternative<Word>(field->source))
       json["fields"][std::string(field->name)] = number_json(*field, found.outcome);
   for (const FieldGradient& gradient : found.gradients)
-    for (const FreeParameter& parameter : question.free)
-      json["gradients"][gradient.of][parameter.name] = gradient.by.*parameter.member;
+    for (std::size_t k = 0; k < question.free.size(); ++k)
+      json["gradients"][gradient.of][question.free[k].name] = gradient.by_free[k];
   return json;
 }
 
@@ -204,8 +201,7 @@ std::string csv_of(const Question& question, const FoundDesigns& found) {
   std::string text = fmt::format("{}\n", fmt::join(names, ","));
   for (const FoundDesign& one : found.designs) {
     std::vector<std::string> cells;
-    for (const FreeParameter& parameter : question.free)
-      cells.push_back(fmt::format("{}", one.design.*parameter.member));
+    for (const double value : one.free) cells.push_back(fmt::format("{}", value));
     text += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return text;

@@ -124,6 +124,11 @@ void choose_units(std::vector<Column>& columns, const std::string& asked, const 
                       units[k], scales.mass > 0.0 ? "" : " (the map's spec has no scene.mass)"));
 }
 
+/// Every digit of what the map holds; of what is converted as many as hold.
+std::string text_of(double value, double factor) {
+  return factor == 1.0 ? fmt::format("{}", value) : fmt::format("{:.15g}", value * factor);
+}
+
 /// A column's texts for the designs of a block.
 std::vector<std::string> texts_of(const MapReader& map, const Column& column, const Tile& block) {
   std::vector<std::string> texts(block.count);
@@ -139,7 +144,7 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
     if (column.along) {
       const std::size_t k = *column.along;
       const std::size_t place = block.start[k] + place_along(block.extent, i, k);
-      texts[i] = fmt::format("{}", map.dimensions()[k].values[place] * column.factor);
+      texts[i] = text_of(map.dimensions()[k].values[place], column.factor);
     } else if (code) {
       const auto number = static_cast<std::size_t>(values[i]);
       if (number < code->names.size())
@@ -147,7 +152,7 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
       else if (code->names.empty() && number != code->fill)
         texts[i] = fmt::format("{}", number);
     } else if (std::isfinite(values[i])) {
-      texts[i] = fmt::format("{}", values[i] * column.factor);
+      texts[i] = text_of(values[i], column.factor);
     }
   }
   return texts;

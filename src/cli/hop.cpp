@@ -326,9 +326,9 @@ int run(const HopArguments& arguments) {
   overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
   const Spec spec = read_given_spec(arguments.spec, overrides);
   if (!spec.axes.empty())
-    throw InputError(fmt::format("{}: design.{} is an axis; allowed: one number, for example --set {}={}",
-                                 origin_of(spec), spec.axes[0].key, spec.axes[0].key,
-                                 spec.axes[0].values[0]));
+    throw InputError(fmt::format("{}: {}{} is an axis; allowed: one number, for example --set {}={}",
+                                 origin_of(spec), find_body_number(spec.axes[0].key) ? "" : "design.",
+                                 spec.axes[0].key, spec.axes[0].key, spec.axes[0].values[0]));
   if (!spec.points.empty())
     throw InputError(fmt::format("{}: design.points is a list; allowed: one design", origin_of(spec)));
 

@@ -11,6 +11,7 @@
 #include "model/model.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -20,11 +21,28 @@ struct Row {
   std::vector<double> by;
 };
 
-/// The rows of what the design has, and the parameters of the columns.
+/// The rows of what the design has, and the parameters or numbers of [hoop] of the columns.
 struct Table {
-  std::vector<const Option*> parameters;
+  std::vector<Variable> variables;
   std::vector<Row> rows;
 };
+
+/// By what the design was given: its parameters, and in place of the ratios the numbers of [hoop].
+std::vector<Variable> given_variables(const Spec& spec, const GradientWanted& wanted) {
+  std::vector<Variable> given;
+  for (const std::size_t by : wanted.by)
+    for (const Option* parameter : design_parameters(spec)) {
+      const bool follows =
+          spec.hoop && std::ranges::find(body_ratios, member_of(*parameter)) != body_ratios.end();
+      if (member_of(*parameter) == differentiable[by] && !follows)
+        given.push_back(*find_variable(parameter->key, nullptr));
+    }
+  for (const std::string& key : body_keys(spec))
+    if (const auto variable = find_variable(key, &*spec.hoop);
+        variable && !std::isnan(variable->of(spec.design, *spec.hoop)))
+      given.push_back(*variable);
+  return given;
+}
 
 Table table_of(const Spec& original) {
   Spec spec = original;
@@ -39,13 +57,15 @@ Table table_of(const Spec& original) {
   make_gradient_solver(request)({&spec.design, 1}, {&outcome, 1}, gradients);
 
   Table table;
-  for (const std::size_t by : wanted.by)
-    for (const Option* parameter : design_parameters(spec))
-      if (member_of(*parameter) == differentiable[by]) table.parameters.push_back(parameter);
+  table.variables = given_variables(spec, wanted);
   for (std::size_t i = 0; i < wanted.of.size(); ++i) {
     if (std::isnan(wanted.of[i].of(outcome))) continue;
     Row row{find_field(spec.output.gradients[i]), {}};
-    for (std::size_t j = 0; j < wanted.by.size(); ++j) row.by.push_back(gradients.column(i, j)[0]);
+    Design by;
+    for (std::size_t j = 0; j < wanted.by.size(); ++j)
+      by.*differentiable[wanted.by[j]] = gradients.column(i, j)[0];
+    for (const Variable& variable : table.variables)
+      row.by.push_back(variable.derivative(by, spec.hoop.value_or(Body{})));
     table.rows.push_back(row);
   }
   return table;
@@ -60,14 +80,15 @@ void print_gradient(const Spec& spec) {
     return;
   }
   say("\nDerivatives, in the quantity's unit over the parameter's (angles in rad):\n{:<22}", "");
-  for (const Option* parameter : table.parameters) say(" {:>14}", parameter->key);
+  const auto width = [&](std::size_t j) { return std::max<std::size_t>(14, table.variables[j].key.size()); };
+  for (std::size_t j = 0; j < table.variables.size(); ++j) say(" {:>{}}", table.variables[j].key, width(j));
   say("\n");
   bool infinite = false;
   for (const Row& row : table.rows) {
     const std::string_view unit = row.quantity->unit;
     say("{:<22}",
         unit == "1" ? std::string(row.quantity->name) : fmt::format("{} [{}]", row.quantity->name, unit));
-    for (const double value : row.by) say(" {:>14.7g}", value);
+    for (std::size_t j = 0; j < row.by.size(); ++j) say(" {:>{}.7g}", row.by[j], width(j));
     infinite = infinite || std::ranges::any_of(row.by, [](double value) { return std::isnan(value); });
     say("\n");
   }
@@ -81,7 +102,7 @@ Json gradient_json(const Spec& spec) {
   Json json = Json::object();
   for (const Row& row : table.rows) {
     Json& by = json[std::string(row.quantity->name)] = Json::object();
-    for (std::size_t j = 0; j < row.by.size(); ++j) by[std::string(table.parameters[j]->key)] = row.by[j];
+    for (std::size_t j = 0; j < row.by.size(); ++j) by[table.variables[j].key] = row.by[j];
   }
   return json;
 }

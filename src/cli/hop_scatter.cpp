@@ -65,12 +65,20 @@ std::string law_of(const Spread& spread) {
 /// For example "jump_height { at_least = 0.8 }".
 std::string goal_of(const Goal& goal) { return goal.field + " " + text_of(goal); }
 
+/// Of the column that names the tolerances.
+std::size_t name_width(const Spec& spec) {
+  std::size_t width = 16;
+  for (const Spread& spread : spec.scatter.spreads) width = std::max(width, spread.parameter.size());
+  return width;
+}
+
 void print_spreads(const Spec& spec, const ScatterReport& report) {
-  say("{:<16} {:<18} {:>9}", "tolerance", "distribution", "truncated");
+  say("{:<{}} {:<18} {:>9}", "tolerance", name_width(spec), "distribution", "truncated");
   say("{}\n", report.shrink.empty() ? "" : "   yield without it; largest width for a yield of 99 %");
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
     const Spread& spread = spec.scatter.spreads[k];
-    say("{:<16} {:<18} {:>8.2g} %", spread.parameter, law_of(spread), 100.0 * report.cut_off[k]);
+    say("{:<{}} {:<18} {:>8.2g} %", spread.parameter, name_width(spec), law_of(spread),
+        100.0 * report.cut_off[k]);
     if (!report.shrink.empty())
       say("   {:.4f}; {}", report.without[k],
           report.shrink[k] >= 1.0   ? "unchanged"
@@ -129,13 +137,13 @@ bool tells(const Importance& importance) {
 
 void print_importance(const Spec& spec, const ScatterReport& report) {
   say("\nSobol' indices, first order and total, +- half of a 95 % interval; -: nothing varies, or none "
-      "jumps\n{:<16}",
-      "");
+      "jumps\n{:<{}}",
+      "", name_width(spec));
   for (const Importance& importance : report.importance)
     if (tells(importance)) say(" {:>15} {:>15}", importance.of, "in total");
   say("\n");
   for (std::size_t k = 0; k < spec.scatter.spreads.size(); ++k) {
-    say("{:<16}", spec.scatter.spreads[k].parameter);
+    say("{:<{}}", spec.scatter.spreads[k].parameter, name_width(spec));
     for (const Importance& importance : report.importance)
       if (tells(importance))
         say(" {:>15} {:>15}", index_of(importance.first[k]), index_of(importance.total[k]));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "boundaries/cliff.hpp"
@@ -13,16 +14,16 @@
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "request/solver.hpp"
+#include "spec/designs.hpp"
 #include "spec/options.hpp"
 #include "spec/scatter_check.hpp"
 
 namespace leapmap::cli {
 namespace {
 
-/// The spec's design with the axes' parameters as given.
-Design design_at(const Spec& spec, const std::string& at) {
-  Design design = spec.design;
-  std::vector<std::string> given;
+/// The values along the axes as given.
+std::vector<double> values_at(const Spec& spec, const std::string& at) {
+  std::vector<double> values(spec.axes.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t begin = 0; begin <= at.size();) {
     const std::size_t end = std::min(at.find(',', begin), at.size());
     const std::string part = at.substr(begin, end - begin);
@@ -30,25 +31,24 @@ Design design_at(const Spec& spec, const std::string& at) {
     const std::size_t equals = part.find('=');
     const std::string name = part.substr(0, equals);
     const auto axis = std::ranges::find(spec.axes, name, &Axis::key);
-    if (equals == std::string::npos || axis == spec.axes.end() ||
-        std::ranges::find(given, name) != given.end()) {
+    const auto k = static_cast<std::size_t>(axis - spec.axes.begin());
+    if (equals == std::string::npos || axis == spec.axes.end() || !std::isnan(values[k])) {
       std::vector<std::string> names;
       for (const Axis& each : spec.axes) names.push_back(fmt::format("{}=VALUE", each.key));
       throw InputError(fmt::format("--at {}: '{}' is not an axis with its value; allowed: {}", at, part,
                                    fmt::join(names, ",")));
     }
-    given.push_back(name);
-    const Option& option = *find_option("", name);
     try {
-      design.*member_of(option) = parse_number(option, part.substr(equals + 1), scales_of(spec.scene));
+      values[k] = parse_number(*find_option("", name), part.substr(equals + 1), scales_of(spec.scene));
     } catch (const InputError& error) {
       throw InputError(fmt::format("--at {}: {}: {}", at, name, error.what()));
     }
   }
-  for (const Axis& axis : spec.axes)
-    if (std::ranges::find(given, axis.key) == given.end())
-      throw InputError(fmt::format("--at {}: lacks {}; allowed: a value of every axis", at, axis.key));
-  return design;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (std::isnan(values[k]))
+      throw InputError(
+          fmt::format("--at {}: lacks {}; allowed: a value of every axis", at, spec.axes[k].key));
+  return values;
 }
 
 void print_outcome(const Outcome& outcome, const Scene& scene) {
@@ -62,10 +62,10 @@ void print_outcome(const Outcome& outcome, const Scene& scene) {
 }
 
 /// As the map has it at its designs.
-void print_made(const Spec& spec, const Design& design) {
+void print_made(const Spec& spec) {
   const Request request = request_of(spec);
   MadeColumns columns(statistics_of(request));
-  scatter_solver_of(request, points_of(spec.scatter)).solve({&design, 1}, columns);
+  scatter_solver_of(request, points_of(spec.scatter)).solve({&spec.design, 1}, columns);
   say("manufactured, {} hoops\n", spec.scatter.samples);
   for (const Field* field : columns.fields())
     say("  {:<20} {:<14.8g} {}\n", field->name, columns.column(*field)[0],
@@ -73,14 +73,16 @@ void print_made(const Spec& spec, const Design& design) {
 }
 
 /// The jump's height on this side of a cliff and beyond it: not every cliff costs any.
-std::string heights_beside(const Spec& spec, const Design& design, const NearCliff& cliff, std::size_t axis) {
+std::string heights_beside(const Spec& spec, const std::vector<double>& here, const NearCliff& cliff,
+                           std::size_t axis) {
   constexpr double beside = 1e-9;
-  const auto member = member_of(spec.axes[axis].key);
-  const double way = cliff.at[axis] < design.*member ? -1.0 : 1.0,
+  const double way = cliff.at[axis] < here[axis] ? -1.0 : 1.0,
                step = way * beside * std::max(1.0, std::abs(cliff.at[axis]));
-  std::array<Design, 2> designs{design, design};
+  const VariedDesigns designs_by(spec, spec.axes);
+  std::vector<double> before = here, beyond = here;
+  before[axis] = cliff.at[axis] - step, beyond[axis] = cliff.at[axis] + step;
+  const std::array<Design, 2> designs{designs_by.at(before), designs_by.at(beyond)};
   std::array<Outcome, 2> outcomes;
-  designs[0].*member = cliff.at[axis] - step, designs[1].*member = cliff.at[axis] + step;
   make_solver(request_of(spec, {find_field("jump_height")}))(designs, outcomes);
   const auto height = [](const Outcome& o) {
     return std::isnan(o.jump_height) ? "none" : fmt::format("{:.4g}", o.jump_height);
@@ -103,33 +105,36 @@ void print_place(const Spec& original, const std::string& at) {
   if (original.axes.empty())
     throw InputError(origin_of(original) + ": is a list of designs; allowed: --at with a map over axes");
   Spec one = original;
-  one.design = design_at(original, at);
-  const NearCliffs cliffs = near_cliffs(original, one.design);
+  const std::vector<double> here = values_at(original, at);
+  Body body;
+  one.design = VariedDesigns(original, original.axes).at(here, &body);
+  if (one.hoop) one.hoop = body;
+  const NearCliffs cliffs = near_cliffs(original, here);
   one.axes.clear();
   one.output = {};
   check_scatter(one);  // a percentage may be one of nothing just here
   Outcome outcome;
   make_solver(request_of_outcomes(one))({&one.design, 1}, {&outcome, 1});
   print_outcome(outcome, one.scene);
-  if (!original.scatter.spreads.empty()) print_made(original, one.design);
+  if (!original.scatter.spreads.empty()) print_made(one);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);
 
   say("\nNearest discontinuities within the map (a band narrower than a thousandth of an axis may be "
       "missed)\n");
   const auto place = [&](std::size_t k, double value) {
     const Option& option = *find_option("", original.axes[k].key);
-    const double from_here = value - value_of(option, one.design);
-    if (option.unit != "rad") return fmt::format("{} {:.8g} ({:+.3g})", option.key, value, from_here);
+    const std::string& key = original.axes[k].key;
+    const double from_here = value - here[k];
+    if (option.unit != "rad") return fmt::format("{} {:.8g} ({:+.3g})", key, value, from_here);
     constexpr double degree = std::numbers::pi / 180.0;
-    return fmt::format("{} {:.8g} ({:.6g} deg, {:+.3g} deg)", option.key, value, value / degree,
-                       from_here / degree);
+    return fmt::format("{} {:.8g} ({:.6g} deg, {:+.3g} deg)", key, value, value / degree, from_here / degree);
   };
   bool none = true;
   for (std::size_t k = 0; k < original.axes.size(); ++k)
     for (const NearCliff& cliff : cliffs.along[k]) {
       none = false;
       say("  {:<46} {:<10} height {}, beyond: {}\n", place(k, cliff.at[k]), name_of(cliff.kind),
-          heights_beside(original, one.design, cliff, k), told(cliff.beyond));
+          heights_beside(original, here, cliff, k), told(cliff.beyond));
     }
   if (none) say("  none along any axis\n");
   if (cliffs.nearest.empty()) return;

@@ -38,7 +38,10 @@ void add_no_lock(Command& command, Locking& locking) {
 }
 
 void add_set(Command& command, std::vector<std::string>& overrides, const std::string& example) {
-  command.value("--set", overrides, "override a key of the spec" + example).shown_as("KEY=VALUE");
+  command
+      .value("--set", overrides,
+             "override a key of the spec" + example + "; of [hoop] also --hoop.NAME.mass VALUE")
+      .shown_as("KEY=VALUE");
 }
 
 Spec read_given_spec(const std::string& path, const std::vector<std::string>& overrides) {

@@ -32,8 +32,9 @@ class Slope {
         if (std::isfinite(tight.at_most)) bounds_.push_back({quantity->member, tight.at_most, 1.0});
       }
     if (of.empty()) return;
+    parameters_ = parameters_of(question.designs.variables());
     std::vector<std::string> by;
-    for (const FreeParameter& parameter : question.free) by.push_back(parameter.name);
+    for (const Variable& parameter : parameters_) by.push_back(parameter.key);
     std::ranges::copy(derivative_columns(question.one.scene, of, by), std::back_inserter(columns));
     const Request request = request_of(question.one, columns);
     solver_ = make_gradient_solver(request);
@@ -50,10 +51,9 @@ class Slope {
     const Objective& asked = judge_.question().objectives[0];
     const double sign = asked.maximize ? -1.0 : 1.0;
     if (asked.field) return value(std::get<Quantity>(asked.field->source).member, sign, slope);
-    const auto& free = judge_.question().free;
     for (std::size_t k = 0; k < slope.size(); ++k)
-      slope[k] = free[k].member == asked.parameter ? sign * per_place(k) : 0.0;
-    return sign * design_.*asked.parameter;
+      slope[k] = k == asked.parameter ? sign * per_place(k) : 0.0;
+    return sign * values_[asked.parameter];
   }
   double bound(std::size_t number, const std::vector<double>& at, std::vector<double>& slope) {
     look(at);
@@ -72,20 +72,23 @@ class Slope {
     at_ = at;
     for (const double coordinate : at)
       if (!std::isfinite(coordinate)) throw nlopt::forced_stop();
-    design_ = judge_.question().at(at);
-    if (solver_) gradients_.begin(1), solver_({&design_, 1}, {&outcome_, 1}, gradients_);
+    values_ = judge_.question().values(at);
+    const Design design = judge_.question().designs.at(values_, &body_);
+    if (solver_) gradients_.begin(1), solver_({&design, 1}, {&outcome_, 1}, gradients_);
     Place here{at, judge_.judge(at)};
     if (better(here.verdict, best.verdict)) best = std::move(here);
   }
   /// d parameter / d coordinate.
   double per_place(std::size_t k) const {
-    const FreeParameter& parameter = judge_.question().free[k];
-    const Side& side = parameter.side;
-    return side.log ? design_.*parameter.member * std::log(side.high / side.low) : side.high - side.low;
+    const Side& side = judge_.question().free[k].side;
+    return side.log ? values_[k] * std::log(side.high / side.low) : side.high - side.low;
   }
   double value(double Outcome::*of, double sign, std::vector<double>& slope) {
+    Design by;
+    for (const Variable& parameter : parameters_)
+      by.*parameter.parameter() = gradients_.column(of, parameter.parameter())[0];
     for (std::size_t k = 0; k < slope.size(); ++k)
-      slope[k] = sign * per_place(k) * gradients_.column(of, judge_.question().free[k].member)[0];
+      slope[k] = sign * per_place(k) * judge_.question().free[k].variable.derivative(by, body_);
     const double value = sign * outcome_.*of;
     for (const double part : slope)
       if (!std::isfinite(part)) throw nlopt::forced_stop();  // out of the branch, or on its edge
@@ -98,7 +101,9 @@ class Slope {
   Gradients gradients_;
   std::vector<Bound> bounds_;
   std::vector<double> at_;
-  Design design_;
+  std::vector<Variable> parameters_;  // by which there are derivatives
+  std::vector<double> values_;
+  Body body_;
   Outcome outcome_;
 };
 

@@ -23,7 +23,7 @@ namespace {
 constexpr double usual_error = 1e-3;
 
 FreeParameter free_parameter(std::string_view name, double low, double high) {
-  return {std::string(name), member_of(name), {low, high}};
+  return {std::string(name), *find_variable(name, nullptr), {low, high}};
 }
 
 /// Angles of a film, going on over turns.
@@ -78,6 +78,11 @@ Explained::Explained(const Measurements& measured, const Spec& spec, Friction fr
     std::erase_if(asked, [&](const FreeParameter& one) { return one.name == parameter.name; });
   }
   free_ = std::move(asked);
+  for (const FreeParameter& parameter : free_)
+    if (parameter.variable.of_body())
+      throw InputError(
+          fmt::format("{}: {}: a fit frees no numbers of [hoop]; allowed: parameters of a design",
+                      origin_of(spec), parameter.name));
   if (spec.axes.empty()) {
     free_by_default();
     const bool frees_friction = std::ranges::find(free_, "mu_static", &FreeParameter::name) != free_.end();
@@ -139,7 +144,7 @@ void Explained::free_by_default() {
 
 Design Explained::design_at(std::span<const double> at) const {
   Design design = spec_.design;
-  for (std::size_t k = 0; k < free_.size(); ++k) design.*free_[k].member = at[k];
+  for (std::size_t k = 0; k < free_.size(); ++k) design.*free_[k].variable.parameter() = at[k];
   return design;
 }
 
@@ -181,7 +186,8 @@ bool Explained::film_residuals(std::span<const double> at, std::span<const std::
     residuals[row] = (value_of(model) - measured_at(number)) / error;
     if constexpr (has_derivatives<S>) {
       for (std::size_t k = 0; k < free_.size(); ++k) {
-        const auto place = std::ranges::find(differentiable, free_[k].member) - differentiable.begin();
+        const auto place =
+            std::ranges::find(differentiable, free_[k].variable.parameter()) - differentiable.begin();
         jacobian[row * columns + k] = model.by[static_cast<std::size_t>(place)] / error;
       }
       for (std::size_t k = free_.size(); k < columns; ++k)
@@ -230,7 +236,7 @@ bool Explained::event_residuals(std::span<const double> at, std::span<double> re
     residuals[i] = (outcome.*member - event.value) / event.error;
     if (!std::isfinite(residuals[i])) return false;
     for (std::size_t k = 0; k < free_.size() && !jacobian.empty(); ++k) {
-      const double by = gradients.column(member, free_[k].member)[0];
+      const double by = gradients.column(member, free_[k].variable.parameter())[0];
       if (!std::isfinite(by)) return false;
       jacobian[i * free_.size() + k] = by / event.error;
     }

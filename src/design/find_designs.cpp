@@ -224,11 +224,11 @@ std::vector<std::string> binding(const Question& question, const Place& place, c
 }
 
 /// The yield of hoops made after a design.
-Estimate yield_of(const Question& question, const Design& design) {
+Estimate yield_of(const Question& question, const Design& design, const Body& body) {
   const std::vector<const Field*> asked{find_field("yield"), find_field("yield_error")};
   MadeColumns columns(asked);
   scatter_solver_of(request_of(question.one, asked), points_of(question.one.scatter))
-      .solve({&design, 1}, columns);
+      .solve({&design, 1}, columns, {&body, 1});
   return {columns.column(*asked[0])[0], columns.column(*asked[1])[0]};
 }
 
@@ -259,7 +259,9 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
     return [&, solve = make_solver(all)](std::size_t i) {
       if (options.stop_requested && options.stop_requested()) throw Stopped("the search was stopped");
       FoundDesign& one = told[i];
-      one.design = question.at(places[i].at);
+      one.free = question.values(places[i].at);
+      Body body;
+      one.design = question.designs.at(one.free, &body);
       solve({&one.design, 1}, {&one.outcome, 1});
       for (std::size_t k = 0; k < question.objectives.size(); ++k)
         if (question.objectives[k].is_of_drawn())
@@ -267,15 +269,17 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
         else
           one.objectives.push_back(question.objectives[k].maximize ? -places[i].verdict.cost[k]
                                                                    : places[i].verdict.cost[k]);
-      if (!front) one.cliff = near_cliffs(grid, one.design).nearest;
+      if (!front) one.cliff = near_cliffs(grid, one.free).nearest;
       if (!front && differentiable_method)
         for (const Field* field : quantities_of(question)) {
           const SolveOptions how{.tolerance = question.one.numerics.tolerance, .threads = 1};
-          one.gradients.push_back(
-              {std::string(field->name),
-               gradient(one.design, std::get<Quantity>(field->source).member, question.one.scene, how)});
+          FieldGradient& slope = one.gradients.emplace_back();
+          slope.of = field->name;
+          slope.by = gradient(one.design, std::get<Quantity>(field->source).member, question.one.scene, how);
+          for (const FreeParameter& parameter : question.free)
+            slope.by_free.push_back(parameter.variable.derivative(slope.by, body));
         }
-      if (made) one.yield = yield_of(question, one.design);
+      if (made) one.yield = yield_of(question, one.design, body);
       one.binds = binding(question, places[i], one);
       stays[i] = !found.reached ||
                  std::ranges::all_of(goals, [&](const GoalCheck& goal) { return goal.reached(one.outcome); });
@@ -295,9 +299,9 @@ Spec list_of(const Spec& spec, const FoundDesigns& found) {
   if (list.scatter.spreads.empty()) list.goals.clear();  // as in any map of hoops as drawn
   list.maximize = spec.maximize, list.minimize = spec.minimize;
   list.list.count = found.designs.size();
-  for (const FreeParameter& parameter : question.free) {
-    Axis& column = list.list.columns.emplace_back(Axis{parameter.name, {}});
-    for (const FoundDesign& one : found.designs) column.values.push_back(one.design.*parameter.member);
+  for (std::size_t k = 0; k < question.free.size(); ++k) {
+    Axis& column = list.list.columns.emplace_back(Axis{question.free[k].name, {}});
+    for (const FoundDesign& one : found.designs) column.values.push_back(one.free[k]);
   }
   return list;
 }

@@ -95,8 +95,9 @@ Verdict Bench::verdict_of(const Outcome& outcome) const {
   return verdict;
 }
 
-void Bench::judge_made(const Design& design, Verdict& verdict) {
-  scatter_->solve({&design, 1}, columns_);
+void Bench::judge_made(std::size_t design, Verdict& verdict) {
+  const std::span<const Body> body(bodies_.data() + (bodies_.empty() ? 0 : design), bodies_.empty() ? 0 : 1);
+  scatter_->solve({&designs_[design], 1}, columns_, body);
   const auto value = [&](const Field& field) { return columns_.column(field)[0]; };
   for (const Goal& goal : question_.made_goals)
     verdict.violation += missed_by(value(*find_field(goal.field)), goal.at_least, goal.at_most);
@@ -104,18 +105,23 @@ void Bench::judge_made(const Design& design, Verdict& verdict) {
     if (question_.objectives[k].is_of_made()) weigh(k, value(*question_.objectives[k].field), verdict);
 }
 
-void Bench::judge(std::span<const Design> designs, std::span<Verdict> verdicts) {
-  outcomes_.resize(designs.size());
-  solver_(designs, outcomes_);
-  for (std::size_t i = 0; i < designs.size(); ++i) {
+void Bench::judge(std::span<const double> values, std::span<Verdict> verdicts) {
+  const std::size_t dimensions = question_.dimensions();
+  const auto row = [&](std::size_t i) { return values.subspan(i * dimensions, dimensions); };
+  designs_.resize(verdicts.size()), outcomes_.resize(verdicts.size());
+  if (scatter_ && question_.designs.varies_body()) bodies_.resize(verdicts.size());
+  for (std::size_t i = 0; i < designs_.size(); ++i)
+    designs_[i] = question_.designs.at(row(i), bodies_.empty() ? nullptr : &bodies_[i]);
+  solver_(designs_, outcomes_);
+  for (std::size_t i = 0; i < designs_.size(); ++i) {
     verdicts[i] = verdict_of(outcomes_[i]);
     for (std::size_t k = 0; k < question_.objectives.size(); ++k)
-      if (const auto parameter = question_.objectives[k].parameter)
-        weigh(k, designs[i].*parameter, verdicts[i]);
+      if (const Objective& objective = question_.objectives[k]; !objective.field)
+        weigh(k, row(i)[objective.parameter], verdicts[i]);
     if (!scatter_) continue;
     // A drawing that misses a goal is not made: it is worse than any that is.
     if (verdicts[i].feasible())
-      judge_made(designs[i], verdicts[i]);
+      judge_made(i, verdicts[i]);
     else
       verdicts[i].violation += static_cast<double>(question_.made_goals.size());
   }
@@ -138,17 +144,19 @@ Judge::Judge(const Judge& other, int threads)
 
 std::unique_ptr<Judge> Judge::alone() const { return std::unique_ptr<Judge>(new Judge(*this, 1)); }
 
-void Judge::judge_designs(std::span<const Design> designs, std::span<Verdict> verdicts) {
+void Judge::judge_values(std::span<const double> values, std::span<Verdict> verdicts) {
+  assert(values.size() == verdicts.size() * dimensions());
   const std::size_t block = makes_hoops() ? 4 : 256;
-  const std::size_t blocks = (designs.size() + block - 1) / block;
+  const std::size_t blocks = (verdicts.size() + block - 1) / block;
   std::atomic<std::size_t> next_bench{0};
   const auto work = [&] {
     std::unique_ptr<Bench>& bench = benches_[next_bench++];
     if (!bench) bench = std::make_unique<Bench>(question_, points_);
     return [&](std::size_t number) {
       if (stop_requested_ && stop_requested_()) throw Stopped("the search was stopped");
-      const std::size_t first = number * block, count = std::min(block, designs.size() - first);
-      bench->judge(designs.subspan(first, count), verdicts.subspan(first, count));
+      const std::size_t first = number * block, count = std::min(block, verdicts.size() - first);
+      bench->judge(values.subspan(first * dimensions(), count * dimensions()),
+                   verdicts.subspan(first, count));
       *evaluations_ += count;
       return true;
     };
@@ -161,10 +169,10 @@ void Judge::judge_designs(std::span<const Design> designs, std::span<Verdict> ve
 
 void Judge::judge(std::span<const double> places, std::span<Verdict> verdicts) {
   assert(places.size() == verdicts.size() * dimensions());
-  designs_.resize(verdicts.size());
-  for (std::size_t i = 0; i < designs_.size(); ++i)
-    designs_[i] = question_.at(places.subspan(i * dimensions(), dimensions()));
-  judge_designs(designs_, verdicts);
+  values_.resize(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    values_[i] = question_.free[i % dimensions()].side.value(places[i]);
+  judge_values(values_, verdicts);
 }
 
 Verdict Judge::judge(std::span<const double> place) {

@@ -41,17 +41,20 @@ Goal tightened(const Goal& goal, double tolerance);
 class Bench {
  public:
   Bench(const Question& question, const std::shared_ptr<const SobolPoints>& points);
-  void judge(std::span<const Design> designs, std::span<Verdict> verdicts);
+  /// values: rows of the free parameters' values.
+  void judge(std::span<const double> values, std::span<Verdict> verdicts);
 
  private:
   Verdict verdict_of(const Outcome& outcome) const;
-  void judge_made(const Design& design, Verdict& verdict);
+  void judge_made(std::size_t design, Verdict& verdict);
   /// Adds what an objective costs.
   void weigh(std::size_t objective, double value, Verdict& verdict) const;
 
   const Question& question_;
   std::vector<GoalCheck> goals_;
   Solver solver_;
+  std::vector<Design> designs_;
+  std::vector<Body> bodies_;  // none unless they vary and hoops are made
   std::vector<Outcome> outcomes_;
   std::optional<ScatterSolver> scatter_;
   MadeColumns columns_;
@@ -67,8 +70,8 @@ class Judge {
   /// for the last digits of times.
   void judge(std::span<const double> places, std::span<Verdict> verdicts);
   Verdict judge(std::span<const double> place);
-  /// The same of designs, whatever box they are in.
-  void judge_designs(std::span<const Design> designs, std::span<Verdict> verdicts);
+  /// The same of values of the free parameters, as many a row.
+  void judge_values(std::span<const double> values, std::span<Verdict> verdicts);
 
   const Question& question() const { return question_; }
   std::size_t dimensions() const { return question_.dimensions(); }
@@ -89,7 +92,7 @@ class Judge {
   std::shared_ptr<const SobolPoints> points_;  // none if no goal and no objective is of hoops as made
   std::shared_ptr<std::atomic<std::size_t>> evaluations_ = std::make_shared<std::atomic<std::size_t>>(0);
   std::vector<std::unique_ptr<Bench>> benches_;  // one a thread, made when first needed
-  std::vector<Design> designs_;                  // of the places in hand
+  std::vector<double> values_;                   // of the places in hand
 };
 
 }  // namespace leapmap

@@ -24,7 +24,7 @@ Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free,
                        bool maximize) {
   const std::string key = maximize ? "goal.maximize" : "goal.minimize";
   if (const auto found = std::ranges::find(free, name, &FreeParameter::name); found != free.end())
-    return {name, maximize, nullptr, found->member};
+    return {name, maximize, nullptr, static_cast<std::size_t>(found - free.begin())};
   const Field* field = find_field(name);
   if (!field)
     refuse(spec, fmt::format("{}: {} is fixed", key, name),
@@ -38,7 +38,7 @@ Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free,
   if (is_of_made(*field) && spec.scatter.spreads.empty())
     refuse(spec, fmt::format("{}: {} describes manufactured hoops", key, name),
            "with a parameter in [scatter]");
-  return {name, maximize, field, nullptr};
+  return {name, maximize, field, 0};
 }
 
 /// The search goes along derivatives.
@@ -109,16 +109,17 @@ std::vector<FreeParameter> free_parameters(const Spec& spec) {
              "{ from, to }, between which it is free, or a number");
     if (!(low < high))
       refuse(spec, fmt::format("design.{} is the single value {}", axis.key, low), "two bounds, or a number");
-    free.push_back({axis.key, member_of(axis.key), {low, high, axis.log}});
+    free.push_back(
+        {axis.key, *find_variable(axis.key, spec.hoop ? &*spec.hoop : nullptr), {low, high, axis.log}});
   }
   return free;
 }
 
-Design Question::at(std::span<const double> place) const {
+std::vector<double> Question::values(std::span<const double> place) const {
   assert(place.size() == free.size());
-  Design design = one.design;
-  for (std::size_t k = 0; k < free.size(); ++k) design.*free[k].member = free[k].side.value(place[k]);
-  return design;
+  std::vector<double> values;
+  for (std::size_t k = 0; k < free.size(); ++k) values.push_back(free[k].side.value(place[k]));
+  return values;
 }
 
 Spec Question::grid() const {
@@ -137,7 +138,8 @@ Question question_of(const Spec& spec) {
         spec,
         spec.points.empty() && spec.list.columns.empty() ? "no parameter is free" : "design.points is a list",
         "one or more, for example design.slope = { from = \"2 deg\", to = \"50 deg\" }");
-  Question question{.one = spec, .free = {}, .made_goals = {}, .objectives = {}};
+  Question question{
+      .one = spec, .free = {}, .made_goals = {}, .objectives = {}, .designs = VariedDesigns(spec, {})};
   question.one.axes.clear(), question.one.maximize.clear(), question.one.minimize.clear();
   question.one.output = {};
   std::erase_if(question.one.goals, [&](const Goal& goal) {
@@ -158,6 +160,7 @@ Question question_of(const Spec& spec) {
     check_spec(checked);
   }
   question.free = free_parameters(spec);
+  question.designs = VariedDesigns(spec, spec.axes);
   for (const Spread& spread : spec.scatter.spreads)
     for (const FreeParameter& parameter : question.free)
       if (spread.percent && spread.width > 0.0 && spread.parameter == parameter.name &&

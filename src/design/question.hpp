@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/fields.hpp"
+#include "spec/designs.hpp"
 #include "spec/spacing.hpp"
 #include "spec/spec.hpp"
 #include "tolerance/made_sample.hpp"
@@ -16,7 +17,7 @@ namespace leapmap {
 
 struct FreeParameter {
   std::string name;
-  double Design::*member;
+  Variable variable;
   Side side;
 };
 
@@ -24,8 +25,8 @@ struct FreeParameter {
 struct Objective {
   std::string name;
   bool maximize;
-  const Field* field;         ///< nullptr: a parameter
-  double Design::*parameter;  ///< nullptr: a field
+  const Field* field;     ///< nullptr: a parameter
+  std::size_t parameter;  ///< its number among the free ones; no meaning for a field
 
   bool is_of_made() const { return field && std::holds_alternative<OfMade>(field->source); }
   bool is_of_drawn() const { return field && !is_of_made(); }
@@ -37,9 +38,11 @@ struct Question {
   std::vector<Goal> made_goals;     ///< of yield: what many hoops made must come to
   std::vector<Objective> objectives;
 
+  VariedDesigns designs;  ///< by the values of the free parameters
+
   std::size_t dimensions() const { return free.size(); }
-  /// The design at a place of the box: coordinates from 0 to 1 along each free parameter.
-  Design at(std::span<const double> place) const;
+  /// The values of the free parameters at a place of the box: coordinates from 0 to 1 along each.
+  std::vector<double> values(std::span<const double> place) const;
   /// The same box as a coarse grid, for what asks for one.
   Spec grid() const;
 };

@@ -47,10 +47,10 @@ BlockSolver::BlockSolver(const Request& request, std::size_t most_designs,
   if (wants_samples(request)) scatter_.emplace(scatter_solver_of(request, points));
 }
 
-Solved BlockSolver::solve(std::span<const Design> designs) {
+Solved BlockSolver::solve(std::span<const Design> designs, std::span<const Body> bodies) {
   const std::span outcomes = std::span(outcomes_).first(designs.size());
   solver_(designs, outcomes, gradients_);
-  if (scatter_) scatter_->solve(designs, made_);
+  if (scatter_) scatter_->solve(designs, made_, bodies);
   return {outcomes, gradients_, made_};
 }
 
@@ -87,7 +87,8 @@ std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& ti
   parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
     return [&, solver = BlockSolver(request, piece, points), work = make_work(),
-            block = std::vector<Design>(piece)](std::size_t i) mutable {
+            block = std::vector<Design>(piece),
+            bodies = std::vector<Body>(scattered && space.varies_body() ? piece : 0)](std::size_t i) mutable {
       try {
         const std::size_t number = options.first_tile + i;
         const Tile tile = tiling.tile(number);
@@ -100,8 +101,9 @@ std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& ti
           }
           const std::size_t count = std::min(piece, tile.count - first);
           const std::span some(block.data(), count);
-          space.fill(tile, first, some);
-          work.take(tile, first, solver.solve(some));
+          const std::span of_some(bodies.data(), std::min(count, bodies.size()));
+          space.fill(tile, first, some, of_some);
+          work.take(tile, first, solver.solve(some, of_some));
         }
         Prepared prepared = work.prepare(number, tile);
         if (!prepared.take) {

@@ -53,8 +53,8 @@ class BlockSolver {
   /// points: of hoops as made, shared by all threads.
   BlockSolver(const Request& request, std::size_t most_designs,
               const std::shared_ptr<const SobolPoints>& points);
-  /// What it returns holds until the next call.
-  Solved solve(std::span<const Design> designs);
+  /// What it returns holds until the next call. bodies: of the designs where [hoop] varies, else none.
+  Solved solve(std::span<const Design> designs, std::span<const Body> bodies = {});
 
  private:
   GradientSolver solver_;

@@ -4,27 +4,34 @@
 #include <fmt/format.h>
 
 #include "request/request.hpp"
-#include "spec/options.hpp"
+#include "spec/designs.hpp"
 
 namespace leapmap {
 namespace {
 
 /// Units that are products of the hoop's own are numbers to other programs, and told in words.
-MapAxis describe(const Option& option, std::vector<double> values) {
-  const bool own = option.unit != "rad" && option.unit != "1";
-  return {std::string(option.key), std::string(own ? "1" : option.unit),
-          own ? fmt::format("{}, in {}", option.meaning, option.unit) : std::string(option.meaning),
-          std::move(values)};
+MapAxis describe(const Axis& axis) {
+  const Option& option = *find_option("", axis.key);
+  const BodyNumber* of_body = find_body_number(axis.key);
+  const OwnUnit* unit = find_own_unit(option.unit);
+  const bool own = unit && unit->name != unit->si;
+  const std::string meaning =
+      of_body ? of_body->meaning_of(weight_of(axis.key)) : std::string(option.meaning);
+  return {axis.key, std::string(own ? "1" : option.unit),
+          own ? fmt::format("{}, in {}", meaning, option.unit) : meaning, axis.values};
 }
 
 }  // namespace
 
 MapLayout layout_of(const Spec& spec) {
   MapLayout layout;
-  for (const Axis& axis : spec.axes) layout.axes.push_back(describe(*find_option("", axis.key), axis.values));
-  if (spec.axes.empty())
+  for (const Axis& axis : spec.axes) layout.axes.push_back(describe(axis));
+  if (spec.axes.empty()) {
+    for (const Axis& column : spec.list.columns)
+      if (find_body_number(column.key)) layout.columns.push_back(describe(column));
     for (const Option* parameter : design_parameters(spec))
-      layout.columns.push_back(describe(*parameter, list_values(spec, *parameter)));
+      layout.columns.push_back(describe({std::string(parameter->key), list_values(spec, *parameter)}));
+  }
   layout.labels = spec.list.labels;
   layout.fields = columns_of(spec);
   layout.single = spec.output.precision == "f4";

@@ -45,8 +45,8 @@ class Workshop {
   void make(const Scatter& scatter, std::span<const std::size_t> dimensions, const Take& take) const {
     parallel_for_each(
         (samples() + made_at_once - 1) / made_at_once, options_.threads, options_.stop_requested, [&] {
-          MadeHoops hoops(scatter, points_);
-          hoops.draw(spec_.design, dimensions);
+          MadeHoops hoops(scatter, spec_.hoop, points_);
+          hoops.draw(spec_.design, nullptr, dimensions);
           return [&, hoops = std::move(hoops), solve = make_solver(asked_),
                   made = std::vector<Design>(made_at_once),
                   outcomes = std::vector<Outcome>(made_at_once)](std::size_t block) mutable {
@@ -182,7 +182,8 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
     report.quantities.push_back({std::string(field->name), tell(Statistic::mean), tell(Statistic::sd),
                                  tell(Statistic::q05), tell(Statistic::q50), tell(Statistic::q95)});
   }
-  const MadeHoops hoops(spec.scatter, points_of({spec.scatter.spreads, SobolPoints::replicates, 0}));
+  const MadeHoops hoops(spec.scatter, spec.hoop,
+                        points_of({spec.scatter.spreads, SobolPoints::replicates, 0}));
   for (std::size_t k = 0; k < hoops.spreads(); ++k)
     report.cut_off.push_back(1.0 - hoops.law(k, spec.design).left);
   if (spec.goals.empty()) return report;

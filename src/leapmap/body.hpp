@@ -35,6 +35,7 @@ struct ReducedBody {
   double total_mass = 0.0;    ///< M [kg]
   double eccentricity = 0.0;  ///< distance of the centre of mass from the axis, in R: rho
   double inertia = 0.0;       ///< about the axis, in M R^2: J0
+  double direction = 0.0;     ///< of the centre of mass, as the weights' angles [rad]
   // One point mass, the sum of the weights at their common centre, and a ring with the rest of the inertia:
   double mass_ratio = 0.0;      ///< of a Design
   double offset_ratio = 0.0;    ///< of a Design

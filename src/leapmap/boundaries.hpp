@@ -114,7 +114,11 @@ struct NearCliffs {
 ///
 /// An outcome whose extent along an axis is below a thousandth of the range may be missed; over all
 /// directions, below some hundredths of the distance.
+/// @param place  the design's values along the spec's axes; the rest is the spec's
 /// @throws InputError if the spec has no axes or the design is not allowed
+NearCliffs near_cliffs(const Spec& spec, const std::vector<double>& place);
+
+/// The same of a design, for a spec without [hoop].
 NearCliffs near_cliffs(const Spec& spec, const Design& design);
 
 }  // namespace leapmap

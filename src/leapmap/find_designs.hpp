@@ -20,13 +20,15 @@ namespace leapmap {
 
 /// The derivatives of one field by every parameter; see leapmap/gradient.hpp.
 struct FieldGradient {
-  std::string of{};  ///< name of the field
-  Design by{};       ///< each member holds the derivative by that parameter
+  std::string of{};               ///< name of the field
+  Design by{};                    ///< each member holds the derivative by that parameter
+  std::vector<double> by_free{};  ///< those by the free parameters, in the spec's order
 };
 
 /// One design that the search found.
 struct FoundDesign {
   Design design{};                   ///< its parameters
+  std::vector<double> free{};        ///< its values of the free parameters, in the spec's order
   Outcome outcome{};                 ///< its nominal outcome
   std::vector<double> objectives{};  ///< in the spec's order, those to maximize first, in their own units
   Estimate yield{};  ///< with [scatter] and goals: fraction of manufactured hoops that reach all goals

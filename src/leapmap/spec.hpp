@@ -33,13 +33,14 @@ struct Output {
   std::vector<std::string> fields{};        ///< names of the fields to store; empty: all
   std::vector<std::string> gradients{};     ///< quantities to store with derivatives; empty: none
   std::vector<std::string> gradients_by{};  ///< parameters of these derivatives; empty: all of the model
+  std::vector<std::string> order{};         ///< of the axes, the first varies slowest; empty: as given
   std::string precision = "f8";             ///< type of stored numbers: "f8" or "f4"
   long compression = 1;                     ///< level of deflate, 0 to 9; 0: none
 };
 
 /// One parameter that varies over a grid of designs.
 struct Axis {
-  std::string key{};             ///< name of the parameter
+  std::string key{};             ///< name of the parameter, or "hoop.slug.mass" and the like
   std::vector<double> values{};  ///< in the parameter's own unit (angles in rad), ascending or descending
   bool free = false;             ///< find_designs and fit: `values` holds two bounds
   bool log = false;              ///< equal ratios count as equal distances
@@ -58,7 +59,7 @@ struct PointList {
 struct Spread {
   /// Distribution around the nominal value.
   enum class Law { normal, uniform };
-  std::string parameter{};  ///< name of the parameter
+  std::string parameter{};  ///< name of the parameter, or "hoop.slug.mass" and the like
   Law law = Law::normal;    ///< distribution
   double width = 0.0;       ///< standard deviation, or half width of the uniform distribution, >= 0
   bool percent = false;     ///< `width` is in per cent of the nominal value, not in the parameter's unit
@@ -93,7 +94,8 @@ struct Spec {
   std::vector<std::string> maximize{};  ///< find_designs: fields or parameters to maximize
   std::vector<std::string> minimize{};  ///< and to minimize; one or two objectives in all
   std::vector<std::string> notes{};     ///< to be shown, a line each: keys that are not used
-  std::optional<Body> hoop{};           ///< of [hoop]; `design` and `scene` hold what it comes to
+  /// Of [hoop]; `design` and `scene` hold what it comes to. Numbers that vary have their first values.
+  std::optional<Body> hoop{};
 };
 
 /// Reads a spec from a TOML file.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "leapmap/errors.hpp"
+#include "physics/body.hpp"
 
 namespace leapmap {
 namespace {
@@ -45,37 +46,15 @@ void check(const Body& body) {
 
 ReducedBody reduce_body(const Body& body) {
   check(body);
-  const double radius = 0.5 * body.diameter;
-  double weights = 0.0, x = 0.0, y = 0.0;
-  for (const Weight& weight : body.weights) {
-    weights += weight.mass;
-    x += weight.mass * weight.at * std::cos(weight.angle),
-        y += weight.mass * weight.at * std::sin(weight.angle);
-  }
-  if (weights > 0.0) x /= weights, y /= weights;
-  // About the weights' common centre no two terms cancel.
-  double spread = std::isnan(body.inertia) ? body.mass * radius * radius : body.inertia;
-  for (const Weight& weight : body.weights) {
-    const double dx = weight.at * std::cos(weight.angle) - x, dy = weight.at * std::sin(weight.angle) - y;
-    spread += weight.inertia + weight.mass * (dx * dx + dy * dy);
-  }
-  const double total = body.mass + weights, offset = std::min(std::hypot(x, y) / radius, 1.0);
-  const double share = weights / total, own = spread / (body.mass * radius * radius);
+  const ReducedBody reduced = reduce_checked(body);
   constexpr double most_ratio = 1e12;  // as of a design
-  if (!(weights / body.mass <= most_ratio && own <= most_ratio))
+  if (!(reduced.mass_ratio <= most_ratio && reduced.inertia_factor <= most_ratio))
     refuse("mass", body.mass, "a mass that is no trillionth of the weights', and of the inertia over R^2");
-  return {.total_mass = total,
-          .eccentricity = share * offset,
-          .inertia = spread / (total * radius * radius) + share * offset * offset,
-          .mass_ratio = weights / body.mass,
-          .offset_ratio = offset,
-          .inertia_factor = own};
+  return reduced;
 }
 
 void apply_body(const ReducedBody& reduced, const Body& body, Design& design, Scene& scene) {
-  design.mass_ratio = reduced.mass_ratio;
-  design.offset_ratio = reduced.offset_ratio;
-  design.inertia_factor = reduced.inertia_factor;
+  apply_ratios(reduced, design);
   scene.radius = 0.5 * body.diameter;
   scene.mass = reduced.total_mass;
 }

@@ -36,17 +36,17 @@ py::array_t<double> column_of(const FoundDesigns& found, const Value& value) {
 py::dict dict_of(const FoundDesigns& found, const Spec& spec) {
   const Question question = question_of(spec);
   py::dict told, parameters, objectives, gradients, missed;
-  for (const FreeParameter& parameter : question.free)
-    parameters[py::str(parameter.name)] =
-        column_of(found, [&](const FoundDesign& one) { return one.design.*parameter.member; });
+  for (std::size_t k = 0; k < question.free.size(); ++k)
+    parameters[py::str(question.free[k].name)] =
+        column_of(found, [&](const FoundDesign& one) { return one.free[k]; });
   for (std::size_t k = 0; k < question.objectives.size(); ++k)
     objectives[py::str(question.objectives[k].name)] =
         column_of(found, [&](const FoundDesign& one) { return one.objectives[k]; });
   for (std::size_t k = 0; !found.designs.empty() && k < found.designs[0].gradients.size(); ++k) {
     py::dict by;
-    for (const FreeParameter& parameter : question.free)
-      by[py::str(parameter.name)] =
-          column_of(found, [&](const FoundDesign& one) { return one.gradients[k].by.*parameter.member; });
+    for (std::size_t j = 0; j < question.free.size(); ++j)
+      by[py::str(question.free[j].name)] =
+          column_of(found, [&](const FoundDesign& one) { return one.gradients[k].by_free[j]; });
     gradients[py::str(found.designs[0].gradients[k].of)] = by;
   }
   for (std::size_t k = 0; k < found.missed.size(); ++k)
@@ -120,9 +120,11 @@ class Problem {
       const auto* of_design = std::get_if<double Design::*>(&parameter.member);
       const bool is_free =
           std::ranges::find(question_.free, parameter.name, &FreeParameter::name) != question_.free.end();
+      const bool follows = of_design && question_.designs.varies_body() &&
+                           std::ranges::find(body_ratios, *of_design) != body_ratios.end();
       const double value =
           of_design ? question_.one.design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
-      if (!is_free && !std::isnan(value) && has(scene.friction, parameter.only_of))
+      if (!is_free && !follows && !std::isnan(value) && has(scene.friction, parameter.only_of))
         numbers[py::str(std::string(parameter.name))] = value;
     }
     for (const auto& [key, member] : whole_numbers)
@@ -141,7 +143,6 @@ class Problem {
                       "numbers a row: {}",
                       dimensions, fmt::join(names_of_free(), ", ")));
     const double* given = places.data();
-    std::vector<Design> designs(count, question_.one.design);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < dimensions; ++k) {
         const FreeParameter& parameter = question_.free[k];
@@ -149,16 +150,15 @@ class Problem {
         if (!(value >= parameter.side.low && value <= parameter.side.high))
           throw InputError(fmt::format("{} = {} is outside its bounds; allowed: from {} to {}",
                                        parameter.name, value, parameter.side.low, parameter.side.high));
-        designs[i].*parameter.member = value;
       }
     std::vector<Verdict> verdicts(count);
     {
       const py::gil_scoped_release unlocked;
       const std::lock_guard one_at_a_time(busy_);
       if (forked())
-        judge_.alone()->judge_designs(designs, verdicts);
+        judge_.alone()->judge_values({given, count * dimensions}, verdicts);
       else
-        judge_.judge_designs(designs, verdicts);
+        judge_.judge_values({given, count * dimensions}, verdicts);
     }
     const std::size_t objectives = question_.objectives.size();
     py::array_t<double> costs({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(objectives)});

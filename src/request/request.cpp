@@ -59,7 +59,8 @@ Request request_of(const Spec& spec, std::vector<const Field*> columns) {
           .numerics = spec.numerics,
           .columns = std::move(columns),
           .scatter = spec.scatter,
-          .goals = spec.goals};
+          .goals = spec.goals,
+          .hoop = spec.hoop};
 }
 
 Request request_of_outcomes(const Spec& spec) {

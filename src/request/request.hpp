@@ -2,6 +2,7 @@
 /// What is asked of designs. Solvers are made from a request; a spec is only what a file says.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,9 @@ struct Request {
   /// The wanted quantities, derivatives and statistics of manufactured hoops, in order. The rest need not be
   /// computed, and may be NaN.
   std::vector<const Field*> columns{};
-  Scatter scatter{};          ///< the tolerances of manufactured hoops
-  std::vector<Goal> goals{};  ///< what counts as their yield
+  Scatter scatter{};           ///< the tolerances of manufactured hoops
+  std::vector<Goal> goals{};   ///< what counts as their yield
+  std::optional<Body> hoop{};  ///< the nominal body, if the spec has [hoop]
 };
 
 /// The columns of the spec's map, in the order of the file: those that it names; by default all that its

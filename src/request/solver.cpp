@@ -86,7 +86,11 @@ GradientSolver make_gradient_solver(const Request& request) {
 }
 
 ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points) {
-  return {request.scatter, std::move(points), request.goals, quantities_of(statistics_of(request)),
+  return {request.scatter,
+          request.hoop,
+          std::move(points),
+          request.goals,
+          quantities_of(statistics_of(request)),
           make_solver(request_of_sample(request))};
 }
 

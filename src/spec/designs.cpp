@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "model/model.hpp"
+#include "physics/body.hpp"
 #include "spec/options.hpp"
 #include "support/printable.hpp"
 
@@ -32,41 +33,72 @@ Tiling tiling_of(const Spec& spec) {
   return Tiling(shape, std::max<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1));
 }
 
-DesignSpace::DesignSpace(const Spec& spec) : spec_(spec) {
-  for (const Axis& axis : spec.axes.empty() ? spec.list.columns : spec.axes)
-    members_.push_back(member_of(axis.key));
+VariedDesigns::VariedDesigns(const Spec& spec, const std::vector<Axis>& axes)
+    : design_(spec.design), body_(spec.hoop.value_or(Body{})) {
+  for (const Axis& axis : axes) {
+    variables_.push_back(*find_variable(axis.key, spec.hoop ? &*spec.hoop : nullptr));
+    varies_body_ = varies_body_ || variables_.back().of_body();
+  }
 }
 
-Design DesignSpace::at_position(const std::vector<std::size_t>& position) const {
-  Design design = spec_.design;
-  const bool list = spec_.axes.empty();
-  for (std::size_t i = 0; i < members_.size(); ++i)
-    design.*members_[i] =
-        list ? spec_.list.columns[i].values[position[0]] : spec_.axes[i].values[position[i]];
+Design VariedDesigns::at(std::span<const double> values, Body* wanted) const {
+  assert(values.size() == variables_.size());
+  Design design = design_;
+  Body own;  // not copied where none is needed
+  Body& body = wanted ? *wanted : own;
+  if (wanted || varies_body_) body = body_;
+  for (std::size_t k = 0; k < values.size(); ++k) variables_[k].in(design, body) = values[k];
+  if (varies_body_) apply_ratios(reduce_checked(body), design);
   return design;
 }
 
-Design DesignSpace::at(std::size_t index) const {
-  std::vector<std::size_t> position;
-  unravel(index, shape_of(spec_), position);
-  return at_position(position);
+std::vector<double> list_values(const Spec& spec, const Option& parameter) {
+  const auto& columns = spec.list.columns;
+  const auto column = std::ranges::find(columns, parameter.key, &Axis::key);
+  if (column != columns.end()) return column->values;
+  if (std::isnan(value_of(parameter, spec.design)))  // it follows another
+    return list_values(spec, *find_option("scene", "mu_static"));
+  const DesignSpace space(spec);
+  if (!space.varies_body()) return std::vector(spec.list.count, value_of(parameter, spec.design));
+  std::vector<double> values;
+  for (std::size_t i = 0; i < spec.list.count; ++i) values.push_back(value_of(parameter, space.at(i)));
+  return values;
 }
 
-void DesignSpace::fill(const Tile& tile, std::size_t first, std::span<Design> designs) const {
+DesignSpace::DesignSpace(const Spec& spec)
+    : spec_(spec), varied_(spec, spec.axes.empty() ? spec.list.columns : spec.axes) {}
+
+std::vector<double> DesignSpace::values_at(const std::vector<std::size_t>& position) const {
+  const bool list = spec_.axes.empty();
+  const std::vector<Axis>& along = list ? spec_.list.columns : spec_.axes;
+  std::vector<double> values;
+  for (std::size_t k = 0; k < along.size(); ++k) values.push_back(along[k].values[position[list ? 0 : k]]);
+  return values;
+}
+
+std::vector<double> DesignSpace::values(std::size_t index) const {
+  std::vector<std::size_t> position;
+  unravel(index, shape_of(spec_), position);
+  return values_at(position);
+}
+
+Design DesignSpace::at(std::size_t index) const { return varied_.at(values(index)); }
+
+void DesignSpace::fill(const Tile& tile, std::size_t first, std::span<Design> designs,
+                       std::span<Body> bodies) const {
   assert(first + designs.size() <= tile.count);
   std::vector<std::size_t> position;
   unravel(first, tile.extent, position);
   for (std::size_t k = 0; k < position.size(); ++k) position[k] += tile.start[k];
-  if (spec_.axes.empty()) {
-    for (Design& design : designs) design = at_position(position), ++position[0];
-    return;
-  }
-  const std::size_t last = members_.size() - 1, row = tile.start[last] + tile.extent[last];
-  for (std::size_t i = 0; i < designs.size();) {  // row after row along the last axis
-    const Design current = at_position(position);
-    for (; i < designs.size() && position[last] < row; ++i, ++position[last]) {
-      designs[i] = current;
-      designs[i].*members_[last] = spec_.axes[last].values[position[last]];
+  const std::size_t last = position.size() - 1, row = tile.start[last] + tile.extent[last];
+  // Along the last axis one parameter changes, unless it is a number of the body.
+  const bool in_rows = !spec_.axes.empty() && !varied_.varies_body();
+  for (std::size_t i = 0; i < designs.size();) {
+    designs[i] = varied_.at(values_at(position), bodies.empty() ? nullptr : &bodies[i]);
+    ++i, ++position[last];
+    for (; in_rows && i < designs.size() && position[last] < row; ++i, ++position[last]) {
+      designs[i] = designs[i - 1];
+      designs[i].*varied_.variables()[last].parameter() = spec_.axes[last].values[position[last]];
     }
     for (std::size_t k = last; k > 0 && position[k] == tile.start[k] + tile.extent[k]; --k)
       position[k] = tile.start[k], ++position[k - 1];

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "map/tile.hpp"
+#include "model/variable.hpp"
+#include "spec/options.hpp"
 #include "spec/spec.hpp"
 
 namespace leapmap {
@@ -18,22 +20,49 @@ std::vector<std::size_t> shape_of(const Spec& spec);
 /// How the spec's map is cut into tiles: where many hoops are made after each design, into smaller ones.
 Tiling tiling_of(const Spec& spec);
 
+/// Designs by the values of some of a spec's numbers, each a parameter or a number of [hoop].
+class VariedDesigns {
+ public:
+  /// The numbers are those of the axes; the rest is the spec's.
+  VariedDesigns(const Spec& spec, const std::vector<Axis>& axes);
+
+  const std::vector<Variable>& variables() const { return variables_; }
+  bool varies_body() const { return varies_body_; }
+  /// A value for each axis. The body may be left out.
+  Design at(std::span<const double> values, Body* body = nullptr) const;
+
+ private:
+  Design design_;
+  Body body_;
+  std::vector<Variable> variables_;
+  bool varies_body_ = false;
+};
+
+/// The values of a parameter along a spec's list of designs.
+std::vector<double> list_values(const Spec& spec, const Option& parameter);
+
 /// The designs of a tile, in its order.
 class DesignSpace {
  public:
   /// Keeps a reference to spec.
   explicit DesignSpace(const Spec& spec);
 
+  bool varies_body() const { return varied_.varies_body(); }
+  const VariedDesigns& varied() const { return varied_; }
+  /// The values along the axes, or of the list's columns, of design `index`.
+  std::vector<double> values(std::size_t index) const;
+
   /// Design `index` in C order over the whole map.
   Design at(std::size_t index) const;
-  /// Fills in a tile's designs `first`, first + 1, ...
-  void fill(const Tile& tile, std::size_t first, std::span<Design> designs) const;
+  /// Fills in a tile's designs `first`, first + 1, ...; bodies: empty, or theirs, as many.
+  void fill(const Tile& tile, std::size_t first, std::span<Design> designs,
+            std::span<Body> bodies = {}) const;
 
  private:
-  Design at_position(const std::vector<std::size_t>& position) const;
+  std::vector<double> values_at(const std::vector<std::size_t>& position) const;
 
   const Spec& spec_;
-  std::vector<double Design::*> members_;  // of the axes, or of the list's columns
+  VariedDesigns varied_;  // along the axes, or by the list's columns
 };
 
 /// A design's number and, in a list that has labels, its name.

@@ -10,6 +10,7 @@
 #include "model/model.hpp"
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap {
 namespace {
@@ -53,6 +54,28 @@ std::string told(const std::vector<double>& numbers, const std::vector<std::stri
   return fmt::format("{} values from {} to {}", numbers.size(), numbers.front(), numbers.back());
 }
 
+/// A number of [hoop]: all values of an axis or a list's column.
+std::vector<double> body_values(const Spec& spec, const std::string& key) {
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying)
+      if (axis.key == key) return axis.values;
+  if (const auto variable = find_variable(key, &*spec.hoop)) return {variable->of(spec.design, *spec.hoop)};
+  return {spec.hoop->diameter};
+}
+
+/// The first number of [hoop] that differs.
+std::optional<std::string> body_difference(const Spec& there, const Spec& here) {
+  const std::vector<std::string> keys = body_keys(there);
+  if (keys != body_keys(here)) return "[hoop] has other weights there than here";
+  for (const std::string& key : keys) {
+    const auto a = body_values(there, key), b = body_values(here, key);
+    const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+    if (!std::ranges::equal(a, b, same))
+      return fmt::format("{} is {} there and {} here", key, told(a, {}), told(b, {}));
+  }
+  return {};
+}
+
 }  // namespace
 
 Spec spec_of(const MapReader& map, const std::string& origin) {
@@ -60,9 +83,14 @@ Spec spec_of(const MapReader& map, const std::string& origin) {
   if (!spec.axes.empty()) return spec;
   spec.list = {spec.points, {}, map.labels(), map.shape()[0]};
   const Tile all{{0}, {spec.list.count}, spec.list.count};
+  std::vector<std::string> names = body_keys(spec);
+  std::erase_if(names, [&](const std::string& name) { return !map.has(name); });
+  const bool of_bodies = !names.empty();
   for (const Option* parameter : design_parameters()) {
-    const std::string name(parameter->key);
-    if (!map.has(name)) continue;
+    const bool follows = std::ranges::find(body_ratios, member_of(*parameter)) != body_ratios.end();
+    if (map.has(std::string(parameter->key)) && !(of_bodies && follows)) names.emplace_back(parameter->key);
+  }
+  for (const std::string& name : names) {
     hdf5::bytes_in_memory(map.open(name), fmt::format("{}: {}", origin, name));
     spec.list.columns.push_back({name, map.read(name, all)});
   }
@@ -89,6 +117,7 @@ std::optional<std::string> first_difference(const Spec& original_there, const Sp
   };
   if (keys(there) != keys(here))
     return fmt::format("its axes are [{}] there and [{}] here", keys(there), keys(here));
+  if (const auto difference = body_difference(there, here)) return difference;
   for (const Option& option : spec_options()) {
     if (only_designs && option.section != "scene" && option.section != "design") continue;
     const auto a = numbers_of(there, option), b = numbers_of(here, option);

@@ -12,6 +12,7 @@
 #include "leapmap/errors.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
+#include "model/variable.hpp"
 #include "numerics/gsl_integrator.hpp"
 #include "spec/quantity.hpp"
 #include "support/closest.hpp"
@@ -169,6 +170,16 @@ const std::array keys{
            {},
            design_parameter_names},
     Option{"output",
+           "order",
+           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.order; }},
+           "",
+           "order of the axes, the first varies slowest",
+           {},
+           design_parameter_names,
+           {},
+           [](std::string_view name) { return find_body_number(name) != nullptr; },
+           "numbers of [hoop]"},
+    Option{"output",
            "precision",
            TextSlot{[](Spec& s) -> std::string& { return s.output.precision; }},
            "",
@@ -218,8 +229,10 @@ Option objective(std::string_view key, TextsSlot slot, std::string_view meaning)
           {},
           field_names,
           {},
-          [](std::string_view name) { return is_parameter(name) || is_of_made(name); },
-          "a free parameter; with [scatter] also yield, jump_height_q05 and so on"};
+          [](std::string_view name) {
+            return is_parameter(name) || is_of_made(name) || find_body_number(name) != nullptr;
+          },
+          "a free parameter or number of [hoop]; with [scatter] also yield, jump_height_q05 and so on"};
 }
 
 /// [goal] has one for each field.
@@ -307,13 +320,31 @@ std::vector<const Option*> design_parameters(const Spec& spec) {
   return parameters;
 }
 
-std::vector<double> list_values(const Spec& spec, const Option& parameter) {
-  const auto column = std::ranges::find(spec.list.columns, parameter.key, &Axis::key);
-  const bool follows = column == spec.list.columns.end() && std::isnan(value_of(parameter, spec.design));
-  if (follows) return list_values(spec, *find_option("scene", "mu_static"));
-  return column != spec.list.columns.end() ? column->values
-                                           : std::vector(spec.list.count, value_of(parameter, spec.design));
+namespace {
+
+/// A row of [hoop], or its tolerance.
+Option option_of(const BodyNumber& row, bool spread) {
+  Option option{"hoop", row.name, HoopSlot{}, row.unit, row.meaning, row.range};
+  if (spread)
+    option.section = "scatter", option.slot = SpreadSlot{}, option.range = {0.0, infinity, true, false};
+  return option;
 }
+
+const Option* find_hoop_option(std::string_view section, std::string_view key) {
+  static const auto make = [](bool spread) {
+    std::vector<Option> options;
+    for (const BodyNumber& row : body_numbers()) options.push_back(option_of(row, spread));
+    return options;
+  };
+  static const std::vector<Option> numbers = make(false), spreads = make(true);
+  const BodyNumber* row = find_body_number(key);
+  if (!row || !(section.empty() || section == "hoop" || section == "design" || section == "scatter"))
+    return nullptr;
+  const auto place = row - body_numbers().data();
+  return &(section == "scatter" ? spreads : numbers)[static_cast<std::size_t>(place)];
+}
+
+}  // namespace
 
 std::string flag_of(const Option& option) {
   std::string flag = fmt::format("--{}", option.key);
@@ -322,6 +353,7 @@ std::string flag_of(const Option& option) {
 }
 
 const Option* find_option(std::string_view section, std::string_view key) {
+  if (const Option* of_hoop = find_hoop_option(section, key)) return of_hoop;
   const auto found = std::ranges::find_if(spec_options(), [&](const Option& o) {
     const bool there =
         o.section == section || (section == "design" && std::holds_alternative<ParameterSlot>(o.slot));

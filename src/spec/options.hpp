@@ -21,6 +21,8 @@ namespace leapmap {
 struct ParameterSlot {
   double Design::*member;
 };
+/// A number of [hoop]; the entry's key says which.
+struct HoopSlot {};
 /// A number of the scene.
 struct SceneSlot {
   double Scene::*member;
@@ -39,7 +41,7 @@ using TextsSlot = std::vector<std::string>& (*)(Spec&);
 struct Option {
   std::string_view section;
   std::string_view key;
-  std::variant<ParameterSlot, SceneSlot, FrictionSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot,
+  std::variant<ParameterSlot, HoopSlot, SceneSlot, FrictionSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot,
                SpreadSlot, GoalSlot>
       slot;
   std::string_view unit;  ///< of model/own_units.hpp; "1": a pure number
@@ -83,14 +85,12 @@ inline double effective_value(const Option& parameter, const Design& design) {
   return std::isnan(value) ? design.mu_static : value;
 }
 
-/// The values of a parameter along a spec's list of designs.
-std::vector<double> list_values(const Spec& spec, const Option& parameter);
-
 /// The command line's name for a key, for example "--mass-ratio".
 std::string flag_of(const Option& option);
 
 /// The option of that section and key, or nullptr; an empty section means any. What takes an axis may also
-/// stand in [design], where the axes of a resolved spec do, in their order.
+/// stand in [design], where the axes of a resolved spec do, in their order. Of "hoop.slug.mass" it is the one
+/// of the mass of any weight.
 const Option* find_option(std::string_view section, std::string_view key);
 
 /// "slope must be in [0, 90 deg)" and the like: what values the option takes.

@@ -27,8 +27,11 @@ std::string default_value(const Option& option) {
         } else if constexpr (std::is_same_v<Slot, TextSlot>) {
           return fmt::format("\"{}\"", slot(spec));
         } else if constexpr (std::is_same_v<Slot, TextsSlot>) {
-          return option.key == "fields" || option.key == "gradients_by" ? "all" : "none";
-        } else if constexpr (std::is_same_v<Slot, SpreadSlot> || std::is_same_v<Slot, GoalSlot>) {
+          return option.key == "order"                                    ? "as given"
+                 : option.key == "fields" || option.key == "gradients_by" ? "all"
+                                                                          : "none";
+        } else if constexpr (std::is_same_v<Slot, HoopSlot> || std::is_same_v<Slot, SpreadSlot> ||
+                             std::is_same_v<Slot, GoalSlot>) {
           return "none";
         } else {
           return fmt::format("{}", slot(spec));

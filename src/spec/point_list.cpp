@@ -8,6 +8,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/layout.hpp"
+#include "model/variable.hpp"
 #include "spec/options.hpp"
 #include "support/csv.hpp"
 
@@ -16,6 +17,7 @@ namespace {
 
 /// The option a column of the header stands for.
 const Option* column_option(const std::string& place, std::string_view name) {
+  if (find_body_number(name)) return find_option("hoop", name);
   const auto parameters = design_parameters();
   const auto found = std::ranges::find(parameters, name, &Option::key);
   if (found == parameters.end()) {
@@ -65,7 +67,7 @@ PointList read_points(const std::string& path, const std::string& origin, const 
       try {
         (column++)->values.push_back(parse_number(*columns[i], cells[i] + units[i], scales));
       } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: column {} = {}", place, columns[i]->key, error.what()));
+        throw InputError(fmt::format("{}: column {} = {}", place, (column - 1)->key, error.what()));
       }
     }
     ++list.count;

@@ -12,6 +12,7 @@
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "spec/options.hpp"
+#include "spec/spec_hoop.hpp"
 #include "tolerance/made_hoops.hpp"
 
 namespace leapmap {
@@ -22,13 +23,13 @@ namespace {
   throw InputError(fmt::format("{}: {}.{} {}; allowed: {}", origin_of(spec), section, key, what, allowed));
 }
 
-/// The parameter's values over all designs of the spec. One that follows another has the other's.
-std::vector<double> values_of(const Spec& spec, const Option& parameter) {
+/// The number's values over all designs of the spec. One that follows another has the other's.
+std::vector<double> values_of(const Spec& spec, const Variable& variable) {
   for (const auto* varying : {&spec.axes, &spec.list.columns})
     for (const Axis& axis : *varying)
-      if (axis.key == parameter.key) return axis.values;
-  const double value = value_of(parameter, spec.design);
-  if (std::isnan(value)) return values_of(spec, *find_option("scene", "mu_static"));
+      if (axis.key == variable.key) return axis.values;
+  const double value = variable.of(spec.design, spec.hoop.value_or(Body{}));
+  if (std::isnan(value) && !variable.of_body()) return values_of(spec, *find_variable("mu_static", nullptr));
   return {value};
 }
 
@@ -54,20 +55,47 @@ void check_spread(const Spec& spec, const Spread& spread) {
     refuse(spec, "scatter", spread.parameter, no_use(spec.scene), with_model(*option->only_of));
   if (!in_range(*option, spread.width))
     refuse(spec, "scatter", spread.parameter, fmt::format("is {} wide", spread.width), "a width in [0, inf)");
-  const Option& parameter = *find_option("design", spread.parameter);
-  const MadeHoops hoops({{spread}, SobolPoints::replicates, 0},
+  const auto variable = find_variable(spread.parameter, spec.hoop ? &*spec.hoop : nullptr);
+  if (!variable) {
+    if (!spec.hoop)
+      refuse(spec, "scatter", spread.parameter, "has no effect, because there is no [hoop]",
+             "with [hoop] in the spec");
+    check_hoop_key(*spec.hoop, spread.parameter, origin_of(spec));
+    refuse(spec, "scatter", spread.parameter, "has no tolerance, because it scales the whole map",
+           "other numbers of [hoop]");
+  }
+  const MadeHoops hoops({{spread}, SobolPoints::replicates, 0}, spec.hoop,
                         std::make_shared<const SobolPoints>(1, SobolPoints::replicates, 0));
-  const std::vector<double> values = values_of(spec, parameter);
+  const std::vector<double> values = values_of(spec, *variable);
   refuse_percent_of_nothing(spec, spread, values);
   for (const double value : values) {
+    if (std::isnan(value))
+      refuse(spec, "scatter", spread.parameter, "has no nominal value", "with a value in [hoop]");
     Design drawn = spec.design;
-    drawn.*member_of(parameter) = value;
-    if (!hoops.can_make(drawn))
-      refuse(spec, "scatter", spread.parameter,
-             fmt::format("exceeds the domain around {}{}: {:.3g} % of the distribution is outside", value,
-                         option->unit == "rad" ? " rad" : "", 100.0 * (1.0 - hoops.law(0, drawn).left)),
-             fmt::format("a smaller width; the parameter is {}", allowed_values(parameter)));
+    Body body = spec.hoop.value_or(Body{});
+    variable->in(drawn, body) = value;
+    if (!hoops.can_make(drawn, &body))
+      refuse(
+          spec, "scatter", spread.parameter,
+          fmt::format("exceeds the domain around {}{}: {:.3g} % of the distribution is outside", value,
+                      option->unit == "rad" ? " rad" : "", 100.0 * (1.0 - hoops.law(0, drawn, &body).left)),
+          fmt::format("a smaller width; the parameter is {}",
+                      allowed_values(variable->range, variable->unit)));
   }
+}
+
+/// [hoop] determines the ratios: a tolerance of both would say the same twice.
+void refuse_ratios_beside_bodies(const Spec& spec) {
+  const auto& spreads = spec.scatter.spreads;
+  const auto of_body = std::ranges::find_if(
+      spreads, [](const Spread& spread) { return find_body_number(spread.parameter) != nullptr; });
+  if (of_body == spreads.end()) return;
+  for (const Spread& spread : spreads)
+    if (const auto variable = find_variable(spread.parameter, nullptr);
+        variable && std::ranges::find(body_ratios, variable->parameter()) != body_ratios.end())
+      refuse(spec, "scatter", spread.parameter,
+             fmt::format("follows from numbers of [hoop], of which {} has a tolerance", of_body->parameter),
+             "one of the two");
 }
 
 void check_goal(const Spec& spec, const Goal& goal) {
@@ -117,6 +145,7 @@ void check_scatter(const Spec& spec) {
     refuse(spec, "scatter", "samples", fmt::format("= {}", scatter.samples),
            fmt::format("a multiple of {}", SobolPoints::replicates));
   for (const Spread& spread : scatter.spreads) check_spread(spec, spread);
+  refuse_ratios_beside_bodies(spec);
 }
 
 }  // namespace leapmap

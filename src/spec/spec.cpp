@@ -13,6 +13,7 @@
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
 #include "model/model.hpp"
+#include "model/variable.hpp"
 #include "spec/point_list.hpp"
 #include "spec/spec_entry.hpp"
 #include "spec/spec_hoop.hpp"
@@ -36,6 +37,7 @@ struct Assign {
       spec.design.*slot.member = to_number(entry, *entry.node);
     }
   }
+  void operator()(HoopSlot) const { assign_to_hoop(entry, spec); }
   void operator()(SceneSlot slot) const { spec.scene.*slot.member = one_number(); }
   void operator()(NumberSlot slot) const { slot(spec) = one_number(); }
   void operator()(FrictionSlot) const { spec.scene.friction = find_model(text(*entry.node))->friction; }
@@ -98,32 +100,51 @@ struct Assign {
                                fmt::join(keys, ", ")));
 }
 
+/// The keys of a section. In [scatter] hoop.slug.mass = ... is a table of tables; before: "hoop.slug.".
+void add_entries(const toml::table& table, const std::string& section, const std::string& before,
+                 const std::string& origin, std::vector<Entry>& entries) {
+  for (const auto& [name, value] : table) {
+    const std::string key = before + std::string(name.str());
+    const auto position = value.source().begin;
+    const std::string place = fmt::format("{}:{}", origin, position.line);
+    const Option* option = find_option(section, key);
+    if (!option && section == "scatter" && (key + ".").starts_with("hoop.") && value.is_table()) {
+      add_entries(*value.as_table(), section, key + ".", origin, entries);
+      continue;
+    }
+    if (!option) refuse_key(place, section, key);
+    const auto twice = std::ranges::find_if(
+        entries, [&](const Entry& entry) { return entry.option == option && entry.key == key; });
+    if (twice != entries.end())
+      throw InputError(
+          fmt::format("{}: {} appears twice, also at {}; allowed: once", place, key, twice->place));
+    entries.push_back({.option = option, .place = place, .position = position, .node = &value, .key = key});
+  }
+}
+
+/// A section by its name of today; [tolerances] is [scatter].
+std::string section_of(std::string_view name) { return std::string(name == "tolerances" ? "scatter" : name); }
+
 /// Every key of a file's tables, in the order they were written.
-std::vector<Entry> entries_of(const toml::table& file, const std::string& origin) {
+std::vector<Entry> entries_of(const toml::table& file, const std::string& origin, Spec& spec) {
   std::vector<Entry> entries;
-  for (const auto& [section, node] : file) {
-    if (section.str() == "hoop") continue;  // read_hoop's
+  for (const auto& [written, node] : file) {
+    if (written.str() == "hoop") {
+      spec.hoop = read_hoop(node, origin, entries);
+      continue;
+    }
+    const std::string section = section_of(written.str());
     const std::string place = fmt::format("{}:{}", origin, node.source().begin.line);
     const toml::table* table = node.as_table();
-    const bool known = std::ranges::any_of(
-        spec_options(), [&in = section](const Option& o) { return o.section == in.str(); });
-    if (const Option* option = find_option("", section.str()); option && !known)
+    const bool known =
+        std::ranges::any_of(spec_options(), [&](const Option& o) { return o.section == section; });
+    if (const Option* option = find_option("", section); option && !known)
       throw InputError(fmt::format("{}: {}: a key stands below its section; allowed: [{}] above it", place,
-                                   section.str(), option->section));
+                                   section, option->section));
     if (!known || !table)
-      throw InputError(fmt::format("{}: [{}]: unknown section{}; allowed: [{}]", place, section.str(),
-                                   did_you_mean(section.str(), spec_sections),
-                                   fmt::join(spec_sections, "], [")));
-    for (const auto& [key, value] : *table) {
-      const Option* option = find_option(section.str(), key.str());
-      const auto position = value.source().begin;
-      if (!option) refuse_key(fmt::format("{}:{}", origin, position.line), section.str(), key.str());
-      const auto twice = std::ranges::find(entries, option, &Entry::option);
-      if (twice != entries.end())
-        throw InputError(fmt::format("{}:{}: {} appears twice, also at {}; allowed: once", origin,
-                                     position.line, key.str(), twice->place));
-      entries.push_back({option, fmt::format("{}:{}", origin, position.line), position, &value});
-    }
+      throw InputError(fmt::format("{}: [{}]: unknown section{}; allowed: [{}]", place, section,
+                                   did_you_mean(section, spec_sections), fmt::join(spec_sections, "], [")));
+    add_entries(*table, section, "", origin, entries);
   }
   std::ranges::stable_sort(entries, {},
                            [](const Entry& e) { return std::pair(e.position.line, e.position.column); });
@@ -152,7 +173,8 @@ toml::table parse_override(const std::string& text, std::string_view value) {
 /// The same key set twice: the later one holds, at the place of the first, so that overriding an axis keeps
 /// its turn.
 void override_with(std::vector<Entry>& entries, const Entry& entry) {
-  const auto found = std::ranges::find(entries, entry.option, &Entry::option);
+  const auto found = std::ranges::find_if(
+      entries, [&](const Entry& other) { return other.option == entry.option && other.key == entry.key; });
   found == entries.end() ? entries.push_back(entry) : void(*found = entry);
 }
 
@@ -190,7 +212,7 @@ void refuse_what_has_no_use(const std::vector<Entry>& entries, Spec& spec) {
       continue;
     if (!chosen || !leave_out(entry, spec))
       refuse(entry, no_use(spec.scene), with_model(*entry.option->only_of));
-    left_out.push_back(entry.option->key);
+    left_out.push_back(entry.key);
   }
   if (!left_out.empty())
     spec.notes.push_back(fmt::format("{}: not used, because the contact {}: {}", origin_of(spec),
@@ -201,8 +223,31 @@ void refuse_what_has_no_use(const std::vector<Entry>& entries, Spec& spec) {
 void refuse_beside_hoop(const std::vector<Entry>& entries) {
   for (const Entry& entry : entries)
     for (const std::string_view key : {"mass_ratio", "offset_ratio", "inertia_factor", "radius", "mass"})
-      if (entry.option->key == key && !std::holds_alternative<SpreadSlot>(entry.option->slot))
+      if (entry.key == key && !std::holds_alternative<SpreadSlot>(entry.option->slot))
         refuse(entry, "[hoop] determines it already", "one of the two: remove the other");
+}
+
+/// The design, the size and the mass of the nominal body. Where masses vary, the total is not known.
+void apply_hoop(Spec& spec) {
+  apply_body(reduce_body(*spec.hoop), *spec.hoop, spec.design, spec.scene);
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying)
+      if (axis.key.starts_with("hoop.") && axis.key.ends_with("mass")) spec.scene.mass = 0.0;
+}
+
+/// As they were written, or as output.order says.
+void put_axes_in_order(const std::vector<Entry>& entries, Spec& spec) {
+  const std::vector<std::string>& order = spec.output.order;
+  const auto place_of = [&](const Axis& axis) {
+    if (!order.empty()) return std::ranges::find(order, axis.key) - order.begin();
+    return std::ranges::find_if(entries,
+                                [&](const Entry& entry) {
+                                  return entry.key == axis.key &&
+                                         !std::holds_alternative<SpreadSlot>(entry.option->slot);
+                                }) -
+           entries.begin();
+  };
+  std::ranges::stable_sort(spec.axes, {}, place_of);
 }
 
 /// A points file is looked for beside the spec first, then from the working folder.
@@ -224,6 +269,7 @@ void read_points_of(Spec& spec) {
   spec.list = read_points(spec.points, origin_of(spec), scales_of(spec.scene));
   for (const Axis& column : spec.list.columns) {
     const Option& option = *find_option("design", column.key);
+    if (find_body_number(column.key)) continue;  // check_hoop's
     if (!has(spec.scene.friction, option.only_of))
       throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
                                    no_use(spec.scene), with_model(*option.only_of)));
@@ -233,6 +279,8 @@ void read_points_of(Spec& spec) {
           "{}: {} = {} has no effect beside the column of that name in {}; allowed: one of the two",
           origin_of(spec), column.key, given, spec.points));
   }
+  check_hoop(spec);
+  if (spec.hoop) apply_hoop(spec);
 }
 
 namespace {
@@ -255,72 +303,72 @@ Spec read_spec(const std::string& path, const std::vector<std::string>& override
 
 namespace {
 
-/// lenient: what has no effect is let pass.
-Spec parse(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
-           bool lenient) {
-  Spec spec;
-  spec.origin = origin;
-  toml::table file;
-  try {
-    file = toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    throw InputError(
-        fmt::format("{}:{}: not TOML: {}", origin, error.source().begin.line, error.description()));
-  }
-  std::vector<Entry> entries = entries_of(file, origin);
-
-  std::vector<toml::table> values;
-  values.reserve(overrides.size());  // entries point into it
-  std::vector<HoopOverride> of_hoop;
+/// Adds KEY=VALUE of the command line to the entries, which point into `values`.
+void add_overrides(const std::vector<std::string>& overrides, const Spec& spec,
+                   std::vector<toml::table>& values, std::vector<Entry>& entries) {
+  values.reserve(overrides.size());
   for (const std::string& set : overrides) {
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos) throw InputError(fmt::format("--set {}: allowed: KEY=VALUE", set));
     const std::string name = set.substr(0, equals);
     const std::size_t dot = name.find('.');
-    const std::string section = dot == std::string::npos ? "" : name.substr(0, dot);
+    const std::string section = section_of(dot == std::string::npos ? "" : name.substr(0, dot));
     const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
-    const Option* option = find_option(section, key);
+    const Option* option = section == "hoop" ? nullptr : find_option(section, key);
     if (!option && section != "hoop") refuse_key("--set " + set, section, key);
+    if (!option && !spec.hoop)
+      throw InputError(
+          fmt::format("{}: {}: there is no [hoop]; allowed: with [hoop] in the spec, which "
+                      "gives the rest",
+                      command_line, name));
     values.push_back(parse_override(set, std::string_view(set).substr(equals + 1)));
-    if (section == "hoop") {
-      of_hoop.push_back({key, values.back().get("v")});
-      continue;
-    }
-    override_with(entries, {option, command_line, {}, values.back().get("v")});
+    const toml::node& value = *values.back().get("v");
+    override_with(entries, option ? Entry{option, command_line, {}, &value, key}
+                                  : hoop_override(*spec.hoop, name, value));
   }
+}
 
-  const auto given = [&](std::string_view key, bool scattered = false) {
-    return std::ranges::any_of(entries, [&](const Entry& e) {
-      return e.option->key == key && std::holds_alternative<SpreadSlot>(e.option->slot) == scattered;
-    });
-  };
-  spec.hoop = read_hoop(file.get("hoop"), origin, of_hoop);
-  if (spec.hoop) {
-    refuse_beside_hoop(entries);
-    apply_body(reduce_body(*spec.hoop), *spec.hoop, spec.design, spec.scene);
-  }
-  // What other numbers' units hang on comes first.
-  const auto sets_scale = [](const Entry& entry) {
-    const auto* slot = std::get_if<SceneSlot>(&entry.option->slot);
-    return slot && (slot->member == &Scene::radius || slot->member == &Scene::gravity ||
-                    slot->member == &Scene::mass);
-  };
+/// Whether units of other numbers depend on an entry: radius, gravity, mass, [hoop].
+bool sets_scale(const Entry& entry) {
+  const auto* slot = std::get_if<SceneSlot>(&entry.option->slot);
+  return std::holds_alternative<HoopSlot>(entry.option->slot) ||
+         (slot && (slot->member == &Scene::radius || slot->member == &Scene::gravity ||
+                   slot->member == &Scene::mass));
+}
+
+/// Puts every entry's value where it belongs.
+void assign(std::vector<Entry>& entries, Spec& spec) {
   for (const Entry& entry : entries)
     if (sets_scale(entry)) std::visit(Assign{entry, spec}, entry.option->slot);
+  if (spec.hoop) {
+    refuse_beside_hoop(entries);
+    check_hoop(spec);
+    apply_hoop(spec);
+  }
   for (Entry& entry : entries) {
     if (sets_scale(entry)) continue;
     entry.scales = scales_of(spec.scene);
     std::visit(Assign{entry, spec}, entry.option->slot);
   }
-  const bool asks_for_gaits =
-      std::ranges::any_of(entries, [](const Entry& e) { return e.option->section == "gait"; });
-  if ((asks_for_gaits || file.contains("gait")) && !given("settle")) spec.scene.settle = 500;
-  if (!lenient) refuse_what_has_no_use(entries, spec);
+  put_axes_in_order(entries, spec);
+}
+
+/// Defaults that hang on what is given.
+void set_defaults(const std::vector<Entry>& entries, bool asks_for_gaits, Spec& spec) {
+  const auto given = [&](std::string_view key, bool scattered = false) {
+    return std::ranges::any_of(entries, [&](const Entry& e) {
+      return e.key == key && std::holds_alternative<SpreadSlot>(e.option->slot) == scattered;
+    });
+  };
+  if (asks_for_gaits && !given("settle")) spec.scene.settle = 500;
   // Where mu_static varies, mu_kinetic follows it from design to design.
   const bool varies = std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() ||
                       !spec.points.empty() || given("mu_static", true);
   if (!given("mu_kinetic") && !varies) spec.design.mu_kinetic = spec.design.mu_static;
+}
 
+/// Keys that contradict each other.
+void refuse_contradictions(const std::vector<Entry>& entries, const Spec& spec) {
   for (const Entry& entry : entries) {
     const std::string_view key = entry.option->key;
     if (entry.option->section == "scatter" && spec.scatter.spreads.empty())
@@ -333,7 +381,6 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
       refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method),
              "with method = \"gsl-...\"");
   }
-
   if (!spec.points.empty() && !spec.axes.empty())
     throw InputError(
         fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",
@@ -343,6 +390,30 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
   if (designs > most_designs)
     throw InputError(
         fmt::format("{}: {:.3g} designs; allowed: at most {:.0e}", origin_of(spec), designs, most_designs));
+}
+
+/// lenient: what has no effect is let pass.
+Spec parse(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
+           bool lenient) {
+  Spec spec;
+  spec.origin = origin;
+  toml::table file;
+  try {
+    file = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}:{}: not TOML: {}", origin, error.source().begin.line, error.description()));
+  }
+  std::vector<Entry> entries = entries_of(file, origin, spec);
+  std::vector<toml::table> values;
+  add_overrides(overrides, spec, values, entries);
+  assign(entries, spec);
+  const bool asks_for_gaits = file.contains("gait") || std::ranges::any_of(entries, [](const Entry& e) {
+                                return e.option->section == "gait";
+                              });
+  set_defaults(entries, asks_for_gaits, spec);
+  if (!lenient) refuse_what_has_no_use(entries, spec);
+  refuse_contradictions(entries, spec);
   return spec;
 }
 

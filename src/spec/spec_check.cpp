@@ -8,9 +8,12 @@
 #include "map/layout.hpp"
 #include "map/schema.hpp"
 #include "model/model.hpp"
+#include "model/variable.hpp"
+#include "physics/body.hpp"
 #include "spec/options.hpp"
 #include "spec/scatter_check.hpp"
 #include "spec/spacing.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/printable.hpp"
 
 namespace leapmap {
@@ -36,7 +39,7 @@ void check_text(const Spec& spec, const Option& option, const std::string& text)
 void check_values(const Spec& spec, const std::vector<Axis>& axes) {
   for (const Axis& axis : axes) {
     const Option* option = find_option("design", axis.key);
-    if (!option || !std::holds_alternative<ParameterSlot>(option->slot))
+    if (!option || !(std::holds_alternative<ParameterSlot>(option->slot) || find_body_number(axis.key)))
       refuse(spec, axis.key, "is not a parameter of a design", "an axis of one");
     if (std::ranges::count(axes, axis.key, &Axis::key) > 1) refuse(spec, axis.key, "appears twice", "once");
     if (!has(spec.scene.friction, option->only_of))
@@ -95,8 +98,8 @@ void check_common(const Spec& spec) {
   Design common = spec.design;
   for (const auto* varying : {&spec.axes, &spec.list.columns})
     for (const Axis& axis : *varying) {
-      const auto member = member_of(axis.key);
-      common.*member = Design{}.*member;
+      const auto variable = find_variable(axis.key, nullptr);
+      if (variable) common.*variable->parameter() = Design{}.*variable->parameter();
     }
   check_design(common, spec.scene, origin_of(spec));
 }
@@ -110,6 +113,31 @@ void check_labels(const Spec& spec) {
     if (labels[i].size() > most_label_bytes || printable(labels[i]) != labels[i])
       refuse(spec, label_name, fmt::format("of design {} is '{}'", i, printable(labels[i].substr(0, 40))),
              fmt::format("at most {} bytes of printable UTF-8", most_label_bytes));
+}
+
+/// The ratios of [hoop] are given once, by its numbers.
+void check_body(const Spec& spec) {
+  check_hoop(spec);
+  if (!spec.hoop) return;
+  Design design = spec.design;
+  apply_ratios(reduce_checked(*spec.hoop), design);
+  for (double Design::*ratio : body_ratios)
+    if (design.*ratio != spec.design.*ratio)
+      refuse(spec, "hoop", "comes to other ratios than those of the design", "apply_body, or no hoop");
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying)
+      if (const auto variable = find_variable(axis.key, nullptr);
+          variable && std::ranges::find(body_ratios, variable->parameter()) != body_ratios.end())
+        refuse(spec, axis.key, "follows from [hoop]", "an axis of a number of [hoop], such as hoop.mass");
+}
+
+void check_order(const Spec& spec) {
+  if (spec.output.order.empty()) return;
+  std::vector<std::string> keys;
+  for (const Axis& axis : spec.axes) keys.push_back(axis.key);
+  if (keys != spec.output.order)
+    refuse(spec, "order", fmt::format("= {} does not name the axes", fmt::join(spec.output.order, ", ")),
+           keys.empty() ? "with axes" : fmt::format("each of {} once", fmt::join(keys, ", ")));
 }
 
 void check_axes(const Spec& spec) {
@@ -203,6 +231,8 @@ void check_spec(const Spec& spec) {
         refuse(spec, column.key, fmt::format("has {} values", column.values.size()),
                fmt::format("one for each of the {} designs of the list", spec.list.count));
   check_labels(spec);
+  check_body(spec);
+  check_order(spec);
   check_common(spec);
 }
 

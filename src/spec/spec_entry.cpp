@@ -15,7 +15,8 @@ namespace leapmap {
 namespace {
 
 /// "key = value" as the user wrote it, on one line.
-std::string quoted(const Option& option, const toml::node& node) {
+std::string quoted(const Entry& entry) {
+  const toml::node& node = *entry.node;
   std::ostringstream text;
   if (node.is_floating_point())
     text << fmt::format("{}", *node.value<double>());  // as short as it was written
@@ -23,14 +24,17 @@ std::string quoted(const Option& option, const toml::node& node) {
     node.visit([&](const auto& value) { text << value; });
   std::string flat = text.str();
   std::ranges::replace(flat, '\n', ' ');
-  return fmt::format("{}.{} = {}", option.section, option.key, flat);
+  return fmt::format("{} = {}", name_of(entry), flat);
 }
 
 }  // namespace
 
+std::string name_of(const Entry& entry) {
+  return entry.option->section == "hoop" ? entry.key : fmt::format("{}.{}", entry.option->section, entry.key);
+}
+
 void refuse(const Entry& entry, std::string_view what, std::string_view allowed) {
-  throw InputError(
-      fmt::format("{}: {}: {}; allowed: {}", entry.place, quoted(*entry.option, *entry.node), what, allowed));
+  throw InputError(fmt::format("{}: {}: {}; allowed: {}", entry.place, quoted(entry), what, allowed));
 }
 
 double to_number(const Entry& entry, const toml::node& node, std::string_view part) {
@@ -40,8 +44,7 @@ double to_number(const Entry& entry, const toml::node& node, std::string_view pa
     try {
       return parse_number(option, text->get(), entry.scales);
     } catch (const InputError& error) {
-      throw InputError(
-          fmt::format("{}: {}.{}: {}{}", entry.place, option.section, option.key, where, error.what()));
+      throw InputError(fmt::format("{}: {}: {}{}", entry.place, name_of(entry), where, error.what()));
     }
   }
   const auto value = node.is_number() ? node.value<double>() : std::nullopt;
@@ -134,7 +137,7 @@ Axis to_axis(const Entry& entry, const toml::table& table) {
   for (const auto& [key, node] : table)
     if (std::ranges::find(names, key.str()) == names.end())
       refuse(entry, fmt::format("'{}' does not belong to this axis", key.str()), axis_forms);
-  Axis axis{std::string(entry.option->key), {}};
+  Axis axis{entry.key, {}};
   if (table.contains("values")) {
     axis.values = to_list(entry, table);
     return axis;

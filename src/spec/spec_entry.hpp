@@ -21,8 +21,12 @@ struct Entry {
   std::string place;  // "file:line" or "--set"
   toml::source_position position;
   const toml::node* node;
-  Scales scales{};  // of the scene, for numbers with units
+  std::string key{};  // "slope"; of [hoop] and its tolerances "hoop.slug.mass"
+  Scales scales{};    // of the scene, for numbers with units
 };
+
+/// The key with its section, for messages.
+std::string name_of(const Entry& entry);
 
 /// Throws InputError with the entry's place, key and value.
 [[noreturn]] void refuse(const Entry& entry, std::string_view what, std::string_view allowed);

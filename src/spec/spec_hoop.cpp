@@ -4,88 +4,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <sstream>
-#include <vector>
+#include <span>
 
 #include "leapmap/errors.hpp"
-#include "spec/quantity.hpp"
+#include "model/variable.hpp"
 #include "support/closest.hpp"
+#include "support/number.hpp"
 #include "support/wrapped.hpp"
 
 namespace leapmap {
 namespace {
 
-/// A number of a ring or a weight.
-template <class Part>
-struct Key {
-  std::string_view name, unit;
-  double Part::*member;
-  bool needed;
-  std::string_view meaning;
-};
-
-constexpr std::array ring_keys{
-    Key<Body>{"diameter", "m", &Body::diameter, true, "outer diameter of the hoop"},
-    Key<Body>{"mass", "kg", &Body::mass, true, "mass of the ring and everything on it except the weights"},
-    Key<Body>{"inertia", "kg m2", &Body::inertia, false,
-              "moment of inertia of that ring about the axis; default: of a thin ring"}};
-constexpr std::array weight_keys{
-    Key<Weight>{"mass", "kg", &Weight::mass, true, "mass of the weight"},
-    Key<Weight>{"at", "m", &Weight::at, true, "distance of its centre from the axis"},
-    Key<Weight>{"angle", "rad", &Weight::angle, false, "direction of its centre; default: 0"},
-    Key<Weight>{"inertia", "kg m2", &Weight::inertia, false,
-                "moment of inertia about its own centre; default: 0"}};
-
-template <class Part, std::size_t n>
-std::vector<std::string_view> names_of(const std::array<Key<Part>, n>& keys) {
+std::vector<std::string_view> names_of(bool of_weight) {
   std::vector<std::string_view> names;
-  for (const Key<Part>& key : keys) names.push_back(key.name);
+  for (const BodyNumber& row : body_numbers())
+    if (row.of_weight() == of_weight) names.push_back(row.name);
   return names;
-}
-
-std::string written(const toml::node& node) {
-  std::ostringstream text;
-  node.visit([&](const auto& value) { text << value; });
-  std::string flat = text.str();
-  std::ranges::replace(flat, '\n', ' ');
-  return flat;
 }
 
 [[noreturn]] void refuse(const std::string& place, const std::string& key, const std::string& what,
                          const std::string& allowed) {
   throw InputError(
       fmt::format("{}: {}: {}; allowed: {}", place, key.empty() ? "[hoop]" : "hoop." + key, what, allowed));
-}
-
-double number(const toml::node& node, const std::string& place, const std::string& key,
-              std::string_view unit) {
-  const std::string allowed =
-      fmt::format("a number, in {} or as \"... {}\"", unit, find_own_unit(unit)->example);
-  if (const auto* text = node.as_string()) {
-    try {
-      return number_in_own_unit(text->get(), unit, {});
-    } catch (const InputError& error) {
-      refuse(place, key, error.what(), allowed);
-    }
-  }
-  if (node.is_table())
-    refuse(place, key, written(node) + " is an axis",
-           "one number; in Python a weight may be an array (leapmap.Weight)");
-  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-  if (!value || !std::isfinite(*value)) refuse(place, key, written(node) + " is not a number", allowed);
-  return *value;
-}
-
-/// Gives the part the number of that key; false: it has none of that name.
-template <class Part, std::size_t n>
-bool set(Part& part, const std::array<Key<Part>, n>& keys, std::string_view name, const std::string& of,
-         const toml::node& node, const std::string& place) {
-  const auto key = std::ranges::find(keys, name, &Key<Part>::name);
-  if (key == keys.end()) return false;
-  part.*key->member = number(node, place, of + std::string(name), key->unit);
-  return true;
 }
 
 [[noreturn]] void refuse_unknown(const std::string& place, const std::string& key, std::string_view name,
@@ -97,94 +38,168 @@ std::string line_of(const std::string& origin, const toml::node& node) {
   return fmt::format("{}:{}", origin, node.source().begin.line);
 }
 
-Weight read_weight(const toml::table& table, const std::string& origin) {
-  Weight weight;
+Entry entry_of(const std::string& key, const std::string& place, const toml::node& node) {
+  return {.option = find_option("hoop", key),
+          .place = place,
+          .position = node.source().begin,
+          .node = &node,
+          .key = key};
+}
+
+/// Adds the numbers of a table of the section, `of` being "" or "slug.". extra: its key that is no number.
+void add_numbers(const toml::table& table, const std::string& of, std::string_view extra,
+                 const std::string& origin, std::vector<Entry>& entries) {
+  const bool of_weight = !of.empty();
+  for (const auto& [key, node] : table) {
+    if (key.str() == extra) continue;
+    const std::string name = of + std::string(key.str());
+    std::vector<std::string_view> names = names_of(of_weight);
+    if (std::ranges::find(names, key.str()) == names.end()) {
+      names.push_back(extra);
+      refuse_unknown(line_of(origin, node), name, key.str(), names);
+    }
+    entries.push_back(entry_of("hoop." + name, line_of(origin, node), node));
+  }
+  for (const BodyNumber& row : body_numbers())
+    if (row.needed && row.of_weight() == of_weight && !table.contains(row.name))
+      refuse(line_of(origin, table), of_weight ? of.substr(0, of.size() - 1) : std::string(row.name),
+             of_weight ? fmt::format("'{}' is missing", row.name) : "is missing",
+             fmt::format("{} = \"... {}\"", row.name, find_own_unit(row.unit)->example));
+}
+
+std::string name_of_weight(const toml::table& table, const std::string& origin) {
   const auto* name = table["name"].as_string();
   if (!name || name->get().empty() || name->get().find_first_of(".=[] \t\n\"'") != std::string::npos)
     refuse(line_of(origin, table), "weight",
            name ? "the name '" + name->get() + "' cannot be part of a key" : "'name' is missing",
            "a name of letters, digits, - and _, for example name = \"slug\"");
-  weight.name = name->get();
-  std::vector<std::string_view> taken = names_of(ring_keys);
+  std::vector<std::string_view> taken = names_of(false);
   taken.push_back("weight");
-  if (std::ranges::find(taken, weight.name) != taken.end())
-    refuse(line_of(origin, table), "weight", fmt::format("the name '{}' is a key of [hoop]", weight.name),
+  if (std::ranges::find(taken, name->get()) != taken.end())
+    refuse(line_of(origin, table), "weight", fmt::format("the name '{}' is a key of [hoop]", name->get()),
            "a name of its own, for example name = \"slug\"");
-  for (const auto& [key, node] : table)
-    if (key.str() != "name" &&
-        !set(weight, weight_keys, key.str(), weight.name + ".", node, line_of(origin, node))) {
-      std::vector<std::string_view> names = names_of(weight_keys);
-      names.insert(names.begin(), "name");
-      refuse_unknown(line_of(origin, node), fmt::format("{}.{}", weight.name, key.str()), key.str(), names);
-    }
-  for (const Key<Weight>& key : weight_keys)
-    if (key.needed && !table.contains(key.name))
-      refuse(line_of(origin, table), weight.name, fmt::format("'{}' is missing", key.name),
-             fmt::format("{} = \"... {}\"", key.name, find_own_unit(key.unit)->example));
-  return weight;
+  return name->get();
 }
 
-Body read_section(const toml::node& section, const std::string& origin) {
-  const toml::table* table = section.as_table();
-  if (!table) refuse(line_of(origin, section), "", "is no section", "[hoop] above its keys");
-  Body body;
-  for (const auto& [key, node] : *table) {
-    if (set(body, ring_keys, key.str(), "", node, line_of(origin, node))) continue;
-    if (key.str() != "weight") {
-      std::vector<std::string_view> names = names_of(ring_keys);
-      names.push_back("weight");
-      refuse_unknown(line_of(origin, node), std::string(key.str()), key.str(), names);
-    }
-    const toml::array* weights = node.as_array();
-    if (!weights || (!weights->empty() && !weights->is_array_of_tables()))
-      refuse(line_of(origin, node), "weight", "is no list of weights",
-             "[[hoop.weight]] above the keys of each");
-    for (const toml::node& one : *weights) body.weights.push_back(read_weight(*one.as_table(), origin));
+[[noreturn]] void refuse_weights(const std::string& place, const Body& body, const std::string& key,
+                                 const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const Weight& each : body.weights) names.push_back(each.name);
+  refuse(place, key, fmt::format("no weight has the name '{}'{}", name, did_you_mean(name, names)),
+         names.empty() ? "weights, by [[hoop.weight]] in a spec" : fmt::format("{}", fmt::join(names, ", ")));
+}
+
+/// That an axis or a column is of a number that the body has, in its range.
+void check_axis(const Spec& spec, const Axis& axis) {
+  if (!find_body_number(axis.key)) return;
+  if (!spec.hoop)
+    throw InputError(
+        fmt::format("{}: {}: there is no [hoop]; allowed: with [hoop] in the spec, which gives the rest",
+                    origin_of(spec), axis.key));
+  const auto variable = find_variable(axis.key, &*spec.hoop);
+  if (!variable) {
+    check_hoop_key(*spec.hoop, axis.key, origin_of(spec));
+    throw InputError(
+        fmt::format("{}: {}: takes no axis, because it scales lengths and times of the whole map; allowed: "
+                    "one number",
+                    origin_of(spec), axis.key));
   }
-  for (const Key<Body>& key : ring_keys)
-    if (key.needed && !table->contains(key.name))
-      refuse(line_of(origin, section), std::string(key.name), "is missing",
-             fmt::format("{} = \"... {}\"", key.name, find_own_unit(key.unit)->example));
+  for (const double value : axis.values)
+    if (!variable->range.holds(value))
+      throw InputError(fmt::format("{}: {} = {} is out of range; allowed: {}", origin_of(spec), axis.key,
+                                   value, allowed_values(variable->range, variable->unit)));
+}
+
+/// The body whose two ratios of masses are the largest of all designs.
+Body extreme_of(const Spec& spec) {
+  Body body = *spec.hoop;
+  Design unused;
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying) {
+      const auto variable = find_variable(axis.key, &body);
+      if (!variable || !variable->of_body()) continue;
+      const auto [least, most] = std::ranges::minmax(axis.values);
+      variable->in(unused, body) = axis.key == "hoop.mass" ? least : most;
+    }
   return body;
-}
-
-void override_with(Body& body, const HoopOverride& given) {
-  const std::string place = "command line";
-  const std::size_t dot = given.key.find('.');
-  if (dot == std::string::npos) {
-    if (!set(body, ring_keys, given.key, "", *given.value, place))
-      refuse_unknown(place, given.key, given.key, names_of(ring_keys));
-    return;
-  }
-  const std::string name = given.key.substr(0, dot), key = given.key.substr(dot + 1);
-  const auto weight = std::ranges::find(body.weights, name, &Weight::name);
-  if (weight == body.weights.end()) {
-    std::vector<std::string_view> names;
-    for (const Weight& each : body.weights) names.push_back(each.name);
-    refuse(
-        place, given.key, fmt::format("no weight has the name '{}'{}", name, did_you_mean(name, names)),
-        names.empty() ? "weights, by [[hoop.weight]] in a spec" : fmt::format("{}", fmt::join(names, ", ")));
-  }
-  if (!set(*weight, weight_keys, key, name + ".", *given.value, place))
-    refuse_unknown(place, given.key, key, names_of(weight_keys));
 }
 
 }  // namespace
 
-std::optional<Body> read_hoop(const toml::node* hoop, const std::string& origin,
-                              std::span<const HoopOverride> overrides) {
-  if (!hoop && overrides.empty()) return {};
-  if (!hoop)
-    refuse("command line", overrides[0].key, "there is no [hoop]",
-           "with [hoop] in the spec, which gives the rest");
-  Body body = read_section(*hoop, origin);
-  for (const HoopOverride& one : overrides) override_with(body, one);
-  try {
-    static_cast<void>(reduce_body(body));
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", origin, error.what()));
+void check_hoop_key(const Body& body, const std::string& key, const std::string& place) {
+  const std::string of_hoop = key.substr(std::string_view("hoop.").size());
+  const std::size_t dot = of_hoop.find('.');
+  if (dot == std::string::npos) {
+    if (!find_body_number(key)) refuse_unknown(place, of_hoop, of_hoop, names_of(false));
+    return;
+  }
+  const std::string weight = of_hoop.substr(0, dot);
+  if (std::ranges::find(body.weights, weight, &Weight::name) == body.weights.end())
+    refuse_weights(place, body, of_hoop, weight);
+  if (!find_body_number(key)) refuse_unknown(place, of_hoop, of_hoop.substr(dot + 1), names_of(true));
+}
+
+Body read_hoop(const toml::node& section, const std::string& origin, std::vector<Entry>& entries) {
+  const toml::table* table = section.as_table();
+  if (!table) refuse(line_of(origin, section), "", "is no section", "[hoop] above its keys");
+  add_numbers(*table, "", "weight", origin, entries);
+  Body body;
+  const toml::node* weights = table->get("weight");
+  if (!weights) return body;
+  const toml::array* list = weights->as_array();
+  if (!list || (!list->empty() && !list->is_array_of_tables()))
+    refuse(line_of(origin, *weights), "weight", "is no list of weights",
+           "[[hoop.weight]] above the keys of each");
+  for (const toml::node& one : *list) {
+    body.weights.push_back({.name = name_of_weight(*one.as_table(), origin)});
+    add_numbers(*one.as_table(), body.weights.back().name + ".", "name", origin, entries);
   }
   return body;
+}
+
+Entry hoop_override(const Body& body, const std::string& key, const toml::node& value) {
+  check_hoop_key(body, key, command_line);
+  Entry entry = entry_of(key, command_line, value);
+  entry.position = {};
+  return entry;
+}
+
+void assign_to_hoop(const Entry& entry, Spec& spec) {
+  Body& body = *spec.hoop;
+  if (const toml::table* table = entry.node->as_table()) {
+    if (!find_body_number(entry.key)->varies)
+      leapmap::refuse(entry, "takes no axis, because it scales lengths and times of the whole map",
+                      "one number");
+    spec.axes.push_back(to_axis(entry, *table));
+    find_variable(entry.key, &body)->in(spec.design, body) = spec.axes.back().values.front();
+  } else if (entry.key == "hoop.diameter") {
+    body.diameter = to_number(entry, *entry.node);
+  } else {
+    find_variable(entry.key, &body)->in(spec.design, body) = to_number(entry, *entry.node);
+  }
+}
+
+void check_hoop(const Spec& spec) {
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying) check_axis(spec, axis);
+  if (!spec.hoop) return;
+  try {
+    static_cast<void>(reduce_body(*spec.hoop));
+    static_cast<void>(reduce_body(extreme_of(spec)));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", origin_of(spec), error.what()));
+  }
+}
+
+std::vector<std::string> body_keys(const Spec& spec) {
+  std::vector<std::string> keys;
+  if (!spec.hoop) return keys;
+  for (const BodyNumber& row : body_numbers()) {
+    if (!row.of_weight()) keys.push_back(fmt::format("hoop.{}", row.name));
+    for (const Weight& weight : spec.hoop->weights)
+      if (row.of_weight()) keys.push_back(fmt::format("hoop.{}.{}", weight.name, row.name));
+  }
+  return keys;
 }
 
 std::string hoop_help() {
@@ -192,18 +207,40 @@ std::string hoop_help() {
   std::string help =
       "\n[hoop], instead of mass_ratio, offset_ratio, inertia_factor, radius and mass; angles count from the "
       "weights' common centre of mass\n";
-  const auto add = [&](const auto& keys) {
-    for (const auto& key : keys)
-      help += list_entry(
-          fmt::format("  {}", key.name),
-          fmt::format("{} [{}], for example in {}.", key.meaning, key.unit, find_own_unit(key.unit)->example),
-          column);
+  const auto add = [&](bool of_weight) {
+    for (const BodyNumber& row : body_numbers())
+      if (row.of_weight() == of_weight)
+        help += list_entry(fmt::format("  {} {}", row.name, row.varies ? "*" : ""),
+                           fmt::format("{} [{}], for example in {}.", row.meaning_of(), row.unit,
+                                       find_own_unit(row.unit)->example),
+                           column);
   };
-  add(ring_keys);
-  help += "[[hoop.weight]], any number of them; with --set: hoop.NAME.mass=VALUE\n";
+  add(false);
+  help += "[[hoop.weight]], any number of them; as options --hoop.NAME.mass VALUE\n";
   help += list_entry("  name", "a name of its own.", column);
-  add(weight_keys);
+  add(true);
   return help;
+}
+
+std::string hoop_text(const Spec& spec, const std::function<std::string(const Axis&)>& text_of_axis) {
+  if (!spec.hoop) return {};
+  const auto line = [&](const BodyNumber& row, const std::string& key, double value) -> std::string {
+    const auto axis = std::ranges::find(spec.axes, key, &Axis::key);
+    if (axis == spec.axes.end() && std::isnan(value)) return {};  // of a thin ring
+    return fmt::format("{} = {}\n", row.name,
+                       axis == spec.axes.end() ? toml_number(value) : text_of_axis(*axis));
+  };
+  std::string text = "\n[hoop]\n";
+  for (const BodyNumber& row : body_numbers())
+    if (const auto* member = std::get_if<double Body::*>(&row.member))
+      text += line(row, fmt::format("hoop.{}", row.name), (*spec.hoop).**member);
+  for (const Weight& weight : spec.hoop->weights) {
+    text += fmt::format("\n[[hoop.weight]]\nname = \"{}\"\n", weight.name);
+    for (const BodyNumber& row : body_numbers())
+      if (const auto* member = std::get_if<double Weight::*>(&row.member))
+        text += line(row, fmt::format("hoop.{}.{}", weight.name, row.name), weight.**member);
+  }
+  return text;
 }
 
 }  // namespace leapmap

@@ -4,27 +4,38 @@
 
 #include <toml++/toml.h>
 
-#include <optional>
-#include <span>
+#include <functional>
 #include <string>
-#include <string_view>
+#include <vector>
 
-#include "leapmap/body.hpp"
+#include "spec/spec.hpp"
+#include "spec/spec_entry.hpp"
 
 namespace leapmap {
 
-/// hoop.KEY=VALUE of the command line; KEY: "diameter", "slug.mass" and the like.
-struct HoopOverride {
-  std::string key;
-  const toml::node* value;
-};
+/// The weights of the section by their names alone; its numbers are added to the entries. Throws InputError
+/// for keys that it lacks or that are unknown.
+Body read_hoop(const toml::node& section, const std::string& origin, std::vector<Entry>& entries);
 
-/// The body of the section, with what the command line sets of it. hoop: the section, or nullptr. Nothing:
-/// there is neither. Throws InputError naming place, key, value and what is allowed.
-std::optional<Body> read_hoop(const toml::node* hoop, const std::string& origin,
-                              std::span<const HoopOverride> overrides);
+/// An entry for "hoop.slug.mass" of the command line. Throws as check_hoop_key does.
+Entry hoop_override(const Body& body, const std::string& key, const toml::node& value);
+
+/// Throws InputError if the body has no number of that key.
+void check_hoop_key(const Body& body, const std::string& key, const std::string& place);
+
+/// Puts the entry's number into spec.hoop, or its axis into spec.axes.
+void assign_to_hoop(const Entry& entry, Spec& spec);
+
+/// Throws InputError for a body that cannot be, nominal or along the axes.
+void check_hoop(const Spec& spec);
+
+/// "hoop.diameter", "hoop.slug.mass" and so on: of all numbers of the spec's body; none without [hoop].
+std::vector<std::string> body_keys(const Spec& spec);
 
 /// The keys, for --help.
 std::string hoop_help();
+
+/// The section as a resolved spec has it; empty: there is none.
+std::string hoop_text(const Spec& spec, const std::function<std::string(const Axis&)>& text_of_axis);
 
 }  // namespace leapmap

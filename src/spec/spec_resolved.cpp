@@ -11,18 +11,15 @@
 #include "leapmap/outcome.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
+#include "model/variable.hpp"
 #include "spec/options.hpp"
 #include "spec/spacing.hpp"
 #include "spec/spec.hpp"
+#include "spec/spec_hoop.hpp"
+#include "support/number.hpp"
 
 namespace leapmap {
 namespace {
-
-// A number that TOML reads back as the same float: fmt's shortest form, which may look like an integer.
-std::string number(double value) {
-  std::string digits = fmt::format("{}", value);
-  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
-}
 
 std::string quoted_text(const std::string& value) {
   std::ostringstream quoted;
@@ -34,13 +31,13 @@ std::string quoted_text(const std::string& value) {
 std::string text_of(const Axis& axis, bool spaced) {
   const auto scale = [](bool log) { return log ? ", scale = \"log\"" : ""; };
   if (axis.free)
-    return fmt::format("{{ from = {}, to = {}{} }}", number(axis.values.front()), number(axis.values.back()),
-                       scale(axis.log));
+    return fmt::format("{{ from = {}, to = {}{} }}", toml_number(axis.values.front()),
+                       toml_number(axis.values.back()), scale(axis.log));
   if (const auto spacing = spaced ? spacing_of(axis.values) : std::nullopt)
-    return fmt::format("{{ from = {}, to = {}, count = {}{} }}", number(spacing->from), number(spacing->to),
-                       spacing->count, scale(spacing->log));
+    return fmt::format("{{ from = {}, to = {}, count = {}{} }}", toml_number(spacing->from),
+                       toml_number(spacing->to), spacing->count, scale(spacing->log));
   std::vector<std::string> values;
-  for (const double value : axis.values) values.push_back(number(value));
+  for (const double value : axis.values) values.push_back(toml_number(value));
   return fmt::format("{{ values = [{}] }}", fmt::join(values, ", "));
 }
 
@@ -52,13 +49,15 @@ std::optional<std::string> value_of(const Option& option, Spec& spec) {
         if constexpr (std::is_same_v<Slot, ParameterSlot>) {
           const double value = spec.design.*slot.member;
           if (std::isnan(value)) return std::nullopt;  // it follows another parameter
-          return number(value);
+          return toml_number(value);
+        } else if constexpr (std::is_same_v<Slot, HoopSlot>) {
+          return std::nullopt;  // hoop_text's
         } else if constexpr (std::is_same_v<Slot, SceneSlot>) {
-          return number(spec.scene.*slot.member);
+          return toml_number(spec.scene.*slot.member);
         } else if constexpr (std::is_same_v<Slot, FrictionSlot>) {
           return quoted_text(std::string(model_of(spec.scene).name));
         } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
-          return number(slot(spec));
+          return toml_number(slot(spec));
         } else if constexpr (std::is_same_v<Slot, SpreadSlot>) {
           const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
           if (spread == spec.scatter.spreads.end()) return std::nullopt;
@@ -83,9 +82,24 @@ std::optional<std::string> value_of(const Option& option, Spec& spec) {
       option.slot);
 }
 
+/// Whether [hoop] gives what an option does.
+bool is_of_body(const Spec& spec, const Option& option) {
+  if (!spec.hoop || std::holds_alternative<SpreadSlot>(option.slot)) return false;
+  const auto* of_design = std::get_if<ParameterSlot>(&option.slot);
+  const auto* of_scene = std::get_if<SceneSlot>(&option.slot);
+  return of_design ? std::ranges::find(body_ratios, of_design->member) != body_ratios.end()
+                   : of_scene && (of_scene->member == &Scene::radius || of_scene->member == &Scene::mass);
+}
+
 std::string text_of(const Spec& original, bool spaced) {
   Spec spec = original;
   spec.numerics.method = resolved_method(spec.numerics);
+  // The axes of [hoop] stand in a section of their own.
+  const bool has_order =
+      std::ranges::any_of(spec.axes, [](const Axis& axis) { return find_body_number(axis.key) != nullptr; });
+  spec.output.order.clear();
+  for (const Axis& axis : spec.axes)
+    if (has_order && spec.axes.size() > 1) spec.output.order.push_back(axis.key);
   std::string text;
   std::string_view section;
   const auto line = [&](std::string_view header, std::string_view key, const std::string& value) {
@@ -96,19 +110,24 @@ std::string text_of(const Spec& original, bool spaced) {
     if (option.section == "gait" && spec.scene.settle == 0) continue;
     // Axes come after all numbers of the section, in the order of the map's dimensions.
     if (option.key == "points")
-      for (const Axis& axis : spec.axes) line("design", axis.key, text_of(axis, spaced));
+      for (const Axis& axis : spec.axes)
+        if (!find_body_number(axis.key)) line("design", axis.key, text_of(axis, spaced));
+    if (is_of_body(spec, option)) continue;
     const bool parameter = std::holds_alternative<ParameterSlot>(option.slot);
     if (parameter && std::ranges::find(spec.axes, option.key, &Axis::key) != spec.axes.end()) continue;
     if (const auto value = value_of(option, spec)) line(option.section, option.key, *value);
+    if (option.section == "scatter" && option.key == "samples")
+      for (const Spread& spread : spec.scatter.spreads)
+        if (find_body_number(spread.parameter)) line("scatter", spread.parameter, leapmap::text_of(spread));
   }
-  return text;
+  return text + hoop_text(spec, [&](const Axis& axis) { return text_of(axis, spaced); });
 }
 
 }  // namespace
 
 std::string text_of(const Spread& spread) {
   return fmt::format("{{ {} = {} }}", spread.law == Spread::Law::normal ? "normal" : "uniform",
-                     spread.percent ? fmt::format("\"{} %\"", spread.width) : number(spread.width));
+                     spread.percent ? fmt::format("\"{} %\"", spread.width) : toml_number(spread.width));
 }
 
 std::string text_of(const Goal& goal) {
@@ -118,10 +137,10 @@ std::string text_of(const Goal& goal) {
   const auto* code = std::get_if<Code>(&field.source);
   if (code && !code->names.empty())
     return fmt::format("{{ is = \"{}\" }}", code->names[static_cast<std::size_t>(goal.at_least)]);
-  if (goal.at_least == goal.at_most) return fmt::format("{{ is = {} }}", number(goal.at_least));
+  if (goal.at_least == goal.at_most) return fmt::format("{{ is = {} }}", toml_number(goal.at_least));
   std::vector<std::string> parts;
-  if (std::isfinite(goal.at_least)) parts.push_back("at_least = " + number(goal.at_least));
-  if (std::isfinite(goal.at_most)) parts.push_back("at_most = " + number(goal.at_most));
+  if (std::isfinite(goal.at_least)) parts.push_back("at_least = " + toml_number(goal.at_least));
+  if (std::isfinite(goal.at_most)) parts.push_back("at_most = " + toml_number(goal.at_most));
   return fmt::format("{{ {} }}", fmt::join(parts, ", "));
 }
 

@@ -71,8 +71,7 @@ Spread to_spread(const Entry& entry) {
   const std::string_view law = only->first.str();
   const toml::node& node = only->second;
   if (law != "normal" && law != "uniform") refuse(entry, fmt::format("'{}' is unknown", law), spread_forms);
-  Spread spread{.parameter = std::string(entry.option->key),
-                .law = law == "normal" ? Spread::Law::normal : Spread::Law::uniform};
+  Spread spread{.parameter = entry.key, .law = law == "normal" ? Spread::Law::normal : Spread::Law::uniform};
   const auto percent = to_percent(node);
   spread.percent = percent.has_value();
   if (!percent && node.is_string() && !find_own_unit(entry.option->unit))

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace leapmap {
@@ -10,5 +11,8 @@ namespace leapmap {
 /// A finite decimal number that is the whole text but for blanks around it; a sign may be a plus. Nothing:
 /// the text is no such number ("nan", "inf", "0x10" and "+-1" are none).
 std::optional<double> number_in(std::string_view text);
+
+/// A number that TOML reads back as the same float, in as few digits as that takes.
+std::string toml_number(double value);
 
 }  // namespace leapmap

@@ -5,9 +5,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "numerics/normal_law.hpp"
+#include "physics/body.hpp"
 
 namespace leapmap {
 namespace {
@@ -23,39 +25,39 @@ double inside(const Range& range, double value) {
 
 }  // namespace
 
-MadeHoops::MadeHoops(const Scatter& scatter, std::shared_ptr<const SobolPoints> points)
-    : points_(std::move(points)) {
+MadeHoops::MadeHoops(const Scatter& scatter, const std::optional<Body>& hoop,
+                     std::shared_ptr<const SobolPoints> points)
+    : points_(std::move(points)), nominal_(hoop.value_or(Body{})) {
   assert(points_->dimensions() >= scatter.spreads.size());
   for (const Spread& spread : scatter.spreads) {
-    const auto all = parameters();
-    const auto parameter = std::find_if(all.begin(), all.end(),
-                                        [&](const Parameter& each) { return each.name == spread.parameter; });
-    spreads_.push_back({&*parameter, std::get<double Design::*>(parameter->member), spread.law, spread.width,
-                        spread.percent, 0});
+    spreads_.push_back(
+        {*find_variable(spread.parameter, &nominal_), spread.law, spread.width, spread.percent, 0});
+    makes_bodies_ = makes_bodies_ || spreads_.back().variable.of_body();
   }
   for (Made& spread : spreads_)
     spread.dimension =
         static_cast<std::size_t>(std::count_if(spreads_.begin(), spreads_.end(), [&](const Made& other) {
-          return other.parameter < spread.parameter;
+          return other.variable.order < spread.variable.order;
         }));
   columns_.assign(spreads_.size(), std::vector<Column>(points_->dimensions()));
   now_.resize(spreads_.size());
 }
 
 /// NaN: it follows mu_static, from where that is drawn.
-double MadeHoops::value_drawn(const Made& spread, const Design& drawn) const {
-  const double value = drawn.*spread.member;
+double MadeHoops::value_drawn(const Made& spread, const Design& drawn, const Body& body) const {
+  const double value = spread.variable.of(drawn, body);
   return std::isnan(value) ? drawn.mu_static : value;
 }
 
-double MadeHoops::width_of(const Made& spread, const Design& drawn) const {
-  return spread.percent ? 0.01 * spread.width * std::abs(value_drawn(spread, drawn)) : spread.width;
+double MadeHoops::width_of(const Made& spread, const Design& drawn, const Body& body) const {
+  return spread.percent ? 0.01 * spread.width * std::abs(value_drawn(spread, drawn, body)) : spread.width;
 }
 
-CutLaw MadeHoops::law(std::size_t k, const Design& drawn) const {
+CutLaw MadeHoops::law(std::size_t k, const Design& drawn, const Body* given) const {
   const Made& spread = spreads_[k];
-  const double value = value_drawn(spread, drawn), width = width_of(spread, drawn);
-  const Range& range = spread.parameter->range;
+  const Body& body = given ? *given : nominal_;
+  const double value = value_drawn(spread, drawn, body), width = width_of(spread, drawn, body);
+  const Range& range = spread.variable.range;
   // Beyond eight deviations there is less of a normal law than a double tells from nothing.
   const double end = spread.law == Spread::Law::normal ? 8.5 : 1.0;
   CutLaw cut{-end, end, 1.0};
@@ -67,9 +69,9 @@ CutLaw MadeHoops::law(std::size_t k, const Design& drawn) const {
   return cut;
 }
 
-bool MadeHoops::can_make(const Design& drawn) const {
+bool MadeHoops::can_make(const Design& drawn, const Body* body) const {
   for (std::size_t k = 0; k < spreads_.size(); ++k)
-    if (!(law(k, drawn).left >= least_left)) return false;
+    if (!(law(k, drawn, body).left >= least_left)) return false;
   return true;
 }
 
@@ -88,11 +90,12 @@ const std::vector<double>& MadeHoops::deviations(std::size_t k, std::size_t dime
   return column.deviations;
 }
 
-double MadeHoops::draw(const Design& drawn, std::span<const std::size_t> from_dimension) {
+double MadeHoops::draw(const Design& drawn, const Body* body, std::span<const std::size_t> from_dimension) {
   drawn_ = drawn;
+  if (makes_bodies_) body_ = body ? *body : nominal_;
   double left = 1.0;
   for (std::size_t k = 0; k < spreads_.size(); ++k) {
-    const CutLaw cut = law(k, drawn);
+    const CutLaw cut = law(k, drawn, body);
     left *= cut.left;
     const std::size_t sample = from_dimension.empty() ? 0 : from_dimension[k] / spreads_.size();
     now_[k] = &deviations(k, sample * spreads_.size() + spreads_[k].dimension, cut);
@@ -100,14 +103,38 @@ double MadeHoops::draw(const Design& drawn, std::span<const std::size_t> from_di
   return 1.0 - left;
 }
 
+void MadeHoops::take_body(const Body& made, const ReducedBody& nominal, Design& design) const {
+  const ReducedBody reduced = reduce_checked(made);
+  apply_ratios(reduced, design);
+  // The release is that of the drawing: it counts from where the centre of mass should be. The motor is too.
+  if (nominal.eccentricity > 0.0 && reduced.eccentricity > 0.0)
+    design.release_angle += std::remainder(reduced.direction - nominal.direction, 2.0 * std::numbers::pi);
+  design.drive_torque *= nominal.total_mass / reduced.total_mass;
+}
+
 void MadeHoops::fill(std::size_t first, std::span<Design> made) const {
   std::fill(made.begin(), made.end(), drawn_);
   for (std::size_t k = 0; k < spreads_.size(); ++k) {
     const Made& spread = spreads_[k];
-    const double value = value_drawn(spread, drawn_), width = width_of(spread, drawn_);
+    double Design::*const member = spread.variable.parameter();
+    if (!member) continue;
+    const double value = value_drawn(spread, drawn_, body_), width = width_of(spread, drawn_, body_);
     const double* deviation = now_[k]->data() + first;
     for (std::size_t i = 0; i < made.size(); ++i)
-      made[i].*spread.member = inside(spread.parameter->range, value + width * deviation[i]);
+      made[i].*member = inside(spread.variable.range, value + width * deviation[i]);
+  }
+  if (!makes_bodies_) return;
+  const ReducedBody nominal = reduce_checked(body_);
+  Body body = body_;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    for (std::size_t k = 0; k < spreads_.size(); ++k) {
+      const Made& spread = spreads_[k];
+      if (!spread.variable.of_body()) continue;
+      const double value = value_drawn(spread, drawn_, body_), width = width_of(spread, drawn_, body_);
+      spread.variable.in(made[i], body) =
+          inside(spread.variable.range, value + width * (*now_[k])[first + i]);
+    }
+    take_body(body, nominal, made[i]);
   }
 }
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Hoops as they are made after a drawing: each scattered parameter differs from what is drawn by its law,
-/// cut off where the parameter may not be.
+/// Hoops as they are made after a drawing: each scattered number differs from what is drawn by its law,
+/// cut off where the number may not be.
 ///
 /// The same random numbers serve every drawing, so that what is told of hoops as made is smooth over a map.
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "leapmap/spec.hpp"
-#include "model/parameters.hpp"
+#include "model/variable.hpp"
 #include "numerics/sobol_points.hpp"
 
 namespace leapmap {
@@ -28,7 +29,9 @@ inline constexpr double least_left = 0.499;
 /// One a thread. Needs points of at least as many dimensions as the scatter has spreads.
 class MadeHoops {
  public:
-  MadeHoops(const Scatter& scatter, std::shared_ptr<const SobolPoints> points);
+  /// hoop: the nominal body, if the spec has [hoop].
+  MadeHoops(const Scatter& scatter, const std::optional<Body>& hoop,
+            std::shared_ptr<const SobolPoints> points);
 
   std::size_t samples() const { return points_->samples(); }
   std::size_t a_replicate() const { return points_->a_replicate(); }
@@ -36,20 +39,21 @@ class MadeHoops {
 
   /// What is made after this drawing from now on. Each spread takes a dimension of the points of its own, by
   /// the order of parameters, whatever that of the spreads; from_dimension[k]: k, or k plus the number of
-  /// spreads for another sample of spread k. By default k. Returns the share cut off.
-  double draw(const Design& drawn, std::span<const std::size_t> from_dimension = {});
+  /// spreads for another sample of spread k. By default k. body: from which the drawing follows; by default
+  /// the nominal one. Returns the share cut off.
+  double draw(const Design& drawn, const Body* body = nullptr,
+              std::span<const std::size_t> from_dimension = {});
   /// Hoops first, first + 1, ...
   void fill(std::size_t first, std::span<Design> made) const;
 
   /// The law of spread k around this drawing.
-  CutLaw law(std::size_t k, const Design& drawn) const;
+  CutLaw law(std::size_t k, const Design& drawn, const Body* body = nullptr) const;
   /// Whether of each law as much is left as has to be.
-  bool can_make(const Design& drawn) const;
+  bool can_make(const Design& drawn, const Body* body = nullptr) const;
 
  private:
   struct Made {
-    const Parameter* parameter;
-    double Design::*member;
+    Variable variable;
     Spread::Law law;
     double width;
     bool percent;
@@ -60,14 +64,19 @@ class MadeHoops {
     CutLaw law{};
     std::vector<double> deviations;
   };
-  double value_drawn(const Made& spread, const Design& drawn) const;
-  double width_of(const Made& spread, const Design& drawn) const;
+  double value_drawn(const Made& spread, const Design& drawn, const Body& body) const;
+  double width_of(const Made& spread, const Design& drawn, const Body& body) const;
+  /// What the made body comes to: its ratios, and what the turn of its centre of mass and its mass change.
+  void take_body(const Body& made, const ReducedBody& nominal, Design& design) const;
   const std::vector<double>& deviations(std::size_t spread, std::size_t dimension, const CutLaw& law);
 
   std::shared_ptr<const SobolPoints> points_;
   std::vector<Made> spreads_;
   std::vector<std::vector<Column>> columns_;  // of each spread along each dimension
+  Body nominal_;
+  bool makes_bodies_ = false;
   Design drawn_;
+  Body body_;  // of what is drawn
   std::vector<const std::vector<double>*> now_;
 };
 

@@ -29,10 +29,10 @@ std::shared_ptr<const SobolPoints> points_of(const Scatter& scatter, std::size_t
                                              static_cast<std::uint64_t>(scatter.seed));
 }
 
-ScatterSolver::ScatterSolver(const Scatter& scatter, std::shared_ptr<const SobolPoints> points,
-                             const std::vector<Goal>& goals, const std::vector<const Field*>& quantities,
-                             Solver solver)
-    : hoops_(scatter, std::move(points)),
+ScatterSolver::ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop,
+                             std::shared_ptr<const SobolPoints> points, const std::vector<Goal>& goals,
+                             const std::vector<const Field*>& quantities, Solver solver)
+    : hoops_(scatter, hoop, std::move(points)),
       solver_(std::move(solver)),
       tally_(goals, quantities, hoops_.samples()),
       made_(std::min(made_at_once, hoops_.samples())),
@@ -45,11 +45,12 @@ double ScatterSolver::tell(const OfMade& what) {
   return what.error ? tally_.error(what.statistic, what.of) : tally_.tell(what.statistic, what.of);
 }
 
-void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns) {
+void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns,
+                          std::span<const Body> bodies) {
   columns.begin(designs.size());
   for (std::size_t i = 0; i < designs.size(); ++i) {
     tally_.clear();
-    cut_off_ = hoops_.draw(designs[i]);
+    cut_off_ = hoops_.draw(designs[i], bodies.empty() ? nullptr : &bodies[i]);
     for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
       const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
       hoops_.fill(first, std::span(made_).first(count));

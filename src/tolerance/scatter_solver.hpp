@@ -40,11 +40,13 @@ class MadeColumns {
 class ScatterSolver {
  public:
   /// quantities: of which the columns are, besides shares; solver: tells these and what the goals are of.
-  ScatterSolver(const Scatter& scatter, std::shared_ptr<const SobolPoints> points,
-                const std::vector<Goal>& goals, const std::vector<const Field*>& quantities, Solver solver);
+  ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop,
+                std::shared_ptr<const SobolPoints> points, const std::vector<Goal>& goals,
+                const std::vector<const Field*>& quantities, Solver solver);
   bool can_make(const Design& drawn) const { return hoops_.can_make(drawn); }
-  /// Fills in the columns of designs.size() designs.
-  void solve(std::span<const Design> designs, MadeColumns& columns);
+  /// Fills in the columns of designs.size() designs. bodies: one for each, or none, where all have the
+  /// nominal one.
+  void solve(std::span<const Design> designs, MadeColumns& columns, std::span<const Body> bodies = {});
 
  private:
   double tell(const OfMade& what);

@@ -592,3 +592,21 @@ def test_a_fit_of_events_is_a_bar_each(models, tmp_path):
     (tmp_path / "other.csv").write_text("a,b\n1,2\n")
     refused = draw("fit_chart.py", tmp_path / "other.csv", "-o", tmp_path / "x")
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "other.csv" in refused.stderr
+
+
+def test_a_chart_over_a_weight_is_in_grams_and_millimetres(tmp_path):
+    """Isolines and colours too, whose numbers are those of the map times its diameter."""
+    spec = (TOP / "sweeps" / "drawing.toml").read_text().replace(
+        'mass = "85 g"', 'mass = { from = "40 g", to = "160 g", count = 30 }')
+    made = sweep(tmp_path, "[design]\nslope = { from = 0.3, to = 0.6, count = 30 }\n" + spec)
+    chart = draw("design_chart.py", made, "--units", "mm ms", "-o", tmp_path / "chart")
+    assert chart.returncode == 0, chart.stderr
+    words = texts(tmp_path / "chart_jump_height.svg")
+    assert "mass of slug [g]" in words and "jump height [mm]" in words and "R = 60 mm" in " ".join(words)
+    with h5py.File(made) as m:
+        heights = 120 * m["jump_height"][:]
+    numbers = [float(word) for word in words if re.fullmatch(r"\d+", word)]
+    assert max(numbers) > 40 and np.nanmin(heights) < 50 < np.nanmax(heights) and 50.0 in numbers
+    assert "time from release to the jump [ms]" in texts(tmp_path / "chart_jump_time.svg")
+    panel = draw("design_chart.py", made, "--units", "N", "-o", tmp_path / "chart")
+    assert panel.returncode != 0 and "--units N: fits no quantity" in panel.stderr

@@ -94,8 +94,8 @@ TEST_P(Questions, GoalsHoldForEachDesignAsTheSolverSeesItAlone) {
     for (const GoalCheck& goal : goal_checks(question.one.goals))
       EXPECT_TRUE(goal.reached(outcome)) << goal.field->name;
     for (const FreeParameter& parameter : question.free) {
-      EXPECT_GE(one.design.*parameter.member, parameter.side.low);
-      EXPECT_LE(one.design.*parameter.member, parameter.side.high);
+      EXPECT_GE(one.design.*parameter.variable.parameter(), parameter.side.low);
+      EXPECT_LE(one.design.*parameter.variable.parameter(), parameter.side.high);
     }
   }
 }

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The numbers that may differ from design to design: the parameters, and those of [hoop].
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "leapmap/body.hpp"
+#include "model/parameters.hpp"
+
+namespace leapmap {
+
+/// A number of a ring or of a weight, declared once.
+struct BodyNumber {
+  std::string_view name;
+  std::variant<double Body::*, double Weight::*> member;
+  std::string_view unit;  ///< of model/own_units.hpp
+  bool needed;
+  std::string_view meaning;  ///< of a weight: {} stands for its name
+  Range range;               ///< of a weight's `at`: before the radius is known
+  bool varies = true;        ///< false: the same for all designs of a spec
+
+  bool of_weight() const { return std::holds_alternative<double Weight::*>(member); }
+  /// The meaning with the weight's name, or with "the weight".
+  std::string meaning_of(std::string_view weight = "the weight") const;
+};
+
+/// All of them, the ring's first.
+std::span<const BodyNumber> body_numbers();
+
+/// The parameters that follow from a body.
+inline constexpr std::array<double Design::*, 3> body_ratios{&Design::mass_ratio, &Design::offset_ratio,
+                                                             &Design::inertia_factor};
+
+/// The row of "hoop.mass" or "hoop.NAME.mass", whatever the NAME; nullptr: it is no such key.
+const BodyNumber* find_body_number(std::string_view key);
+
+/// "slug" of "hoop.slug.mass"; empty: a number of the ring.
+std::string_view weight_of(std::string_view key);
+
+/// A number that may vary, and where a design or its body keeps it.
+class Variable {
+ public:
+  std::string key{};        ///< "slope", "hoop.slug.mass"
+  std::string_view unit{};  ///< of model/own_units.hpp; "1": a pure number
+  Range range{};
+  std::size_t order = 0;  ///< of parameters and numbers of [hoop], whatever the order they are named in
+  std::optional<Friction> only_of{};
+
+  bool of_body() const { return parameter_ == nullptr; }
+  /// The member of a parameter; nullptr: it is of the body.
+  double Design::*parameter() const { return parameter_; }
+  double& in(Design& design, Body& body) const;
+  double of(const Design& design, const Body& body) const;
+  /// The derivative by it where those by the parameters are known; its own value is that of the design and
+  /// body given. The slope of the ring and other parameters that do not follow from a body stay as they are.
+  double derivative(const Design& by, const Body& body) const;
+
+ private:
+  friend std::optional<Variable> find_variable(std::string_view key, const Body* body);
+  double Design::*parameter_ = nullptr;
+  double Body::*ring_ = nullptr;
+  std::size_t weight_ = 0;
+  double Weight::*of_weight_ = nullptr;
+};
+
+/// The parameters by which derivatives are needed for those by the variables, each once.
+std::vector<Variable> parameters_of(std::span<const Variable> variables);
+
+/// The variable of that key. body: of [hoop], or nullptr. Nothing: there is none, or it is the same for all
+/// designs.
+std::optional<Variable> find_variable(std::string_view key, const Body* body);
+
+}  // namespace leapmap
