@@ -57,7 +57,8 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
   }
   const pushes = motion.normal_force;
   if (pushes.length > 0) {
-    const most = pushes.reduce((a, b) => Math.max(a, b), 0);
+    // Up to the first jump the maximum itself, beyond it that of samples.
+    const most = pushes.reduce((a, b) => Math.max(a, b), jumped ? outcome.max_normal_force : 0);
     add("most_normal_force", "largest normal force", measure.force(most),
       most * chosen.mass * design.gravity);
   }

@@ -208,9 +208,11 @@ Solver second_solver(const Spec& spec, double tolerance) {
   return make_solver(request);
 }
 
-Solver solver_by_referee(const Scene& scene, double tolerance) {
-  return [referee = std::make_shared<referee::Referee>(scene, tolerance)](std::span<const Design> designs,
-                                                                          std::span<Outcome> outcomes) {
+Solver solver_by_referee(const Spec& spec, double tolerance) {
+  const auto referee = std::make_shared<referee::Referee>(spec.scene, tolerance);
+  referee->meets_forces = std::ranges::any_of(
+      map_fields(), [&](const Field& field) { return field.of_way && stores(spec.output, field); });
+  return [referee](std::span<const Design> designs, std::span<Outcome> outcomes) {
     std::ranges::transform(designs, outcomes.begin(), [&](const Design& d) { return referee->solve(d); });
   };
 }
@@ -221,8 +223,7 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
     : spec_(spec),
       space_(spec),
       second_{second_solver(spec, audit_tolerance), second_solver(spec, coarser_tolerance)},
-      referee_{solver_by_referee(spec.scene, audit_tolerance),
-               solver_by_referee(spec.scene, coarser_tolerance)},
+      referee_{solver_by_referee(spec, audit_tolerance), solver_by_referee(spec, coarser_tolerance)},
       gradients_(spec),
       sequences_(spec, begin_audit(spec).allowed_error),
       gaits_(spec, begin_audit(spec).allowed_error),

@@ -90,8 +90,10 @@ void print_gradients(const Question& question, const FoundDesign& found) {
 /// What tells it again, as made too where hoops are.
 std::string command_of(const Question& question, const Design& design) {
   std::string command = hop_command(question.one, design);
-  const Scatter& scatter = question.one.scatter;
-  if (scatter.spreads.empty()) return command;
+  const Scatter scatter = fresh_samples(question.one.scatter);
+  const auto is_of_body = [](const Spread& spread) { return find_body_number(spread.parameter) != nullptr; };
+  // Tolerances of [hoop] need the spec; of the nominal hoop alone the ratios tell all.
+  if (scatter.spreads.empty() || std::ranges::any_of(scatter.spreads, is_of_body)) return command;
   command += fmt::format(" --scatter --set samples={} --set scatter.seed={}", scatter.samples, scatter.seed);
   for (const Spread& spread : scatter.spreads)
     command += fmt::format(" --set 'scatter.{}={}'", spread.parameter, text_of(spread));
@@ -103,8 +105,8 @@ std::string command_of(const Question& question, const Design& design) {
 void print_design(const Question& question, const FoundDesign& found, std::size_t number) {
   say("\n{:>3}  {}\n     {}\n", number, told_parameters(question, found), told_fields(question, found));
   if (!std::isnan(found.yield.value))
-    say("     yield {:.4f} +- {:.4f}, from {} manufactured hoops\n", found.yield.value, found.yield.error,
-        question.one.scatter.samples);
+    say("     yield {:.4f} +- {:.4f}, from {} fresh manufactured hoops\n", found.yield.value,
+        found.yield.error, question.one.scatter.samples);
   std::string binds = fmt::format("{}", fmt::join(found.binds, "; "));
   if (const std::size_t at = binds.find("cliff ("); at != std::string::npos)
     binds.replace(at, 5, "discontinuity");
@@ -148,12 +150,22 @@ void print_found(const Question& question, const FoundDesigns& found) {
   for (std::size_t i = 0; i < found.designs.size(); ++i) print_design(question, found.designs[i], i + 1);
 }
 
+/// How near a hoop came to a jump.
+std::string how_near(const Outcome& outcome, const Scene& scene) {
+  if (outcome.candidates == 0) return "it never lifts off";
+  return fmt::format("its {} to {:.4g} diameters; a jump is {:g} or more",
+                     outcome.candidates == 1 ? "lift-off rises" : "first lift-off rises",
+                     outcome.first_jump_height, scene.hop_height);
+}
+
 /// The best that there is where no design does it.
 void print_miss(const Spec& spec, const Question& question, const FoundDesigns& found) {
   say("No design within the bounds meets all goals; {} were evaluated. The nearest miss:\n",
       grouped(found.evaluations));
   const FoundDesign& nearest = found.designs[0];
   say("     {}\n     {}\n", told_parameters(question, nearest), name_of(nearest.outcome.status));
+  if (nearest.outcome.status != Status::jumped)
+    say("     {}\n", how_near(nearest.outcome, question.one.scene));
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
     say("     {} {}: {}\n", spec.goals[k].field, text_of(spec.goals[k]),
         std::isnan(found.missed[k]) ? "does not apply" : fmt::format("{:.10g}", found.missed[k]));

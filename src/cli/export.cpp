@@ -6,17 +6,16 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
+#include "cli/shown_units.hpp"
 #include "cli/spoken.hpp"
 #include "leapmap/errors.hpp"
 #include "map/layout.hpp"
 #include "map/reader.hpp"
 #include "spec/map_spec.hpp"
-#include "spec/quantity.hpp"
 #include "support/closest.hpp"
 #include "support/output_file.hpp"
 
@@ -36,30 +35,8 @@ struct Column {
   std::string name{};
   const Field* field = nullptr;        ///< none: a parameter
   std::optional<std::size_t> along{};  ///< the axis whose values it has; none: a dataset
-  std::string unit{};                  ///< as the header names it; empty: a pure number, or words
-  double factor = 1.0;                 ///< of what the map holds to what is written
+  ShownUnit shown{};
 };
-
-/// Derivatives stay in the map's units. Of others the first of the units asked for that fits; else the
-/// column's own. J and N.m measure the same: J is better for energies, N.m for torques.
-void choose_unit(Column& column, std::string_view own, std::span<const std::string> units,
-                 const Scales& scales, std::vector<bool>& used) {
-  const bool is_derivative = column.field && std::holds_alternative<Derivative>(column.field->source);
-  if (is_derivative) own = column.field->unit;
-  if (own != "1") column.unit = own;
-  if (is_derivative) return;
-  const bool is_torque = !column.field;
-  bool found = false, is_odd = true;
-  for (std::size_t k = 0; k < units.size(); ++k) {
-    const auto factor = units_in_own(units[k], own, scales);
-    if (!factor) continue;
-    used[k] = true;
-    const bool odd = own == "(m + m_p) g R" && units[k].ends_with('J') == is_torque;
-    if (found && (odd || !is_odd)) continue;
-    found = true, is_odd = odd;
-    column.unit = units[k], column.factor = *factor;
-  }
-}
 
 /// What is not found along the map is no column of it.
 [[noreturn]] void refuse_field(const MapReader& map, const std::string& name) {
@@ -89,39 +66,10 @@ std::vector<Column> columns_of(const MapReader& map, const ExportArguments& argu
   return columns;
 }
 
-/// "mm g deg N" as its words; a unit of several words is written with points: "N.m".
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-void choose_units(std::vector<Column>& columns, const std::string& asked, const Scales& scales) {
-  const std::vector<std::string> units = words_of(asked);
-  std::vector<bool> used(units.size());
-  try {
-    for (Column& column : columns) {
-      const Option* parameter = column.field ? nullptr : find_option("", column.name);
-      choose_unit(column,
-                  column.field ? own_unit(*column.field)
-                  : parameter  ? parameter->unit
-                               : "1",
-                  units, scales, used);
-    }
-  } catch (const InputError& error) {
-    throw InputError(
-        fmt::format("--units: {}; allowed: units with blanks between them, for example "
-                    "\"mm deg ms rpm N.m\"",
-                    error.what()));
-  }
-  for (std::size_t k = 0; k < units.size(); ++k)
-    if (!used[k])
-      throw InputError(
-          fmt::format("--units: no column can be given in {}{}; allowed: units of the columns with blanks "
-                      "between them, for "
-                      "example \"mm deg ms rpm N.m\"",
-                      units[k], scales.mass > 0.0 ? "" : " (the map's spec has no scene.mass)"));
+void choose_units(std::vector<Column>& columns, ShownUnits units) {
+  for (Column& column : columns)
+    column.shown = column.field ? units.of(*column.field) : units.of(column.name);
+  units.refuse_unused();
 }
 
 /// Every digit of what the map holds; of what is converted as many as hold.
@@ -144,7 +92,7 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
     if (column.along) {
       const std::size_t k = *column.along;
       const std::size_t place = block.start[k] + place_along(block.extent, i, k);
-      texts[i] = text_of(map.dimensions()[k].values[place], column.factor);
+      texts[i] = text_of(map.dimensions()[k].values[place], column.shown.factor);
     } else if (code) {
       const auto number = static_cast<std::size_t>(values[i]);
       if (number < code->names.size())
@@ -152,7 +100,7 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
       else if (code->names.empty() && number != code->fill)
         texts[i] = fmt::format("{}", number);
     } else if (std::isfinite(values[i])) {
-      texts[i] = text_of(values[i], column.factor);
+      texts[i] = text_of(values[i], column.shown.factor);
     }
   }
   return texts;
@@ -181,7 +129,8 @@ std::string table_of(const MapReader& map, const std::vector<Column>& columns) {
   std::vector<std::string> header;
   if (!labels.empty()) header.emplace_back(label_name);
   for (const Column& column : columns)
-    header.push_back(column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit));
+    header.push_back(column.shown.unit.empty() ? column.name
+                                               : fmt::format("{} [{}]", column.name, column.shown.unit));
   std::string text = fmt::format("{}\n", fmt::join(header, ","));
   const std::size_t rows = map.blocks(map.fields()[0]).tile_shape()[0];
   for_each_block(map.shape(), rows, [&](const Tile& block) {
@@ -216,7 +165,7 @@ int run(const ExportArguments& arguments) {
                     arguments.map, grouped(designs), grouped(most_rows)));
   const Spec spec = spec_of(map, arguments.map);
   std::vector<Column> columns = columns_of(map, arguments);
-  choose_units(columns, arguments.units, scales_of(spec.scene));
+  choose_units(columns, ShownUnits(arguments.units, scales_of(spec.scene)));
   if (!map.is_whole()) tell(arguments.map + ": is INCOMPLETE: designs not computed have empty cells");
   TextOutput file("-o", arguments.output, {}, arguments.overwrite);
   note_signals();

@@ -17,6 +17,7 @@
 #include "cli/json.hpp"
 #include "cli/motor.hpp"
 #include "cli/output.hpp"
+#include "cli/shown_units.hpp"
 #include "cli/sweep.hpp"
 #include "coulomb/contact_phases.hpp"
 #include "engine/provenance.hpp"
@@ -34,7 +35,7 @@ namespace leapmap::cli {
 namespace {
 
 struct HopArguments {
-  std::string spec, trace;
+  std::string spec, trace, units;
   double trace_interval = 1e-3;
   std::vector<std::string> overrides, flags;  // KEY=VALUE; flags hold whatever their place on the line
   bool json = false, gradient = false, scatter = false;
@@ -143,6 +144,9 @@ void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) 
         jump.landing_tangential_speed * speed,
         with_mass(jump.landing_impulse, 4, "(m + m_p) sqrt(g R)", "N s", spec.scene),
         with_mass(jump.landing_energy_lost, 4, "(m + m_p) g R", "J", spec.scene));
+    if (std::isfinite(jump.max_normal_force))
+      say("The plane pushes with at most {} until lift-off.\n",
+          with_mass(jump.max_normal_force, 4, "(m + m_p) g", "N", spec.scene));
     if (spec.scene.clear_height > 0.0) print_wall(spec.scene, jump);
     if (std::isfinite(jump.energy_lost)) {
       say("Slid {:.6g} R, lost {} until lift-off, spin after the landing {:.6g} rad/s.\n", jump.slip_distance,
@@ -301,6 +305,21 @@ Json json_of(const Motor& motor) {
           {"work", motor.work}};
 }
 
+/// Every number of the jump in the units asked for.
+std::string lines_in_units(const Spec& spec, const Outcome& outcome, const std::string& text) {
+  ShownUnits units(text, scales_of(spec.scene));
+  std::string lines;
+  for (const Field* field : fields_of(spec.scene)) {
+    const std::optional<OutcomeNumber> number = number_of(*field);
+    if (!number) continue;
+    const ShownUnit shown = units.of(*field);
+    if (const double value = number->of(outcome); !std::isnan(value))
+      lines += fmt::format("  {:<26} {:<14.8g} {}\n", field->name, value * shown.factor, shown.unit);
+  }
+  units.refuse_unused();
+  return fmt::format("\n{}:\n{}", text, lines);
+}
+
 /// What the report leaves open.
 void print_hints(const Spec& spec, bool made) {
   if (!model_of(spec.scene).slips)
@@ -356,10 +375,13 @@ int run(const HopArguments& arguments) {
   const bool moves = !motion.phases.empty() && motion.outcome.status != Status::failed;
   std::optional<Motor> motor;
   if (spec.design.drive_torque != 0.0 && moves) motor = motor_of(spec, motion);
+  const std::string in_units =
+      arguments.units.empty() ? "" : lines_in_units(spec, motion.outcome, arguments.units);
   if (arguments.json) {
     print_json(spec, motion, check.outcome, motor, arguments.gradient, made);
   } else {
     print_table(spec, motion, check.outcome, motor);
+    if (!arguments.units.empty()) say("{}", in_units);
     if (arguments.gradient) print_gradient(spec);
     if (made) print_scatter(spec, *made);
     if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
@@ -387,6 +409,10 @@ void add_hop(CommandLine& line, int& status) {
       "--scatter", arguments->scatter,
       "report yield, quantiles and the influence of each tolerance, by the spec's [scatter] and [goal]");
   command.flag("--json", arguments->json, "print JSON, with the names and units of a map");
+  command
+      .value("--units", arguments->units,
+             "report every quantity of the jump in these units, for example \"mm ms rpm J\"")
+      .excludes("--json");
   command.value("--trace", arguments->trace, "write the motion over time to this HDF5 file")
       .check(named_file());
   command.value("--trace-interval", arguments->trace_interval, "time between its samples [s]; default: 0.001")

@@ -15,6 +15,7 @@
 #include "cli/commands.hpp"
 #include "cli/info_place.hpp"
 #include "cli/output.hpp"
+#include "cli/shown_units.hpp"
 #include "cli/spoken.hpp"
 #include "leapmap/errors.hpp"
 #include "map/reader.hpp"
@@ -30,7 +31,7 @@ namespace {
 
 struct InfoArguments {
   std::string path;
-  std::string at;
+  std::string at, units;
   bool only_spec = false, failed = false;
   std::size_t limit = 20;
   Locking locking = Locking::required;
@@ -85,19 +86,22 @@ Summary summarise(const MapReader& map, const std::string& name) {
 }
 
 /// A value of a dimension; a design's number whole.
-std::string coordinate(const MapReader::Dimension& dimension, std::size_t position) {
-  return dimension.values.empty() ? fmt::format("{}", position)
-                                  : fmt::format("{:.6g}", dimension.values[position]);
+std::string coordinate(const MapReader::Dimension& dimension, std::size_t position, ShownUnits& units) {
+  if (dimension.values.empty()) return fmt::format("{}", position);
+  const ShownUnit shown = units.are_asked_for() ? units.of(dimension.name) : ShownUnit{};
+  return fmt::format("{:.6g}{}{}", dimension.values[position] * shown.factor, shown.unit.empty() ? "" : " ",
+                     shown.unit);
 }
 
-std::string place(const MapReader& map, const std::vector<std::string>& labels, std::size_t design) {
+std::string place(const MapReader& map, const std::vector<std::string>& labels, std::size_t design,
+                  ShownUnits& units) {
   std::vector<std::size_t> position;
   unravel(design, map.shape(), position);
   std::vector<std::string> coordinates;
   for (std::size_t i = 0; i < position.size(); ++i) {
     const auto& dimension = map.dimensions()[i];
     coordinates.push_back(
-        fmt::format("{} {}", printable(dimension.name), coordinate(dimension, position[i])));
+        fmt::format("{} {}", printable(dimension.name), coordinate(dimension, position[i], units)));
   }
   if (design < labels.size()) coordinates.back() += fmt::format(" ({})", printable(labels[design]));
   return fmt::format("{}", fmt::join(coordinates, ", "));
@@ -205,7 +209,7 @@ void print_audit(const MapReader& map) {
         attribute("retry_method"), attribute("retry_tolerance"));
 }
 
-void print_dimensions(const MapReader& map) {
+void print_dimensions(const MapReader& map, ShownUnits& units) {
   say("\ndimensions\n");
   for (const auto& dimension : map.dimensions()) {
     if (dimension.values.empty()) {
@@ -213,12 +217,15 @@ void print_dimensions(const MapReader& map) {
       continue;
     }
     const auto [least, most] = std::ranges::minmax(dimension.values);
-    say("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", printable(dimension.name), dimension.size, least,
-        most, dimension.unit == "1" ? "" : printable(dimension.unit));
+    const ShownUnit shown = units.are_asked_for()
+                                ? units.of(dimension.name)
+                                : ShownUnit{dimension.unit == "1" ? "" : printable(dimension.unit), 1.0};
+    say("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", printable(dimension.name), dimension.size,
+        least * shown.factor, most * shown.factor, shown.unit);
   }
 }
 
-void print_fields(const MapReader& map) {
+void print_fields(const MapReader& map, ShownUnits& units) {
   const std::size_t designs = designs_of(map.shape());
   say("\nfields, {} designs\n", designs);
   if (!map.has("status") && hdf5::has_attribute(map.file(), "status_counts")) {
@@ -239,9 +246,14 @@ void print_fields(const MapReader& map) {
     } else if (summary.missing == designs) {
       say("  none\n");
     } else {
-      const std::string unit = map.unit(name) == "1" ? "" : " " + printable(map.unit(name));
-      say("  least {:<12.8g}{} at {}\n", summary.least.value, unit, place(map, labels, summary.least.design));
-      say("  most  {:<12.8g}{} at {}\n", summary.most.value, unit, place(map, labels, summary.most.design));
+      const ShownUnit shown = field && units.are_asked_for()
+                                  ? units.of(*field)
+                                  : ShownUnit{map.unit(name) == "1" ? "" : printable(map.unit(name)), 1.0};
+      const std::string unit = shown.unit.empty() ? "" : " " + shown.unit;
+      for (const auto& [words, extreme] :
+           {std::pair{"least", &summary.least}, std::pair{"most", &summary.most}})
+        say("  {:<5} {:<12.8g}{} at {}\n", words, extreme->value * shown.factor, unit,
+            place(map, labels, extreme->design, units));
       if (summary.missing > 0) say("  none  in {} designs\n", summary.missing);
     }
   }
@@ -264,10 +276,15 @@ int run(const InfoArguments& arguments) {
     print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at);
     return 0;
   }
+  const Scales scales = arguments.units.empty()
+                            ? Scales{}
+                            : scales_of(parse_map_spec(map.attribute("spec"), arguments.path).scene);
+  ShownUnits units(arguments.units, scales);
   print_origin(map, arguments.path);
   print_audit(map);
-  print_dimensions(map);
-  print_fields(map);
+  print_dimensions(map, units);
+  print_fields(map, units);
+  units.refuse_unused();
   return 0;
 }
 
@@ -278,6 +295,7 @@ void add_info(CommandLine& line, int& status) {
   command.examples({{"leapmap info m.h5", "axes, statuses, extremes"},
                     {"leapmap info m.h5 --at slope=0.4,mass_ratio=2.4",
                      "one design, and the distance to the nearest discontinuity"},
+                    {"leapmap info m.h5 --units \"mm deg ms\"", "lengths in mm, angles in degrees"},
                     {"leapmap info m.h5 --spec > again.toml", "the spec that makes it again"},
                     {"leapmap info m.h5 --failed --limit 3", "commands that show what failed"}});
   auto arguments = std::make_shared<InfoArguments>();
@@ -293,6 +311,13 @@ void add_info(CommandLine& line, int& status) {
       .check({[](std::string& at) { return at.empty() ? "is empty; allowed: AXIS=VALUE,..." : ""; }, "PLACE"})
       .excludes("--spec")
       .excludes("--failed");
+  command
+      .value(
+          "--units", arguments->units,
+          "units of axes and fields, with blanks between them, for example \"mm deg ms\"; default: the map's")
+      .excludes("--spec")
+      .excludes("--failed")
+      .excludes("--at");
   command.value("--limit", arguments->limit, "longest list of failed designs; default: 20")
       .needs("--failed")
       .check(whole_number(0, 1e15));

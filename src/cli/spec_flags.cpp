@@ -45,21 +45,23 @@ void add_set(Command& command, std::vector<std::string>& overrides, const std::s
 }
 
 Spec read_given_spec(const std::string& path, const std::vector<std::string>& overrides) {
-  const auto key_of = [](const std::string& set) -> const Option* {
+  // "slope" of "design.slope=0.4"; of [hoop] with the weight's name.
+  const auto key_of = [](const std::string& set) {
     const std::string name = set.substr(0, set.find('='));
     const std::size_t dot = name.find('.');
-    return dot == std::string::npos ? find_option("", name)
-                                    : find_option(name.substr(0, dot), name.substr(dot + 1));
+    if (dot == std::string::npos || name.starts_with("hoop.")) return name;
+    const Option* option = find_option(name.substr(0, dot), name.substr(dot + 1));
+    return option && find_option("", option->key) == option ? std::string(option->key) : name;
   };
   Spec spec = read_spec(path, overrides);  // first, so that what is wrong is said alone
   for (const std::string& note : spec.notes) tell(note);
-  std::vector<const Option*> keys;
+  std::vector<std::string> keys;
   for (const std::string& set : overrides) keys.push_back(key_of(set));
   for (auto key = keys.begin(); key != keys.end(); ++key) {
-    if (!*key || std::find(keys.begin(), key, *key) != key) continue;  // reported at its first place
+    if (std::find(keys.begin(), key, *key) != key) continue;  // reported at its first place
     const auto last = std::find(keys.rbegin(), keys.rend(), *key).base() - 1;
     if (last != key)
-      tell(fmt::format("{} is given twice on the command line: {} is used", (*key)->key,
+      tell(fmt::format("{} is given twice on the command line: {} is used", *key,
                        overrides[static_cast<std::size_t>(last - keys.begin())]));
   }
   constexpr double largest_usual = 20.0;  // [rad]: a whole number beyond that is rather one of degrees
@@ -71,7 +73,7 @@ Spec read_given_spec(const std::string& path, const std::vector<std::string>& ov
 
 void refuse_scatter(const std::vector<std::string>& overrides, const std::string& why) {
   for (const std::string& set : overrides)
-    for (const std::string_view begin : {"scatter.", "goal.", "samples=", "seed="})
+    for (const std::string_view begin : {"scatter.", "tolerances.", "goal.", "samples=", "seed="})
       if (set.starts_with(begin)) throw InputError("--set " + set + ": has no effect here; " + why);
 }
 

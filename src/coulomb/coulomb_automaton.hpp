@@ -70,7 +70,7 @@ class PhaseMachine {
                const CoulombObserver& observer)
       : scene_(&scene),
         observer_(&observer),
-        hoop_(reduce<S>(design)),
+        hoop_(reduce<S>(design, scene)),
         contact_(contact_of<S>(design, scene)),
         runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
         at_(from) {
@@ -122,7 +122,9 @@ class PhaseMachine {
     begin_phase(Phase::flight, 0);
     const bool jumps = look_at(lift_off, flight);
     const S left_at = at_.travel;
+    const S left = at_.angle;
     at_ = after_flight(hoop_, at_, flight.flight_time);
+    if (hoop_.aloft != S(0)) driven_ += hoop_.drive * (at_.angle - left);
     if (!jumps && !(std::abs(at_.travel) < runway_)) return ended_as(Status::no_jump);
     const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
@@ -191,12 +193,13 @@ class PhaseMachine {
     return std::nullopt;
   }
 
-  /// Whether it is the motor alone that lifts the hoop off: in flight it idles, so that the flight would
+  /// Whether it is the motor alone that lifts the hoop off, and idles in flight, so that the flight would
   /// begin by sinking into the plane, even if it came up again later. Neither contact nor flight is
   /// consistent then.
   bool sinks_without_motor() const {
     const S held_down = hoop_.cos_slope + hoop_.rho * trig(at_.angle).cos * at_.spin * at_.spin;
-    return hoop_.drive != S(0) && !(at_.normal > S(0)) && held_down > S(1e-9);
+    const bool idles = hoop_.drive != S(0) && hoop_.aloft == S(0);
+    return idles && !(at_.normal > S(0)) && held_down > S(1e-9);
   }
 
   /// Tells of a flight, and whether it is the jump.

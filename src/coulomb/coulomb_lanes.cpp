@@ -107,8 +107,9 @@ void CoulombLanes<T>::fly_some() {
   const auto of_state = [&](S ContactState<S>::*member) {
     return gathered<T>([&](std::size_t i) { return machine_of(i).at().*member; });
   };
-  Hoop<T> hoop{};  // of which a flight takes these two
+  Hoop<T> hoop{};  // of which a flight takes these
   hoop.cos_slope = of_hoop(&Hoop<S>::cos_slope), hoop.rho = of_hoop(&Hoop<S>::rho);
+  hoop.aloft = of_hoop(&Hoop<S>::aloft);
   const Flight<T> flights =
       fly(hoop, LiftOff<T>{T(S(0)), of_state(&ContactState<S>::angle), of_state(&ContactState<S>::spin)});
   const auto height = lanes_of(flights.height), apex_time = lanes_of(flights.apex_time),

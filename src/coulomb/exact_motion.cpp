@@ -44,7 +44,7 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
   }).solve({&design, 1}, scene, {&motion.outcome, 1});
   if (!(interval > 0.0)) return motion;
 
-  const Hoop<double> hoop = reduce<double>(design);
+  const Hoop<double> hoop = reduce<double>(design, scene);
   const double mu = contact_of<double>(design, scene).mu_kinetic, second = time_unit(scene);
   const SlidingLeg<double> sliding(motion_tolerance);
   RollingMotion sampled(hoop, interval / second, motion.points);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "coulomb/model.hpp"
+#include "coulomb/recorded_way.hpp"
 #include "physics/landing.hpp"
 #include "physics/sliding.hpp"
 #include "physics/stick.hpp"
@@ -25,38 +26,6 @@ constexpr double slowest = 1e-4;
 /// The chain of duals repeats the plain solver's states so closely, or something was not as it seemed.
 constexpr double agreement = 1e-6;
 
-/// What the plain solver went through.
-struct Recorded {
-  struct Begun {
-    Phase phase;
-    ContactState<double> at;
-    int direction;
-    std::vector<double> turns;
-  };
-  std::vector<Begun> phases;
-  std::vector<Flight<double>> flights;
-  std::vector<SlideTold<double>> slides;
-  ContactState<double> end;
-};
-
-/// The phases of a design on its way to a jump, as the plain solver goes through them.
-Outcome recorded_way(CoulombSolver<double>& solver, Start start, const Design& design,
-                     ContactState<double>& at, const Scene& scene, Recorded& recorded) {
-  recorded = {};
-  CoulombObserver observer;
-  observer.phase = [&](Phase phase, const ContactState<double>& state, int direction) {
-    recorded.phases.push_back({phase, state, direction, {}});
-  };
-  observer.lift_off = [&](const LiftOff<double>&, const Flight<double>& flight) {
-    recorded.flights.push_back(flight);
-  };
-  observer.turn = [&](const ContactState<double>& state) {
-    recorded.phases.back().turns.push_back(state.angle);
-  };
-  observer.end = [&](const ContactState<double>& state) { recorded.end = state; };
-  return solver.solve(start, design, at, scene, observer, &recorded.slides);
-}
-
 /// As contact_of has it. Where mu_kinetic follows mu_static both are one parameter, and so they are where
 /// mu_static, being less than mu_kinetic, counts as much.
 Contact<D> dual_contact(const Design& design, const Scene& scene) {
@@ -73,15 +42,17 @@ class Chain {
   Chain(const Hoop<D>& hoop, const Contact<D>& contact, const ContactState<D>& from, double second,
         const SlidingPanels<D>& panels, const DualTime<D>& time)
       : panels_(panels), time_(time), second_(second), contact_(contact), hoop_(hoop), at_(from) {
+    turns_on_ = hoop.aloft.value != 0.0 ||
+                std::any_of(hoop.aloft.by.begin(), hoop.aloft.by.end(), [](double by) { return by != 0.0; });
     released_ = contact_energy(hoop_, at_);
   }
 
   /// put(quantity, value, unit) takes what is known; a chain that breaks puts no more, and returns false.
   template <class Put>
-  bool run(const Recorded& recorded, const Outcome& outcome, const Put& put) {
+  bool run(const RecordedWay& recorded, const Outcome& outcome, const Put& put) {
     std::size_t flight = 0, slide = 0;
     for (std::size_t k = 0; k < recorded.phases.size(); ++k) {
-      const Recorded::Begun& begun = recorded.phases[k];
+      const RecordedWay::Begun& begun = recorded.phases[k];
       const bool last = k + 1 == recorded.phases.size();
       const ContactState<double>& next = last ? recorded.end : recorded.phases[k + 1].at;
       if (!agrees(begun.at)) return false;
@@ -122,7 +93,7 @@ class Chain {
     return near;
   }
 
-  bool roll(const Recorded::Begun& begun, const ContactState<double>& to) {
+  bool roll(const RecordedWay::Begun& begun, const ContactState<double>& to) {
     const Roll<D> roll = begin_roll(hoop_, at_.angle, at_.spin);
     const D there(to.angle);
     const D E = vis_viva_past_release(roll, D(there - at_.angle));
@@ -260,8 +231,9 @@ class Chain {
           D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
     }
-    const D left_at = at_.travel;
+    const D left_at = at_.travel, left = at_.angle;
     at_ = after_flight(hoop_, at_, flown.flight_time);
+    if (turns_on_) driven_ += hoop_.drive * (at_.angle - left);
     const Landing<D> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
     if (jumps)
@@ -274,12 +246,9 @@ class Chain {
   /// When the flight is deepest below the plane before its apex; zero: it never is.
   double deepest(const Flight<double>& flight) const {
     if (!(flight.dip < 0.0)) return 0.0;
-    const double way = at_.spin.value < 0.0 ? -1.0 : 1.0, spin = way * at_.spin.value;
-    const Hoop<D>& h = hoop_;
-    Hoop<double> hoop{};  // of which a toss sees two numbers
-    hoop.cos_slope = h.cos_slope.value, hoop.rho = h.rho.value;
-    const double angle = way * at_.angle.value;
-    return lowest_before(toss_of(hoop, angle, trig(angle), spin), flight.apex_time * spin) / spin;
+    Hoop<double> hoop{};  // of which a flight sees these
+    hoop.cos_slope = hoop_.cos_slope.value, hoop.rho = hoop_.rho.value, hoop.aloft = hoop_.aloft.value;
+    return lowest_time(hoop, at_.angle.value, at_.spin.value, at_.normal.value, flight.apex_time);
   }
 
   const SlidingPanels<D>& panels_;
@@ -287,6 +256,7 @@ class Chain {
   double second_;
   Contact<D> contact_;
   Hoop<D> hoop_;
+  bool turns_on_;  // the motor, in flight
   ContactState<D> at_;
   D released_{0.0}, driven_{0.0}, slipped_{0.0};
   int panels_taken_ = 0;
@@ -303,7 +273,7 @@ void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene
 void CoulombGradients::derive_solved(std::span<const Design> designs, const Scene& scene,
                                      std::span<const Outcome> outcomes, Gradients& gradients) {
   gradients.begin(designs.size());
-  Recorded recorded;
+  RecordedWay recorded;
   for (std::size_t i = 0; i < designs.size(); ++i) {
     if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate ||
         !gradients.wanted().any_of_first_jump_in(outcomes[i]))
@@ -311,8 +281,8 @@ void CoulombGradients::derive_solved(std::span<const Design> designs, const Scen
     ContactState<double> at = released<double>(designs[i]);
     if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
       continue;
-    Chain(reduce(dual_parameters<D>(designs[i])), dual_contact(designs[i], scene), dual_release(designs[i]),
-          time_unit(scene), panels_, time_)
+    Chain(reduce(dual_parameters<D>(designs[i]), scene), dual_contact(designs[i], scene),
+          dual_release(designs[i]), time_unit(scene), panels_, time_)
         .run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
           if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
           if (std::isfinite(outcomes[i].*quantity)) gradients.put(quantity, i, value, unit);
@@ -322,7 +292,7 @@ void CoulombGradients::derive_solved(std::span<const Design> designs, const Scen
 
 Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& scene, Along along,
                                ContactState<D>& at, const PutDual& put) {
-  Recorded recorded;
+  RecordedWay recorded;
   ContactState<double> landed = plain(at);
   Outcome outcome = recorded_way(finer_, start, design, landed, scene, recorded);
   if (outcome.status != Status::jumped) return outcome;
@@ -330,7 +300,7 @@ Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& s
   if (along == Along::state)
     contact = {D(contact.mu_static.value), D(contact.mu_kinetic.value), D(contact.restitution.value),
                contact.rest_speed};
-  Chain chain(reduce(parameters_along(design, along)), contact, at, time_unit(scene), panels_, time_);
+  Chain chain(reduce(parameters_along(design, along), scene), contact, at, time_unit(scene), panels_, time_);
   const bool known =
       chain.run(recorded, outcome, [&](double Outcome::*quantity, const D& value, double unit) {
         if (put) put(quantity, value, unit);

@@ -11,7 +11,7 @@ namespace leapmap::coulomb {
 
 Motion tell_by_integration(const Design& design, const Scene& scene, const IntegrationOptions& options,
                            double interval) {
-  const Hoop<double> hoop = reduce<double>(design);
+  const Hoop<double> hoop = reduce<double>(design, scene);
   const double mu = contact_of<double>(design, scene).mu_kinetic;
   Motion motion;
   TraceSampler sampler{interval / time_unit(scene), motion.points};

@@ -117,7 +117,12 @@ struct OneBound {
 void descend(Judge& judge, Place& place) {
   const Question& question = judge.question();
   const Field* field = question.objectives[0].field;
-  const bool smooth = (!field || std::holds_alternative<Quantity>(field->source)) && !judge.makes_hoops();
+  const auto has_slope = [](const Goal& goal) {
+    const Field& of = *find_field(goal.field);
+    return !std::holds_alternative<Quantity>(of.source) || can_be_differentiated(of);
+  };
+  const bool smooth = (!field || can_be_differentiated(*field)) && !judge.makes_hoops() &&
+                      std::ranges::all_of(question.one.goals, has_slope);
   if (!smooth || !place.verdict.feasible() || resolved_method(question.one.numerics) != "exact") return;
   Slope slope(judge);
   slope.best = place;

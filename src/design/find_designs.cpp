@@ -216,20 +216,28 @@ std::vector<std::string> binding(const Question& question, const Place& place, c
     if (is_on(goal.at_most)) binds.push_back(fmt::format("{} at most {:.6g}", goal.field, goal.at_most));
   }
   for (const Goal& goal : question.made_goals)  // a hoop more or less is nothing
-    if (std::abs(found.yield.value - goal.at_least) <= 1.5 * found.yield.error)
+    if (std::abs(found.yield.value - goal.at_least) <= 3.0 * found.yield.error)
       binds.push_back(fmt::format("{} at least {:.6g}", goal.field, goal.at_least));
   if (!found.cliff.empty() && found.cliff[0].distance < on)
     binds.push_back(fmt::format("cliff ({})", name_of(found.cliff[0].kind)));
   return binds;
 }
 
-/// The yield of hoops made after a design.
-Estimate yield_of(const Question& question, const Design& design, const Body& body) {
-  const std::vector<const Field*> asked{find_field("yield"), find_field("yield_error")};
+/// Statistics of fresh hoops made after a design: the yield, if there are goals, and the objectives that are
+/// statistics.
+void put_statistics(const Question& question, const Body& body, FoundDesign& found) {
+  std::vector<const Field*> asked;
+  if (!question.one.goals.empty()) asked = {find_field("yield"), find_field("yield_error")};
+  for (const Objective& objective : question.objectives)
+    if (objective.is_of_made()) add_column(asked, objective.field);
   MadeColumns columns(asked);
-  scatter_solver_of(request_of(question.one, asked), points_of(question.one.scatter))
-      .solve({&design, 1}, columns, {&body, 1});
-  return {columns.column(*asked[0])[0], columns.column(*asked[1])[0]};
+  Request request = request_of(question.one, asked);
+  request.scatter = fresh_samples(question.one.scatter);
+  scatter_solver_of(request, points_of(request.scatter)).solve({&found.design, 1}, columns, {&body, 1});
+  if (!question.one.goals.empty()) found.yield = {columns.column(*asked[0])[0], columns.column(*asked[1])[0]};
+  for (std::size_t k = 0; k < question.objectives.size(); ++k)
+    if (question.objectives[k].is_of_made())
+      found.objectives[k] = columns.column(*question.objectives[k].field)[0];
 }
 
 /// The quantities that objectives and goals name, each once.
@@ -250,9 +258,9 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
   const bool front = question.objectives.size() == 2,
              differentiable_method = resolved_method(question.one.numerics) == "exact";
   const std::vector<GoalCheck> goals = goal_checks(question.one.goals);
-  const bool made = judge.makes_hoops() && !question.one.goals.empty();
   const Spec grid = question.grid();
-  const Request all = request_of_outcomes(question.one);
+  Request all = request_of_outcomes(question.one);
+  for (const Field* field : quantities_of(question)) add_column(all.columns, field);
   std::vector<FoundDesign> told(places.size());
   std::vector<char> stays(places.size(), 1);
   parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {
@@ -272,6 +280,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
       if (!front) one.cliff = near_cliffs(grid, one.free).nearest;
       if (!front && differentiable_method)
         for (const Field* field : quantities_of(question)) {
+          if (!can_be_differentiated(*field)) continue;
           const SolveOptions how{.tolerance = question.one.numerics.tolerance, .threads = 1};
           FieldGradient& slope = one.gradients.emplace_back();
           slope.of = field->name;
@@ -279,7 +288,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
           for (const FreeParameter& parameter : question.free)
             slope.by_free.push_back(parameter.variable.derivative(slope.by, body));
         }
-      if (made) one.yield = yield_of(question, one.design, body);
+      if (judge.makes_hoops()) put_statistics(question, body, one);
       one.binds = binding(question, places[i], one);
       stays[i] = !found.reached ||
                  std::ranges::all_of(goals, [&](const GoalCheck& goal) { return goal.reached(one.outcome); });
@@ -295,6 +304,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
 Spec list_of(const Spec& spec, const FoundDesigns& found) {
   const Question question = question_of(spec);
   Spec list = question.one;
+  list.scatter = fresh_samples(list.scatter);
   list.output = spec.output, list.numerics.audit = 1.0;
   if (list.scatter.spreads.empty()) list.goals.clear();  // as in any map of hoops as drawn
   list.maximize = spec.maximize, list.minimize = spec.minimize;

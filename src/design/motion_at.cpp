@@ -92,10 +92,12 @@ template <class S>
 class Walk {
  public:
   Walk(const Design& design, const Scene& scene)
-      : hoop_(reduce(parameter<S>(design, design.slope, 0), parameter<S>(design, design.mass_ratio, 1),
-                     parameter<S>(design, design.offset_ratio, 2),
-                     parameter<S>(design, design.inertia_factor, 3),
-                     parameter<S>(design, design.drive_torque, 6))),
+      : hoop_(in_flight(
+            reduce(parameter<S>(design, design.slope, 0), parameter<S>(design, design.mass_ratio, 1),
+                   parameter<S>(design, design.offset_ratio, 2),
+                   parameter<S>(design, design.inertia_factor, 3),
+                   parameter<S>(design, design.drive_torque, 6)),
+            scene)),
         contact_{parameter<S>(design, design.mu_static, by_mu_static),
                  parameter<S>(design, kinetic_follows(design) ? design.mu_static : design.mu_kinetic,
                               by_mu_kinetic),
@@ -133,7 +135,8 @@ class Walk {
     const Trig<S> phi = trig(at_[0]);
     for (const double sample : times) {
       const S t = S(sample - from) - late_;
-      taken.push_back({at_[0] + at_[1] * t, at_[2] + travel_in_flight(hoop_, phi, at_[1], at_[3], t).value,
+      taken.push_back({at_[0] + turned_in_flight(hoop_, at_[1], t).value,
+                       at_[2] + travel_in_flight(hoop_, phi, at_[1], at_[3], t).value,
                        height_above_plane(hoop_, phi, at_[1], t, normal_).value});
     }
     if (!std::isfinite(flight_time)) return;
@@ -144,8 +147,9 @@ class Walk {
     }
     const Sample<S> travel = travel_in_flight(hoop_, phi, at_[1], at_[3], flown);
     const S rise = height_above_plane(hoop_, phi, at_[1], flown, normal_).rate;
+    const Turned<S> turned = turned_in_flight(hoop_, at_[1], flown);
     at_[2] = at_[2] + travel.value;
-    at_[0] = at_[0] + at_[1] * flown;
+    at_[0] = at_[0] + turned.value, at_[1] = turned.rate;
     const Landing<S> landing = land(hoop_, trig(at_[0]), {travel.rate - at_[1], rise, at_[1]},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
     at_[1] = landing.after.spin, at_[3] = landing.after.slip, normal_ = landing.after.normal;

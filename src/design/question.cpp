@@ -41,10 +41,10 @@ Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free,
   return {name, maximize, field, 0};
 }
 
-/// The search goes along derivatives.
-void refuse_without_derivatives(const Spec& spec, const std::string& key, const Field& field) {
-  if (std::holds_alternative<Quantity>(field.source) && !can_be_differentiated(field))
-    refuse(spec, fmt::format("{}: {} has no derivatives", key, field.name),
+/// What takes whole sequences of jumps is too slow to search for.
+void refuse_what_is_slow(const Spec& spec, const std::string& key, const Field& field) {
+  if (std::holds_alternative<Quantity>(field.source) && (field.of_gait || field.of_sequence))
+    refuse(spec, fmt::format("{}: {} follows from whole sequences of jumps", key, field.name),
            "a quantity of a jump, or a code as a goal, for example gait_period = { is = 1 }");
 }
 
@@ -68,9 +68,9 @@ Range possible(const Field& field, const Scene& scene) {
 /// Goals that no design whatever can reach.
 void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objectives) {
   for (const Objective& objective : objectives)
-    if (objective.field) refuse_without_derivatives(spec, "goal", *objective.field);
+    if (objective.field) refuse_what_is_slow(spec, "goal", *objective.field);
   for (const Goal& goal : spec.goals) {
-    refuse_without_derivatives(spec, "goal", *find_field(goal.field));
+    refuse_what_is_slow(spec, "goal", *find_field(goal.field));
     const bool quantity = std::holds_alternative<Quantity>(find_field(goal.field)->source);
     if (quantity && goal.at_least == goal.at_most && goal.at_least != 0.0)
       refuse(spec, fmt::format("goal.{} {} is met by no hoop exactly", goal.field, text_of(goal)),
@@ -97,6 +97,13 @@ void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objec
 }
 
 }  // namespace
+
+Scatter fresh_samples(const Scatter& scatter) {
+  Scatter fresh = scatter;
+  constexpr long other = 1'000'003;
+  fresh.seed = scatter.seed > other ? scatter.seed - other : scatter.seed + other;
+  return fresh;
+}
 
 std::vector<FreeParameter> free_parameters(const Spec& spec) {
   std::vector<FreeParameter> free;

@@ -47,6 +47,10 @@ struct Question {
   Spec grid() const;
 };
 
+/// Other samples than those of the search, which has favoured designs that do well with its own: for the
+/// report.
+Scatter fresh_samples(const Scatter& scatter);
+
 /// The axes of a spec as what is free, in its order. Throws InputError for lists of values and for axes of
 /// one.
 std::vector<FreeParameter> free_parameters(const Spec& spec);

@@ -68,7 +68,7 @@ Outcome solve(const Design& design, const Scene& scene, const SolveOptions& opti
   const Spec spec = spec_of(scene, options);
   check_design(design, scene);
   Outcome outcome;
-  make_solver(request_of_outcomes(spec))({&design, 1}, {&outcome, 1});
+  make_solver(request_with_ways(spec))({&design, 1}, {&outcome, 1});
   return outcome;
 }
 

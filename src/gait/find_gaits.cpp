@@ -45,7 +45,7 @@ class Section {
   Section(const Design& design, const Scene& scene, double tolerance, double way, int returns)
       : design_(design),
         scene_(scene),
-        hoop_(reduce<double>(design)),
+        hoop_(reduce<double>(design, scene)),
         duals_(need(model_of(scene), &Model::dual_jumps, "derivatives of later jumps")(scene, tolerance)),
         way_(way),
         returns_(returns) {}
@@ -59,7 +59,7 @@ class Section {
     if (!(flight.height >= scene_.hop_height)) return sampled;
     sampled.height = flight.height;
 
-    const Hoop<D> hoop = reduce(parameters_along(design_, Along::state));
+    const Hoop<D> hoop = reduce(parameters_along(design_, Along::state), scene_);
     ContactState<D> dual{.angle = D::parameter(angle, 0), .spin = dual_spin(hoop, angle)};
     const FlightDual<D> flown =
         with_derivatives(hoop, trig(dual.angle), dual.spin, D(0.0), flight.apex_time, flight.flight_time);

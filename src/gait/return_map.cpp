@@ -126,7 +126,7 @@ bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const De
                    const Landed& start, Orbit& orbit) {
   orbit = {};
   const double second = time_unit(scene);
-  const Hoop<double> hoop = reduce<double>(design);
+  const Hoop<double> hoop = reduce<double>(design, scene);
   Landed at = start;
   double time = 0.0, travel = 0.0, work = 0.0;
   for (int k = 0; k < period; ++k) {

@@ -99,6 +99,11 @@ struct Outcome {
   // stand so that the hoop flies over it. A box of width b is cleared if clears_to - clears_from >= b.
   double clears_from = none;  ///< first place [R]; NaN: none
   double clears_to = none;    ///< last place [R]; NaN: none
+  // On the way from the release to the lift-off of the jump, if requested by name:
+  double max_normal_force = none;  ///< the largest [(m + m_p) g]
+  double motor_energy = none;      ///< work of the motor [(m + m_p) g R]
+  double motor_max_power = none;   ///< its largest power [(m + m_p) g sqrt(g R)]; below zero: it only brakes
+  double motor_max_spin = none;    ///< largest spin of the hoop, either way [sqrt(g/R)]
   // With Coulomb friction.
   std::uint64_t phase_sequence = 0;  ///< two bits a phase, the first lowest, up to 32; see Phase
   double slip_distance = none;       ///< slid until the jump, or the end [R]; NaN if the hoop rocks to rest

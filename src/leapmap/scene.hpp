@@ -19,8 +19,9 @@ struct Scene {
   double runway = 5.0;  ///< rolling limit, at which the search for a jump ends [revolutions], in (0, 1e6]
   double hop_height =
       0.05;  ///< jump threshold: the first lift-off this high is the jump [hoop diameters], >= 0
-  double clear_height = 0.0;  ///< height of a thin wall to clear [hoop diameters], >= 0; 0: none
-  long jumps = 1;             ///< number of jumps to follow, in [1, 250]
+  double clear_height = 0.0;    ///< height of a thin wall to clear [hoop diameters], >= 0; 0: none
+  long jumps = 1;               ///< number of jumps to follow, in [1, 250]
+  bool motor_in_flight = true;  ///< whether a motor drives the hoop in flight too; else it idles there
   // Gaits; the rolling limit then counts from each landing.
   long settle = 0;               ///< jumps to skip before a gait is searched for, in [0, 10^6]; 0: no search
   long most_period = 16;         ///< longest period of a gait [jumps], in [1, 64]

@@ -41,6 +41,13 @@ Field of_wall(std::string_view name, double Outcome::*member, std::string_view m
   return needing(&Wanted::landing, field);
 }
 
+/// Measures of the way to a jump: it is gone once more, so that they cost as much as the jump.
+Field of_way(std::string_view name, double Outcome::*member, std::string_view meaning) {
+  Field field{name, Quantity{member}, "1", meaning, 13};
+  field.by_default = ByDefault::left_out, field.of_way = true;
+  return field;
+}
+
 const std::array fields{
     Field{"jump_height", Quantity{&Outcome::jump_height, Measure::height}, "1",
           "apex of the jump above the plane, in hoop diameters"},
@@ -111,6 +118,15 @@ const std::array fields{
             "wall "
             "of scene.clear_height, in R"),
     of_wall("clears_to", &Outcome::clears_to, "last such place, in R"),
+    of_way("max_normal_force", &Outcome::max_normal_force,
+           "largest normal force from release to the lift-off of the jump, in (m + m_p) g"),
+    of_way("motor_energy", &Outcome::motor_energy,
+           "work of the motor from release to the lift-off of the jump, in (m + m_p) g R"),
+    of_way("motor_max_power", &Outcome::motor_max_power,
+           "largest power of the motor from release to the lift-off of the jump, in (m + m_p) g sqrt(g R); "
+           "below zero: it only brakes"),
+    of_way("motor_max_spin", &Outcome::motor_max_spin,
+           "largest spin from release to the lift-off of the jump, either way, in sqrt(g/R)"),
     Field{"jumps",
           Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.jumps()); },
                [](Outcome& o, std::uint8_t code) { o.later_jumps.resize(code > 1 ? code - 1u : 0u); },

@@ -20,11 +20,11 @@ constinit const std::array list{
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
             return rolling::tell_by_integration(design, scene, options, interval);
           },
-          rolling::solving, rolling::effort},
+          rolling::solving, rolling::effort, rolling::ways},
     Model{Friction::coulomb, "coulomb", "slips, by Coulomb friction", true, coulomb::exact, coulomb::jumps,
           coulomb::gradients, coulomb::dual_jumps, coulomb::integration, coulomb::integrated_jumps,
           coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving,
-          coulomb::effort}};
+          coulomb::effort, coulomb::ways}};
 
 constinit const Kernels of_this_set{list, static_cast<int>(Lanes<Batch>::count)};
 

@@ -50,6 +50,9 @@ inline constexpr std::array own_units{
     OwnUnit{"sqrt(g/R)", "rad s-1", [](const Scales& s) { return 1.0 / own::time(s); }, "rpm"},
     OwnUnit{"sqrt(g R)", "m s-1", own::speed, "m/s"},
     OwnUnit{"(m + m_p) g R", "N m", own::energy, "N m"},
+    OwnUnit{"(m + m_p) g sqrt(g R)", "W", [](const Scales& s) { return s.mass * s.gravity * own::speed(s); },
+            "W"},
+    OwnUnit{"(m + m_p) g", "N", [](const Scales& s) { return s.mass * s.gravity; }, "N"},
     OwnUnit{"(m + m_p) sqrt(g R)", "N s", [](const Scales& s) { return s.mass * own::speed(s); }, "N s"},
 };
 

@@ -67,7 +67,7 @@ const std::array table{
     Parameter{"drive_torque",
               &Design::drive_torque,
               "(m + m_p) g R",
-              "motor torque on the hoop, in contact only, positive downhill",
+              "motor torque on the hoop, positive downhill; see motor_in_flight",
               {-1e3, 1e3}}};
 
 }  // namespace

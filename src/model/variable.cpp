@@ -75,6 +75,11 @@ const BodyNumber* find_body_number(std::string_view key) {
 
 std::string_view weight_of(std::string_view key) { return split(key).first; }
 
+bool is_body_mass(std::string_view key) {
+  const BodyNumber* row = find_body_number(key);
+  return row && row->unit == "kg";
+}
+
 double& Variable::in(Design& design, Body& body) const {
   if (parameter_) return design.*parameter_;
   return ring_ ? body.*ring_ : body.weights[weight_].*of_weight_;

@@ -44,6 +44,9 @@ const BodyNumber* find_body_number(std::string_view key);
 /// "slug" of "hoop.slug.mass"; empty: a number of the ring.
 std::string_view weight_of(std::string_view key);
 
+/// Whether a key is the mass of the ring or of a weight.
+bool is_body_mass(std::string_view key);
+
 /// A number that may vary, and where a design or its body keeps it.
 class Variable {
  public:
@@ -58,8 +61,7 @@ class Variable {
   double Design::*parameter() const { return parameter_; }
   double& in(Design& design, Body& body) const;
   double of(const Design& design, const Body& body) const;
-  /// The derivative by it where those by the parameters are known; its own value is that of the design and
-  /// body given. The slope of the ring and other parameters that do not follow from a body stay as they are.
+  /// The derivative by it, from those by the parameters: of a number of the body, by way of the three ratios.
   double derivative(const Design& by, const Body& body) const;
 
  private:

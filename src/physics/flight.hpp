@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Free flight (13) in closed form: the spin is constant and the centre of mass flies a parabola.
+/// Free flight (13) in closed form: the spin is constant, unless a motor turns the hoop on (Hoop::aloft), and
+/// the centre of mass flies a parabola.
 ///
 /// The hoop's lowest point is at height y(t) above the plane. Right after a lift-off from rolling y often
 /// dips below zero, because friction is cut off while it still brakes the spin; the jump is the first
@@ -98,6 +99,19 @@ Toss<T> toss_of(const Hoop<T>& hoop, const T& angle, const Trig<T>& phi, const T
   return toss;
 }
 
+/// How far a hoop has turned in flight, and how fast it turns.
+template <class T>
+struct Turned {
+  T value, rate;
+  Trig<T> trig;  ///< of the value
+};
+template <class T>
+Turned<T> turned_in_flight(const Hoop<T>& hoop, const T& spin, const T& t) {
+  T turned = spin * t, rate = spin;
+  if (any_aloft(hoop)) turned = turned + T(0.5) * hoop.aloft * t * t, rate = rate + hoop.aloft * t;
+  return {turned, rate, trig(turned)};
+}
+
 /// y(t), dy/dt and y'', t after a lift-off at phi with any spin and with normal velocity v_n, zero but for a
 /// rebound.
 template <class T>
@@ -107,12 +121,19 @@ struct HeightAbovePlane {
 template <class T>
 HeightAbovePlane<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& t,
                                        const T& normal_velocity = T(0)) {
-  const Trig<T> turned = trig(spin * t);
-  const T s = phi.sin, c = phi.cos;
-  return {hoop.rho * (s * x_minus_sin(spin * t, turned) - c * turned.versine) +
-              t * (normal_velocity - T(0.5) * hoop.cos_slope * t),
-          normal_velocity - hoop.cos_slope * t + hoop.rho * spin * (s * turned.versine - c * turned.sin),
-          hoop.rho * spin * spin * (s * turned.sin - c * turned.cos) - hoop.cos_slope};
+  const Turned<T> turned = turned_in_flight(hoop, spin, t);
+  const T s = phi.sin, c = phi.cos, turn_rate = turned.rate;
+  HeightAbovePlane<T> y{
+      hoop.rho * (s * x_minus_sin(turned.value, turned.trig) - c * turned.trig.versine) +
+          t * (normal_velocity - T(0.5) * hoop.cos_slope * t),
+      normal_velocity - hoop.cos_slope * t +
+          hoop.rho * turn_rate * (s * turned.trig.versine - c * turned.trig.sin),
+      hoop.rho * turn_rate * turn_rate * (s * turned.trig.sin - c * turned.trig.cos) - hoop.cos_slope};
+  if (!any_aloft(hoop)) return y;
+  const T lift = hoop.rho * hoop.aloft;
+  y.value = y.value - T(0.5) * lift * s * t * t, y.rate = y.rate - lift * s * t;
+  y.acceleration = y.acceleration - lift * (s * turned.trig.cos + c * turned.trig.sin);
+  return y;
 }
 
 /// How far the hoop's centre has travelled along the plane since lift-off, and how fast it travels: the
@@ -121,12 +142,15 @@ HeightAbovePlane<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, 
 template <class T>
 Sample<T> travel_in_flight(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& slip,
                            const T& t) {
-  const Trig<T> turned = trig(spin * t);
-  const T sine_gained = phi.cos * turned.sin - phi.sin * turned.versine;     // sin(phi + w t) - sin(phi)
-  const T cosine_gained = -phi.sin * turned.sin - phi.cos * turned.versine;  // cos(phi + w t) - cos(phi)
-  return {(slip + spin * (T(1) - hoop.rho * phi.cos)) * t + hoop.sin_slope * t * t * T(0.5) +
-              hoop.rho * sine_gained,
-          slip + spin + hoop.sin_slope * t + hoop.rho * spin * cosine_gained};
+  const Turned<T> turned = turned_in_flight(hoop, spin, t);
+  const T sine_gained = phi.cos * turned.trig.sin - phi.sin * turned.trig.versine;  // sin(phi(t)) - sin(phi)
+  const T cosine_gained =
+      -phi.sin * turned.trig.sin - phi.cos * turned.trig.versine;  // cos(phi(t)) - cos(phi)
+  Sample<T> x{(slip + spin * (T(1) - hoop.rho * phi.cos)) * t + hoop.sin_slope * t * t * T(0.5) +
+                  hoop.rho * sine_gained,
+              slip + spin + hoop.sin_slope * t + hoop.rho * spin * cosine_gained};
+  if (any_aloft(hoop)) x.rate = x.rate + hoop.rho * hoop.aloft * t * (phi.cos + cosine_gained);
+  return x;
 }
 
 }  // namespace leapmap

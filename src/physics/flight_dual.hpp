@@ -43,4 +43,19 @@ T lowest_before(const Toss<T>& toss, const T& apex) {
   return at;
 }
 
+/// The same in time of any flight from a lift-off, driven or not; a rebound that no motor turns has no dip.
+template <class T>
+T lowest_time(const Hoop<T>& hoop, const T& angle, const T& spin, const T& normal_velocity,
+              const T& apex_time) {
+  using std::abs;
+  const MaskOf<T> driven = hoop.aloft != T(0);
+  T lowest(0);
+  if (!all(driven)) {
+    const T forwards = select(spin < T(0), -angle, angle), speed = abs(spin);
+    lowest = lowest_before(toss_of(hoop, forwards, trig(forwards), speed), T(apex_time * speed)) / speed;
+  }
+  if (!any(driven)) return lowest;
+  return select(driven, fly_driven(hoop, angle, spin, normal_velocity, driven).lowest_at, lowest);
+}
+
 }  // namespace leapmap

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "physics/flight.hpp"
+#include "physics/driven_flight.hpp"
 
 namespace leapmap {
 
@@ -278,9 +278,9 @@ Flight<T> scaled(const Flight<T>& toss, const Hoop<T>& hoop, const T& spin) {
   return {toss.height * diameters, toss.apex_time * unit, toss.flight_time * unit, toss.dip * diameters};
 }
 
-/// The whole flight that starts at lift_off.
+/// The whole flight that starts at lift_off, of a hoop that no motor turns on.
 template <class T>
-Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
+Flight<T> fly_undriven(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
   using std::abs;
   // y depends on phi and w only through cos(phi + w t) and sin(phi) w: turning backwards is the mirror image.
   const T angle = select(lift_off.spin < T(0), -lift_off.angle, lift_off.angle);
@@ -294,11 +294,21 @@ Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
           of_flying(flight.dip)};
 }
 
+/// The whole flight that starts at lift_off.
+template <class T>
+Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
+  const MaskOf<T> driven = hoop.aloft != T(0);
+  if (!any(driven)) return fly_undriven(hoop, lift_off);
+  const Flight<T> flight = fly_driven(hoop, lift_off.angle, lift_off.spin, T(0), driven).flight;
+  return all(driven) ? flight : of_either(driven, flight, fly_undriven(hoop, lift_off));
+}
+
 /// The whole flight of a rebound, which leaves with normal velocity v_n > 0. Where gravity wins over the
 /// mass's swing (gamma >= 1, any spin that small) y is concave: one apex, one landing.
 template <class S>
 Flight<S> fly_off(const Hoop<S>& hoop, const LiftOff<S>& lift_off, const S& normal_velocity) {
   using std::abs, std::sqrt;
+  if (hoop.aloft != S(0)) return DrivenFlight<S>(hoop, lift_off.angle, lift_off.spin, normal_velocity).fly();
   const S spin = abs(lift_off.spin), swing = hoop.rho * spin * spin;
   const Trig<S> phi = trig(lift_off.spin < S(0) ? -lift_off.angle : lift_off.angle);
   if (swing < hoop.cos_slope) {

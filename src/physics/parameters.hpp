@@ -7,6 +7,8 @@
 #include <cstddef>
 
 #include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
+#include "numerics/dual.hpp"
 #include "numerics/lanes.hpp"
 
 namespace leapmap {
@@ -14,17 +16,18 @@ namespace leapmap {
 /// The dimensionless groups of a Design, on any scalar: double, a SIMD batch, long double.
 template <class T>
 struct Hoop {
-  T sin_slope;  ///< sin theta
-  T cos_slope;  ///< cos theta
-  T rho;        ///< r / R = alpha lambda, the centre of mass's distance from the hoop's centre
-  T clearance;  ///< 1 - rho, its distance from the plane at phi = 0
-  T Ic;         ///< inertia about the centre of mass, J0 - rho^2
-  T J_min;      ///< inertia about the contact at phi = 0, J0 + 1 - 2 rho, where it is least
-  T drive;      ///< tau, the motor's torque while the hoop touches the plane
-  T thrust;     ///< sin theta + tau, with which slope and motor drive the hoop downhill
+  T sin_slope;     ///< sin theta
+  T cos_slope;     ///< cos theta
+  T rho;           ///< r / R = alpha lambda, the centre of mass's distance from the hoop's centre
+  T clearance;     ///< 1 - rho, its distance from the plane at phi = 0
+  T Ic;            ///< inertia about the centre of mass, J0 - rho^2
+  T J_min;         ///< inertia about the contact at phi = 0, J0 + 1 - 2 rho, where it is least
+  T drive;         ///< tau, the motor's torque while the hoop touches the plane
+  T thrust;        ///< sin theta + tau, with which slope and motor drive the hoop downhill
+  T aloft = T(0);  ///< tau / Ic, with which the motor turns the hoop in flight; 0: it idles there
 };
 
-/// A hoop's groups as so many numbers, in their order, and back: for what treats them all alike.
+/// A hoop's groups in contact as so many numbers, in their order, and back: for what treats them all alike.
 template <class T>
 std::array<T, 8> numbers_of(const Hoop<T>& h) {
   return {h.sin_slope, h.cos_slope, h.rho, h.clearance, h.Ic, h.J_min, h.drive, h.thrust};
@@ -39,7 +42,26 @@ Hoop<T> mapped(const Hoop<S>& hoop, const F& f) {
   const std::array<S, 8> from = numbers_of(hoop);
   std::array<T, 8> to;
   for (std::size_t k = 0; k < to.size(); ++k) to[k] = f(from[k]);
-  return hoop_of(to);
+  Hoop<T> mapped = hoop_of(to);
+  mapped.aloft = f(hoop.aloft);
+  return mapped;
+}
+
+/// The same hoop with its motor in flight as the scene has it.
+template <class T>
+Hoop<T> in_flight(Hoop<T> hoop, const Scene& scene) {
+  if (!scene.motor_in_flight) return hoop;
+  if constexpr (has_derivatives<T>)
+    hoop.aloft = hoop.drive / hoop.Ic;
+  else
+    hoop.aloft = select(hoop.drive == T(0), T(0), hoop.drive / hoop.Ic);
+  return hoop;
+}
+
+/// Whether a motor turns a hoop in flight, or would if it had a torque of which there are derivatives.
+template <class T>
+bool any_aloft(const Hoop<T>& hoop) {
+  return has_derivatives<T> || any(hoop.aloft != T(0));
 }
 
 /// Derives the groups from slope, mass_ratio, offset_ratio, inertia_factor and drive_torque, with alpha =
@@ -66,6 +88,11 @@ template <class T>
 Hoop<T> reduce(const Design& design) {
   return reduce(T(design.slope), T(design.mass_ratio), T(design.offset_ratio), T(design.inertia_factor),
                 T(design.drive_torque));
+}
+
+template <class T>
+Hoop<T> reduce(const Design& design, const Scene& scene) {
+  return in_flight(reduce<T>(design), scene);
 }
 
 /// Of design_of(i) in lane i.
@@ -97,6 +124,7 @@ template <class T>
 Hoop<T> seen(const Hoop<T>& hoop, const T& way) {
   Hoop<T> seen = hoop;
   seen.sin_slope = way * hoop.sin_slope, seen.drive = way * hoop.drive, seen.thrust = way * hoop.thrust;
+  seen.aloft = way * hoop.aloft;
   return seen;
 }
 

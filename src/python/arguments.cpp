@@ -36,7 +36,7 @@ bool is_numbers(const py::handle& value, const py::array& array) {
 const Parameter& parameter_of(const std::string& name) {
   for (const Parameter& parameter : parameters())
     if (parameter.name == name) return parameter;
-  std::vector<std::string_view> names{"friction"};
+  std::vector<std::string_view> names{"friction", motor_switch};
   for (const auto& [key, member] : whole_numbers) names.push_back(key);
   for (const Parameter& parameter : parameters()) names.push_back(parameter.name);
   throw InputError(fmt::format("{}: unknown parameter{}; allowed: {}", name, did_you_mean(name, names),
@@ -63,6 +63,12 @@ void Designs::take(const std::string& name, const py::handle& value) {
       throw InputError(fmt::format("{} = {} is not a whole number; allowed: {}", name, shown(value),
                                    allowed_values(*find_option("", key))));
     scene_.*member = py::cast<long>(value);
+    return;
+  }
+  if (name == motor_switch) {
+    if (!py::isinstance<py::bool_>(value))
+      throw InputError(fmt::format("{} = {} is not a bool; allowed: True, False", name, shown(value)));
+    scene_.motor_in_flight = py::cast<bool>(value);
     return;
   }
   const Parameter& parameter = parameter_of(name);

@@ -17,6 +17,7 @@
 
 namespace leapmap::python {
 
+inline constexpr std::string_view motor_switch = "motor_in_flight";  ///< a scene's bool
 /// Numbers of the scene that are whole.
 inline constexpr std::array<std::pair<std::string_view, long Scene::*>, 3> whole_numbers{
     {{"jumps", &Scene::jumps}, {"settle", &Scene::settle}, {"most_period", &Scene::most_period}}};

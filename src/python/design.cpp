@@ -127,6 +127,7 @@ class Problem {
       if (!is_free && !follows && !std::isnan(value) && has(scene.friction, parameter.only_of))
         numbers[py::str(std::string(parameter.name))] = value;
     }
+    if (!scene.motor_in_flight) numbers[py::str(std::string(motor_switch))] = false;
     for (const auto& [key, member] : whole_numbers)
       if (scene.*member != Scene{}.*member) numbers[py::str(std::string(key))] = scene.*member;
     return numbers;

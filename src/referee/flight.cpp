@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "referee/motion.hpp"
 
@@ -21,7 +22,8 @@ double bisect(const F& f, double a, double b) {
 }  // namespace
 
 Motion flying(const Body& body, const Motion& lift_off, double time) {
-  const double a = body.arm(), w = lift_off.spin, phi = lift_off.phi + w * time;
+  const double a = body.arm(), w = lift_off.spin, spin = w + body.turn * time;
+  const double phi = lift_off.phi + w * time + body.turn * time * time / 2;
   const double s0 = std::sin(lift_off.phi), c0 = std::cos(lift_off.phi), s = std::sin(phi), c = std::cos(phi);
   const double along = body.g * std::sin(body.slope), across = -body.g * std::cos(body.slope);
   // of the centre of mass, (x - a sin phi, y - a cos phi)
@@ -29,13 +31,13 @@ Motion flying(const Body& body, const Motion& lift_off, double time) {
   const double y_rate = lift_off.y_rate + a * s0 * w + across * time;
   const double x = lift_off.x - a * s0 + (lift_off.x_rate - a * c0 * w) * time + along * time * time / 2;
   const double y = lift_off.y - a * c0 + (lift_off.y_rate + a * s0 * w) * time + across * time * time / 2;
-  return {x + a * s, y + a * c, phi, x_rate + a * c * w, y_rate - a * s * w, w};
+  return {x + a * s, y + a * c, phi, x_rate + a * c * spin, y_rate - a * s * spin, spin};
 }
 
 Flown fly(const Body& body, const Motion& lift_off) {
   const auto height = [&](double time) { return flying(body, lift_off, time).y - body.R; };
   const auto rate = [&](double time) { return flying(body, lift_off, time).y_rate; };
-  const double step = 0.01 / (std::abs(lift_off.spin) + std::sqrt(body.g / body.R));
+  const double slow = std::sqrt(body.g / body.R) + std::sqrt(std::abs(body.turn));
   long looks_left = 100'000;
   Flown flown;
   std::optional<double> landing;
@@ -54,14 +56,16 @@ Flown fly(const Body& body, const Motion& lift_off) {
     }
     before = time;
   };
-  double rate_before = lift_off.y_rate;
-  for (double time = step; !landing; time += step) {
+  double rate_before = lift_off.y_rate, spin = lift_off.spin, time = 0.0;
+  while (!landing) {
     if (--looks_left < 0) return {.failed = true};
+    const double from = std::exchange(time, time + 0.01 / (std::abs(spin) + slow));
     const double rate_here = rate(time);
-    if ((rate_before > 0.0) != (rate_here > 0.0)) look(bisect(rate, time - step, time), true);
+    if ((rate_before > 0.0) != (rate_here > 0.0)) look(bisect(rate, from, time), true);
     if (!landing) look(time, false);
     rate_before = rate_here;
     const Motion here = flying(body, lift_off, time);
+    spin = here.spin;
     const double falls = here.y_rate + body.arm() * std::sin(here.phi) * here.spin;
     const double centre_of_mass = here.y - body.arm() * std::cos(here.phi) - body.R;
     if (!above && falls < 0.0 && centre_of_mass < -body.arm()) return {};

@@ -12,7 +12,7 @@ using Vector = Eigen::Matrix<double, 5, 1>;  // (x'', y'', phi'', lambda_f, lamb
 using Matrix = Eigen::Matrix<double, 5, 5>;
 
 Matrix equations(const Body& body, const Mode& mode, double phi) {
-  const auto& [m, m_p, R, L, I, g, slope, motor] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor, turn] = body;
   const double s = std::sin(phi), c = std::cos(phi);
   Matrix A;
   A << m + m_p, 0, -m_p * L * c, -1, 0,                  // (7)
@@ -42,11 +42,12 @@ Body body_of(const Design& design, const Scene& scene) {
   body.g = scene.gravity;
   body.slope = design.slope;
   body.motor = design.drive_torque * body.mass() * body.g * body.R;
+  if (scene.motor_in_flight && body.motor != 0.0) body.turn = forces_of(body, {Mode::flies}, {}).phi;
   return body;
 }
 
 Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor, turn] = body;
   const double s = std::sin(at.phi), c = std::cos(at.phi), w2 = at.spin * at.spin;
   const Vector loads{(m + m_p) * g * std::sin(slope) - m_p * w2 * L * s,
                      -(m + m_p) * g * std::cos(slope) - m_p * w2 * L * c,
@@ -56,7 +57,7 @@ Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
 }
 
 bool rests(const Body& body, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor, turn] = body;
   const double of_weight = (m + m_p) * g * R * std::sin(slope), of_mass = m_p * g * L;
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + std::abs(at.phi));
   return std::abs(motor + of_weight - of_mass * std::sin(slope + at.phi)) <=
@@ -70,7 +71,7 @@ double sliding_determinant(const Body& body, const Mode& mode, const Motion& at)
 }
 
 double energy(const Body& body, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor, turn] = body;
   const double w = at.spin, speed2 = at.x_rate * at.x_rate + at.y_rate * at.y_rate;
   const double kinetic = 0.5 * m_p *
                              (speed2 + L * L * w * w +

@@ -20,6 +20,7 @@ struct Body {
   double g;             ///< [m/s^2]
   double slope;         ///< [rad]
   double motor;         ///< torque on the hoop [N m]
+  double turn;          ///< what it makes of phi'' in flight [rad/s^2]; 0: it idles there
 
   double mass() const { return m + m_p; }
   /// From the hoop's centre to the centre of mass [m].
@@ -81,7 +82,8 @@ struct Flown {
   double dip = 0.0;                            ///< the lowest place before that [m], <= 0
   bool failed = false;                         ///< it takes more looks than are taken; nothing else is said
 };
-/// The centre of mass falls freely and the spin stays: looks along the flight in small steps.
+/// The centre of mass falls freely, and the motor turns the hoop or its spin stays: looks along the flight in
+/// small steps.
 Flown fly(const Body& body, const Motion& lift_off);
 /// Where the hoop is some time after lift-off.
 Motion flying(const Body& body, const Motion& lift_off, double time);

@@ -86,6 +86,7 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
     }
     std::ranges::stable_sort(events, {}, &Event::tau);
     for (const Event& event : events) {
+      if (meets_forces) meet(mode, event.tau);
       at_ = event.at;
       // but for rounding they are
       at_.y = scene_.radius, at_.y_rate = 0.0;
@@ -93,7 +94,52 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
       time_ = began + step.t0 + event.tau;
       if (happens(event.guard)) return true;
     }
+    if (meets_forces) meet(mode, step.h);
   }
+}
+
+/// Looks at a step in equal parts, and closes in on the best by thirds.
+void Referee::meet(const Mode& mode, double end) {
+  constexpr int looks = 8;
+  const Body& body = system_.body;
+  const auto force = [&](double tau) {
+    Y y = integrator_.step().y0;
+    if (tau > 0.0) integrator_.retake(tau, y);
+    const Motion at = motion_of(y);
+    spin_ = std::max(spin_, std::abs(at.spin));
+    power_ = std::max(power_, body.motor * at.spin);
+    return forces_of(body, mode, at).normal;
+  };
+  const auto close_in = [&](const auto& value, int best) {
+    double low = end * std::max(best - 1, 0) / looks, high = end * std::min(best + 1, looks) / looks;
+    while (high - low > 1e-7 * end) {
+      const double third = (high - low) / 3.0;
+      if (value(low + third) < value(high - third))
+        low += third;
+      else
+        high -= third;
+    }
+  };
+  int best = 0, fastest = 0;
+  double most = -HUGE_VAL, speed = -HUGE_VAL;
+  const auto noted = [&](double tau) {
+    const double N = force(tau);
+    force_ = std::max(force_, N);
+    return N;
+  };
+  const auto turning = [&](double tau) {
+    Y y = integrator_.step().y0;
+    if (tau > 0.0) integrator_.retake(tau, y);
+    noted(tau);
+    return std::abs(motion_of(y).spin);
+  };
+  for (int k = 0; k <= looks; ++k) {
+    const double tau = end * k / looks, N = noted(tau), w = turning(tau);
+    if (N > most) most = N, best = k;
+    if (w > speed) speed = w, fastest = k;
+  }
+  if (most > 0.8 * force_) close_in(noted, best);
+  if (speed > 0.99 * spin_) close_in(turning, fastest);
 }
 
 Outcome Referee::solve(const Design& design) {
@@ -102,6 +148,7 @@ Outcome Referee::solve(const Design& design) {
   at_ = {0.0, scene_.radius, design.release_angle, scene_.radius * w, 0.0, w};
   time_ = 0.0;
   steps_ = 0;
+  force_ = spin_ = 0.0, power_ = system_.body.motor * at_.spin;
   outcome_ = {};
   return scene_.friction == Friction::coulomb ? solve_coulomb(design) : solve_sticking();
 }
@@ -125,6 +172,12 @@ bool Referee::count_lift_off(const Flown& flown) {
   outcome_.apex_time = flown.apex_time;
   outcome_.flight_time = flown.landing_time;
   outcome_.dip = flown.dip / diameter;
+  if (meets_forces) {
+    const double weight = system_.body.mass() * system_.body.g;
+    outcome_.max_normal_force = force_ / weight;
+    outcome_.motor_max_spin = spin_ * second_;
+    outcome_.motor_max_power = power_ * second_ / (weight * scene_.radius);
+  }
   return true;
 }
 
@@ -185,6 +238,7 @@ Outcome Referee::solve_sticking() {
   };
   if (released.normal <= 0.0) return ended(Status::airborne_at_release);
   const bool from_rest = at_.spin == 0.0;
+  const double released_phi = at_.phi;
   if (rests(body, at_)) return ended(Status::stalled);
   const double runway = 2.0 * std::numbers::pi * scene_.runway * scene_.radius;
   double side = 0.0;  // where it turned first
@@ -204,6 +258,8 @@ Outcome Referee::solve_sticking() {
       gave_up = flown.failed;
       if (gave_up) return true;
       if (!count_lift_off(flown)) return false;
+      if (meets_forces)
+        outcome_.motor_energy = body.motor * (at_.phi - released_phi) / (body.mass() * body.g * body.R);
       Motion before = flying(body, at_, flown.landing_time);
       before.y = scene_.radius;
       measure(at_, before, land_without_slip(body, before));

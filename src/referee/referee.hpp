@@ -26,6 +26,9 @@ class Referee {
   /// integrator gave up, or the design takes too many steps or phases.
   Outcome solve(const Design& design);
 
+  /// Whether solve also fills in max_normal_force and what a motor does, which takes many times as long.
+  bool meets_forces = false;
+
  private:
   /// Falls through zero where something happens.
   using Guard = std::function<double(const Motion&)>;
@@ -40,6 +43,8 @@ class Referee {
   Outcome solve_sticking();
   Outcome solve_coulomb(const Design& design);
   class Slipping;
+  /// Meets the largest force, spin and power of the step in hand up to a time of it.
+  void meet(const Mode& mode, double end);
   /// Counts a lift-off; true if it is the jump.
   bool count_lift_off(const Flown& flown);
   /// Tells how far the jump goes and how hard it lands: from the lift-off to just before the landing.
@@ -56,6 +61,7 @@ class Referee {
   Motion at_{};        ///< where the hoop is
   double time_ = 0.0;  ///< since release [s]
   Outcome outcome_;
+  double force_ = 0.0, spin_ = 0.0, power_ = 0.0;  ///< the largest so far, of solve
 };
 
 }  // namespace leapmap::referee

@@ -143,11 +143,19 @@ class Referee::Slipping {
     const Flown flown = fly(body_, at_);
     if (flown.failed) return ended(Status::failed);
     Body idle = body_;
-    idle.motor = 0.0;  // as it is in flight
-    const bool sinks = !(at_.y_rate > 0.0) && free_rise(idle, at_) < -1e-9 * body_.g;
+    idle.motor = 0.0;  // as it may be in flight
+    const bool sinks = body_.turn == 0.0 && !(at_.y_rate > 0.0) && free_rise(idle, at_) < -1e-9 * body_.g;
     if (sinks) return ended(Status::indeterminate);  // it would fly through the plane
     begin(Phase::flight);
     const bool jumps = referee_.count_lift_off(flown);
+    if (jumps && referee_.meets_forces) outcome_.motor_energy = driven_ / (weight * R);
+    if (!jumps && referee_.meets_forces && body_.turn != 0.0) {
+      const double ends = at_.spin + body_.turn * flown.landing_time;
+      for (const double spin : {at_.spin, ends}) {
+        referee_.spin_ = std::max(referee_.spin_, std::abs(spin));
+        referee_.power_ = std::max(referee_.power_, body_.motor * spin);
+      }
+    }
     if (jumps) outcome_.energy_lost = (released_ + driven_ - energy(body_, at_)) / (weight * R);
     Motion before = flying(body_, at_, flown.landing_time);
     before.y = R;
@@ -155,6 +163,7 @@ class Referee::Slipping {
     const double rest_speed = referee_.scene_.rest_speed * std::sqrt(referee_.scene_.gravity * R);
     const Landed landed = land(body_, before, mu_kinetic_, restitution_, rest_speed);
     if (jumps) referee_.measure(at_, before, landed);
+    if (body_.turn != 0.0) driven_ += body_.motor * (before.phi - at_.phi);
     at_ = landed.after;
     if (jumps) {
       outcome_.landing_spin = at_.spin * referee_.second_;

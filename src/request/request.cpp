@@ -69,6 +69,13 @@ Request request_of_outcomes(const Spec& spec) {
   return request_of(spec, std::move(columns));
 }
 
+Request request_with_ways(const Spec& spec) {
+  Request request = request_of_outcomes(spec);
+  for (const Field* field : fields_of(spec.scene))
+    if (field->of_way) request.columns.push_back(field);
+  return request;
+}
+
 Request request_of_everything(const Spec& spec) { return request_of(spec, fields_of(spec.scene)); }
 
 Request request_of_sample(const Request& request) {

@@ -35,6 +35,8 @@ Request request_of(const Spec& spec);
 Request request_of(const Spec& spec, std::vector<const Field*> columns);
 /// What solve tells of designs if nobody names fields.
 Request request_of_outcomes(const Spec& spec);
+/// The same and the measures of the way to the jump.
+Request request_with_ways(const Spec& spec);
 /// Every field that the scene has, even those that must be named.
 Request request_of_everything(const Spec& spec);
 

@@ -42,10 +42,16 @@ Solver afterwards(const Request& request) {
     growth = std::make_shared<ErrorGrowth>(request.scene, tolerance);
   if (wants_gaits(request)) gaits = std::make_shared<GaitSolver>(request.scene, tolerance);
   const bool clears = wants(request, "clears_from") || wants(request, "clears_to");
-  if (!growth && !gaits && !clears) return {};
-  return [growth, gaits, clears, scene = request.scene](std::span<const Design> designs,
-                                                        std::span<Outcome> outcomes) {
+  Solver ways;
+  const bool asks_for_ways =
+      std::ranges::any_of(request.columns, [](const Field* field) { return field->of_way; });
+  if (const auto make_ways = model_of(request.scene).ways; make_ways && asks_for_ways)
+    ways = make_ways(request.scene, std::min(tolerance, 1e-10));
+  if (!growth && !gaits && !clears && !ways) return {};
+  return [growth, gaits, clears, ways, scene = request.scene](std::span<const Design> designs,
+                                                              std::span<Outcome> outcomes) {
     if (clears) find_clearances(scene, designs, outcomes);
+    if (ways) ways(designs, outcomes);
     if (growth) growth->tell(designs, outcomes);
     if (gaits) gaits->solve(designs, outcomes);
   };

@@ -27,7 +27,7 @@ Outcome jump_on(Workspace& work, const Scene& scene, Start start, const Design& 
   work.solver.solve(start, {&design, 1}, {&landed, 1}, scene, {&outcome, 1}, &told);
   if (outcome.status != Status::jumped) return outcome;
 
-  const Hoop<D> hoop = reduce(parameters_along(design, along));
+  const Hoop<D> hoop = reduce(parameters_along(design, along), scene);
   const double second = time_unit(scene);
   if (!told.bounces || told.lift_offs.size() > 1) {
     // The same N at every angle, whichever way it rolls.

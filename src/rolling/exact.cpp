@@ -69,7 +69,7 @@ void ExactSolver<T>::solve_block(Start start, std::span<const Design> designs,
       outcomes[i].first_jump_time += static_cast<double>(states[i].time);
       outcomes[i].jump_time += static_cast<double>(states[i].time);
     }
-  if (lands) land(block_, jumped_, outcomes, states, wanted_.landing);
+  if (lands) land(block_, jumped_, scene, outcomes, states, wanted_.landing);
   const double second = time_unit(scene);
   for (const std::uint32_t i : lifted_) to_seconds(outcomes[i], second);
 }

@@ -46,7 +46,7 @@ std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, const FoundLi
     if (on != told.legs[i]) roll = leg.roll, passed = leg.begin, on = told.legs[i];
     lift_off.time = passed += time.halving(roll, leg.way * lift_off.angle);
     roll = begin_roll(leg.roll.hoop, leg.way * lift_off.angle, leg.way * lift_off.spin);
-    candidates.push_back(in_si(lift_off, fly(leg.roll.hoop, lift_off), scene));
+    candidates.push_back(in_si(lift_off, fly(seen(leg.roll.hoop, leg.way), lift_off), scene));
     candidates.back().is_jump = false;
   }
   if (!candidates.empty()) {
@@ -67,7 +67,7 @@ class Teller {
   Teller(const Design& design, const Scene& scene, double tolerance, double interval, Motion& motion)
       : design_(design),
         scene_(scene),
-        hoop_(reduce<double>(design)),
+        hoop_(reduce<double>(design, scene)),
         second_(time_unit(scene)),
         samples_(interval > 0.0),
         solver_(tolerance),

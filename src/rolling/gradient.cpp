@@ -21,14 +21,9 @@ constexpr double finest = 1e-14;
 
 /// The roll of a design of these parameters, seen from the side where it goes.
 template <class D>
-Roll<D> dual_roll(const std::array<D, without_slip>& parameter, const D& way = D(1.0)) {
-  return begin_roll(seen(reduce(parameter), way), way * parameter[by_release_angle],
+Roll<D> dual_roll(const std::array<D, without_slip>& parameter, const Scene& scene, const D& way = D(1.0)) {
+  return begin_roll(seen(reduce(parameter, scene), way), way * parameter[by_release_angle],
                     way * parameter[by_release_spin]);
-}
-
-template <class T>
-Toss<T> toss_from(const Hoop<T>& hoop, const T& angle, const T& spin) {
-  return toss_of(hoop, angle, trig(angle), spin);
 }
 
 }  // namespace
@@ -127,13 +122,17 @@ void RollingGradients::in_lanes(const Lot& lot, std::span<const LiftOffAt> lift_
   std::array<D, without_slip> parameter;
   for (std::size_t p = 0; p < without_slip; ++p) parameter[p] = D::parameter(load(parameters[p]), p);
   const T way = load(ways), angle = load(angles);
-  const Roll<D> roll = dual_roll(parameter, D(way));
+  const Roll<D> roll = dual_roll(parameter, lot.scene, D(way));
   const LiftOffDual<D> off = lift_off_at(roll, angle);
 
   T apex = load(apexes);
   if (jump_bits != (1u << count) - 1u) {
-    const Toss<T> toss = toss_from(plain(roll).hoop, angle, off.spin.value);
-    const T found = ascend(toss, angle == angle).apex / off.spin.value;
+    const Hoop<T> hoop = plain(roll).hoop;
+    const T& spin = off.spin.value;
+    const MaskOf<T> driven = hoop.aloft != T(0.0);
+    T found = ascend(toss_of(hoop, angle, trig(angle), spin), angle == angle).apex / spin;
+    if (any(driven))
+      found = select(driven, fly_driven(hoop, angle, spin, T(0.0), driven).flight.apex_time, found);
     apex = select(apex == T(0.0), found, apex);
   }
   const Trig<D> phi = trig(off.angle);
@@ -155,8 +154,7 @@ void RollingGradients::in_lanes(const Lot& lot, std::span<const LiftOffAt> lift_
       put_measures(measures_of(roll.hoop, off.angle, off.spin, flight.flight_time), seen_from,
                    [&](double Outcome::*kept, const D& value) { put(kept, value, 1.0); });
     if (of_dip_) {
-      const Toss<T> toss = toss_from(plain(roll).hoop, angle, off.spin.value);
-      const T lowest = lowest_before(toss, T(apex * off.spin.value)) / off.spin.value;
+      const T lowest = lowest_time(plain(roll).hoop, angle, off.spin.value, T(0.0), apex);
       put(&Outcome::dip, D(0.5) * height_above_plane(roll.hoop, phi, off.spin, D(lowest)).value, 1.0);
     }
   }
@@ -212,7 +210,7 @@ void RollingGradients::alone(const Lot& lot, const LiftOffAt& lift_off) {
   using S = RollingDual;
   const Design& design = lot.designs[lift_off.design];
   const auto& found = solver_.block().found[lift_off.design];
-  const Roll<S> roll = dual_roll(dual_parameters<S>(design));
+  const Roll<S> roll = dual_roll(dual_parameters<S>(design), lot.scene);
   const double angle = found.way * lift_off.angle + found.turned_back;
   const S time = time_.time(roll.hoop, roll.release, S::parameter(design.release_spin, by_release_spin), {},
                             lift_off_at(roll, angle).angle);
@@ -232,7 +230,7 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
   const std::size_t place = lot.first + number;
   if (!same_flags(outcome, lot.outcomes[number]) || told.lift_offs.empty()) return;
 
-  const Roll<S> roll = dual_roll(dual_parameters<S>(design));
+  const Roll<S> roll = dual_roll(dual_parameters<S>(design), lot.scene);
   const Hoop<S>& hoop = roll.hoop;
   const auto differentiate = [&](std::size_t i, bool jumps) {
     const S way(told.lift_offs[i].spin < 0.0 ? -1.0 : 1.0);
@@ -241,10 +239,11 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
     off.spin = way * off.spin;
     const Trig<S> phi = trig(off.angle);
     const double spin = abs(off.spin.value);
-    const Toss<double> toss = toss_from(seen(plain(roll).hoop, way.value), way.value * off.angle.value, spin);
-    const Flight<double> tossed = descend(toss, ascend(toss, true), true);
+    const Hoop<double> ahead = seen(plain(roll).hoop, way.value);
+    const LiftOff<double> lift_off{0.0, way.value * off.angle.value, spin};
+    const Flight<double> flown = leapmap::fly(ahead, lift_off);
     const FlightDual<S> flight =
-        with_derivatives(hoop, phi, off.spin, S(0.0), tossed.apex_time / spin, tossed.flight_time / spin);
+        with_derivatives(hoop, phi, off.spin, S(0.0), flown.apex_time, flown.flight_time);
     const auto put = [&](double Outcome::*quantity, const S& value, double unit) {
       lot.gradients.put(quantity, place, value, unit);
     };
@@ -263,7 +262,7 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
       put_measures(measures_of(hoop, off.angle, off.spin, flight.flight_time), S(1.0),
                    [&](double Outcome::*kept, const S& value) { put(kept, value, 1.0); });
     if (!of_dip_) return;
-    const double lowest = lowest_before(toss, tossed.apex_time) / spin;
+    const double lowest = lowest_time(ahead, lift_off.angle, spin, 0.0, flown.apex_time);
     put(&Outcome::dip, S(0.5) * height_above_plane(hoop, phi, off.spin, S(lowest)).value, 1.0);
   };
   const bool jumps = outcome.status == Status::jumped;

@@ -11,7 +11,7 @@ namespace leapmap::rolling {
 
 Motion tell_by_integration(const Design& design, const Scene& scene, const IntegrationOptions& options,
                            double interval, double graze_limit) {
-  const Hoop<double> hoop = reduce<double>(design);
+  const Hoop<double> hoop = reduce<double>(design, scene);
   const double second = time_unit(scene);
   Motion motion;
   TraceSampler sampler{interval / second, motion.points};

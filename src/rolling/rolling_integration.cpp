@@ -256,7 +256,7 @@ bool Integration<Model>::settle(Rolling& rolling) {
 template <class Model>
 Outcome Integration<Model>::roll(Start start, const Design& design, const ContactState<double>& from,
                                  const Scene& scene, const Observer& observer) {
-  system_.model.set(reduce<double>(design));
+  system_.model.set(reduce<double>(design, scene));
   const State<D> release = system_.model.rolling(from.angle, from.spin);
   Rolling rolling{from,
                   scene,

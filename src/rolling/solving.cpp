@@ -19,7 +19,7 @@ Solving integrate(const IntegrationOptions& options, const Scene& scene) {
   if constexpr (Model::dimension > 2)
     solving.drift = [integration, scene](const Design& design) {
       Model model;
-      model.set(reduce<double>(design));
+      model.set(reduce<double>(design, scene));
       double worst = 0.0;
       typename Integration<Model>::Observer observer;
       observer.step = [&](const auto& integrator, double) {

@@ -64,7 +64,13 @@ void TakeOff<T>::fly(Block<T>& block, const DesignLanes<WideOf<T>>& index, std::
   using S = ScalarOf<T>;
   using W = WideOf<T>;
   const Ascent<W> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), angle == angle);
-  const W height = W(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
+  W height = W(0.5) * roll.hoop.rho * ascent.height, apex_time = ascent.apex / spin;
+  if (const Hoop<W> hoop = in_flight(roll.hoop, scene); any(hoop.aloft != W(0))) {
+    const MaskOf<W> driven = hoop.aloft != W(0);
+    const Flight<W> flight = fly_driven(hoop, angle, spin, W(0), driven).flight;
+    height = select(driven, flight.height, height);
+    apex_time = select(driven, flight.apex_time, apex_time);
+  }
   const auto angles = lanes_of(angle), spins = lanes_of(spin), heights = lanes_of(height),
              apexes = lanes_of(apex_time);
   if (keeps_flights) block.store(TakenOff<W>{angle, spin, ascent}, index.data(), count);
@@ -102,17 +108,20 @@ void TakeOff<T>::fly(Block<T>& block, const DesignLanes<WideOf<T>>& index, std::
 }
 
 template <class T>
-void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes,
+void land(const Block<T>& block, const DesignList& jumped, const Scene& scene, std::span<Outcome> outcomes,
           std::span<ContactState<ScalarOf<T>>> states, bool measures) {
   using W = WideOf<T>;
   for (std::size_t first = 0; first < jumped.size(); first += Lanes<W>::count) {
     const std::size_t count = std::min(Lanes<W>::count, jumped.size() - first);
     const DesignLanes<W> index = lanes_from<W>(jumped, first);
-    const Roll<W> roll = block.template load_path<W>(index.data());
+    Roll<W> roll = block.template load_path<W>(index.data());
+    roll.hoop = in_flight(roll.hoop, scene);
     const TakenOff<W> off = block.template load_lift_off<W>(index.data());
     const Trig<W> phi = trig(off.angle);
     const Toss<W> toss = toss_of(roll.hoop, off.angle, phi, off.spin);
-    const Flight<W> flight = scaled(descend(toss, off.ascent, off.spin == off.spin), roll.hoop, off.spin);
+    Flight<W> flight = scaled(descend(toss, off.ascent, off.spin == off.spin), roll.hoop, off.spin);
+    if (const MaskOf<W> driven = roll.hoop.aloft != W(0); any(driven))
+      flight = of_either(driven, fly_driven(roll.hoop, off.angle, off.spin, W(0), driven).flight, flight);
     const auto landings = lanes_of(flight.flight_time), dips = lanes_of(flight.dip);
     for (std::size_t i = 0; i < count; ++i) {
       outcomes[index[i]].flight_time = static_cast<double>(landings[i]);
@@ -149,15 +158,15 @@ void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> ou
 
 #ifdef LEAPMAP_KERNELS
 template struct TakeOff<Batch>;
-template void land(const Block<Batch>&, const DesignList&, std::span<Outcome>,
+template void land(const Block<Batch>&, const DesignList&, const Scene&, std::span<Outcome>,
                    std::span<ContactState<double>>, bool);
 #endif
 #ifdef LEAPMAP_SCALARS
 template struct TakeOff<double>;
 template struct TakeOff<long double>;
-template void land(const Block<double>&, const DesignList&, std::span<Outcome>,
+template void land(const Block<double>&, const DesignList&, const Scene&, std::span<Outcome>,
                    std::span<ContactState<double>>, bool);
-template void land(const Block<long double>&, const DesignList&, std::span<Outcome>,
+template void land(const Block<long double>&, const DesignList&, const Scene&, std::span<Outcome>,
                    std::span<ContactState<long double>>, bool);
 #endif
 

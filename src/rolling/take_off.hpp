@@ -50,7 +50,7 @@ struct TakeOff {
 /// Flight time and dip of the jumps, and if asked for their measures. states: of all designs where they set
 /// out, moved to just after the landing of their jump, which holds at once; empty: not asked for.
 template <class T>
-void land(const Block<T>& block, const DesignList& jumped, std::span<Outcome> outcomes,
+void land(const Block<T>& block, const DesignList& jumped, const Scene& scene, std::span<Outcome> outcomes,
           std::span<ContactState<ScalarOf<T>>> states, bool measures);
 
 }  // namespace leapmap

@@ -123,6 +123,7 @@ std::string hop_command(const Spec& spec, const Design& design) {
         member && has(spec.scene.friction, parameter.only_of) &&
         !(*member == &Scene::mass && spec.scene.mass == 0.0))
       command += fmt::format(" --set {}={}", parameter.name, spec.scene.**member);
+  if (!spec.scene.motor_in_flight && design.drive_torque != 0.0) command += " --set motor_in_flight=false";
   if (spec.scene.jumps > 1) command += fmt::format(" --set scene.jumps={}", spec.scene.jumps);
   if (spec.scene.settle > 0)
     command += fmt::format(" --set gait.settle={} --set gait.most_period={} --set gait.tolerance={}",

@@ -42,6 +42,7 @@ std::vector<std::string> texts_of(Spec& spec, const Option& option) {
     return goal == spec.goals.end() ? std::vector<std::string>{} : std::vector{text_of(*goal)};
   }
   if (std::holds_alternative<FrictionSlot>(option.slot)) return {std::string(model_of(spec.scene).name)};
+  if (const auto* slot = std::get_if<SwitchSlot>(&option.slot)) return {(*slot)(spec) ? "true" : "false"};
   if (const auto* slot = std::get_if<TextSlot>(&option.slot)) return {(*slot)(spec)};
   if (const auto* slot = std::get_if<TextsSlot>(&option.slot)) return (*slot)(spec);
   return {};
@@ -94,6 +95,7 @@ Spec spec_of(const MapReader& map, const std::string& origin) {
     hdf5::bytes_in_memory(map.open(name), fmt::format("{}: {}", origin, name));
     spec.list.columns.push_back({name, map.read(name, all)});
   }
+  forget_mass_that_varies(spec);
   return spec;
 }
 

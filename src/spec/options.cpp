@@ -27,6 +27,8 @@ std::vector<std::string_view> methods() {
   return names;
 }
 
+std::vector<std::string_view> switch_words() { return {"true", "false"}; }
+
 std::vector<std::string_view> precisions() { return {"f8", "f4"}; }
 
 std::vector<std::string_view> field_names() {
@@ -78,6 +80,13 @@ const std::array keys{
            "1",
            "number of jumps to follow",
            {1, static_cast<double>(most_jumps)}},
+    Option{"scene",
+           "motor_in_flight",
+           SwitchSlot{[](Spec& s) -> bool& { return s.scene.motor_in_flight; }},
+           "",
+           "whether a motor drives the hoop in flight too; else it idles there",
+           {},
+           switch_words},
     Option{"design", "points", TextSlot{[](Spec& s) -> std::string& { return s.points; }}, "",
            "CSV file with one design in a row instead of axes; its header names parameters"},
     Option{"numerics",
@@ -338,8 +347,7 @@ const Option* find_hoop_option(std::string_view section, std::string_view key) {
   };
   static const std::vector<Option> numbers = make(false), spreads = make(true);
   const BodyNumber* row = find_body_number(key);
-  if (!row || !(section.empty() || section == "hoop" || section == "design" || section == "scatter"))
-    return nullptr;
+  if (!row || !(section.empty() || section == "hoop" || section == "scatter")) return nullptr;
   const auto place = row - body_numbers().data();
   return &(section == "scatter" ? spreads : numbers)[static_cast<std::size_t>(place)];
 }

@@ -33,6 +33,8 @@ struct FrictionSlot {};
 struct SpreadSlot {};
 /// What a field of a hoop must be: { at_least = ... }, { at_most = ... }, { is = ... }.
 struct GoalSlot {};
+/// true or false.
+using SwitchSlot = bool& (*)(Spec&);
 using NumberSlot = double& (*)(Spec&);
 using IntegerSlot = long& (*)(Spec&);
 using TextSlot = std::string& (*)(Spec&);
@@ -41,8 +43,8 @@ using TextsSlot = std::vector<std::string>& (*)(Spec&);
 struct Option {
   std::string_view section;
   std::string_view key;
-  std::variant<ParameterSlot, HoopSlot, SceneSlot, FrictionSlot, NumberSlot, IntegerSlot, TextSlot, TextsSlot,
-               SpreadSlot, GoalSlot>
+  std::variant<ParameterSlot, HoopSlot, SceneSlot, FrictionSlot, SwitchSlot, NumberSlot, IntegerSlot,
+               TextSlot, TextsSlot, SpreadSlot, GoalSlot>
       slot;
   std::string_view unit;  ///< of model/own_units.hpp; "1": a pure number
   std::string_view meaning;

@@ -30,6 +30,8 @@ std::string default_value(const Option& option) {
           return option.key == "order"                                    ? "as given"
                  : option.key == "fields" || option.key == "gradients_by" ? "all"
                                                                           : "none";
+        } else if constexpr (std::is_same_v<Slot, SwitchSlot>) {
+          return slot(spec) ? "true" : "false";
         } else if constexpr (std::is_same_v<Slot, HoopSlot> || std::is_same_v<Slot, SpreadSlot> ||
                              std::is_same_v<Slot, GoalSlot>) {
           return "none";

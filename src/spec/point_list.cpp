@@ -40,7 +40,7 @@ std::pair<std::string, std::string> name_and_unit(const std::string& header) {
 
 }  // namespace
 
-PointList read_points(const std::string& path, const std::string& origin, const Scales& scales) {
+PointList read_points(const std::string& path, const std::string& origin, Scales scales) {
   CsvFile file(path, fmt::format("a CSV file as design.points of {}", origin));
   PointList list;
   list.path = path;
@@ -52,6 +52,7 @@ PointList read_points(const std::string& path, const std::string& origin, const 
     columns.push_back(text == label_name ? nullptr : column_option(file.place(), name));
     units.push_back(unit.empty() ? "" : " " + unit);
     if (columns.back()) list.columns.push_back({name, {}});
+    if (is_body_mass(name)) scales.mass = 0.0;  // each design has its own
   }
   if (!columns.empty() && list.columns.empty())
     throw InputError(file.place() + ": no column is a parameter of a design; allowed: at least one");

@@ -13,6 +13,6 @@ namespace leapmap {
 /// each, in the parameter's own unit, in one written after it ("23 deg") or in that of the header
 /// ("slope [deg]"); what stands in a column `label` names the design; origin, the spec's file, is for
 /// messages. Throws InputError naming line and column, IoError if the file cannot be read.
-PointList read_points(const std::string& path, const std::string& origin, const Scales& scales = {});
+PointList read_points(const std::string& path, const std::string& origin, Scales scales = {});
 
 }  // namespace leapmap

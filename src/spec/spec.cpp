@@ -41,6 +41,11 @@ struct Assign {
   void operator()(SceneSlot slot) const { spec.scene.*slot.member = one_number(); }
   void operator()(NumberSlot slot) const { slot(spec) = one_number(); }
   void operator()(FrictionSlot) const { spec.scene.friction = find_model(text(*entry.node))->friction; }
+  void operator()(SwitchSlot slot) const {
+    const toml::value<bool>* value = entry.node->as_boolean();
+    if (!value) refuse(entry, "is not true or false", allowed_values(*entry.option));
+    slot(spec) = value->get();
+  }
   void operator()(IntegerSlot slot) const {
     const auto value = to_whole(*entry.node);
     if (!value) refuse(entry, "is not a whole number", allowed_values(*entry.option));
@@ -230,9 +235,7 @@ void refuse_beside_hoop(const std::vector<Entry>& entries) {
 /// The design, the size and the mass of the nominal body. Where masses vary, the total is not known.
 void apply_hoop(Spec& spec) {
   apply_body(reduce_body(*spec.hoop), *spec.hoop, spec.design, spec.scene);
-  for (const auto* varying : {&spec.axes, &spec.list.columns})
-    for (const Axis& axis : *varying)
-      if (axis.key.starts_with("hoop.") && axis.key.ends_with("mass")) spec.scene.mass = 0.0;
+  forget_mass_that_varies(spec);
 }
 
 /// As they were written, or as output.order says.
@@ -268,8 +271,8 @@ void read_points_of(Spec& spec) {
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
   spec.list = read_points(spec.points, origin_of(spec), scales_of(spec.scene));
   for (const Axis& column : spec.list.columns) {
-    const Option& option = *find_option("design", column.key);
     if (find_body_number(column.key)) continue;  // check_hoop's
+    const Option& option = *find_option("design", column.key);
     if (!has(spec.scene.friction, option.only_of))
       throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
                                    no_use(spec.scene), with_model(*option.only_of)));
@@ -345,9 +348,16 @@ void assign(std::vector<Entry>& entries, Spec& spec) {
     check_hoop(spec);
     apply_hoop(spec);
   }
+  const auto any = [&](const auto& holds) { return std::ranges::any_of(entries, holds); };
+  // Of made hoops each has a mass of its own, and so may the designs of a list have.
+  const bool made = any([](const Entry& entry) {
+    return std::holds_alternative<SpreadSlot>(entry.option->slot) && is_body_mass(entry.key);
+  });
+  const bool listed = spec.hoop && any([](const Entry& entry) { return entry.option->key == "points"; });
   for (Entry& entry : entries) {
     if (sets_scale(entry)) continue;
     entry.scales = scales_of(spec.scene);
+    if (listed || (made && std::holds_alternative<GoalSlot>(entry.option->slot))) entry.scales.mass = 0.0;
     std::visit(Assign{entry, spec}, entry.option->slot);
   }
   put_axes_in_order(entries, spec);
@@ -411,9 +421,12 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
   const bool asks_for_gaits = file.contains("gait") || std::ranges::any_of(entries, [](const Entry& e) {
                                 return e.option->section == "gait";
                               });
-  set_defaults(entries, asks_for_gaits, spec);
   if (!lenient) refuse_what_has_no_use(entries, spec);
+  set_defaults(entries, asks_for_gaits, spec);
   refuse_contradictions(entries, spec);
+  // Before format 1.13 a resolved spec did not say so: motors idled.
+  if (lenient && std::ranges::find(entries, "motor_in_flight", &Entry::key) == entries.end())
+    spec.scene.motor_in_flight = false;
   return spec;
 }
 

@@ -38,7 +38,7 @@ void check_text(const Spec& spec, const Option& option, const std::string& text)
 /// Axes, or the columns of a list.
 void check_values(const Spec& spec, const std::vector<Axis>& axes) {
   for (const Axis& axis : axes) {
-    const Option* option = find_option("design", axis.key);
+    const Option* option = find_option(find_body_number(axis.key) ? "hoop" : "design", axis.key);
     if (!option || !(std::holds_alternative<ParameterSlot>(option->slot) || find_body_number(axis.key)))
       refuse(spec, axis.key, "is not a parameter of a design", "an axis of one");
     if (std::ranges::count(axes, axis.key, &Axis::key) > 1) refuse(spec, axis.key, "appears twice", "once");
@@ -178,6 +178,12 @@ void check_capabilities(const Spec& spec) {
   if (spec.numerics.audit > 0.0)
     refuse_without(model.exact && model.integration, "audit", "a second method", "0");
   if (!spec.output.gradients.empty()) refuse_without(model.gradients, "gradients", "derivatives", "none");
+  const auto is_of_way = [](const std::string& name) {
+    const Field* field = find_field(name);
+    return field && field->of_way;
+  };
+  if (std::ranges::any_of(spec.output.fields, is_of_way))
+    refuse_without(model.ways, "fields", "forces on the way to a jump", "other fields");
   if (spec.scene.jumps > 1)
     refuse_without(exact ? model.jumps != nullptr : model.integrated_jumps != nullptr, "jumps",
                    "jumps that begin at a landing", "1");

@@ -110,18 +110,35 @@ void check_axis(const Spec& spec, const Axis& axis) {
                                    value, allowed_values(variable->range, variable->unit)));
 }
 
-/// The body whose two ratios of masses are the largest of all designs.
-Body extreme_of(const Spec& spec) {
-  Body body = *spec.hoop;
-  Design unused;
+/// The least and the largest of a number over all designs.
+std::pair<double, double> bounds_of(const Spec& spec, const std::string& key, double nominal) {
   for (const auto* varying : {&spec.axes, &spec.list.columns})
-    for (const Axis& axis : *varying) {
-      const auto variable = find_variable(axis.key, &body);
-      if (!variable || !variable->of_body()) continue;
-      const auto [least, most] = std::ranges::minmax(axis.values);
-      variable->in(unused, body) = axis.key == "hoop.mass" ? least : most;
-    }
-  return body;
+    for (const Axis& axis : *varying)
+      if (axis.key == key) {
+        const auto [least, most] = std::ranges::minmax(axis.values);
+        return {least, most};
+      }
+  return {nominal, nominal};
+}
+
+/// That no ratio of any design is beyond what a design may have; weights count as if they were on the rim.
+void check_ratios(const Spec& spec) {
+  const Body& body = *spec.hoop;
+  const double square = 0.25 * body.diameter * body.diameter;
+  double weights = 0.0,
+         inertia = std::isnan(body.inertia) ? 0.0 : bounds_of(spec, "hoop.inertia", body.inertia).second;
+  for (const Weight& weight : body.weights) {
+    const std::string of = "hoop." + weight.name;
+    const double mass = bounds_of(spec, of + ".mass", weight.mass).second;
+    weights += mass, inertia += mass * square + bounds_of(spec, of + ".inertia", weight.inertia).second;
+  }
+  const double ring = bounds_of(spec, "hoop.mass", body.mass).first;
+  constexpr double most_ratio = 1e12;  // as of a design
+  if (weights > most_ratio * ring || inertia > most_ratio * ring * square)
+    throw InputError(
+        fmt::format("{}: hoop.mass = {} is a trillionth of the weights' masses, or of the inertia "
+                    "over R^2, or less; allowed: more",
+                    origin_of(spec), ring));
 }
 
 }  // namespace
@@ -185,10 +202,16 @@ void check_hoop(const Spec& spec) {
   if (!spec.hoop) return;
   try {
     static_cast<void>(reduce_body(*spec.hoop));
-    static_cast<void>(reduce_body(extreme_of(spec)));
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", origin_of(spec), error.what()));
   }
+  check_ratios(spec);
+}
+
+void forget_mass_that_varies(Spec& spec) {
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying)
+      if (is_body_mass(axis.key)) spec.scene.mass = 0.0;
 }
 
 std::vector<std::string> body_keys(const Spec& spec) {

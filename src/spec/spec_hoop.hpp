@@ -29,6 +29,9 @@ void assign_to_hoop(const Entry& entry, Spec& spec);
 /// Throws InputError for a body that cannot be, nominal or along the axes.
 void check_hoop(const Spec& spec);
 
+/// Where masses of the body vary, no total mass is known.
+void forget_mass_that_varies(Spec& spec);
+
 /// "hoop.diameter", "hoop.slug.mass" and so on: of all numbers of the spec's body; none without [hoop].
 std::vector<std::string> body_keys(const Spec& spec);
 

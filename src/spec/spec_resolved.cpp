@@ -50,6 +50,8 @@ std::optional<std::string> value_of(const Option& option, Spec& spec) {
           const double value = spec.design.*slot.member;
           if (std::isnan(value)) return std::nullopt;  // it follows another parameter
           return toml_number(value);
+        } else if constexpr (std::is_same_v<Slot, SwitchSlot>) {
+          return slot(spec) ? "true" : "false";
         } else if constexpr (std::is_same_v<Slot, HoopSlot>) {
           return std::nullopt;  // hoop_text's
         } else if constexpr (std::is_same_v<Slot, SceneSlot>) {

@@ -107,7 +107,9 @@ void MadeHoops::take_body(const Body& made, const ReducedBody& nominal, Design& 
   const ReducedBody reduced = reduce_checked(made);
   apply_ratios(reduced, design);
   // The release is that of the drawing: it counts from where the centre of mass should be. The motor is too.
-  if (nominal.eccentricity > 0.0 && reduced.eccentricity > 0.0)
+  // Weights that balance have no direction but that of a rounding.
+  constexpr double balanced = 1e-12;
+  if (nominal.eccentricity > balanced && reduced.eccentricity > balanced)
     design.release_angle += std::remainder(reduced.direction - nominal.direction, 2.0 * std::numbers::pi);
   design.drive_torque *= nominal.total_mass / reduced.total_mass;
 }

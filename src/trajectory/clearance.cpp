@@ -23,6 +23,10 @@ struct Passage {
   double way;  ///< -1: it flies uphill, and is seen from behind
 
   double height(double t) const { return height_above_plane(hoop, phi, spin, t, normal).value; }
+  /// The fastest turn until then.
+  double fastest(double t) const {
+    return std::max(std::abs(spin), std::abs(spin + hoop.aloft * t)) + std::sqrt(std::abs(hoop.aloft));
+  }
   double climb(double t) const { return height_above_plane(hoop, phi, spin, t, normal).rate; }
 
   /// How far ahead of the lift-off the circle reaches at the wall's height or below: of a wall ahead (side 1)
@@ -80,7 +84,7 @@ double largest_in_piece(const Passage& passage, double side, double from, double
 /// The largest of side * reach over [from, to] as far as the hoop is lower there than the wall; infinite:
 /// that takes too many pieces.
 double largest_below(const Passage& passage, double side, double from, double to) {
-  const double pieces = std::ceil((to - from) * (1.0 + std::abs(passage.spin)) / finest_step);
+  const double pieces = std::ceil((to - from) * (1.0 + passage.fastest(to)) / finest_step);
   if (!(pieces < most_pieces)) return HUGE_VAL;
   double most = -HUGE_VAL;
   for (double k = 0.0; k < pieces; ++k) {
@@ -108,7 +112,7 @@ std::pair<double, double> surely_above(const Passage& passage) {
 void find_clearance(const Scene& scene, const Design& design, Outcome& outcome) {
   const double second = time_unit(scene), apex = outcome.apex_time / second,
                end = outcome.flight_time / second;
-  Passage passage{.hoop = reduce<double>(design),
+  Passage passage{.hoop = reduce<double>(design, scene),
                   .phi = trig(outcome.jump_angle),
                   .spin = outcome.jump_spin,
                   .slip = 0.0,

@@ -17,7 +17,7 @@ struct ContactState {
   S angle = S(0), spin = S(0);
   S slip = S(0);              ///< v = x' - w
   S normal = S(0);            ///< v_n with which a flight begins: of a rebound above zero
-  S turned_in_flight = S(0);  ///< since release, or since it was reduced [rad]: a motor idles there
+  S turned_in_flight = S(0);  ///< with an idle motor, since release or since it was reduced [rad]
 };
 
 /// A state without whole turns, time and travel, on which nothing depends that comes after it.
@@ -57,13 +57,14 @@ template <class S>
 ContactState<S> after_flight(const Hoop<S>& hoop, const ContactState<S>& at, const S& flight_time) {
   const Trig<S> phi = trig(at.angle);
   const Sample<S> travel = travel_in_flight(hoop, phi, at.spin, at.slip, flight_time);
+  const Turned<S> turned = turned_in_flight(hoop, at.spin, flight_time);
   return {at.time + flight_time,
           at.travel + travel.value,
-          at.angle + at.spin * flight_time,
-          at.spin,
-          travel.rate - at.spin,
+          at.angle + turned.value,
+          turned.rate,
+          travel.rate - turned.rate,
           height_above_plane(hoop, phi, at.spin, flight_time, at.normal).rate,
-          at.turned_in_flight + at.spin * flight_time};
+          at.turned_in_flight + select(hoop.aloft == S(0), turned.value, S(0))};
 }
 
 }  // namespace leapmap

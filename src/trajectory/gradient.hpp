@@ -42,10 +42,10 @@ std::array<D, without_slip> dual_parameters(const Design& design) {
   return parameters;
 }
 
-/// The hoop of those parameters.
+/// The hoop of those parameters, with its motor in flight as the scene has it.
 template <class D>
-Hoop<D> reduce(const std::array<D, without_slip>& p) {
-  return reduce(p[0], p[1], p[2], p[3], p[6]);
+Hoop<D> reduce(const std::array<D, without_slip>& p, const Scene& scene) {
+  return in_flight(reduce(p[0], p[1], p[2], p[3], p[6]), scene);
 }
 
 /// Whether mu_kinetic is what mu_static is, and goes where that goes.

@@ -33,9 +33,10 @@ inline MotionPoint sliding_point(const Hoop<double>& hoop, double friction, cons
 /// `flown` after the flight that begins at `from`.
 inline MotionPoint flight_point(const Hoop<double>& hoop, const ContactState<double>& from, double flown) {
   const Trig<double> phi = trig(from.angle);
+  const Turned<double> turned = turned_in_flight(hoop, from.spin, flown);
   return {from.time + flown,
-          from.angle + from.spin * flown,
-          from.spin,
+          from.angle + turned.value,
+          turned.rate,
           from.travel + travel_in_flight(hoop, phi, from.spin, from.slip, flown).value,
           height_above_plane(hoop, phi, from.spin, flown, from.normal).value,
           0.0,

@@ -60,6 +60,8 @@ LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
   const Motion motion = tell(design, scene, tolerance, interval);
   told.outcome = motion.outcome;
   tell_more(scene, tolerance, {&design, 1}, {&told.outcome, 1});
+  const auto ways = scene.friction == Friction::coulomb ? coulomb::ways : rolling::ways;
+  ways(scene, tolerance)({&design, 1}, {&told.outcome, 1});
   told.points.clear(), told.lift_offs.clear();
   for (const MotionPoint& point : motion.points)
     told.points.push_back({point.t, point.phi, point.spin, point.x, point.y, point.normal_force,

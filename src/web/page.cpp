@@ -79,7 +79,7 @@ const std::vector<const Field*>& row_fields() {
   static const std::vector<const Field*> fields = [] {
     std::vector<const Field*> fields;
     for (const Field& field : map_fields())
-      if (!std::holds_alternative<Word>(field.source)) fields.push_back(&field);
+      if (!std::holds_alternative<Word>(field.source) && !field.of_way) fields.push_back(&field);
     return fields;
   }();
   return fields;

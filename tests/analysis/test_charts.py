@@ -594,8 +594,9 @@ def test_a_fit_of_events_is_a_bar_each(models, tmp_path):
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "other.csv" in refused.stderr
 
 
-def test_a_chart_over_a_weight_is_in_grams_and_millimetres(tmp_path):
+def test_a_chart_over_a_weight_is_in_grams_and_millimetres(monkeypatch, tmp_path):
     """Isolines and colours too, whose numbers are those of the map times its diameter."""
+    monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
     spec = (TOP / "sweeps" / "drawing.toml").read_text().replace(
         'mass = "85 g"', 'mass = { from = "40 g", to = "160 g", count = 30 }')
     made = sweep(tmp_path, "[design]\nslope = { from = 0.3, to = 0.6, count = 30 }\n" + spec)

@@ -175,10 +175,11 @@ def test_a_yield_that_is_a_goal_is_told_with_its_error_and_binds(tmp_path):
         "[goal]",
         "[scatter]\nslope = { normal = \"1 deg\" }\nsamples = 64\n[goal]\nyield = { at_least = 0.9 }")
     design = json.loads(asked(tmp_path, made, "--json").stdout)["designs"][0]
-    assert design["yield"]["value"] >= 0.9 and design["yield"]["error"] > 0
+    yields = design["yield"]  # of fresh samples: the goal holds on those of the search
+    assert yields["value"] >= 0.9 - 3 * yields["error"] and yields["error"] > 0
     assert any(bind.startswith("yield at least") for bind in design["binds"])
     told = asked(tmp_path, made).stdout
-    assert "from 64 manufactured hoops" in told
+    assert "from 64 fresh manufactured hoops" in told
     command = next(line.strip() for line in told.splitlines() if line.strip().startswith("leapmap hop"))
     hop = subprocess.run(f"{PROGRAM} {command.removeprefix('leapmap ')} --json", shell=True,
                          capture_output=True, text=True)

@@ -8,7 +8,7 @@ import math
 import h5py
 import numpy as np
 import pytest
-from support.program import leapmap, sweep
+from support.program import TOP, leapmap, sweep
 
 # A hoop of 120 mm from CAD: a ring, a slug, a battery opposite.
 HOOP = """
@@ -59,6 +59,11 @@ def test_one_weight_is_changed_by_its_name(drawing):
     heavier = told(drawing, "--set", "hoop.slug.mass=90g", "--slope", "30deg")
     assert heavier["scene"]["mass"] == pytest.approx(0.163, rel=1e-14)
     assert heavier["design"]["mass_ratio"] == pytest.approx(102 / 61, rel=1e-14)
+
+
+def test_models_are_compared_on_a_drawing_with_coefficients():
+    done = leapmap("hop", TOP / "sweeps" / "drawing.toml", "--slope", "30deg", "--friction", "sticking")
+    assert done.returncode == 0 and "not used" in done.stderr and "mu_static" in done.stderr
 
 
 def test_a_number_is_the_same_in_every_unit(drawing):
@@ -433,3 +438,41 @@ def test_tolerances_of_the_hoop_are_read_under_either_name(drawing, tmp_path):
     assert 0 < reports[0]["yield"]["value"] < 1
     wide = leapmap("hop", drawing, "--scatter", "--set", 'scatter.hoop.slug.at={normal="2 m"}')
     assert wide.returncode == 2 and "exceeds the domain" in wide.stderr
+
+
+def test_reports_show_numbers_in_the_units_asked_for(drawing, tmp_path):
+    hop = told(drawing, "--slope", "30deg")
+    lines = leapmap("hop", drawing, "--slope", "30deg", "--units",
+                    "mm ms rpm N").stdout.split("\nmm ms rpm N:")[1]
+    shown = {line.split()[0]: line.split()[1:] for line in lines.splitlines() if line.startswith("  ")}
+    assert float(shown["jump_height"][0]) == pytest.approx(120 * hop["jump_height"], rel=1e-7)
+    assert shown["jump_height"][1] == "mm" and shown["jump_time"][1] == "ms"
+    assert shown["jump_spin"][1] == "rpm"
+    weight = 0.158 * 9.81
+    assert float(shown["max_normal_force"][0]) == pytest.approx(weight * hop["max_normal_force"], rel=1e-7)
+    made = tmp_path / "m.h5"
+    assert leapmap("sweep", drawing, "--set", SLUG, "-o", made, "--quiet").returncode == 0
+    info = leapmap("info", made, "--units", "g mm").stdout
+    assert "values from 40 to 160 g" in info and " mm at hoop.slug.mass" in info
+    for units, command in (("furlongss", ("info", made)), ("kg", ("hop", drawing))):
+        done = leapmap(*command, "--units", units)
+        assert done.returncode == 2 and "--units" in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_a_search_may_have_goals_that_have_no_derivatives(drawing):
+    """The least slope whose jump clears 20 mm over a box of 30 mm, with no more than 12 N on the plane."""
+    done = leapmap("design", drawing, "--set", 'slope={from="10 deg",to="45 deg"}', "--set",
+                   'clear_height="20 mm"', "--set", 'goal.max_normal_force={at_most="12 N"}', "--set",
+                   'goal.clears_to={at_least="60 mm"}', "--set", "minimize=slope", "--sample", 4096, "--json",
+                   "--quiet")
+    assert done.returncode == 0, done.stderr
+    best = json.loads(done.stdout)["designs"][0]
+    assert best["fields"]["max_normal_force"] * 0.158 * 9.81 <= 12 and best["fields"]["clears_to"] >= 1
+
+
+def test_a_miss_says_how_near_it_came(drawing):
+    done = leapmap("design", drawing, "--set", 'slope={from="0.1 deg",to="1 deg"}', "--set",
+                   'goal.jump_height={at_least="60 mm"}', "--set", "minimize=slope", "--sample", 4096,
+                   "--quiet")
+    assert done.returncode == 1
+    assert "it never lifts off" in done.stdout or "a jump is 0.05 or more" in done.stdout

@@ -68,16 +68,16 @@ TEST_P(Measures, KeepMomentumAndLoseEnergy) {
     ++jumps;
     // The centre of mass, which flies a parabola, has its normal velocity changed by the impulse alone: from
     // what it has before the landing to that of a hoop that stays on the plane and turns.
-    const Hoop<double> hoop = reduce<double>(design);
-    const double landing = o.jump_angle + o.jump_spin * o.flight_time, lever = hoop.rho * std::sin(landing);
+    const Hoop<double> hoop = reduce<double>(design, scene);
+    const ContactState<double> before =
+        after_flight(hoop, ContactState<double>{.angle = o.jump_angle, .spin = o.jump_spin}, o.flight_time);
+    const double lever = hoop.rho * std::sin(before.angle);
     if (GetParam() == Friction::sticking) {
-      const ContactState<double> before =
-          after_flight(hoop, ContactState<double>{.angle = o.jump_angle, .spin = o.jump_spin}, o.flight_time);
       const double after =
           spin_after_holding(hoop, trig(before.angle), before.slip + before.spin, before.normal, before.spin);
-      EXPECT_NEAR(o.landing_impulse, o.landing_normal_speed + lever * (after - o.jump_spin), 1e-11);
+      EXPECT_NEAR(o.landing_impulse, o.landing_normal_speed + lever * (after - before.spin), 1e-11);
     } else {
-      EXPECT_NEAR(o.landing_impulse, o.landing_normal_speed + lever * (o.landing_spin - o.jump_spin), 1e-11);
+      EXPECT_NEAR(o.landing_impulse, o.landing_normal_speed + lever * (o.landing_spin - before.spin), 1e-11);
     }
     EXPECT_GT(o.landing_normal_speed, 0.0);
     EXPECT_GE(o.landing_energy_lost, -1e-13);

@@ -20,7 +20,7 @@ void compare_with(const std::string& table, const Tolerance& tolerance) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& row = rows[i];
     const std::string where = table + " row " + std::to_string(i + 1);
-    const Outcome outcome = rolling.solve(row.design(), testing::unit_scene());
+    const Outcome outcome = rolling.solve(row.design(), testing::idle_scene());
     EXPECT_EQ(name_of(outcome.status), row.cells.at("status")) << where;
     if (row.has("candidates")) {
       EXPECT_EQ(outcome.candidates, row.number("candidates")) << where;

@@ -70,7 +70,7 @@ TEST(Rest, BesideAnEquilibriumIsNoRest) {
 /// A motor that idles in flight: what it alone lifted off would fly through the plane.
 TEST(Motor, NoFlightWithFrictionBeginsBySinking) {
   std::mt19937_64 random(30);
-  const Scene scene = unit_scene(Friction::coulomb);
+  const Scene scene = testing::idle_scene(Friction::coulomb);
   const Model& model = model_of(scene);
   referee::Referee referee(scene, 1e-11);
   const std::size_t count = testing::how_many(150);
@@ -99,7 +99,7 @@ TEST(Motor, AJumpThatFirstSinksIsIndeterminate) {
   const Design design{
       .slope = std::numbers::pi / 6.0, .mass_ratio = 20.0, .drive_torque = -0.3, .mu_static = 1.0};
   int method = 0;
-  for (const Outcome& outcome : by_every_method(design, unit_scene(Friction::coulomb)))
+  for (const Outcome& outcome : by_every_method(design, testing::idle_scene(Friction::coulomb)))
     EXPECT_EQ(outcome.status, Status::indeterminate) << "method " << method++;
 }
 

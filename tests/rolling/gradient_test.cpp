@@ -34,7 +34,7 @@ TEST(RollingGradients, AreThoseOfTheTableInFortyDigits) {
   std::vector<Outcome> outcomes(designs.size());
   const GradientWanted wanted = everything(without_slip);
   Gradients gradients(wanted);
-  RollingGradients(1e-10, {}, wanted).solve(designs, unit_scene(), outcomes, gradients);
+  RollingGradients(1e-10, {}, wanted).solve(designs, testing::idle_scene(), outcomes, gradients);
   std::size_t compared = 0;
   for (const Field& field : gradient_fields()) {
     const auto& [of, by] = std::get<Derivative>(field.source);

@@ -18,6 +18,13 @@ inline Scene unit_scene(Friction friction = Friction::sticking) {
   return {.friction = friction, .radius = 1.0, .gravity = 1.0};
 }
 
+/// The same with a motor that idles in flight, as the reference tables have it.
+inline Scene idle_scene(Friction friction = Friction::sticking) {
+  Scene scene = unit_scene(friction);
+  scene.motor_in_flight = false;
+  return scene;
+}
+
 inline double uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }

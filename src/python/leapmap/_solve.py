@@ -16,7 +16,8 @@ def solve(*, hoop=None, friction="sticking", jumps=1, settle=0, most_period=16, 
           tolerance=1e-10, max_steps=1_000_000, threads=0, **parameters):
     """Solve designs: when, how high and how far each of them jumps.
 
-    Arrays broadcast as numpy's do. Parameters that are not given are those of the paper's hoop.
+    Arrays broadcast as numpy's do. Parameters that are not given are those of the paper's hoop. With
+    ``motor_in_flight=False`` a motor idles while the hoop flies.
 
     Parameters
     ----------
@@ -33,7 +34,8 @@ def solve(*, hoop=None, friction="sticking", jumps=1, settle=0, most_period=16, 
     most_period : int, default 16
         Longest period of a gait to search for, in jumps.
     fields : sequence of str, optional
-        Names of the fields to compute; default: all.
+        Names of the fields to compute; default: all but max_normal_force and those of a motor, for which the
+        way to a jump is solved once more.
     method : str, default "auto"
         "auto", "exact", or a stepper, for example "gsl-rk8pd".
     tolerance : float, default 1e-10

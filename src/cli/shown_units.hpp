@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// --units "mm g deg ms": the units in which reports and tables show numbers.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/fields.hpp"
+#include "model/own_units.hpp"
+
+namespace leapmap::cli {
+
+/// How a number is shown: so many times what leapmap has, in that unit.
+struct ShownUnit {
+  std::string unit{};  ///< empty: a pure number, or words
+  double factor = 1.0;
+};
+
+/// The units asked for. Each number takes the first that fits; without one it stays in leapmap's own.
+class ShownUnits {
+ public:
+  /// Throws InputError for a unit that UDUNITS does not know.
+  ShownUnits(const std::string& text, const Scales& scales);
+
+  bool are_asked_for() const { return !units_.empty(); }
+  /// Of a quantity; derivatives stay in the map's units.
+  ShownUnit of(const Field& field);
+  /// Of a parameter, or a number of [hoop], by its name; of any other name none.
+  ShownUnit of(std::string_view parameter);
+  /// Throws InputError if a unit has fitted nothing.
+  void refuse_unused() const;
+
+ private:
+  ShownUnit choose(std::string_view own, bool is_torque);
+
+  std::vector<std::string> units_;
+  std::vector<bool> used_;
+  Scales scales_;
+};
+
+}  // namespace leapmap::cli

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What the way to a jump asks of hoop and motor, against fine traces and against the referee.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "leapmap/solve.hpp"
+#include "leapmap/trace.hpp"
+#include "model/model.hpp"
+#include "referee/referee.hpp"
+#include "support/aimed.hpp"
+#include "support/designs.hpp"
+
+namespace leapmap {
+namespace {
+
+using testing::uniform;
+
+class Ways : public ::testing::TestWithParam<Friction> {};
+INSTANTIATE_TEST_SUITE_P(BothModels, Ways, ::testing::Values(Friction::sticking, Friction::coulomb),
+                         [](const auto& model) { return std::string(model_of(model.param).name); });
+
+Design random_design(std::mt19937_64& random, Friction friction) {
+  Design design = testing::either_way(random, friction);
+  if (random() % 2 == 0) design.drive_torque = uniform(random, -0.8, 0.8);
+  return design;
+}
+
+/// Never below a fine trace, and no more above it than what lies between two of its samples.
+TEST_P(Ways, HaveTheMaximaThatAFineTraceComesNearTo) {
+  std::mt19937_64 random(60);
+  const Scene scene = testing::unit_scene(GetParam());
+  int jumps = 0;
+  for (int i = 0; i < 24; ++i) {
+    const Design design = random_design(random, GetParam());
+    const Outcome o = solve(design, scene);
+    if (o.status != Status::jumped || o.jump_time > 60.0) continue;
+    ++jumps;
+    constexpr double interval = 5e-4;
+    double force = 0.0, spin = 0.0, power = -HUGE_VAL;
+    double steepest = 0.0, before = 0.0;  // how much the force changes from sample to sample
+    for (const MotionPoint& at : trace(design, scene, {.interval = interval}).points) {
+      if (at.t > o.jump_time) break;
+      spin = std::max(spin, std::abs(at.spin)), power = std::max(power, design.drive_torque * at.spin);
+      if (at.phase == Phase::flight) continue;
+      force = std::max(force, at.normal_force);
+      steepest = std::max(steepest, std::abs(at.normal_force - before)), before = at.normal_force;
+    }
+    ASSERT_GE(o.max_normal_force, force * (1.0 - 1e-13)) << i;
+    ASSERT_GE(o.motor_max_spin, spin * (1.0 - 1e-13)) << i;
+    ASSERT_LE(o.max_normal_force, force + steepest) << i;
+    ASSERT_LE(o.motor_max_spin, spin * (1.0 + 20.0 * interval) + 20.0 * interval) << i;
+    if (design.drive_torque == 0.0) {
+      ASSERT_EQ(o.motor_energy, 0.0);
+      ASSERT_EQ(o.motor_max_power, 0.0);
+    } else {
+      ASSERT_GE(o.motor_max_power, power - 1e-13 * std::abs(power)) << i;
+      ASSERT_LE(o.motor_max_power, power + 40.0 * interval) << i;
+    }
+  }
+  EXPECT_GT(jumps, 6);
+}
+
+/// By integration in three coordinates, which shares no formula with them.
+TEST_P(Ways, AreTheRefereesToo) {
+  std::mt19937_64 random(61);
+  const Scene scene = testing::unit_scene(GetParam());
+  referee::Referee referee(scene, 1e-12);
+  referee.meets_forces = true;
+  const std::size_t count = testing::how_many(30);
+  std::size_t jumps = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Design design = random_design(random, GetParam());
+    const Outcome o = solve(design, scene), judged = referee.solve(design);
+    if (o.status != Status::jumped || !same_flags(o, judged)) continue;
+    ++jumps;
+    // What an integration's error of 1e-12 grows to on the way, as in the heights.
+    const double grown = 1e-9 * (1.0 + o.motor_max_spin);
+    EXPECT_NEAR(o.max_normal_force, judged.max_normal_force, grown * (1.0 + o.max_normal_force)) << i;
+    EXPECT_NEAR(o.motor_max_spin, judged.motor_max_spin, grown) << i;
+    if (design.drive_torque == 0.0) continue;
+    EXPECT_NEAR(o.motor_max_power, judged.motor_max_power, grown) << i;
+    if (GetParam() == Friction::coulomb) {
+      EXPECT_NEAR(o.motor_energy, judged.motor_energy, grown * (1.0 + std::abs(o.motor_energy))) << i;
+    } else {
+      EXPECT_NEAR(o.motor_energy, design.drive_torque * (o.jump_angle - design.release_angle),
+                  1e-12 * (1.0 + std::abs(o.motor_energy)))
+          << i;
+    }
+  }
+  EXPECT_GT(jumps, count / 4);
+}
+
+}  // namespace
+}  // namespace leapmap
