@@ -7,7 +7,7 @@
 
 namespace leapmap::cli {
 
-/// Largest values while the hoop touches the plane, up to the jump's lift-off or the motion's end.
+/// Largest values up to the jump's lift-off, or by samples up to the motion's end.
 struct Motor {
   double mass;    ///< of hoop and weight together [kg]; 0: not known, and torque, power and work are NaN
   double torque;  ///< [N m]
@@ -17,7 +17,7 @@ struct Motor {
   bool only_brakes;
 };
 
-/// motion: the design's, for how long it takes. It is solved once more, with samples.
+/// motion: the design's. One that does not jump is solved once more, with samples.
 Motor motor_of(const Spec& spec, const Motion& motion);
 
 }  // namespace leapmap::cli

@@ -24,7 +24,10 @@ def test_every_status_flag_and_count_is_equal_and_heights_and_times_are_within_t
         writer.writeheader()
         writer.writerows(rows)
     settings = [] if method == "auto" else ["--set", f"numerics.method={method}", "--set", "tolerance=1e-12"]
-    path = sweep(tmp_path, '[scene]\nradius = 1\ngravity = 1\n[design]\npoints = "designs.csv"\n', *settings)
+    path = sweep(
+        tmp_path,
+        '[scene]\nradius = 1\ngravity = 1\nmotor_in_flight = false\n[design]\npoints = "designs.csv"\n',
+        *settings)
     with h5py.File(path) as m:
         meanings = m["status"].attrs["flag_meanings"].split()
         assert [meanings[s] for s in m["status"]] == [r["status"] for r in rows]

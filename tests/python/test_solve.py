@@ -20,7 +20,8 @@ import xarray
 import leapmap
 from support.program import REFERENCE
 
-UNIT = {"radius": 1.0, "gravity": 1.0}  # times in sqrt(R/g), as the tables have them
+# times in sqrt(R/g), as the tables have them
+UNIT = {"radius": 1.0, "gravity": 1.0, "motor_in_flight": False}
 INPUTS = ("slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin")
 
 
