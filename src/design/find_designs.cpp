@@ -41,6 +41,8 @@ Effort effort_of(const Judge& judge, const FindOptions& options) {
   if (judge.makes_hoops()) {
     const auto hoops = static_cast<std::size_t>(question.one.scatter.samples);
     effort = {std::clamp<std::size_t>(16 * effort.sample / hoops, 1024, effort.sample), 16, 6, 256, 256};
+    // Along one line a yield is smooth over a tolerance: some hundred places show all of it.
+    if (question.dimensions() == 1) effort.sample = 256, effort.starts = 6, effort.improved = 2;
   }
   if (options.sample > 0) {
     effort.sample = SobolPoints::whole(options.sample);
@@ -160,7 +162,9 @@ std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOpt
   for (Place& place : places) {
     improve(judge, place,
             {.most_rounds = std::size_t{judge.makes_hoops() ? 40u : 400u},
-             .a_round = std::size_t{judge.makes_hoops() ? 64u : 512u},
+             .a_round = std::size_t{!judge.makes_hoops()      ? 512u
+                                    : judge.dimensions() == 1 ? 8u
+                                                              : 64u},
              .seed = options.seed,
              .widest = 0.1});
     follow_boundary(judge, place, options.seed);

@@ -56,7 +56,8 @@ class DrivenFlight {
   /// The larger root of level + climb t - gravity t^2 / 2; level >= 0.
   static S last_root(const S& level, const S& climb, const S& gravity) {
     using std::sqrt;
-    return (climb + sqrt(climb * climb + S(2) * gravity * level)) / gravity;
+    const S root = sqrt(climb * climb + S(2) * gravity * level);
+    return climb > S(0) ? (climb + root) / gravity : root > climb ? S(2) * level / (root - climb) : S(0);
   }
 
   /// A rebound so slow that it lands before anything else happens.

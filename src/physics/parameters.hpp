@@ -53,8 +53,8 @@ Hoop<T> in_flight(Hoop<T> hoop, const Scene& scene) {
   if (!scene.motor_in_flight) return hoop;
   if constexpr (has_derivatives<T>)
     hoop.aloft = hoop.drive / hoop.Ic;
-  else
-    hoop.aloft = select(hoop.drive == T(0), T(0), hoop.drive / hoop.Ic);
+  else if (const MaskOf<T> driven = hoop.drive != T(0); any(driven))
+    hoop.aloft = select(driven, hoop.drive / hoop.Ic, T(0));
   return hoop;
 }
 
