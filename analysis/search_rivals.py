@@ -88,8 +88,9 @@ def rivals(path, arguments):
 
     def design():
         found = leapmap.design(path, seed=arguments.seed)
-        return (sign *
-                found.objectives[problem.objectives[0]][0] if found.reached else np.inf), found.evaluations
+        # By the samples that all others see: a search reports its yield by fresh ones.
+        best = problem.cost([found.parameters[name][0] for name in problem.names])
+        return (best if found.reached else np.inf), found.evaluations
 
     count = arguments.made if "scatter" in spec else arguments.slipping if spec.get(
         "scene", {}).get("friction") == "coulomb" else arguments.grid
