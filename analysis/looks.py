@@ -140,7 +140,7 @@ def quantity(m, name):
 
 def use_units(m, text, units_in_own):
     """Gives the map's quantities in the units of a text such as "mm m/s ms", the first that fits.
-    units_in_own: leapmap's, which tells how many of a unit are one of a field's own."""
+    units_in_own(unit, field, scales): how large the field's own unit is in another."""
     numbers = m.numbers()
     scales = {key: numbers[key] for key in ("radius", "gravity", "mass") if numbers.get(key)}
     agility, used = quantity(m, "agility"), set()

@@ -92,7 +92,7 @@ std::string command_of(const Question& question, const Design& design) {
   std::string command = hop_command(question.one, design);
   const Scatter scatter = fresh_samples(question.one.scatter);
   const auto is_of_body = [](const Spread& spread) { return find_body_number(spread.parameter) != nullptr; };
-  // Tolerances of [hoop] need the spec; of the nominal hoop alone the ratios tell all.
+  // Tolerances of [hoop] need the spec's file; the nominal hoop follows from its ratios.
   if (scatter.spreads.empty() || std::ranges::any_of(scatter.spreads, is_of_body)) return command;
   command += fmt::format(" --scatter --set samples={} --set scatter.seed={}", scatter.samples, scatter.seed);
   for (const Spread& spread : scatter.spreads)

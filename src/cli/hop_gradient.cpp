@@ -32,8 +32,7 @@ std::vector<Variable> given_variables(const Spec& spec, const GradientWanted& wa
   std::vector<Variable> given;
   for (const std::size_t by : wanted.by)
     for (const Option* parameter : design_parameters(spec)) {
-      const bool follows =
-          spec.hoop && std::ranges::find(body_ratios, member_of(*parameter)) != body_ratios.end();
+      const bool follows = spec.hoop && follows_from_body(member_of(*parameter));
       if (member_of(*parameter) == differentiable[by] && !follows)
         given.push_back(*find_variable(parameter->key, nullptr));
     }

@@ -41,7 +41,8 @@ Field of_wall(std::string_view name, double Outcome::*member, std::string_view m
   return needing(&Wanted::landing, field);
 }
 
-/// Measures of the way to a jump: it is gone once more, so that they cost as much as the jump.
+/// Measures of the way to a jump. The design is solved once more for them, so that they cost as much as the
+/// jump.
 Field of_way(std::string_view name, double Outcome::*member, std::string_view meaning) {
   Field field{name, Quantity{member}, "1", meaning, 13};
   field.by_default = ByDefault::left_out, field.of_way = true;

@@ -2,6 +2,7 @@
 /// The numbers that may differ from design to design: the parameters, and those of [hoop].
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -37,6 +38,10 @@ std::span<const BodyNumber> body_numbers();
 /// The parameters that follow from a body.
 inline constexpr std::array<double Design::*, 3> body_ratios{&Design::mass_ratio, &Design::offset_ratio,
                                                              &Design::inertia_factor};
+
+inline bool follows_from_body(double Design::*parameter) {
+  return std::find(body_ratios.begin(), body_ratios.end(), parameter) != body_ratios.end();
+}
 
 /// The row of "hoop.mass" or "hoop.NAME.mass", whatever the NAME; nullptr: it is no such key.
 const BodyNumber* find_body_number(std::string_view key);

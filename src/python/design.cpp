@@ -120,8 +120,7 @@ class Problem {
       const auto* of_design = std::get_if<double Design::*>(&parameter.member);
       const bool is_free =
           std::ranges::find(question_.free, parameter.name, &FreeParameter::name) != question_.free.end();
-      const bool follows = of_design && question_.designs.varies_body() &&
-                           std::ranges::find(body_ratios, *of_design) != body_ratios.end();
+      const bool follows = of_design && question_.designs.varies_body() && follows_from_body(*of_design);
       const double value =
           of_design ? question_.one.design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
       if (!is_free && !follows && !std::isnan(value) && has(scene.friction, parameter.only_of))

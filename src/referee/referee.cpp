@@ -2,6 +2,7 @@
 #include "referee/referee.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -98,48 +99,38 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
   }
 }
 
-/// Looks at a step in equal parts, and closes in on the best by thirds.
+/// Looks at a step in equal parts, and closes in on the largest force and spin by thirds.
 void Referee::meet(const Mode& mode, double end) {
-  constexpr int looks = 8;
-  const Body& body = system_.body;
-  const auto force = [&](double tau) {
+  constexpr int parts = 8;
+  struct Look {
+    double force, speed;
+  };
+  const auto look = [&](double tau) {
     Y y = integrator_.step().y0;
     if (tau > 0.0) integrator_.retake(tau, y);
     const Motion at = motion_of(y);
-    spin_ = std::max(spin_, std::abs(at.spin));
-    power_ = std::max(power_, body.motor * at.spin);
-    return forces_of(body, mode, at).normal;
+    const Look here{forces_of(system_.body, mode, at).normal, std::abs(at.spin)};
+    force_ = std::max(force_, here.force), spin_ = std::max(spin_, here.speed);
+    power_ = std::max(power_, system_.body.motor * at.spin);
+    return here;
   };
-  const auto close_in = [&](const auto& value, int best) {
-    double low = end * std::max(best - 1, 0) / looks, high = end * std::min(best + 1, looks) / looks;
+  std::array<Look, parts + 1> looks;
+  for (int k = 0; k <= parts; ++k) looks[static_cast<std::size_t>(k)] = look(end * k / parts);
+  const auto close_in = [&](double Look::*of) {
+    const auto best = std::ranges::max_element(looks, {}, of) - looks.begin();
+    double low = end * static_cast<double>(std::max<std::ptrdiff_t>(best - 1, 0)) / parts,
+           high = end * static_cast<double>(std::min<std::ptrdiff_t>(best + 1, parts)) / parts;
     while (high - low > 1e-7 * end) {
       const double third = (high - low) / 3.0;
-      if (value(low + third) < value(high - third))
+      if (look(low + third).*of < look(high - third).*of)
         low += third;
       else
         high -= third;
     }
   };
-  int best = 0, fastest = 0;
-  double most = -HUGE_VAL, speed = -HUGE_VAL;
-  const auto noted = [&](double tau) {
-    const double N = force(tau);
-    force_ = std::max(force_, N);
-    return N;
-  };
-  const auto turning = [&](double tau) {
-    Y y = integrator_.step().y0;
-    if (tau > 0.0) integrator_.retake(tau, y);
-    noted(tau);
-    return std::abs(motion_of(y).spin);
-  };
-  for (int k = 0; k <= looks; ++k) {
-    const double tau = end * k / looks, N = noted(tau), w = turning(tau);
-    if (N > most) most = N, best = k;
-    if (w > speed) speed = w, fastest = k;
-  }
-  if (most > 0.8 * force_) close_in(noted, best);
-  if (speed > 0.99 * spin_) close_in(turning, fastest);
+  const auto most = [&](double Look::*of) { return std::ranges::max(looks, {}, of).*of; };
+  if (most(&Look::force) > 0.8 * force_) close_in(&Look::force);
+  if (most(&Look::speed) > 0.99 * spin_) close_in(&Look::speed);
 }
 
 Outcome Referee::solve(const Design& design) {

@@ -33,6 +33,13 @@ Tiling tiling_of(const Spec& spec) {
   return Tiling(shape, std::max<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1));
 }
 
+const Axis* find_varying(const Spec& spec, std::string_view key) {
+  for (const auto* varying : {&spec.axes, &spec.list.columns})
+    for (const Axis& axis : *varying)
+      if (axis.key == key) return &axis;
+  return nullptr;
+}
+
 VariedDesigns::VariedDesigns(const Spec& spec, const std::vector<Axis>& axes)
     : design_(spec.design), body_(spec.hoop.value_or(Body{})) {
   for (const Axis& axis : axes) {
@@ -68,18 +75,19 @@ std::vector<double> list_values(const Spec& spec, const Option& parameter) {
 DesignSpace::DesignSpace(const Spec& spec)
     : spec_(spec), varied_(spec, spec.axes.empty() ? spec.list.columns : spec.axes) {}
 
-std::vector<double> DesignSpace::values_at(const std::vector<std::size_t>& position) const {
+void DesignSpace::take_values(const std::vector<std::size_t>& position, std::vector<double>& values) const {
   const bool list = spec_.axes.empty();
   const std::vector<Axis>& along = list ? spec_.list.columns : spec_.axes;
-  std::vector<double> values;
+  values.clear();
   for (std::size_t k = 0; k < along.size(); ++k) values.push_back(along[k].values[position[list ? 0 : k]]);
-  return values;
 }
 
 std::vector<double> DesignSpace::values(std::size_t index) const {
   std::vector<std::size_t> position;
   unravel(index, shape_of(spec_), position);
-  return values_at(position);
+  std::vector<double> values;
+  take_values(position, values);
+  return values;
 }
 
 Design DesignSpace::at(std::size_t index) const { return varied_.at(values(index)); }
@@ -93,8 +101,10 @@ void DesignSpace::fill(const Tile& tile, std::size_t first, std::span<Design> de
   const std::size_t last = position.size() - 1, row = tile.start[last] + tile.extent[last];
   // Along the last axis one parameter changes, unless it is a number of the body.
   const bool in_rows = !spec_.axes.empty() && !varied_.varies_body();
+  std::vector<double> values;
   for (std::size_t i = 0; i < designs.size();) {
-    designs[i] = varied_.at(values_at(position), bodies.empty() ? nullptr : &bodies[i]);
+    take_values(position, values);
+    designs[i] = varied_.at(values, bodies.empty() ? nullptr : &bodies[i]);
     ++i, ++position[last];
     for (; in_rows && i < designs.size() && position[last] < row; ++i, ++position[last]) {
       designs[i] = designs[i - 1];

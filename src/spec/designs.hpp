@@ -20,6 +20,9 @@ std::vector<std::size_t> shape_of(const Spec& spec);
 /// How the spec's map is cut into tiles: where many hoops are made after each design, into smaller ones.
 Tiling tiling_of(const Spec& spec);
 
+/// The axis of that key, or the list's column; nullptr: it does not vary.
+const Axis* find_varying(const Spec& spec, std::string_view key);
+
 /// Designs by the values of some of a spec's numbers, each a parameter or a number of [hoop].
 class VariedDesigns {
  public:
@@ -59,7 +62,7 @@ class DesignSpace {
             std::span<Body> bodies = {}) const;
 
  private:
-  std::vector<double> values_at(const std::vector<std::size_t>& position) const;
+  void take_values(const std::vector<std::size_t>& position, std::vector<double>& values) const;
 
   const Spec& spec_;
   VariedDesigns varied_;  // along the axes, or by the list's columns

@@ -57,9 +57,7 @@ std::string told(const std::vector<double>& numbers, const std::vector<std::stri
 
 /// A number of [hoop]: all values of an axis or a list's column.
 std::vector<double> body_values(const Spec& spec, const std::string& key) {
-  for (const auto* varying : {&spec.axes, &spec.list.columns})
-    for (const Axis& axis : *varying)
-      if (axis.key == key) return axis.values;
+  if (const Axis* axis = find_varying(spec, key)) return axis->values;
   if (const auto variable = find_variable(key, &*spec.hoop)) return {variable->of(spec.design, *spec.hoop)};
   return {spec.hoop->diameter};
 }
@@ -88,7 +86,7 @@ Spec spec_of(const MapReader& map, const std::string& origin) {
   std::erase_if(names, [&](const std::string& name) { return !map.has(name); });
   const bool of_bodies = !names.empty();
   for (const Option* parameter : design_parameters()) {
-    const bool follows = std::ranges::find(body_ratios, member_of(*parameter)) != body_ratios.end();
+    const bool follows = follows_from_body(member_of(*parameter));
     if (map.has(std::string(parameter->key)) && !(of_bodies && follows)) names.emplace_back(parameter->key);
   }
   for (const std::string& name : names) {

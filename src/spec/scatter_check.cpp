@@ -11,7 +11,7 @@
 #include "leapmap/errors.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
-#include "spec/options.hpp"
+#include "spec/designs.hpp"
 #include "spec/spec_hoop.hpp"
 #include "tolerance/made_hoops.hpp"
 
@@ -25,9 +25,7 @@ namespace {
 
 /// The number's values over all designs of the spec. One that follows another has the other's.
 std::vector<double> values_of(const Spec& spec, const Variable& variable) {
-  for (const auto* varying : {&spec.axes, &spec.list.columns})
-    for (const Axis& axis : *varying)
-      if (axis.key == variable.key) return axis.values;
+  if (const Axis* axis = find_varying(spec, variable.key)) return axis->values;
   const double value = variable.of(spec.design, spec.hoop.value_or(Body{}));
   if (std::isnan(value) && !variable.of_body()) return values_of(spec, *find_variable("mu_static", nullptr));
   return {value};
@@ -92,7 +90,7 @@ void refuse_ratios_beside_bodies(const Spec& spec) {
   if (of_body == spreads.end()) return;
   for (const Spread& spread : spreads)
     if (const auto variable = find_variable(spread.parameter, nullptr);
-        variable && std::ranges::find(body_ratios, variable->parameter()) != body_ratios.end())
+        variable && follows_from_body(variable->parameter()))
       refuse(spec, "scatter", spread.parameter,
              fmt::format("follows from numbers of [hoop], of which {} has a tolerance", of_body->parameter),
              "one of the two");

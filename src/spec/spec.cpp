@@ -349,7 +349,7 @@ void assign(std::vector<Entry>& entries, Spec& spec) {
     apply_hoop(spec);
   }
   const auto any = [&](const auto& holds) { return std::ranges::any_of(entries, holds); };
-  // Of made hoops each has a mass of its own, and so may the designs of a list have.
+  // Manufactured hoops differ in mass, and the designs of a list may: no mass is right for all of them.
   const bool made = any([](const Entry& entry) {
     return std::holds_alternative<SpreadSlot>(entry.option->slot) && is_body_mass(entry.key);
   });

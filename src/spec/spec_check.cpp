@@ -127,7 +127,7 @@ void check_body(const Spec& spec) {
   for (const auto* varying : {&spec.axes, &spec.list.columns})
     for (const Axis& axis : *varying)
       if (const auto variable = find_variable(axis.key, nullptr);
-          variable && std::ranges::find(body_ratios, variable->parameter()) != body_ratios.end())
+          variable && follows_from_body(variable->parameter()))
         refuse(spec, axis.key, "follows from [hoop]", "an axis of a number of [hoop], such as hoop.mass");
 }
 

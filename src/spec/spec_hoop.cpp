@@ -9,6 +9,7 @@
 
 #include "leapmap/errors.hpp"
 #include "model/variable.hpp"
+#include "spec/designs.hpp"
 #include "support/closest.hpp"
 #include "support/number.hpp"
 #include "support/wrapped.hpp"
@@ -112,13 +113,10 @@ void check_axis(const Spec& spec, const Axis& axis) {
 
 /// The least and the largest of a number over all designs.
 std::pair<double, double> bounds_of(const Spec& spec, const std::string& key, double nominal) {
-  for (const auto* varying : {&spec.axes, &spec.list.columns})
-    for (const Axis& axis : *varying)
-      if (axis.key == key) {
-        const auto [least, most] = std::ranges::minmax(axis.values);
-        return {least, most};
-      }
-  return {nominal, nominal};
+  const Axis* axis = find_varying(spec, key);
+  if (!axis) return {nominal, nominal};
+  const auto [least, most] = std::ranges::minmax(axis->values);
+  return {least, most};
 }
 
 /// That no ratio of any design is beyond what a design may have; weights count as if they were on the rim.

@@ -89,7 +89,7 @@ bool is_of_body(const Spec& spec, const Option& option) {
   if (!spec.hoop || std::holds_alternative<SpreadSlot>(option.slot)) return false;
   const auto* of_design = std::get_if<ParameterSlot>(&option.slot);
   const auto* of_scene = std::get_if<SceneSlot>(&option.slot);
-  return of_design ? std::ranges::find(body_ratios, of_design->member) != body_ratios.end()
+  return of_design ? follows_from_body(of_design->member)
                    : of_scene && (of_scene->member == &Scene::radius || of_scene->member == &Scene::mass);
 }
 
