@@ -79,7 +79,7 @@ struct Field {
   bool of_gait = false;               ///< of scenes that look for gaits
   ByDefault by_default = ByDefault::stored;
   bool of_wall = false;           ///< of scenes with a clear_height
-  bool of_way = false;            ///< of the way to a jump, which is gone once more
+  bool of_way = false;            ///< of the way to a jump, for which the design is solved once more
   bool Wanted::*needs = nullptr;  ///< what a solver has to be asked for; nullptr: nothing
 };
 
