@@ -92,7 +92,9 @@ int main(int argc, char** argv) {
   try {
     if (!leapmap::open_standard_streams()) return leapmap::cli::io_failure;  // and nowhere to say why
     return leapmap::cli::run(argc, argv);
-  } catch (...) {  // the command line itself found no memory
+  } catch (const std::bad_alloc&) {  // while the command line was set up
     return leapmap::cli::complain(leapmap::cli::other_failure, "out of memory");
+  } catch (const std::exception& error) {
+    return leapmap::cli::complain(leapmap::cli::other_failure, error.what());
   }
 }
