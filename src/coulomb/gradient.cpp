@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "coulomb/model.hpp"
+#include "coulomb/panel_forces.hpp"
 #include "coulomb/recorded_way.hpp"
 #include "physics/landing.hpp"
 #include "physics/sliding.hpp"
@@ -40,12 +41,20 @@ Contact<D> dual_contact(const Design& design, const Scene& scene) {
 class Chain {
  public:
   Chain(const Hoop<D>& hoop, const Contact<D>& contact, const ContactState<D>& from, double second,
-        const SlidingPanels<D>& panels, const DualTime<D>& time)
-      : panels_(panels), time_(time), second_(second), contact_(contact), hoop_(hoop), at_(from) {
-    turns_on_ = hoop.aloft.value != 0.0 ||
-                std::any_of(hoop.aloft.by.begin(), hoop.aloft.by.end(), [](double by) { return by != 0.0; });
+        const SlidingPanels<D>& panels, const SlidingPanels<double>& plain_panels, const DualTime<D>& time)
+      : panels_(panels),
+        plain_panels_(plain_panels),
+        time_(time),
+        second_(second),
+        contact_(contact),
+        hoop_(hoop),
+        at_(from) {
+    turns_on_ = any_aloft(hoop);
     released_ = contact_energy(hoop_, at_);
   }
+
+  /// Asks for what the way to the jump asks of hoop and motor.
+  void follow_way() { meter_.emplace(hoop_); }
 
   /// put(quantity, value, unit) takes what is known; a chain that breaks puts no more, and returns false.
   template <class Put>
@@ -106,6 +115,7 @@ class Chain {
     const D end = with_derivatives(to.angle, guard.value, guard.rate.value);
     const D left = vis_viva_past_release(roll, D(end - at_.angle)) / contact_inertia(hoop_, trig(end));
     if (!(left > D(0.0))) return false;
+    if (meter_) meter_->roll(roll, at_.spin, begun.turns, end);
     at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
     at_.travel += end - at_.angle;
     driven_ += hoop_.drive * (end - at_.angle);
@@ -142,18 +152,19 @@ class Chain {
       at_.slip.by[k] += later * motion.slip.value;
       at_.travel.by[k] += later * travels;
     }
-    if (slip_ends) at_.slip = D(0.0);
     const D turned = at_.angle - from.angle;
+    if (meter_) {
+      const D force =
+          sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, slide.friction).normal_force;
+      meter_->meet({force, at_.spin}), meter_->turn(turned);
+    }
+    if (slip_ends) at_.slip = D(0.0);
     driven_ += hoop_.drive * turned;
     slipped_ += abs(at_.travel - from.travel - turned);
     return true;
   }
 
-  /// A panel as the plain solver took it; nothing by angle: by time.
-  struct Part {
-    std::optional<SlidingPanels<D>::Stretch> stretch;
-    D duration;
-  };
+  using Part = SlidingPanels<D>::Taken;
 
   /// The plain solver's panel in duals. Where the hoop has just set out, u = w^2 is small, and time's
   /// derivatives go as u^(-3/2): fixed nodes would not resolve them however well they resolve the values. So
@@ -184,12 +195,10 @@ class Chain {
     constexpr double resolved = 1e3;  // times the finest tolerance
     constexpr int most_panels = 2'000;
     SlidingPanels<D>::Panel panel;
-    if (part.stretch)
-      panels_.solve_by_angle(slide, at_, *part.stretch, panel);
-    else
-      panels_.solve_by_time(slide, at_, part.duration, panel);
+    panels_.solve(slide, at_, part, panel);
     if (!std::isfinite(panel.excess) || ++panels_taken_ > most_panels) return false;
     if (panel.excess <= resolved || !(panel.excess < 0.5 * excess)) {
+      if (meter_) meet(slide, part, panel);
       at_ = panel.end;
       slide.free_force = panel.free_force.end.value;
       return true;
@@ -203,6 +212,27 @@ class Chain {
       first.duration = second.duration = 0.5 * part.duration;
     }
     return over_panel(slide, first, panel.excess) && over_panel(slide, second, panel.excess);
+  }
+
+  /// The largest force and spins within a panel, which are looked for in plain numbers.
+  void meet(const SlidingPanels<D>::Slide& slide, const Part& part, const SlidingPanels<D>::Panel& panel) {
+    const SlidingPanels<double>::Slide plain_slide{
+        mapped<double>(hoop_, [](const D& number) { return number.value; }),
+        slide.friction.value,
+        {},
+        {},
+        slide.free_force.value};
+    SlidingPanels<double>::Taken plain_part{{}, part.duration.value};
+    if (part.stretch)
+      plain_part.stretch = {part.stretch->shift.value, part.stretch->begin.value, part.stretch->span.value,
+                            part.stretch->curve.value};
+    const ContactState<double> from = plain(at_);
+    SlidingPanels<double>::Panel plain_panel;
+    plain_panels_.solve(plain_slide, from, plain_part, plain_panel);
+    const PanelForces<double> known(plain_panels_, plain_slide, from, plain_part, plain_panel);
+    const PanelForces<D> forces(panels_, slide, at_, part, panel);
+    meter_->slide([&](double place) { return known.rated_at(place); },
+                  [&](double place) { return forces.at(place); });
   }
 
   /// From rest u = w^2 does not depend on the spin to first order, and yet time and slip at an angle do: a
@@ -231,6 +261,9 @@ class Chain {
           D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
     }
+    if (meter_ && jumps)
+      put_way(meter_->way(), [&](double Outcome::*quantity, const D& value) { put(quantity, value, 1.0); });
+    if (meter_) meter_->fly(at_.spin, flown.flight_time);
     const D left_at = at_.travel, left = at_.angle;
     at_ = after_flight(hoop_, at_, flown.flight_time);
     if (turns_on_) driven_ += hoop_.drive * (at_.angle - left);
@@ -252,6 +285,7 @@ class Chain {
   }
 
   const SlidingPanels<D>& panels_;
+  const SlidingPanels<double>& plain_panels_;
   const DualTime<D>& time_;
   double second_;
   Contact<D> contact_;
@@ -260,6 +294,7 @@ class Chain {
   ContactState<D> at_;
   D released_{0.0}, driven_{0.0}, slipped_{0.0};
   int panels_taken_ = 0;
+  std::optional<WayMeter<D>> meter_;
 };
 
 }  // namespace
@@ -273,20 +308,24 @@ void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene
 void CoulombGradients::derive_solved(std::span<const Design> designs, const Scene& scene,
                                      std::span<const Outcome> outcomes, Gradients& gradients) {
   gradients.begin(designs.size());
+  const bool follows_ways = std::ranges::any_of(gradients.wanted().of, is_of_way);
   RecordedWay recorded;
   for (std::size_t i = 0; i < designs.size(); ++i) {
     if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate ||
-        !gradients.wanted().any_of_first_jump_in(outcomes[i]))
+        !(gradients.wanted().any_of_first_jump_in(outcomes[i]) ||
+          (follows_ways && outcomes[i].status == Status::jumped)))
       continue;
     ContactState<double> at = released<double>(designs[i]);
     if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
       continue;
-    Chain(reduce(dual_parameters<D>(designs[i]), scene), dual_contact(designs[i], scene),
-          dual_release(designs[i]), time_unit(scene), panels_, time_)
-        .run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
-          if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
-          if (std::isfinite(outcomes[i].*quantity)) gradients.put(quantity, i, value, unit);
-        });
+    Chain chain(reduce(dual_parameters<D>(designs[i]), scene), dual_contact(designs[i], scene),
+                dual_release(designs[i]), time_unit(scene), panels_, plain_panels_, time_);
+    if (follows_ways) chain.follow_way();
+    chain.run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
+      if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
+      if (is_of_way(quantity) || std::isfinite(outcomes[i].*quantity))
+        gradients.put(quantity, i, value, unit);
+    });
   }
 }
 
@@ -300,7 +339,8 @@ Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& s
   if (along == Along::state)
     contact = {D(contact.mu_static.value), D(contact.mu_kinetic.value), D(contact.restitution.value),
                contact.rest_speed};
-  Chain chain(reduce(parameters_along(design, along), scene), contact, at, time_unit(scene), panels_, time_);
+  Chain chain(reduce(parameters_along(design, along), scene), contact, at, time_unit(scene), panels_,
+              plain_panels_, time_);
   const bool known =
       chain.run(recorded, outcome, [&](double Outcome::*quantity, const D& value, double unit) {
         if (put) put(quantity, value, unit);

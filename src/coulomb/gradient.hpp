@@ -20,7 +20,7 @@ class CoulombGradients {
  public:
   /// Outcomes are CoulombSolver's at that tolerance. Derivatives are of a finer solution.
   explicit CoulombGradients(double tolerance)
-      : solver_(tolerance), finer_(std::min(tolerance, finest)), panels_(finest) {}
+      : solver_(tolerance), finer_(std::min(tolerance, finest)), panels_(finest), plain_panels_(finest) {}
 
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
              Gradients& gradients);
@@ -37,6 +37,7 @@ class CoulombGradients {
 
   CoulombSolver<double> solver_, finer_;
   SlidingPanels<DesignDual> panels_;
+  SlidingPanels<double> plain_panels_;
   DualTime<DesignDual> time_;
 };
 

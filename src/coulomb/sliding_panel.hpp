@@ -120,6 +120,13 @@ class SlidingPanels {
   /// Solves a panel of that duration. It has no growth and nothing driven; where it is indeterminate only
   /// `excess` holds.
   void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
+  /// Solves a panel as a slide took it.
+  void solve(const Slide& slide, const ContactState<S>& from, const Taken& taken, Panel& panel) const {
+    if (taken.stretch)
+      solve_by_angle(slide, from, *taken.stretch, panel);
+    else
+      solve_by_time(slide, from, taken.duration, panel);
+  }
 
   const Grid& grid() const { return grid_; }
   Number tolerance() const { return tolerance_; }

@@ -245,7 +245,7 @@ std::optional<OutcomeNumber> number_of(const Field& field) {
 }
 
 bool can_be_differentiated(const Field& field) {
-  return number_of(field) && !field.of_gait && !field.of_wall && field.by_default != ByDefault::left_out;
+  return number_of(field) && !field.of_gait && (field.by_default != ByDefault::left_out || field.of_way);
 }
 
 namespace {
@@ -274,6 +274,7 @@ struct GradientTable {
       rows.push_back(Field{text.name, Derivative{of, *by}, text.unit, text.long_name,
                            std::max(7, field.since), parameter.only_of ? parameter.only_of : field.only_of,
                            field.of_sequence});
+      rows.back().needs = field.needs, rows.back().of_wall = field.of_wall;
     }
   }
 

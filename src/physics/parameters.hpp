@@ -61,7 +61,10 @@ Hoop<T> in_flight(Hoop<T> hoop, const Scene& scene) {
 /// Whether a motor turns a hoop in flight, or would if it had a torque of which there are derivatives.
 template <class T>
 bool any_aloft(const Hoop<T>& hoop) {
-  return has_derivatives<T> || any(hoop.aloft != T(0));
+  if constexpr (has_derivatives<T>)
+    for (const auto& by : hoop.aloft.by)
+      if (any(by != decltype(hoop.aloft.value)(0))) return true;
+  return any(hoop.aloft != T(0));
 }
 
 /// Derives the groups from slope, mass_ratio, offset_ratio, inertia_factor and drive_torque, with alpha =

@@ -68,6 +68,22 @@ Roll<T> begin_roll(const Hoop<T>& hoop, const T& release, const T& spin) {
   return begin_roll(hoop, release, trig(release), spin);
 }
 
+/// The same roll without derivatives.
+template <class T, std::size_t N>
+Roll<T> plain(const Roll<Dual<T, N>>& roll) {
+  const Trig<Dual<T, N>>& phi = roll.release_trig;
+  return {.hoop = mapped<T>(roll.hoop, [](const Dual<T, N>& number) { return number.value; }),
+          .release = roll.release.value,
+          .release_trig = {phi.sin.value, phi.cos.value, phi.versine.value},
+          .released = roll.released.value,
+          .level = roll.level.value,
+          .push = roll.push.value};
+}
+template <class T>
+const Roll<T>& plain(const Roll<T>& roll) {
+  return roll;
+}
+
 /// The same roll in every lane.
 template <class T>
 Roll<T> widened(const Roll<ScalarOf<T>>& roll) {

@@ -33,15 +33,15 @@ Wanted wanted_of(const Request& request) {
 }
 
 /// Fills in what comes of whole flights and sequences, once the designs are solved; empty: nothing is asked
-/// for.
-Solver afterwards(const Request& request) {
+/// for. derives_clearances: they are found elsewhere, with their derivatives.
+Solver follow_up(const Request& request, bool derives_clearances = false) {
   const double tolerance = request.numerics.tolerance;
   std::shared_ptr<ErrorGrowth> growth;
   std::shared_ptr<GaitSolver> gaits;
   if (request.scene.jumps > 1 && wants(request, "sequence_condition"))
     growth = std::make_shared<ErrorGrowth>(request.scene, tolerance);
   if (wants_gaits(request)) gaits = std::make_shared<GaitSolver>(request.scene, tolerance);
-  const bool clears = wants(request, "clears_from") || wants(request, "clears_to");
+  const bool clears = !derives_clearances && (wants(request, "clears_from") || wants(request, "clears_to"));
   Solver ways;
   const bool asks_for_ways =
       std::ranges::any_of(request.columns, [](const Field* field) { return field->of_way; });
@@ -57,6 +57,13 @@ Solver afterwards(const Request& request) {
   };
 }
 
+/// And the derivatives of what clearances follow from.
+GradientWanted with_flights(GradientWanted wanted) {
+  for (double Outcome::*const number : numbers_of_flights())
+    if (!wanted.wants(number)) wanted.of.push_back(number);
+  return wanted;
+}
+
 }  // namespace
 
 Solver make_solver(const Request& request) {
@@ -66,7 +73,7 @@ Solver make_solver(const Request& request) {
       is_exact(request)
           ? need(model, &Model::exact, semi_analytic)(scene, request.numerics.tolerance, wanted_of(request))
           : need(model, &Model::integration, integrator)(scene, integration_options(request.numerics));
-  const Solver after = afterwards(request);
+  const Solver after = follow_up(request);
   if (!after) return solver;
   return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes) {
     solver(designs, outcomes);
@@ -80,14 +87,22 @@ GradientSolver make_gradient_solver(const Request& request) {
     return [solver = make_solver(request)](std::span<const Design> designs, std::span<Outcome> outcomes,
                                            Gradients&) { solver(designs, outcomes); };
   const Scene scene = scene_asked(request);
+  const bool clears = asked.wants(&Outcome::clears_from) || asked.wants(&Outcome::clears_to);
+  const GradientWanted flights = clears ? with_flights(asked) : asked;
   GradientSolver solver = need(model_of(scene), &Model::gradients, "derivatives")(
-      scene, request.numerics.tolerance, wanted_of(request), asked);
-  const Solver after = afterwards(request);
-  if (!after) return solver;
-  return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes,
-                                             Gradients& gradients) {
-    solver(designs, outcomes, gradients);
-    after(designs, outcomes);
+      scene, request.numerics.tolerance, wanted_of(request), flights);
+  if (const Solver after = follow_up(request, clears))
+    solver = [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes,
+                                                 Gradients& gradients) {
+      solver(designs, outcomes, gradients);
+      after(designs, outcomes);
+    };
+  if (!clears) return solver;
+  return [solver = std::move(solver), scene, flown = std::make_shared<Gradients>(flights)](
+             std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+    solver(designs, outcomes, *flown);
+    gradients.take(*flown, designs.size());
+    find_clearances(scene, designs, outcomes, *flown, &gradients);
   };
 }
 
@@ -107,7 +122,7 @@ Motion tell(const Design& design, const Request& request, double interval) {
                                                                          request.numerics.tolerance, interval)
                       : need(model, &Model::tell_by_integration, integrator)(
                             design, request.scene, integration_options(request.numerics), interval);
-  if (const Solver after = afterwards(request)) after({&design, 1}, {&motion.outcome, 1});
+  if (const Solver after = follow_up(request)) after({&design, 1}, {&motion.outcome, 1});
   return motion;
 }
 

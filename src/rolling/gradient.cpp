@@ -8,6 +8,7 @@
 
 #include "rolling/lift_off_dual.hpp"
 #include "rolling/model.hpp"
+#include "rolling/way.hpp"
 #include "trajectory/jump_measures.hpp"
 #include "trajectory/sequence_gradient.hpp"
 #include "trajectory/units.hpp"
@@ -44,7 +45,8 @@ RollingGradients::RollingGradients(double tolerance, const Wanted& wanted, const
       of_time_(gradients.wants(&Outcome::jump_time)),
       of_first_time_(gradients.wants(&Outcome::first_jump_time)),
       of_dip_(gradients.wants(&Outcome::dip)),
-      of_landing_(std::any_of(gradients.of.begin(), gradients.of.end(), is_measure)),
+      of_landing_(std::ranges::any_of(gradients.of, is_measure)),
+      of_way_(std::ranges::any_of(gradients.of, is_of_way)),
       solver_(tolerance,
               [&] {
                 Wanted all = wanted;
@@ -78,6 +80,7 @@ void RollingGradients::solve(std::span<const Design> designs, const Scene& scene
     for (std::uint32_t i = 0; i < count; ++i) {
       const Outcome& outcome = lot.outcomes[i];
       const auto& found = solver_.block().found[i];
+      if (of_way_ && outcome.status == Status::jumped) way(lot, i);
       if (outcome.candidates == 0 || outcome.status == Status::failed) continue;
       if (found.leg > 1) {
         turn_round.push_back(i);
@@ -269,6 +272,22 @@ void RollingGradients::turning(const Lot& lot, std::uint32_t number) {
   const std::size_t last = told.lift_offs.size() - 1;
   if (jumps) differentiate(last, true);
   if (!(jumps && last == 0)) differentiate(0, false);
+}
+
+/// What the way to a jump asks: once more, to be told where it turns round.
+void RollingGradients::way(const Lot& lot, std::uint32_t number) {
+  using S = RollingDual;
+  const Design& design = lot.designs[number];
+  FoundLiftOffs found;
+  Outcome outcome;
+  teller_.solve({&design, 1}, lot.scene, {&outcome, 1}, &found);
+  if (!same_flags(outcome, lot.outcomes[number])) return;
+  const Roll<S> roll = dual_roll(dual_parameters<S>(design), lot.scene);
+  const S spin = S::parameter(design.release_spin, by_release_spin);
+  put_way(way_to(roll, spin, found, lift_off_at(roll, found.lift_offs.back().angle).angle),
+          [&](double Outcome::*quantity, const S& value) {
+            lot.gradients.put(quantity, lot.first + number, value);
+          });
 }
 
 namespace rolling {

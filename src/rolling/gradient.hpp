@@ -36,8 +36,9 @@ class RollingGradients {
                   MaskOf<T>& hard);
   void alone(const Lot& lot, const LiftOffAt& lift_off);
   void turning(const Lot& lot, std::uint32_t design);
+  void way(const Lot& lot, std::uint32_t design);
 
-  bool of_jump_, of_first_, of_time_, of_first_time_, of_dip_, of_landing_;
+  bool of_jump_, of_first_, of_time_, of_first_time_, of_dip_, of_landing_, of_way_;
   ExactSolver<T> solver_;
   ExactSolver<double> teller_;
   RollingTime<D> clock_;

@@ -16,17 +16,6 @@ struct LiftOffDual {
   D angle, spin;
 };
 
-template <class T, std::size_t N>
-Roll<T> plain(const Roll<Dual<T, N>>& roll) {
-  const Trig<Dual<T, N>>& phi = roll.release_trig;
-  return {.hoop = mapped<T>(roll.hoop, [](const Dual<T, N>& number) { return number.value; }),
-          .release = roll.release.value,
-          .release_trig = {phi.sin.value, phi.cos.value, phi.versine.value},
-          .released = roll.released.value,
-          .level = roll.level.value,
-          .push = roll.push.value};
-}
-
 /// A lift-off that was found in plain numbers. Where G hardly falls, on a fold, the root itself is known to
 /// so few digits that the derivative's own error would be beyond a millionth of it: NaN.
 template <class D, class T>

@@ -7,11 +7,17 @@
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
+#include "trajectory/gradient.hpp"
 
 namespace leapmap {
 
+/// What clearances follow from: their derivatives need those of these.
+std::span<double Outcome::*const> numbers_of_flights();
+
 /// Fills in clears_from and clears_to of designs that jump, for walls of scene.clear_height. Their flights
-/// must be known: jump_angle, jump_spin, apex_time, flight_time, jump_range, landing_normal_speed.
-void find_clearances(const Scene& scene, std::span<const Design> designs, std::span<Outcome> outcomes);
+/// must be known: jump_height, apex_time and numbers_of_flights. gradients, if given, is put their
+/// derivatives; flights: those of numbers_of_flights, by the same parameters.
+void find_clearances(const Scene& scene, std::span<const Design> designs, std::span<Outcome> outcomes,
+                     const Gradients& flights = {}, Gradients* gradients = nullptr);
 
 }  // namespace leapmap

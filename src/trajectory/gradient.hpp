@@ -117,6 +117,15 @@ class Gradients {
     });
   }
 
+  /// What others hold of that, for so many designs.
+  void take(const Gradients& others, std::size_t designs) {
+    begin(designs);
+    for (std::size_t i = 0; i < wanted_.of.size(); ++i)
+      for (std::size_t j = 0; j < wanted_.by.size(); ++j)
+        std::ranges::copy(others.column(wanted_.of[i], differentiable[wanted_.by[j]]),
+                          columns_[i * wanted_.by.size() + j].begin());
+  }
+
  private:
   template <class Visit>
   void for_each(const OutcomeNumber& quantity, const Visit& visit) {

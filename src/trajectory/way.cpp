@@ -5,44 +5,36 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "physics/flight.hpp"
 #include "physics/rolling.hpp"
+#include "trajectory/gradient.hpp"
 
 namespace leapmap {
 namespace {
 
-/// The largest of f between two places, where it has one maximum, by golden section: so near it that its
-/// square is rounding.
+/// Where f, which tells its rate, is largest over ascending places; between two of them it has one maximum at
+/// most. What is as large as an end but for rounding is the end, which may move.
 template <class F>
-double largest_near(const F& f, double from, double to) {
-  constexpr double golden = 0.6180339887498949;
-  const double rounding =
-      4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(from), std::abs(to));
-  const double close = std::max(1e-8 * (to - from), rounding);
-  double a = from, b = to, c = b - golden * (b - a), d = a + golden * (b - a), at_c = f(c), at_d = f(d);
-  while (b - a > close) {
-    if (at_c > at_d)
-      b = d, d = c, at_d = at_c, c = b - golden * (b - a), at_c = f(c);
-    else
-      a = c, c = d, at_c = at_d, d = a + golden * (b - a), at_d = f(d);
-  }
-  return std::max(at_c, at_d);
-}
-
-/// The largest of f over ascending places; between two of them it has one maximum at most.
-template <class F>
-double largest(const F& f, const std::vector<double>& places) {
-  std::vector<double> values;
+double place_of_largest(const F& f, const std::vector<double>& places) {
+  std::vector<Rated> values;
   for (const double place : places) values.push_back(f(place));
-  double most = *std::max_element(values.begin(), values.end());
-  for (std::size_t i = 0; i < values.size(); ++i) {  // the maximum may lie beside an end, too
-    const std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, values.size() - 1);
-    const double rise = values[i] - std::min(values[before], values[after]);
-    if (values[i] < values[before] || values[i] < values[after] || values[i] + rise < most) continue;
-    most = std::max(most, largest_near(f, places[before], places[after]));
+  const bool falls = values.front() > values.back();
+  double most = (falls ? values.front() : values.back()).value, best = falls ? places.front() : places.back();
+  most += 4.0 * std::numeric_limits<double>::epsilon() * std::abs(most);
+  const auto meet = [&](double place, double value) {
+    if (value > most) most = value, best = place;
+  };
+  for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+    meet(places[i], values[i].value);
+    const double now = values[i].by[0], then = values[i + 1].by[0];
+    if (!(now > 0.0 && then < 0.0)) continue;
+    const double top = top_between(f, places[i], places[i + 1], now, then);
+    meet(top, f(top).value);
   }
-  return most;
+  return best;
 }
 
 /// Angles from one to another, close where the weight is at the plane: there the contact's inertia is least,
@@ -70,48 +62,126 @@ std::vector<double> looks(const Hoop<double>& hoop, double from, double to) {
   return places;
 }
 
-}  // namespace
-
-void WayMeter::meet_spin(double spin) {
-  way_.spin = std::max(way_.spin, std::abs(spin));
-  way_.power = std::max(way_.power, hoop_.drive == 0.0 ? 0.0 : hoop_.drive * spin);
+/// The largest so far, or the last of those that are as large.
+template <class S>
+void take_larger(S& most, const S& value) {
+  if (!(value < most)) most = value;
 }
 
-void WayMeter::roll(const Roll<double>& roll, double from, double to) {
+/// Of a roll, at an angle.
+template <class S>
+S vis_viva_at(const Roll<S>& roll, const S& angle, const Trig<S>& phi) {
+  const S E = vis_viva(roll, angle, phi);
+  return E > S(0.0) ? E : S(0.0);
+}
+template <class S>
+S force_at(const Roll<S>& roll, const S& angle) {
+  const Trig<S> phi = trig(angle);
+  const LiftTerms<S> terms = lift_terms(roll.hoop, phi);
+  return (terms.P * terms.J + roll.hoop.rho * terms.K * vis_viva_at(roll, angle, phi)) / (terms.J * terms.J);
+}
+template <class S>
+S spin_squared_at(const Roll<S>& roll, const S& angle) {
+  const Trig<S> phi = trig(angle);
+  return vis_viva_at(roll, angle, phi) / contact_inertia(roll.hoop, phi);
+}
+
+/// Where a roll turns round, which is known in plain numbers.
+template <class S>
+S turn_at(const Roll<S>& roll, double angle) {
+  if constexpr (has_derivatives<S>)
+    return with_derivatives(angle, vis_viva_past_release(roll, S(S(angle) - roll.release)),
+                            2.0 * torque(plain(roll).hoop, trig(angle)));
+  else
+    return angle;
+}
+
+/// What has a kink where `number` is zero, and is zero there.
+template <class S>
+S kink_at_zero_of(const S& number) {
+  S kink(0.0);
+  if constexpr (has_derivatives<S>)
+    for (std::size_t k = 0; k < kink.by.size(); ++k)
+      if (number.by[k] != 0.0) kink.by[k] = std::numeric_limits<double>::quiet_NaN();
+  return kink;
+}
+
+}  // namespace
+
+template <class S>
+WayMeter<S>::WayMeter(const Hoop<S>& hoop) : hoop_(hoop), turns_on_(any_aloft(hoop)) {}
+
+template <class S>
+void WayMeter<S>::meet_spin(const S& spin) {
+  take_larger(way_.spin, S(abs(spin)));
+  take_larger(way_.power, hoop_.drive == S(0.0) ? kink_at_zero_of(hoop_.drive) : hoop_.drive * spin);
+}
+
+template <class S>
+void WayMeter<S>::roll(const Roll<S>& roll, const S& spin, std::span<const double> turns, const S& to) {
+  S from = roll.release, begins = spin;
+  for (const double turn : turns) {
+    const S there = turn_at(roll, turn);
+    roll_on(roll, from, begins, there);
+    from = there, begins = S(0.0);
+  }
+  roll_on(roll, from, begins, to);
+}
+
+/// Without turning round. spin: at the start, of which it has the derivatives from rest, too.
+template <class S>
+void WayMeter<S>::roll_on(const Roll<S>& roll, const S& from, const S& spin, const S& to) {
   if (from == to) return;
-  const auto square = [&](double angle) {
-    const Trig<double> phi = trig(angle);
-    return std::max(vis_viva(roll, angle, phi), 0.0) / contact_inertia(hoop_, phi);
+  const auto known = widened<Rated>(plain(roll));
+  const bool ahead = from < to;
+  const double first = value_of(from), last = value_of(to);
+  const std::vector<double> places = looks(plain(roll).hoop, std::min(first, last), std::max(first, last));
+  const auto place_of = [&](double sign, const auto& f) {
+    return place_of_largest([&](double at) { return Rated(sign) * f(known, Rated::parameter(at, 0)); },
+                            places);
   };
-  const auto force = [&](double angle) {
-    const double spin = std::sqrt(square(angle));
-    const Trig<double> phi = trig(angle);
-    return normal_force(hoop_, phi, spin, angular_acceleration(hoop_, phi, spin));
+  const auto angle_at = [&](double place) { return place == first ? from : place == last ? to : S(place); };
+  const S way(ahead ? 1.0 : -1.0);
+  const auto spin_at = [&](double place) {
+    return place == first ? spin : way * sqrt(spin_squared_at(roll, angle_at(place)));
   };
-  const std::vector<double> places = looks(hoop_, std::min(from, to), std::max(from, to));
-  way_.normal_force = std::max(way_.normal_force, largest(force, places));
-  const double way = to > from ? 1.0 : -1.0;
-  meet_spin(way * std::sqrt(largest(square, places)));
-  if (hoop_.drive * way < 0.0)  // it brakes, the least where the hoop is slowest
-    meet_spin(way * std::sqrt(std::max(0.0, -largest([&](double angle) { return -square(angle); }, places))));
+  take_larger(way_.normal_force, force_at(roll, angle_at(place_of(1.0, force_at<Rated>))));
+  meet_spin(spin_at(place_of(1.0, spin_squared_at<Rated>)));
+  if (hoop_.drive * way < S(0.0))  // it brakes, the least where the hoop is slowest
+    meet_spin(spin_at(place_of(-1.0, spin_squared_at<Rated>)));
   turn(to - from);
 }
 
-void WayMeter::slide(const std::function<Sliding(double)>& at) {
+template <class S>
+void WayMeter<S>::meet(const ForceAndSpin<S>& at) {
+  take_larger(way_.normal_force, at.normal_force);
+  meet_spin(at.spin);
+}
+
+template <class S>
+void WayMeter<S>::slide(const std::function<ForceAndSpin<Rated>(double)>& known,
+                        const std::function<ForceAndSpin<S>(double)>& at) {
   constexpr int pieces = 24;
   std::vector<double> places;
   for (int k = 0; k <= pieces; ++k) places.push_back(static_cast<double>(k) / pieces);
-  way_.normal_force =
-      std::max(way_.normal_force, largest([&](double place) { return at(place).normal_force; }, places));
+  const auto meet_largest = [&](const auto& f) { meet(at(place_of_largest(f, places))); };
+  meet_largest([&](double place) { return known(place).normal_force; });
   for (const double way : {-1.0, 1.0})
-    meet_spin(way * largest([&](double place) { return way * at(place).spin; }, places));
+    meet_largest([&](double place) { return Rated(way) * known(place).spin; });
 }
 
-void WayMeter::fly(double spin, double time) {
-  way_.spin = std::max(way_.spin, std::abs(spin));
-  if (hoop_.aloft == 0.0) return;
+template <class S>
+void WayMeter<S>::fly(const S& spin, const S& time) {
+  take_larger(way_.spin, S(abs(spin)));
+  if (!turns_on_) return;
   meet_spin(spin), meet_spin(spin + hoop_.aloft * time);
   turn(turned_in_flight(hoop_, spin, time).value);
 }
+
+#ifdef LEAPMAP_KERNELS
+template class WayMeter<double>;
+template class WayMeter<RollingDual>;
+template class WayMeter<DesignDual>;
+#endif
 
 }  // namespace leapmap

@@ -2,15 +2,20 @@
 /// What the way to a jump asks of hoop and motor, against fine traces and against the referee.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
 
+#include "leapmap/gradient.hpp"
 #include "leapmap/solve.hpp"
 #include "leapmap/trace.hpp"
 #include "model/model.hpp"
 #include "referee/referee.hpp"
 #include "support/aimed.hpp"
 #include "support/designs.hpp"
+#include "support/differences.hpp"
 
 namespace leapmap {
 namespace {
@@ -90,6 +95,60 @@ TEST_P(Ways, AreTheRefereesToo) {
     }
   }
   EXPECT_GT(jumps, count / 4);
+}
+
+/// Derivatives of ways and of clearances against central differences of the numbers themselves.
+TEST_P(Ways, HaveTheDerivativesThatDifferencesShow) {
+  std::mt19937_64 random(62);
+  Scene scene = testing::unit_scene(GetParam());
+  scene.clear_height = 0.03;
+  const std::size_t count = testing::how_many(60);
+  std::vector<Design> designs;
+  for (std::size_t i = 0; i < count; ++i) designs.push_back(random_design(random, GetParam()));
+  std::vector<const Field*> fields;
+  std::vector<std::vector<Design>> found;
+  for (const Field& field : map_fields())
+    if (field.of_way || field.of_wall) {
+      fields.push_back(&field);
+      found.push_back(gradient(designs, *number_of(field), scene));
+    }
+  ASSERT_EQ(fields.size(), 6u);
+  std::vector<std::size_t> compared(fields.size()), missing(fields.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Outcome own = solve(designs[i], scene);
+    if (own.status != Status::jumped) continue;
+    for (double Design::*by : differentiable) {
+      if (std::isnan(designs[i].*by) || (by == &Design::mu_kinetic && kinetic_follows(designs[i]))) continue;
+      const double h = 1e-5 * std::max(1.0, std::abs(designs[i].*by));
+      std::array<Outcome, 4> beside;
+      bool alike = !(by == &Design::drive_torque && designs[i].drive_torque == 0.0);  // there ways have kinks
+      for (int k = 0; k < 4 && alike; ++k) {
+        Design moved = designs[i];
+        if (kinetic_follows(moved)) moved.mu_kinetic = std::numeric_limits<double>::quiet_NaN();
+        moved.*by += (k % 2 == 0 ? h : -h) * (k < 2 ? 1.0 : 2.0);
+        const bool kink = !std::isnan(moved.mu_kinetic) && moved.mu_static < moved.mu_kinetic;
+        alike = is_allowed(moved, scene) && !kink;
+        if (alike) beside[static_cast<std::size_t>(k)] = solve(moved, scene);
+        alike = alike && same_flags(beside[static_cast<std::size_t>(k)], own);
+      }
+      if (!alike) continue;
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        const testing::Difference at = testing::difference_of(*number_of(*fields[f]), beside, h);
+        if (std::isnan(at.truth) || !(at.doubt < 1e-4 * (1.0 + std::abs(at.truth)))) continue;
+        const double ours = found[f][i].*by;
+        ++compared[f], missing[f] += std::isnan(ours);
+        if (std::isnan(ours)) continue;
+        // Roundings of values over the step, 1e-13 / 1e-5, and a hundred times that on long ways.
+        EXPECT_NEAR(ours, at.truth, std::max(2.0 * at.doubt, 1e-6 * (1.0 + std::abs(at.truth))))
+            << fields[f]->name << " of " << i << " by parameter "
+            << std::ranges::find(differentiable, by) - differentiable.begin();
+      }
+    }
+  }
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    EXPECT_GT(compared[f], count / 2) << fields[f]->name;
+    EXPECT_LE(missing[f], compared[f] / 100) << fields[f]->name;
+  }
 }
 
 }  // namespace
