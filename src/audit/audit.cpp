@@ -17,6 +17,7 @@
 #include "referee/referee.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
+#include "trajectory/later_jump.hpp"
 
 namespace leapmap {
 namespace {
@@ -68,7 +69,8 @@ void round_to_single(Outcome& outcome) {
   const auto round = [](double& value) { value = static_cast<float>(value); };
   for (const Field& field : map_fields())
     if (const auto* quantity = std::get_if<Quantity>(&field.source)) round(outcome.*quantity->member);
-  for (Jump& jump : outcome.later_jumps) round(jump.height), round(jump.time);
+  for (Jump& jump : outcome.later_jumps)
+    for (const JumpRow& row : jump_rows) round(jump.*row.later);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "model/parameters.hpp"
 #include "numerics/mixed.hpp"
 #include "request/request.hpp"
+#include "request/solver.hpp"
 #include "spec/designs.hpp"
 
 namespace leapmap {
@@ -31,7 +32,7 @@ struct Beside {
 
 /// Whether they could be had, and are all of a kind. relative: the step, of the parameter or of one.
 bool look_beside(const Design& original, const Scene& scene, double Design::*parameter, const Outcome& ours,
-                 double relative, Beside& beside) {
+                 double relative, const Solver& follow_up, Beside& beside) {
   Design design = original;
   // What follows another goes where that goes.
   if (kinetic_follows(design)) design.mu_kinetic = std::numeric_limits<double>::quiet_NaN();
@@ -44,6 +45,7 @@ bool look_beside(const Design& original, const Scene& scene, double Design::*par
     if (kink || !is_allowed(moved, scene)) return false;
     beside.outcomes[k] = need(model_of(scene), &Model::refined, "solver in long double")(moved, scene);
     if (!same_flags(beside.outcomes[k], ours)) return false;
+    if (follow_up) follow_up({&moved, 1}, {&beside.outcomes[k], 1});
   }
   return true;
 }
@@ -71,11 +73,21 @@ std::size_t parameters_of_each(const Spec& spec, std::size_t parameters) {
   return std::min(parameters, static_cast<std::size_t>(std::clamp(each, 1.0, most_compared)));
 }
 
+/// What the differentiated quantities ask of a first jump besides its solution.
+Solver follow_up_of(const Spec& spec, const GradientWanted& wanted) {
+  std::vector<const Field*> columns;
+  for (const Field* field : fields_of(spec.scene))
+    if (const auto number = number_of(*field); number && number->jump == 1 && wanted.wants(*number))
+      columns.push_back(field);
+  return follow_up(request_of(spec, columns));
+}
+
 }  // namespace
 
 GradientAuditor::GradientAuditor(const Spec& spec)
     : spec_(spec),
       wanted_(derivatives_of(request_of(spec))),
+      follow_up_(follow_up_of(spec, wanted_)),
       parameters_each_(parameters_of_each(spec, wanted_.by.size())),
       rounding_(spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0) {}
 
@@ -91,13 +103,13 @@ void GradientAuditor::look_at(std::size_t number, const Design& design, const Ou
     if (parameter == &Design::mu_kinetic && kinetic_follows(design)) continue;  // it is not free
     applies = true;
     Beside beside, closer;
-    if (!look_beside(design, spec_.scene, parameter, ours, step, beside)) continue;
+    if (!look_beside(design, spec_.scene, parameter, ours, step, follow_up_, beside)) continue;
     decided = true;
     for (std::size_t i = 0; i < wanted_.of.size(); ++i) {
       auto error = error_of(gradient[i * parameters + j], wanted_.of[i], beside);
       // Phases that no flag shows may change within the steps, not within finer ones.
       if (error && *error > allowed + rounding_ &&
-          look_beside(design, spec_.scene, parameter, ours, fine_step, closer))
+          look_beside(design, spec_.scene, parameter, ours, fine_step, follow_up_, closer))
         error = error_of(gradient[i * parameters + j], wanted_.of[i], closer);
       if (!error) continue;
       if (std::isfinite(*error)) report.gradient_max_error = std::max(report.gradient_max_error, *error);

@@ -9,6 +9,7 @@
 #include "leapmap/audit.hpp"
 #include "leapmap/spec.hpp"
 #include "trajectory/gradient.hpp"
+#include "trajectory/solver.hpp"
 
 namespace leapmap {
 
@@ -26,6 +27,7 @@ class GradientAuditor {
  private:
   const Spec& spec_;
   GradientWanted wanted_;
+  Solver follow_up_;
   std::size_t parameters_each_;  ///< compared of each design
   double rounding_;              ///< of what is stored, relative
 };

@@ -38,19 +38,22 @@ AuditSolver SequenceAuditor::second(std::size_t jumps) const {
   return {solver_of(scene, method, audit_tolerance), solver_of(scene, method, coarser_tolerance)};
 }
 
-/// The larger of height's, relative to one more than its size, and time's, relative. What a sweep was not
-/// asked to store has none.
+/// The largest of those of times, relative, and of the others, relative to one more than their size. What a
+/// sweep was not asked to store has none.
 double SequenceAuditor::error_of(const Outcome& ours, const Outcome& theirs, std::size_t jump,
                                  bool stored_only) const {
-  const Jump &a = ours.later_jumps[jump - 2], &b = theirs.later_jumps[jump - 2];
-  const auto error = [&](const char* field, double x, double y, double size) {
-    if (stored_only && !stores(spec_.output, *find_field(field + std::to_string(jump)))) return 0.0;
-    return std::isnan(x) && std::isnan(y) ? 0.0
-           : std::isnan(x - y)            ? std::numeric_limits<double>::infinity()
-                                          : std::abs(x - y) / size;
-  };
-  return std::max(error("jump_height_", a.height, b.height, 1.0 + std::abs(b.height)),
-                  error("jump_time_", a.time, b.time, std::abs(b.time)));
+  double most = 0.0;
+  for (const Field* field : fields_of(scene_)) {
+    const auto* later = std::get_if<OfJump>(&field->source);
+    if (!later || later->number.jump != jump || field->of_wall || field->of_way) continue;
+    if ((stored_only || field->by_default != ByDefault::stored) && !stores(spec_.output, *field)) continue;
+    const double x = later->number.of(ours), y = later->number.of(theirs);
+    if (std::isnan(x) && std::isnan(y)) continue;
+    const double size = (later->measure == Measure::time ? 0.0 : 1.0) + std::abs(y);
+    most =
+        std::max(most, std::isnan(x - y) ? std::numeric_limits<double>::infinity() : std::abs(x - y) / size);
+  }
+  return most;
 }
 
 std::size_t SequenceAuditor::sure_of(const AuditSolver& judge, const Design& design, const Outcome& theirs,

@@ -14,6 +14,7 @@ namespace {
 Way<double> way_of(const RecordedWay& recorded, const Hoop<double>& hoop, const Contact<double>& contact,
                    const SlidingPanels<double>& panels) {
   WayMeter<double> meter(hoop);
+  meter.meet_spin(recorded.phases.front().at.spin);
   std::size_t flight = 0, slide = 0;
   for (std::size_t k = 0; k + 1 < recorded.phases.size(); ++k) {
     const RecordedWay::Begun& begun = recorded.phases[k];
@@ -45,19 +46,18 @@ Way<double> way_of(const RecordedWay& recorded, const Hoop<double>& hoop, const 
 
 namespace coulomb {
 
-Solver ways(const Scene& scene, double tolerance) {
+JumpSolver<double> ways(const Scene& scene, double tolerance) {
   return [scene, solver = std::make_shared<CoulombSolver<double>>(tolerance),
-          panels = std::make_shared<SlidingPanels<double>>(tolerance)](std::span<const Design> designs,
-                                                                       std::span<Outcome> outcomes) {
+          panels = std::make_shared<SlidingPanels<double>>(tolerance)](
+             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+             std::span<Outcome> outcomes) {
     RecordedWay recorded;
     for (std::size_t i = 0; i < designs.size(); ++i) {
-      ContactState<double> at = released<double>(designs[i]);
+      outcomes[i] = recorded_way(*solver, start, designs[i], states[i], scene, recorded);
       if (outcomes[i].status != Status::jumped) continue;
-      const Outcome again = recorded_way(*solver, Start::release, designs[i], at, scene, recorded);
-      if (same_flags(again, outcomes[i]))
-        put_way(way_of(recorded, reduce<double>(designs[i], scene), contact_of<double>(designs[i], scene),
-                       *panels),
-                [&](double Outcome::*kept, double number) { outcomes[i].*kept = number; });
+      put_way(
+          way_of(recorded, reduce<double>(designs[i], scene), contact_of<double>(designs[i], scene), *panels),
+          [&](double Outcome::*kept, double number) { outcomes[i].*kept = number; });
     }
   };
 }

@@ -52,15 +52,22 @@ enum class Phase : std::uint8_t {
 /// A phase_sequence as letters, for example "RSRSF". "-": none; "..." at the end: 32 phases or more.
 std::string phase_letters(std::uint64_t sequence);
 
-/// One jump of a sequence: lift-off, flight and landing.
+/// One jump of a sequence: lift-off, flight and landing. NaN: does not apply, or was not requested.
 struct Jump {
-  double height;        ///< of the apex above the plane [hoop diameters]
-  double time;          ///< from release to lift-off [s]
-  double angle;         ///< phi at lift-off [rad]
-  double spin;          ///< w at lift-off [sqrt(g/R)]
-  double distance;      ///< travelled by the hoop's centre from release to lift-off [R]
-  double flight_time;   ///< from lift-off to landing [s]
-  double landing_spin;  ///< w after the landing [sqrt(g/R)]
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double height = none;         ///< of the apex above the plane [hoop diameters]
+  double time = none;           ///< from release to lift-off [s]
+  double angle = none;          ///< phi at lift-off [rad]
+  double spin = none;           ///< w at lift-off [sqrt(g/R)]
+  double distance = none;       ///< travelled by the hoop's centre from release to lift-off [R]
+  double flight_time = none;    ///< from lift-off to landing [s]
+  double landing_spin = none;   ///< w after the landing [sqrt(g/R)]
+  // As those of Outcome:
+  double range = none, landing_normal_speed = none, landing_tangential_speed = none, landing_impulse = none,
+         landing_energy_lost = none;
+  double clears_from = none, clears_to = none;
+  // On the way from the landing before to the lift-off of this jump, as those of Outcome:
+  double max_normal_force = none, motor_energy = none, motor_max_power = none, motor_max_spin = none;
 };
 
 /// Largest number of jumps that a scene may ask for.

@@ -9,6 +9,7 @@
 
 #include "model/own_units.hpp"
 #include "model/parameters.hpp"
+#include "trajectory/later_jump.hpp"
 
 namespace leapmap {
 namespace {
@@ -194,6 +195,12 @@ struct RowTexts {
   std::string name, unit, long_name;
 };
 
+/// Whether maps may hold a quantity of later jumps, too.
+bool is_told_of_later(const Field& field) {
+  return field.name == "jump_height" || field.name == "jump_time" || field.by_default == ByDefault::told ||
+         field.of_wall || field.of_way;
+}
+
 struct JumpTable {
   std::deque<RowTexts> texts;
   std::vector<Field> rows;
@@ -201,16 +208,25 @@ struct JumpTable {
   JumpTable() {
     for (std::size_t jump = 2; jump <= static_cast<std::size_t>(most_jumps); ++jump) {
       const std::string number = std::to_string(jump), which = "jump " + number;
-      const auto add = [&](std::string name, double Jump::*member, Measure measure, std::string_view unit,
-                           const std::string& meaning) {
-        const RowTexts& text = texts.emplace_back(RowTexts{std::move(name) + number, {}, meaning});
-        rows.push_back(
-            Field{text.name, OfJump{{member, jump}, measure}, unit, text.long_name, 9, std::nullopt, true});
-        if (measure == Measure::time) rows.back().needs = &Wanted::jump_time;
-      };
-      add("jump_height_", &Jump::height, Measure::height, "1",
-          "apex of " + which + " above the plane, in hoop diameters");
-      add("jump_time_", &Jump::time, Measure::time, "s", "time from release to the lift-off of " + which);
+      for (const Field& field : fields) {
+        const auto* of = std::get_if<Quantity>(&field.source);
+        double Jump::*const member = of && is_told_of_later(field) ? later_member(of->member) : nullptr;
+        if (!member) continue;
+        std::string meaning(field.long_name);
+        const auto put = [&](std::string_view words, const std::string& others) {
+          if (const std::size_t at = meaning.find(words); at != meaning.npos)
+            meaning.replace(at, words.size(), others);
+        };
+        if (field.of_way) put("from release to", "from the landing before to");
+        put("the jump", which), put("the landing;", "its landing;");
+        const RowTexts& text =
+            texts.emplace_back(RowTexts{std::string(field.name) + "_" + number, {}, meaning});
+        Field row = field;
+        row.name = text.name, row.long_name = text.long_name, row.of_sequence = true;
+        row.source = OfJump{{member, jump}, of->measure};
+        row.since = field.since < 9 ? 9 : 14;
+        rows.push_back(row);
+      }
     }
   }
 };
@@ -245,7 +261,9 @@ std::optional<OutcomeNumber> number_of(const Field& field) {
 }
 
 bool can_be_differentiated(const Field& field) {
-  return number_of(field) && !field.of_gait && (field.by_default != ByDefault::left_out || field.of_way);
+  const bool has_derivatives = !field.of_sequence || !(field.of_wall || field.of_way);
+  return number_of(field) && !field.of_gait && has_derivatives &&
+         (field.by_default != ByDefault::left_out || field.of_way);
 }
 
 namespace {

@@ -49,8 +49,8 @@ struct Model {
   Solving (*solving)(const Contestant&, const Scene&, long max_steps);
   /// By the exact solver; with derivatives of what it finds, or without.
   DesignEffort (*effort)(const Scene&, bool derivatives);
-  /// Fills in what the way to each jump asks of hoop and motor, of designs that are solved.
-  Solver (*ways)(const Scene&, double tolerance);
+  /// As `jumps`, and tells what the way to each jump asks of hoop and motor.
+  JumpSolver<double> (*ways)(const Scene&, double tolerance);
 };
 
 /// The built-in models.

@@ -2,12 +2,14 @@
 #include "request/solver.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "gait/error_growth.hpp"
 #include "gait/settle.hpp"
 #include "model/model.hpp"
 #include "spec/spec.hpp"
 #include "trajectory/clearance.hpp"
+#include "trajectory/sequence.hpp"
 
 namespace leapmap {
 
@@ -32,28 +34,45 @@ Wanted wanted_of(const Request& request) {
   return wanted;
 }
 
-/// Fills in what comes of whole flights and sequences, once the designs are solved; empty: nothing is asked
-/// for. derives_clearances: they are found elsewhere, with their derivatives.
-Solver follow_up(const Request& request, bool derives_clearances = false) {
-  const double tolerance = request.numerics.tolerance;
-  std::shared_ptr<ErrorGrowth> growth;
-  std::shared_ptr<GaitSolver> gaits;
-  if (request.scene.jumps > 1 && wants(request, "sequence_condition"))
-    growth = std::make_shared<ErrorGrowth>(request.scene, tolerance);
-  if (wants_gaits(request)) gaits = std::make_shared<GaitSolver>(request.scene, tolerance);
-  const bool clears = !derives_clearances && (wants(request, "clears_from") || wants(request, "clears_to"));
-  Solver ways;
-  const bool asks_for_ways =
-      std::ranges::any_of(request.columns, [](const Field* field) { return field->of_way; });
-  if (const auto make_ways = model_of(request.scene).ways; make_ways && asks_for_ways)
-    ways = make_ways(request.scene, std::min(tolerance, 1e-10));
-  if (!growth && !gaits && !clears && !ways) return {};
-  return [growth, gaits, clears, ways, scene = request.scene](std::span<const Design> designs,
-                                                              std::span<Outcome> outcomes) {
-    if (clears) find_clearances(scene, designs, outcomes);
-    if (ways) ways(designs, outcomes);
-    if (growth) growth->tell(designs, outcomes);
-    if (gaits) gaits->solve(designs, outcomes);
+/// Fills in where walls may stand and what the way to each jump asks: every jump is solved once more, but for
+/// the walls of a first one. Empty: nothing of that is asked for.
+Solver jump_measures(const Request& request) {
+  const auto asks = [&](bool Field::*kind) {
+    return std::ranges::any_of(request.columns, [&](const Field* field) {
+      return field->*kind && !std::holds_alternative<Derivative>(field->source);
+    });
+  };
+  const bool clears = asks(&Field::of_wall), ways = asks(&Field::of_way);
+  const Scene scene = scene_asked(request);
+  if (!clears && !ways) return {};
+  if (!ways && scene.jumps == 1)
+    return [scene](std::span<const Design> designs, std::span<Outcome> outcomes) {
+      find_clearances(scene, designs, outcomes);
+    };
+  const Model& model = model_of(scene);
+  const double tolerance = std::min(request.numerics.tolerance, 1e-10);
+  JumpSolver<double> next = ways ? need(model, &Model::ways, "forces on the way to a jump")(scene, tolerance)
+                                 : need(model, &Model::jumps, semi_analytic)(scene, tolerance, Wanted{});
+  if (clears)
+    next = [next, scene](Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+                         std::span<Outcome> outcomes) {
+      next(start, designs, states, outcomes);
+      find_clearances(scene, designs, outcomes);
+    };
+  return [scene, sequences = std::make_shared<Sequences<double>>(next), again = std::vector<Outcome>()](
+             std::span<const Design> designs, std::span<Outcome> outcomes) mutable {
+    again.assign(designs.size(), {});
+    sequences->solve(designs, scene, again);
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      if (outcomes[i].status != Status::jumped || !same_flags(again[i], outcomes[i])) continue;
+      auto &ours = outcomes[i].later_jumps, &theirs = again[i].later_jumps;
+      for (const JumpRow& row : jump_rows) {
+        if (!std::isnan(outcomes[i].*row.first)) continue;
+        outcomes[i].*row.first = again[i].*row.first;
+        for (std::size_t k = 0; k < std::min(ours.size(), theirs.size()); ++k)
+          ours[k].*row.later = theirs[k].*row.later;
+      }
+    }
   };
 }
 
@@ -65,6 +84,22 @@ GradientWanted with_flights(GradientWanted wanted) {
 }
 
 }  // namespace
+
+Solver follow_up(const Request& request) {
+  const double tolerance = request.numerics.tolerance;
+  std::shared_ptr<ErrorGrowth> growth;
+  std::shared_ptr<GaitSolver> gaits;
+  if (request.scene.jumps > 1 && wants(request, "sequence_condition"))
+    growth = std::make_shared<ErrorGrowth>(request.scene, tolerance);
+  if (wants_gaits(request)) gaits = std::make_shared<GaitSolver>(request.scene, tolerance);
+  const Solver measures = jump_measures(request);
+  if (!growth && !gaits && !measures) return {};
+  return [growth, gaits, measures](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    if (measures) measures(designs, outcomes);
+    if (growth) growth->tell(designs, outcomes);
+    if (gaits) gaits->solve(designs, outcomes);
+  };
+}
 
 Solver make_solver(const Request& request) {
   const Scene scene = scene_asked(request);
@@ -91,7 +126,7 @@ GradientSolver make_gradient_solver(const Request& request) {
   const GradientWanted flights = clears ? with_flights(asked) : asked;
   GradientSolver solver = need(model_of(scene), &Model::gradients, "derivatives")(
       scene, request.numerics.tolerance, wanted_of(request), flights);
-  if (const Solver after = follow_up(request, clears))
+  if (const Solver after = follow_up(request))
     solver = [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes,
                                                  Gradients& gradients) {
       solver(designs, outcomes, gradients);

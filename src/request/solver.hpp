@@ -17,6 +17,10 @@ IntegrationOptions integration_options(const Numerics& numerics);
 /// The solver of the request's method, for all but derivatives and statistics.
 Solver make_solver(const Request& request);
 
+/// Fills in what comes of whole flights and sequences, once the designs are solved; empty: nothing of that is
+/// asked for.
+Solver follow_up(const Request& request);
+
 /// The same with the derivatives among the columns, if any.
 GradientSolver make_gradient_solver(const Request& request);
 

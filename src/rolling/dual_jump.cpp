@@ -7,6 +7,7 @@
 #include "rolling/exact.hpp"
 #include "rolling/lift_off_dual.hpp"
 #include "rolling/model.hpp"
+#include "trajectory/jump_measures.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap::rolling {
@@ -44,6 +45,8 @@ Outcome jump_on(Workspace& work, const Scene& scene, Start start, const Design& 
   if (put) {
     put_jump(put, at.angle, at.spin, at.travel, flight, second);
     put(&Outcome::jump_time, at.time, second);
+    put_measures(measures_of(hoop, at.angle, at.spin, flight.flight_time), D(1.0),
+                 [&](double Outcome::*kept, const D& value) { put(kept, value, 1.0); });
   }
   at = after_flight(hoop, at, flight.flight_time);
   at.spin = spin_after_holding(hoop, trig(at.angle), at.slip + at.spin, at.normal, at.spin);

@@ -37,8 +37,8 @@ JumpSolver<double> integrated_jumps(const Scene& scene, const IntegrationOptions
 /// The exact solver in long double: a reference for studies and tests.
 Outcome refined(const Design& design, const Scene& scene);
 
-/// Fills in what the way to each jump asks of hoop and motor; the exact solver goes it once more.
-Solver ways(const Scene& scene, double tolerance);
+/// As `jumps`, and tells what the way to each jump asks of hoop and motor.
+JumpSolver<double> ways(const Scene& scene, double tolerance);
 
 /// One design's motion by the exact solver, no integrator needed. interval > 0: sampled that often [s], and
 /// at the jump's lift-off and landing; infinite: those two only. Throws InputError if that would be more than

@@ -8,20 +8,18 @@
 
 namespace leapmap::rolling {
 
-Solver ways(const Scene& scene, double tolerance) {
-  const Wanted flags{.first_jump_time = false, .jump_time = false, .descent = false, .landing = false};
-  return [scene, solver = std::make_shared<ExactSolver<double>>(tolerance, flags)](
-             std::span<const Design> designs, std::span<Outcome> outcomes) {
+JumpSolver<double> ways(const Scene& scene, double tolerance) {
+  const Wanted untimed{.first_jump_time = false, .jump_time = false};
+  return [scene, solver = std::make_shared<ExactSolver<double>>(tolerance, untimed)](
+             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+             std::span<Outcome> outcomes) {
     for (std::size_t i = 0; i < designs.size(); ++i) {
+      const ContactState<double> from = states[i];
+      FoundLiftOffs found;
+      solver->solve(start, {&designs[i], 1}, {&states[i], 1}, scene, {&outcomes[i], 1}, &found);
       if (outcomes[i].status != Status::jumped) continue;
-      FoundLiftOffs told;
-      Outcome again;
-      solver->solve({&designs[i], 1}, scene, {&again, 1}, &told);
-      if (!same_flags(again, outcomes[i])) continue;
-      const Design& design = designs[i];
-      const Roll<double> roll =
-          begin_roll(reduce<double>(design, scene), design.release_angle, design.release_spin);
-      put_way(way_to(roll, design.release_spin, told, told.lift_offs.back().angle),
+      const Roll<double> roll = begin_roll(reduce<double>(designs[i], scene), from.angle, from.spin);
+      put_way(way_to(roll, from.spin, found, found.lift_offs.back().angle),
               [&](double Outcome::*kept, double number) { outcomes[i].*kept = number; });
     }
   };

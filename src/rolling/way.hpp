@@ -14,6 +14,7 @@ namespace leapmap {
 template <class S>
 Way<S> way_to(const Roll<S>& roll, const S& spin, const FoundLiftOffs& found, const S& end) {
   WayMeter<S> meter(roll.hoop);
+  meter.meet_spin(spin);
   meter.roll(roll, spin, std::span(found.turns).first(found.legs.back()), end);
   return meter.way();
 }

@@ -15,6 +15,7 @@
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
 #include "trajectory/contact_state.hpp"
+#include "trajectory/later_jump.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap {
@@ -53,11 +54,6 @@ bool is_beyond(const Scene& scene, const ContactState<S>& at) {
 /// Whether a jump is none: where hop_height is zero, a flight of no time, after which the hoop is where it
 /// was and would make it again. The plane would have to pull.
 inline bool is_of_no_flight(const Outcome& outcome) { return outcome.flight_time == 0.0; }
-
-inline Jump jump_of(const Outcome& outcome, double landing_spin) {
-  return {outcome.jump_height,   outcome.jump_time,   outcome.jump_angle, outcome.jump_spin,
-          outcome.jump_distance, outcome.flight_time, landing_spin};
-}
 
 /// Follows designs through as many jumps as their scene asks for. A thread's own workspace.
 template <class S>

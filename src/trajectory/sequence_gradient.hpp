@@ -65,9 +65,7 @@ inline GradientSolver in_sequence(GradientSolver first, JumpSolver<double> jumps
       ContactState<DesignDual> at = dual_release(designs[i]);
       for (std::size_t jump = 1; jump <= std::min(last, outcomes[i].jumps()); ++jump) {
         const auto put = [&](double Outcome::*quantity, DesignDual value, double unit) {
-          const auto of = quantity == &Outcome::jump_height ? &Jump::height
-                          : quantity == &Outcome::jump_time ? &Jump::time
-                                                            : nullptr;
+          const auto of = later_member(quantity);
           if (jump == 1 || !of) return;
           if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
           gradients.put(OutcomeNumber(of, jump), i, value, unit);

@@ -68,6 +68,8 @@ class WayMeter {
              const std::function<ForceAndSpin<S>(double)>& at);
   /// One place of a slide.
   void meet(const ForceAndSpin<S>& at);
+  /// A spin that it has.
+  void meet_spin(const S& spin);
   /// A flight, in which a motor that is on turns the hoop steadily.
   void fly(const S& spin, const S& time);
   /// The motor turned the hoop so far.
@@ -77,7 +79,6 @@ class WayMeter {
 
  private:
   void roll_on(const Roll<S>& roll, const S& from, const S& spin, const S& to);
-  void meet_spin(const S& spin);
 
   Hoop<S> hoop_;
   bool turns_on_;  ///< the motor, in flight

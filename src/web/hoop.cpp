@@ -11,6 +11,7 @@
 #include "model/parameters.hpp"
 #include "rolling/gradient.hpp"
 #include "rolling/model.hpp"
+#include "trajectory/way.hpp"
 #include "web/page.hpp"
 
 namespace leapmap::web {
@@ -61,7 +62,11 @@ LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
   told.outcome = motion.outcome;
   tell_more(scene, tolerance, {&design, 1}, {&told.outcome, 1});
   const auto ways = scene.friction == Friction::coulomb ? coulomb::ways : rolling::ways;
-  ways(scene, tolerance)({&design, 1}, {&told.outcome, 1});
+  ContactState<double> at = released<double>(design);
+  Outcome again;
+  ways(scene, tolerance)(Start::release, {&design, 1}, {&at, 1}, {&again, 1});
+  if (same_flags(again, told.outcome))
+    for (const WayRow<double>& row : way_rows<double>) told.outcome.*row.kept = again.*row.kept;
   told.points.clear(), told.lift_offs.clear();
   for (const MotionPoint& point : motion.points)
     told.points.push_back({point.t, point.phi, point.spin, point.x, point.y, point.normal_force,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "leapmap/gradient.hpp"
@@ -13,6 +14,7 @@
 #include "leapmap/trace.hpp"
 #include "model/model.hpp"
 #include "referee/referee.hpp"
+#include "request/solver.hpp"
 #include "support/aimed.hpp"
 #include "support/designs.hpp"
 #include "support/differences.hpp"
@@ -65,6 +67,52 @@ TEST_P(Ways, HaveTheMaximaThatAFineTraceComesNearTo) {
     }
   }
   EXPECT_GT(jumps, 3);
+}
+
+/// Of later jumps: never below a fine trace from the landing before, and hardly above it; and walls that they
+/// clear, as a jump of that flight alone does.
+TEST_P(Ways, OfLaterJumpsBeginAtTheLandingBefore) {
+  std::mt19937_64 random(63);
+  Spec spec;
+  spec.scene = testing::unit_scene(GetParam());
+  spec.scene.jumps = 4, spec.scene.clear_height = 0.02;
+  for (const Field* field : fields_of(spec.scene)) spec.output.fields.emplace_back(field->name);
+  const Solver solver = make_solver(request_of(spec));
+  int later = 0;
+  for (int i = 0; i < 200 && later < 20; ++i) {
+    const Design design = random_design(random, GetParam());
+    Outcome o;
+    solver({&design, 1}, {&o, 1});
+    if (o.later_jumps.empty() || o.later_jumps.back().time > 80.0) continue;
+    constexpr double interval = 1e-3;
+    const Motion motion = trace(design, spec.scene, {.interval = interval});
+    double landed = o.jump_time + o.flight_time;
+    for (const Jump& jump : o.later_jumps) {
+      const double begins = std::exchange(landed, jump.time + jump.flight_time);
+      if (jump.time - begins < 20.0 * interval) continue;  // too short for the trace to show
+      double force = 0.0, spin = 0.0, steepest = 0.0, before = 0.0;
+      for (const MotionPoint& at : motion.points) {
+        if (at.t < begins + 1e-9 || at.t > jump.time) continue;
+        spin = std::max(spin, std::abs(at.spin));
+        if (at.phase == Phase::flight) continue;
+        force = std::max(force, at.normal_force);
+        if (before > 0.0) steepest = std::max(steepest, std::abs(at.normal_force - before));
+        before = at.normal_force;
+      }
+      ASSERT_GE(jump.max_normal_force, force * (1.0 - 1e-12)) << i;
+      ASSERT_GE(jump.motor_max_spin, spin * (1.0 - 1e-12)) << i;
+      // A way may begin with its largest force, between two samples.
+      ASSERT_LE(jump.max_normal_force, force + 3.0 * steepest + 1e-9) << i;
+      ASSERT_LE(jump.motor_max_spin, spin * (1.0 + 20.0 * interval) + 20.0 * interval) << i;
+      ASSERT_EQ(std::isnan(jump.clears_from), !(jump.clears_from <= jump.clears_to));
+      ASSERT_LE(jump.landing_normal_speed, 4.0 * std::sqrt(1.0 + jump.height) + jump.motor_max_spin);
+      if (jump.height < spec.scene.clear_height) {
+        ASSERT_TRUE(std::isnan(jump.clears_from));
+      }
+      ++later;
+    }
+  }
+  EXPECT_GE(later, 20);
 }
 
 /// By integration in three coordinates, which shares no formula with them.
