@@ -101,6 +101,7 @@ LOOKS = {
     "gait_multiplier": Look("Floquet multiplier of the gait", "", levels=(-0.5, 0.0, 0.5)),
     "gait_height": Look("mean height of the gait's jumps", "hoop diameters", exponent=0.6, levels=HEIGHTS),
     "gait_speed": Look("speed of the gait", "m/s"),
+    "gait_jump_time": Look("time per jump of the gait", "s"),
     "gait_energy_lost": Look("energy lost per jump of the gait", "(m + mₚ) g R"),
 }
 # Vertical jumping agility of published jumpers [m/s]: Haldane, Plecnik, Yim and Fearing, "Robotic vertical

@@ -91,6 +91,7 @@ auto GaitAuditor::verdict_on(const Design& design, const Outcome& ours, AuditRep
   };
   compare(ours.gait_height, seen.height);
   compare(ours.gait_speed, seen.speed);
+  compare(ours.gait_jump_time, seen.jump_time);
   compare(ours.gait_energy_lost, seen.energy_lost);
   report.gait_max_error = std::max(report.gait_max_error, error);
   if (error > allowed_ * growth.back()) return Verdict::wrong;

@@ -62,9 +62,9 @@ std::string settled_line(const Outcome& outcome, long settle) {
                        settle);
   return fmt::format(
       "After this release its jumps converge to a gait of period {}: {:.6f} diameters, {:.4g} m/s down the "
-      "plane, {:.6g} (m + m_p) g R lost per jump; Floquet multiplier {:.6f}.",
-      outcome.gait_period, outcome.gait_height, outcome.gait_speed, outcome.gait_energy_lost,
-      outcome.gait_multiplier);
+      "plane, {:.4g} s and {:.6g} (m + m_p) g R lost per jump; Floquet multiplier {:.6f}.",
+      outcome.gait_period, outcome.gait_height, outcome.gait_speed, outcome.gait_jump_time,
+      outcome.gait_energy_lost, outcome.gait_multiplier);
 }
 
 std::string later_jumps_line(const AuditReport& report, const Outcome& outcome) {

@@ -67,8 +67,13 @@ Json json_of(const Gait& gait) {
                      {"height", jump.height},
                      {"time", jump.time},
                      {"distance", jump.distance}});
-  return {{"period", gait.jumps.size()}, {"multiplier", gait.multiplier},   {"height", gait.height},
-          {"speed", gait.speed},         {"energy_lost", gait.energy_lost}, {"jumps", jumps}};
+  return {{"period", gait.jumps.size()},
+          {"multiplier", gait.multiplier},
+          {"height", gait.height},
+          {"speed", gait.speed},
+          {"jump_time", gait.jump_time},
+          {"energy_lost", gait.energy_lost},
+          {"jumps", jumps}};
 }
 
 /// found: nullptr if there was no search.
@@ -78,6 +83,7 @@ Json json_of(const Spec& spec, const Gaits* found, const Outcome& outcome) {
             {"gait_multiplier", outcome.gait_multiplier},
             {"gait_height", outcome.gait_height},
             {"gait_speed", outcome.gait_speed},
+            {"gait_jump_time", outcome.gait_jump_time},
             {"gait_energy_lost", outcome.gait_energy_lost},
             {"gaits", nullptr},
             {"return_map", nullptr}};

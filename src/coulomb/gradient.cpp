@@ -308,7 +308,8 @@ void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene
 void CoulombGradients::derive_solved(std::span<const Design> designs, const Scene& scene,
                                      std::span<const Outcome> outcomes, Gradients& gradients) {
   gradients.begin(designs.size());
-  const bool follows_ways = std::ranges::any_of(gradients.wanted().of, is_of_way);
+  const std::vector<OutcomeNumber>& asked = gradients.wanted().of;
+  const bool follows_ways = std::any_of(asked.begin(), asked.end(), is_of_way);
   RecordedWay recorded;
   for (std::size_t i = 0; i < designs.size(); ++i) {
     if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate ||

@@ -272,7 +272,8 @@ class Search {
         if (between(landing, orbit.landings.back()).lpNorm<Eigen::Infinity>() < 1e-7) return;
     }
     orbits_.push_back(orbit);
-    found_.gaits.push_back({orbit.jumps, orbit.multiplier, orbit.height, orbit.speed, orbit.energy_lost});
+    found_.gaits.push_back(
+        {orbit.jumps, orbit.multiplier, orbit.height, orbit.speed, orbit.jump_time, orbit.energy_lost});
   }
 
   const Design& design_;

@@ -144,6 +144,7 @@ bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const De
     if (is_back && k + 1 < period) return false;  // it is of a shorter period
   }
   orbit.speed = travel * scene.radius / time;
+  orbit.jump_time = time / period;
   orbit.energy_lost = (travel * hoop.sin_slope + work) / period;
   return true;
 }

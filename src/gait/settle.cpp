@@ -24,6 +24,7 @@ void GaitSolver::solve(std::span<const Design> designs, std::span<Outcome> outco
     outcome.gait_multiplier = orbit.multiplier;
     outcome.gait_height = orbit.height;
     outcome.gait_speed = orbit.speed;
+    outcome.gait_jump_time = orbit.jump_time;
     outcome.gait_energy_lost = orbit.energy_lost;
   }
 }

@@ -18,6 +18,7 @@ struct Gait {
   double multiplier = 0.0;   ///< Floquet multiplier: growth of a small deviation over one period
   double height = 0.0;       ///< mean height of the jumps [hoop diameters]
   double speed = 0.0;        ///< mean speed down the plane [m/s]
+  double jump_time = 0.0;    ///< per jump [s]
   double energy_lost = 0.0;  ///< per jump [(m + m_p) g R]
 
   /// Whether small deviations decay.

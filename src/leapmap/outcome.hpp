@@ -124,6 +124,7 @@ struct Outcome {
   double gait_multiplier = none;                ///< Floquet multiplier: growth of a deviation over one period
   double gait_height = none;                    ///< mean height of its jumps [hoop diameters]
   double gait_speed = none;                     ///< mean speed down the plane [m/s]
+  double gait_jump_time = none;                 ///< per jump [s]
   double gait_energy_lost = none;               ///< per jump [(m + m_p) g R]
   const char* failure = nullptr;                ///< reason of status failed, or nullptr
   std::vector<Jump> later_jumps{};              ///< the jumps after the first, at most Scene::jumps - 1

@@ -159,6 +159,8 @@ const std::array fields{
           "mean height of the gait's jumps, in hoop diameters", 9, std::nullopt, false, true},
     Field{"gait_speed", Quantity{&Outcome::gait_speed}, "m s-1", "mean speed of the gait down the plane", 9,
           std::nullopt, false, true},
+    Field{"gait_jump_time", Quantity{&Outcome::gait_jump_time, Measure::time}, "s",
+          "mean time from one jump of the gait to the next", 14, std::nullopt, false, true},
     Field{"gait_energy_lost", Quantity{&Outcome::gait_energy_lost}, "1",
           "energy lost per jump of the gait, in (m + m_p) g R", 9, std::nullopt, false, true},
 };

@@ -115,7 +115,7 @@ py::dict gaits(const py::dict& given, int most_period, double tolerance) {
   for (const Gait& gait : found.gaits) {
     py::dict one, jumps;
     one["period"] = gait.jumps.size(), one["multiplier"] = gait.multiplier, one["height"] = gait.height;
-    one["speed"] = gait.speed, one["energy_lost"] = gait.energy_lost;
+    one["speed"] = gait.speed, one["jump_time"] = gait.jump_time, one["energy_lost"] = gait.energy_lost;
     jumps["angle"] = numbers(gait.jumps, &Jump::angle), jumps["spin"] = numbers(gait.jumps, &Jump::spin);
     jumps["height"] = numbers(gait.jumps, &Jump::height), jumps["time"] = numbers(gait.jumps, &Jump::time);
     jumps["distance"] = numbers(gait.jumps, &Jump::distance);

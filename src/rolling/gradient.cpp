@@ -45,8 +45,8 @@ RollingGradients::RollingGradients(double tolerance, const Wanted& wanted, const
       of_time_(gradients.wants(&Outcome::jump_time)),
       of_first_time_(gradients.wants(&Outcome::first_jump_time)),
       of_dip_(gradients.wants(&Outcome::dip)),
-      of_landing_(std::ranges::any_of(gradients.of, is_measure)),
-      of_way_(std::ranges::any_of(gradients.of, is_of_way)),
+      of_landing_(std::any_of(gradients.of.begin(), gradients.of.end(), is_measure)),
+      of_way_(std::any_of(gradients.of.begin(), gradients.of.end(), is_of_way)),
       solver_(tolerance,
               [&] {
                 Wanted all = wanted;

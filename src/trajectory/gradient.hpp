@@ -121,9 +121,10 @@ class Gradients {
   void take(const Gradients& others, std::size_t designs) {
     begin(designs);
     for (std::size_t i = 0; i < wanted_.of.size(); ++i)
-      for (std::size_t j = 0; j < wanted_.by.size(); ++j)
-        std::ranges::copy(others.column(wanted_.of[i], differentiable[wanted_.by[j]]),
-                          columns_[i * wanted_.by.size() + j].begin());
+      for (std::size_t j = 0; j < wanted_.by.size(); ++j) {
+        const std::span<const double> column = others.column(wanted_.of[i], differentiable[wanted_.by[j]]);
+        std::copy(column.begin(), column.end(), columns_[i * wanted_.by.size() + j].begin());
+      }
   }
 
  private:

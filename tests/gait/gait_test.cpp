@@ -173,6 +173,10 @@ TEST(Gaits, LoseWhatTheSlopeAndTheMotorGive) {
   EXPECT_TRUE(same->is_stable());
   EXPECT_NEAR(same->multiplier, outcome.gait_multiplier, 1e-9);
   EXPECT_NEAR(same->energy_lost, outcome.gait_energy_lost, 1e-10);
+  EXPECT_NEAR(same->jump_time, outcome.gait_jump_time, 1e-10);
+  double time = 0.0;  // each jump's from the landing before to its own
+  for (const Jump& jump : same->jumps) time += jump.time + jump.flight_time;
+  EXPECT_NEAR(time / static_cast<double>(same->jumps.size()), outcome.gait_jump_time, 1e-10);
   // What the landings take, one by one.
   const Hoop<double> h = reduce<double>(hoop, scene);
   double lost = 0.0;
