@@ -1,6 +1,6 @@
 // The part of the page that shows one hoop: its controls, numbers and command line.
 
-const PAPER_MASS = 28.2;  // g, of hoop and point mass: the paper's 8.2 g and 20 g
+const STEADY_AFTER = 100;  // jumps, before it is looked whether one hoop's jumps are steady
 
 /**
  * The part that shows one hoop: show(index) a design, stopAt(time) a moment of its motion, retell() it in
@@ -19,11 +19,13 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0,
     frame: 0, timeAt: null, recording: false, haunting: 0 };
   const firstJumps = map.jumps;
-  const chosen = { radius: map.fixed.radius, mass: PAPER_MASS / 1000, jumps: map.jumps };  // m; kg
+  const weighed = map.mass ? 1000 * map.mass : "";  // g; "": unknown
+  const kilograms = () => (mass.value === "" ? NaN : Number(mass.value) / 1000);
+  mass.value = weighed;
+  const chosen = { radius: map.fixed.radius, mass: kilograms(), jumps: map.jumps };  // m; kg
   units.mass = chosen.mass;
   radius.value = 1000 * chosen.radius;
   radius.parentElement.hidden = map.live;  // which has a slider for it
-  mass.value = 1000 * chosen.mass;
   const jumps = element("jumps");
   jumps.value = chosen.jumps;
 
@@ -35,6 +37,16 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   });
   const showInputs = hoopInputs(map, solver, (design) => typed(design)),
     showGradient = gradientPart(map, solver);
+  addressPart(drawingPart(solver, (body) => {
+    const { radius: R, total_mass: kg, mass_ratio, offset_ratio, inertia_factor } = body;
+    mass.value = Number((1000 * kg).toPrecision(12));
+    chosen.mass = units.mass = kg;
+    if (map.live) map.reshape({ radius: R, offset_ratio, inertia_factor });
+    else { chosen.radius = R; radius.value = Number((1000 * R).toPrecision(12)); }
+    typed({ ...(now.design ?? { ...map.fixed, ...map.paper }), mass_ratio, offset_ratio, inertia_factor },
+      "One hoop: from a drawing");
+    otherUnits();
+  }));
 
   const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "),
     () => { if (now.story) haunt(); pinned(); noteAddress(); });
@@ -137,7 +149,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     element("radius-note").textContent = design.radius === map.fixed.radius ? ""
       : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
     now.asked = { ...map.asked, jumps: chosen.jumps };
-    now.story = solver.solve(design, map.slips, map.tolerance, 0, now.asked);
+    now.story = solver.solve(design, map.slips, map.tolerance, 0,
+      { ...now.asked, settle: now.asked.settle || STEADY_AFTER });
     now.asMade = {};
     teller.drop();
     if (now.source[0] !== "design") { tellOwn(); tellAsMade(design); }
@@ -263,7 +276,15 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     noteAddress();
     if (now.design) { solve(); run(!still && now.story !== null); }
   });
-  choose(mass, "mass", () => { units.mass = chosen.mass; otherUnits(); });
+  mass.addEventListener("change", () => {
+    const good = mass.value === "" ? !mass.validity.badInput : Number(mass.value) > 0 && mass.checkValidity();
+    mass.setAttribute("aria-invalid", String(!good));
+    notice(good ? "" : "The mass must be a number above 0, and finite; empty: unknown.");
+    if (!good) return;
+    chosen.mass = units.mass = kilograms();
+    otherUnits();
+    noteAddress();
+  });
   const seek = (event) =>
     { if (now.timeAt && (event.type === "click" || event.buttons === 1)) stopAt(now.timeAt(event.clientX)); };
   plots.addEventListener("click", seek);
@@ -319,8 +340,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
       const [key, value] = now.source;
       if (key) words.set(key, value);
       for (const [name, input, fallback] of [["jumps", jumps, firstJumps],
-          ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]])
-        if (Number(input.value) !== fallback && !(name === "radius" && map.live))
+          ["radius", radius, 1000 * map.fixed.radius], ["mass", mass, weighed]])
+        if (Number(input.value) !== Number(fallback) && !(name === "radius" && map.live))
           words.set(name === "radius" ? "hoop_radius" : name, input.value);
       for (const [name, input, fallback] of ways)
         if (input.type === "checkbox" ? input.checked !== fallback : input.value !== fallback)
@@ -331,14 +352,14 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     },
     read(words) {
       for (const [name, input, fallback] of [["jumps", jumps, firstJumps],
-          ["hoop_radius", radius, 1000 * map.fixed.radius], ["mass", mass, PAPER_MASS]]) {
+          ["hoop_radius", radius, 1000 * map.fixed.radius], ["mass", mass, weighed]]) {
         const value = Number(words.get(name) ?? fallback);
         if (value > 0 && value <= Number(input.max)) input.value = value;
+        else if (name === "mass" && !words.has("mass")) input.value = "";
       }
-      units.mass = Number(mass.value) / 1000;
+      units.mass = kilograms();
       Object.assign(chosen,
-        { radius: Number(radius.value) / 1000, mass: Number(mass.value) / 1000,
-        jumps: Math.round(Number(jumps.value)) });
+        { radius: Number(radius.value) / 1000, mass: units.mass, jumps: Math.round(Number(jumps.value)) });
       followOn();
       for (const [name, input, fallback] of ways) {
         const word = words.get(name);

@@ -162,6 +162,13 @@ function liveControls(map, solver, changed) {
   });
   showAxes();
   showSliders();
+  /** A hoop from a drawing: the map is of its kind. */
+  map.reshape = (values) => {
+    for (const [name, value] of Object.entries(values))
+      if (!map.axes.some((axis) => axis.name === name)) map.fixed[name] = value;
+    showSliders();
+    changed("map");
+  };
   return {
     write: (words) => writeLive(words, map, solver.defaults),
     read(words, first) {

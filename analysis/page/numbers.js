@@ -40,6 +40,11 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
     add("jumps", "number of jumps", `${outcome.jumps} of ${chosen.jumps}: ` +
       heights.map((h) => measure.length(2 * R * h)).join(", "));
   }
+  // The first jump may be the lowest: what its jumps come to, for who wants to go on jumping.
+  if (jumped && outcome.gait_period > 0 && outcome.gait_period < 255)
+    add("steady_jump", "steady jump", `${measure.length(2 * R * outcome.gait_height)}, ` +
+      `${measure.speed(outcome.gait_speed)} down the plane` +
+      (outcome.gait_period > 1 ? `, mean of ${outcome.gait_period} jumps in turn` : ""), outcome.gait_height);
   if (outcome.candidates > 0) {
     const after = measure.time(outcome.first_jump_time);
     add("spurious_first_jump", "first lift-off", outcome.spurious_first_jump !== 1 ? "is the jump"
@@ -60,7 +65,7 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
     // Up to the first jump the maximum itself, beyond it that of samples.
     const most = pushes.reduce((a, b) => Math.max(a, b), jumped ? outcome.max_normal_force : 0);
     add("most_normal_force", "largest normal force", measure.force(most),
-      most * chosen.mass * design.gravity);
+      chosen.mass > 0 ? most * chosen.mass * design.gravity : most);
   }
   return rows;
 }

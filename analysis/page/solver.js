@@ -37,6 +37,7 @@ async function solverOf(module) {
     [name, [leapmap.parameter_least(i), leapmap.parameter_most(i)]]));
   const codes = Object.fromEntries(fields.map((name, i) =>
     [name, namesBy((code) => leapmap.code_name(i, code))]));
+  const reducedNames = namesBy(leapmap.reduced_name);
   const give = (design) => doubles(leapmap.parameter_values(), parameters.length)
     .set(parameters.map((name) => design[name] ?? defaults[name] ?? (name === "mass" ? unknown : noWall)));
   const ask = ({ jumps = 1, settle = 0, growth = false }) => leapmap.ask(jumps, settle, Number(growth));
@@ -67,6 +68,15 @@ async function solverOf(module) {
       const values = doubles(leapmap.gradient(slips ? 1 : 0, tolerance, fields.indexOf(field)),
         parameters.length);
       return Object.fromEntries(parameters.map((name, i) => [name, values[i]]));
+    },
+    /** What a hoop from a drawing comes to, {total_mass, mass_ratio, ...}: {ring: {diameter, mass, inertia},
+        weights: [{mass, at, angle, inertia}]}, in SI; an inertia of NaN: a thin ring's. */
+    reduce({ ring, weights }) {
+      const numbers = [ring.diameter, ring.mass, ring.inertia,
+        ...weights.flatMap(({ mass, at, angle, inertia }) => [mass, at, angle, inertia])];
+      doubles(leapmap.body_numbers(weights.length), numbers.length).set(numbers);
+      const values = doubles(leapmap.reduce_body(), reducedNames.length);
+      return Object.fromEntries(reducedNames.map((name, k) => [name, values[k]]));
     },
     /** What solvePlaces tells of a design, in order. */
     rowNames,

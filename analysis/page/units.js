@@ -1,28 +1,29 @@
 // Lengths, times and forces as people read them: in SI, or as pure numbers in radii, weights and √(R/g).
 
-const units = { pure: false, mass: 0.0282 };  // kg, of hoop and point mass
+const units = { pure: false, mass: NaN };  // kg, of hoop and point mass; NaN: unknown
 
-/** How measures of one hoop are told. design: with its radius and gravity; kg: of hoop and point mass. All
-    are given in SI, forces in weights. */
+/** How measures of one hoop are told. design: with its radius and gravity; kg: of hoop and point mass, NaN if
+    nobody weighed it: then forces are in weights. All are given in SI, forces in weights. */
 function measuresOf(design, kg) {
   const R = design.radius, g = design.gravity, second = Math.sqrt(R / g);
   const told = (value, digits, unit) => `${short(value, digits)} ${unit}`, tidy = (metres) =>
     (Math.abs(metres) < 1e-9 * R ? 0 : metres);
+  const force = (weights) => told(weights, 4, "weights"), energy = (part) => told(part, 4, "(m + mₚ) g R");
   if (units.pure) return {
     length: (metres, digits = 4) => told(tidy(metres) / R, digits, "R"), time: (s, digits = 4) =>
       told(s / second, digits, "√(R/g)"),
     speed: (v) => told(v / Math.sqrt(R * g), 4, "√(g R)"), spin: (radians) =>
-      told(radians * second, 4, "√(g/R)"), force: (weights) => told(weights, 4, "weights"),
-    energy: (part) => told(part, 4, "(m + mₚ) g R"),
+      told(radians * second, 4, "√(g/R)"), force, energy,
     plots: { t: [1 / second, "√(R/g)"], y: [1 / R, "R"], force: [1, "weights"] },
   };
   return {
     length: (metres, digits = 4) =>
       (Math.abs(metres) >= 1 ? told(metres, digits, "m") : told(1000 * tidy(metres), digits, "mm")),
       time: (s, digits = 4) => told(s, digits, "s"),
-    speed: (v) => told(v, 4, "m/s"), spin: (radians) => told(radians, 4, "rad/s"), force: (weights) =>
-      told(weights * kg * g, 4, "N"), energy: (part) => told(1000 * part * kg * g * R, 4, "mJ"),
-    plots: { t: [1, "s"], y: [1000, "mm"], force: [kg * g, "N"] },
+    speed: (v) => told(v, 4, "m/s"), spin: (radians) => told(radians, 4, "rad/s"),
+    force: kg > 0 ? (weights) => told(weights * kg * g, 4, "N") : force,
+    energy: kg > 0 ? (part) => told(1000 * part * kg * g * R, 4, "mJ") : energy,
+    plots: { t: [1, "s"], y: [1000, "mm"], force: kg > 0 ? [kg * g, "N"] : [1, "weights"] },
   };
 }
 
@@ -33,8 +34,8 @@ function shownIn(unit, { radius: R, gravity: g }) {
     ? { s: [1 / second, "√(R/g)"], "m/s": [second / R, "√(g R)"] }
     : { "hoop diameters": [2000 * R, "mm"], diameters: [2000 * R, "mm"], R: [1000 * R, "mm"],
       "√(g/R)": [1 / second, "rad/s"], rad: [180 / Math.PI, "°"], "√(g R)": [R / second, "m/s"],
-      "(m + mₚ) √(g R)": [1000 * units.mass * R / second, "mN s"],
-      "(m + mₚ) g R": [1000 * units.mass * g * R, "mJ"] };
+      ...(units.mass > 0 ? { "(m + mₚ) √(g R)": [1000 * units.mass * R / second, "mN s"],
+        "(m + mₚ) g R": [1000 * units.mass * g * R, "mJ"] } : {}) };
   return rows[unit] ?? [1, unit];
 }
 

@@ -16,6 +16,7 @@
 #include "cli/json.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
+#include "cli/shown_units.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
 #include "design/question.hpp"
@@ -25,6 +26,7 @@
 #include "map/hdf5_driver.hpp"
 #include "map/reader.hpp"
 #include "model/model.hpp"
+#include "physics/body.hpp"
 #include "spec/designs.hpp"
 #include "spec/map_spec.hpp"
 #include "support/output_file.hpp"
@@ -33,32 +35,52 @@ namespace leapmap::cli {
 namespace {
 
 struct DesignArguments {
-  std::string spec, output, csv;
+  std::string spec, output, csv, units;
   std::vector<std::string> overrides;
   FindOptions options;
   bool json = false, quiet = false, overwrite = false;
   Locking locking = Locking::required;
 };
 
-std::string with_unit(double value, std::string_view unit) {
-  if (unit == "rad") return fmt::format("{:.6g} deg", value * 180.0 / std::numbers::pi);
-  return unit == "1" || unit.empty() ? fmt::format("{:.6g}", value) : fmt::format("{:.6g} {}", value, unit);
-}
+/// The units of a report, for the hoop that each design is.
+struct Report {
+  const Question& question;
+  ShownUnits units;
 
-std::string told_parameters(const Question& question, const FoundDesign& found) {
+  /// Before the search, not after it.
+  void refuse_unusable() {
+    scale_to(question.values(std::vector<double>(question.dimensions(), 0.5)));
+    for (const FreeParameter& one : question.free) units.of(one.name);
+    for (const Field* field : fields_of(question.one.scene)) units.of(*field);
+    units.refuse_unused();
+  }
+  /// free: the values of the free parameters.
+  void scale_to(std::span<const double> free) {
+    Scales scales = scales_of(question.one.scene);
+    if (question.designs.varies_body()) {
+      Body body;
+      question.designs.at(free, &body);
+      scales.mass = reduce_checked(body).total_mass;
+    }
+    units.scale(scales);
+  }
+};
+
+std::string told_parameters(Report& report, const FoundDesign& found) {
+  const std::vector<FreeParameter>& free = report.question.free;
   std::vector<std::string> told;
-  for (std::size_t k = 0; k < question.free.size(); ++k)
-    told.push_back(fmt::format("{} {}", question.free[k].name,
-                               with_unit(found.free[k], question.free[k].variable.unit)));
+  for (std::size_t k = 0; k < free.size(); ++k)
+    told.push_back(fmt::format("{} {}", free[k].name, report.units.told(found.free[k], free[k].name)));
   return fmt::format("{}", fmt::join(told, ", "));
 }
 
 /// Objectives that are fields, and the usual quantities.
-std::string told_fields(const Question& question, const FoundDesign& found) {
+std::string told_fields(Report& report, const FoundDesign& found) {
+  const Question& question = report.question;
   std::vector<std::string> told, names;
   for (std::size_t k = 0; k < question.objectives.size(); ++k)
     if (const Field* field = question.objectives[k].field) {
-      told.push_back(fmt::format("{} {}", field->name, with_unit(found.objectives[k], field->unit)));
+      told.push_back(fmt::format("{} {}", field->name, report.units.told(found.objectives[k], *field)));
       names.emplace_back(field->name);
     }
   for (const Field& field : map_fields()) {
@@ -67,7 +89,7 @@ std::string told_fields(const Question& question, const FoundDesign& found) {
         std::ranges::find(question.one.goals, field.name, &Goal::field) != question.one.goals.end();
     const double value = stored_number(field, found.outcome);
     if (asked && !std::isnan(value) && std::ranges::find(names, field.name) == names.end())
-      told.push_back(fmt::format("{} {}", field.name, with_unit(value, field.unit)));
+      told.push_back(fmt::format("{} {}", field.name, report.units.told(value, field)));
   }
   return fmt::format("{}", fmt::join(told, ", "));
 }
@@ -102,8 +124,11 @@ std::string command_of(const Question& question, const Design& design) {
   return command;
 }
 
-void print_design(const Question& question, const FoundDesign& found, std::size_t number) {
-  say("\n{:>3}  {}\n     {}\n", number, told_parameters(question, found), told_fields(question, found));
+void print_design(Report& report, const FoundDesign& found, std::size_t number) {
+  const Question& question = report.question;
+  report.scale_to(found.free);
+  say("\n{:>3}  {}\n     {}\n", number, told_parameters(report, found), told_fields(report, found));
+  if (report.units.are_asked_for()) say("{}", report.units.lines_of(found.outcome, question.one.scene));
   if (!std::isnan(found.yield.value))
     say("     yield {:.4f} +- {:.4f}, from {} fresh manufactured hoops\n", found.yield.value,
         found.yield.error, question.one.scatter.samples);
@@ -135,7 +160,8 @@ std::vector<std::size_t> called_out(const FoundDesigns& found) {
   return out;
 }
 
-void print_found(const Question& question, const FoundDesigns& found) {
+void print_found(Report& report, const FoundDesigns& found) {
+  const Question& question = report.question;
   say("{} designs solved in {}\n", grouped(found.evaluations), spoken_duration(found.seconds));
   if (question.objectives.size() == 2 && found.reached) {
     say("front: {} designs; improving {} or {} makes the other worse", grouped(found.designs.size()),
@@ -144,10 +170,10 @@ void print_found(const Question& question, const FoundDesigns& found) {
                     ? ""
                     : fmt::format("; it dominates {:.2f} % of the rectangle between its ends",
                                   100.0 * found.hypervolume));
-    for (const std::size_t i : called_out(found)) print_design(question, found.designs[i], i + 1);
+    for (const std::size_t i : called_out(found)) print_design(report, found.designs[i], i + 1);
     return;
   }
-  for (std::size_t i = 0; i < found.designs.size(); ++i) print_design(question, found.designs[i], i + 1);
+  for (std::size_t i = 0; i < found.designs.size(); ++i) print_design(report, found.designs[i], i + 1);
 }
 
 /// How near a hoop came to a jump.
@@ -159,11 +185,13 @@ std::string how_near(const Outcome& outcome, const Scene& scene) {
 }
 
 /// The best that there is where no design does it.
-void print_miss(const Spec& spec, const Question& question, const FoundDesigns& found) {
+void print_miss(const Spec& spec, Report& report, const FoundDesigns& found) {
+  const Question& question = report.question;
   say("No design within the bounds meets all goals; {} were evaluated. The nearest miss:\n",
       grouped(found.evaluations));
   const FoundDesign& nearest = found.designs[0];
-  say("     {}\n     {}\n", told_parameters(question, nearest), name_of(nearest.outcome.status));
+  report.scale_to(nearest.free);
+  say("     {}\n     {}\n", told_parameters(report, nearest), name_of(nearest.outcome.status));
   if (nearest.outcome.status != Status::jumped)
     say("     {}\n", how_near(nearest.outcome, question.one.scene));
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
@@ -230,6 +258,8 @@ bool is_found_list(const std::string& path, Locking locking) {
 int run(const DesignArguments& arguments) {
   const Spec spec = read_given_spec(arguments.spec, arguments.overrides);
   const Question question = question_of(spec);
+  Report report{question, ShownUnits(arguments.units, scales_of(spec.scene))};
+  report.refuse_unusable();
   const std::string map = behind_links(arguments.output.empty() ? spec.output.file : arguments.output);
   const std::array inputs{NamedPath{"SPEC", arguments.spec}, NamedPath{"design.points", spec.points}};
   const std::array outputs{NamedPath{"-o", map, true}, NamedPath{"--csv", arguments.csv}};
@@ -261,9 +291,9 @@ int run(const DesignArguments& arguments) {
   if (arguments.json)
     say_json(json_of(spec, question, found));
   else if (!found.reached)
-    print_miss(spec, question, found);
+    print_miss(spec, report, found);
   else if (!arguments.quiet)
-    print_found(question, found);
+    print_found(report, found);
   if (!found.reached) return 1;
   if (!map.empty()) {
     sweep(list_of(spec, found), map,
@@ -297,6 +327,8 @@ void add_design(CommandLine& line, int& status) {
              "write the designs to this CSV file, as leapmap sweep --points reads it")
       .check(named_file());
   command.flag("--json", arguments->json, "print JSON only");
+  command.value("--units", arguments->units,
+                "report free parameters and every quantity in these units, for example \"mm g deg J\"");
   command.flag("--overwrite", arguments->overwrite, "replace any file, not only an earlier search's list");
   command.flag("--quiet", arguments->quiet, "print errors, and whether no design meets the goals");
   command.group("Search");

@@ -15,6 +15,7 @@
 #include "cli/json.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
+#include "cli/shown_units.hpp"
 #include "cli/spoken.hpp"
 #include "engine/parallel.hpp"
 #include "model/fields.hpp"
@@ -28,7 +29,7 @@ namespace leapmap::cli {
 namespace {
 
 struct FitArguments {
-  std::string data, spec, csv, model = "both";
+  std::string data, spec, csv, units, model = "both";
   std::vector<std::string> overrides;
   MeasurementOptions reading;
   FitOptions options;
@@ -95,7 +96,7 @@ void print_events(const Measurements& measured, const ModelFit& fit) {
   }
 }
 
-void print_fit(const Measurements& measured, const ModelFit& fit) {
+void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& units) {
   say("\nfriction \"{}\": ", model_of(fit.scene).name);
   if (!fit.found) {
     say("{}\n", fit.why.empty() ? "no design within the bounds shows all that was measured" : fit.why);
@@ -140,9 +141,11 @@ void print_fit(const Measurements& measured, const ModelFit& fit) {
                           name_of(fit.outcome.sequence_end), fit.scene.runway)
             : "");
   if (fit.outcome.status == Status::jumped)
-    say("  jumps {:.4g} diameters high, at {:.4g} s\n", fit.outcome.jump_height, fit.outcome.jump_time);
+    say("  jumps {:.4g} diameters ({:.4g} mm) high, at {:.4g} s\n", fit.outcome.jump_height,
+        2000.0 * fit.scene.radius * fit.outcome.jump_height, fit.outcome.jump_time);
   else
     say("  status: {}\n", name_of(fit.outcome.status));
+  if (units.are_asked_for()) say("{}", units.lines_of(fit.outcome, fit.scene));
   say("  {}\n", hop_command(spec_of(fit), fit.design));
 }
 
@@ -233,6 +236,7 @@ int run(const FitArguments& arguments) {
     if (only->slips) overrides.insert(overrides.begin(), "scene.friction=" + arguments.model);
   }
   const Spec spec = read_given_spec(arguments.spec, overrides);
+  ShownUnits units(arguments.units, scales_of(spec.scene));
   tell_fitted_anew(spec);
   const std::array inputs{NamedPath{"DATA", arguments.data}, NamedPath{"SPEC", arguments.spec}};
   const std::array outputs{NamedPath{"--csv", arguments.csv}};
@@ -256,7 +260,7 @@ int run(const FitArguments& arguments) {
     say_json(json);
   } else {
     say("{} in {}\n", arguments.data, spoken_duration(report.seconds));
-    for (const ModelFit& one : report.models) print_fit(measured, one);
+    for (const ModelFit& one : report.models) print_fit(measured, one, units);
     print_preference(report);
   }
   if (!report.models[0].found) return 1;
@@ -310,6 +314,8 @@ void add_fit(CommandLine& line, int& status) {
       .check(named_file());
   command.flag("--overwrite", arguments->overwrite, "allow --csv to replace any file");
   command.flag("--json", arguments->json, "print JSON only");
+  command.value("--units", arguments->units,
+                "report every quantity of the jump in these units, for example \"mm ms rpm\"");
   command.footer(
       "Free parameters are those of the spec and of --set. Without any these are release_angle, "
       "release_spin and, with friction, mu_static.\n"

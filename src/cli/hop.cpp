@@ -308,14 +308,7 @@ Json json_of(const Motor& motor) {
 /// Every number of the jump in the units asked for.
 std::string lines_in_units(const Spec& spec, const Outcome& outcome, const std::string& text) {
   ShownUnits units(text, scales_of(spec.scene));
-  std::string lines;
-  for (const Field* field : fields_of(spec.scene)) {
-    const std::optional<OutcomeNumber> number = number_of(*field);
-    if (!number) continue;
-    const ShownUnit shown = units.of(*field);
-    if (const double value = number->of(outcome); !std::isnan(value))
-      lines += fmt::format("  {:<26} {:<14.8g} {}\n", field->name, value * shown.factor, shown.unit);
-  }
+  const std::string lines = units.lines_of(outcome, spec.scene);
   units.refuse_unused();
   return fmt::format("\n{}:\n{}", text, lines);
 }

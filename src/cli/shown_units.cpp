@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+#include <optional>
 #include <sstream>
 #include <variant>
 
@@ -55,6 +58,40 @@ ShownUnit ShownUnits::of(const Field& field) {
 ShownUnit ShownUnits::of(std::string_view parameter) {
   const Option* option = find_option("", parameter);
   return choose(option ? option->unit : "1", true);
+}
+
+std::string ShownUnits::told(double value, std::string_view own, bool is_torque) {
+  const ShownUnit asked = choose(own, is_torque);
+  if (asked.unit != own && !asked.unit.empty())
+    return fmt::format("{:.6g} {}", value * asked.factor, asked.unit);
+  if (own == "rad") return fmt::format("{:.6g} deg", value * 180.0 / std::numbers::pi);
+  const OwnUnit* row = find_own_unit(own);
+  if (!row) return fmt::format("{:.6g}", value);
+  const bool is_si = own == row->si;
+  const std::string text = is_si ? fmt::format("{:.6g} {}", value, own) : fmt::format("{:.6g}", value);
+  if (is_si && own != "m" && own != "kg") return text;
+  const std::string drawn(own == "(m + m_p) g R" && !is_torque ? "J" : row->example);
+  const auto factor = units_in_own(drawn, own, scales_);
+  return factor ? fmt::format("{} ({:.4g} {})", text, value * *factor, drawn) : text;
+}
+
+std::string ShownUnits::told(double value, const Field& field) { return told(value, own_unit(field), false); }
+
+std::string ShownUnits::told(double value, std::string_view parameter) {
+  const Option* option = find_option("", parameter);
+  return told(value, option ? option->unit : "1", true);
+}
+
+std::string ShownUnits::lines_of(const Outcome& outcome, const Scene& scene) {
+  std::string lines;
+  for (const Field* field : fields_of(scene)) {
+    const std::optional<OutcomeNumber> number = number_of(*field);
+    if (!number) continue;
+    const ShownUnit shown = of(*field);
+    if (const double value = number->of(outcome); !std::isnan(value))
+      lines += fmt::format("  {:<26} {:<14.8g} {}\n", field->name, value * shown.factor, shown.unit);
+  }
+  return lines;
 }
 
 void ShownUnits::refuse_unused() const {

@@ -22,17 +22,26 @@ class ShownUnits {
  public:
   /// Throws InputError for a unit that UDUNITS does not know.
   ShownUnits(const std::string& text, const Scales& scales);
+  /// The same units for a hoop of another size or mass.
+  void scale(const Scales& scales) { scales_ = scales; }
 
   bool are_asked_for() const { return !units_.empty(); }
   /// Of a quantity; derivatives stay in the map's units.
   ShownUnit of(const Field& field);
   /// Of a parameter, or a number of [hoop], by its name; of any other name none.
   ShownUnit of(std::string_view parameter);
+  /// A value with its unit: the one asked for; if none fits, leapmap's own, and beside it one of a drawing
+  /// where the scale is known: "0.5 (60 mm)".
+  std::string told(double value, const Field& field);
+  std::string told(double value, std::string_view parameter);
+  /// A line for each number of an outcome, in the units asked for.
+  std::string lines_of(const Outcome& outcome, const Scene& scene);
   /// Throws InputError if a unit has fitted nothing.
   void refuse_unused() const;
 
  private:
   ShownUnit choose(std::string_view own, bool is_torque);
+  std::string told(double value, std::string_view own, bool is_torque);
 
   std::vector<std::string> units_;
   std::vector<bool> used_;

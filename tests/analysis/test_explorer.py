@@ -232,6 +232,8 @@ def test_the_field_the_axes_and_the_layer_can_be_chosen(page, map_file):
 
 def test_radius_and_mass_scale_the_numbers(page):
     point(page, [20, 30, 1], click=True)
+    page.execute_script(
+        "const m = document.getElementById('mass'); m.value = 28.2; m.dispatchEvent(new Event('change'))")
     before = numbers(page)
     page.execute_script(
         "const r = document.getElementById('radius'); r.value = 164; r.dispatchEvent(new Event('change'))")

@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import io
+import json
 import math
 import os
 import shlex
@@ -17,7 +18,7 @@ import pytest
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 from support.browser import agrees, numbers, opened, settled, told_by_leapmap, waited
-from support.program import TOP, scripted, sweep
+from support.program import PROGRAM, TOP, finished, scripted, sweep
 
 BUILD = Path(os.environ["LEAPMAP_BUILD"])
 ANGLES = ("slope", "release_angle")
@@ -120,6 +121,59 @@ def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, 
         turned += design["release_spin"] < 0
     assert jumped >= 0.4 * count and turned >= count // 20
     waited(page, lambda b: "hoop=slope:" in b.execute_script("return location.hash"))
+
+
+def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(page, html, tmp_path):
+    """120 mm, ring of 61 g with 1.9e-4 kg m2, a slug of 85 g at 47 mm, a battery of 12 g opposite at 30 mm."""
+    page.execute_script("document.getElementById('map').dataset.whole = 'false'")
+    Select(page.find_element("id", "live-model")).select_by_value("coulomb")
+    waited(page, lambda b: b.find_element("id", "map").get_attribute("data-whole") == "true", 120)
+    give(page, "#live-sliders input[type=number][data-parameter=mu_static]", "0.6")
+    page.execute_script("document.getElementById('drawing').open = true")
+    page.find_element("id", "drawing-add").click()
+    for name, value in (("ring.diameter", "120"), ("ring.mass", "61"), ("ring.inertia", "1.9e-4"),
+                        ("mass 1.mass", "85"), ("mass 1.at", "47"), ("mass 2.mass", "12"),
+                        ("mass 2.at", "30"), ("mass 2.angle", "180")):
+        give(page, f"[data-drawn='{name}']", value)
+    told = page.find_element("id", "drawing-told").text
+    assert told.startswith("158 g in all; centre of mass 23.01 mm from the axis"), told
+    assert page.find_element("id", "mass").get_attribute("value") == "158"
+    give(page, "#hoop-inputs input[data-parameter=slope]", "18")
+    give(page, "#hoop-inputs input[data-parameter=mu_static]", "0.6")
+    shown = numbers(page)
+    spec = tmp_path / "hoop.toml"
+    spec.write_text("scene.friction = 'coulomb'\nscene.mu_static = 0.6\ngait.settle = 100\ndesign.slope = '18 deg'\n" +
+                    page.find_element("id", "drawing-spec").text)
+    of_spec = json.loads(finished(PROGRAM, "hop", spec, "--json").stdout)
+    assert shown["phase_sequence"] == of_spec["phase_sequence"] == "RSRSF"
+    assert float(shown["jump_height"]) == pytest.approx(of_spec["jump_height"], rel=1e-9)
+    assert 120 * float(shown["jump_height"]) == pytest.approx(10.3, abs=0.05), "mm"
+    assert float(shown["steady_jump"]) == pytest.approx(of_spec["gait_height"], rel=1e-9)
+    words = page.find_element("id", "numbers").text
+    assert "steady jump 27.28 mm, 1.996 m/s" in words and " N" in words, words
+    address = page.execute_script("return location.hash")
+    at(page, html, address)
+    assert numbers(page) == shown
+    assert page.find_element("id", "drawing-told").text == told
+
+
+@pytest.mark.parametrize(("name", "value", "words"), [("ring.diameter", "-1", "diameter"), ("mass 1.at", "42", "41 mm"),
+                                                      ("mass 1.mass", "-2", "Mass 1"), ("ring.mass", "", "ring")])
+def test_a_drawing_of_what_is_no_hoop_is_refused_and_changes_nothing(name, value, words, page):
+    show(page, [120, 60])
+    before = numbers(page)
+    page.execute_script("document.getElementById('drawing').open = true")
+    give(page, f"[data-drawn='{name}']", value)
+    assert words in page.find_element("id", "message").text
+    assert numbers(page) == before
+
+
+def test_without_a_mass_there_are_no_newtons(page):
+    show(page, [120, 60])
+    assert "weights" in page.find_element("id", "numbers").text
+    assert " N" not in page.find_element("id", "numbers").text
+    give(page, "#mass", "28.2")
+    assert " N" in page.find_element("id", "numbers").text
 
 
 def test_a_number_that_no_hoop_has_is_refused_and_changes_nothing(page):

@@ -1,0 +1,127 @@
+// A hoop as a drawing has it: diameter, ring and masses, in millimetres and grams. leapmap reduces it to the
+// three ratios; the drawing itself stays in the address.
+
+const RING = [["diameter", "outer diameter [mm]", 1e-3], ["mass", "mass of the ring [g]", 1e-3],
+  ["inertia", "its moment of inertia [kg m²]; empty: a thin ring", 1]];
+const WEIGHT = [["mass", "mass [g]", 1e-3], ["at", "from the axis [mm]", 1e-3],
+  ["angle", "angle [°]", Math.PI / 180], ["inertia", "own inertia [kg m²]", 1]];
+const NEW_WEIGHT = { mass: 0.02, at: 0, angle: 0, inertia: 0 };
+
+/** In words: "0.12:0.061:0.00019;0.085:0.047:0:0": the ring's numbers, then each mass's, in SI. */
+const drawingWord = ({ ring, weights }) => [[RING, ring], ...weights.map((weight) => [WEIGHT, weight])]
+  .map(([rows, part]) => rows.map(([name]) => (Number.isFinite(part[name]) ? part[name] : "")).join(":"))
+  .join(";");
+
+/** And back; null if it is none. */
+function drawingOf(word) {
+  const [ring, ...weights] = (word ?? "").split(";").map((part) => part.split(":")
+    .map((text) => (text === "" ? NaN : Number(text))));
+  const named = (rows, values) => Object.fromEntries(rows.map(([name], k) => [name, values[k]]));
+  const fits = ring.length === RING.length && weights.every((values) => values.length === WEIGHT.length);
+  const drawing = fits && { ring: named(RING, ring), weights: weights.map((v) => named(WEIGHT, v)) };
+  return drawing && wrongIn(drawing) === null ? drawing : null;
+}
+
+/** What no hoop can have, in words; null: nothing. */
+function wrongIn({ ring, weights }) {
+  if (!(ring.diameter > 2e-9 && ring.diameter <= 1e6)) return "The diameter must be above 0.";
+  if (!(ring.mass > 1e-9 && ring.mass <= 1e6)) return "The mass of the ring must be above 0.";
+  if (!(Number.isNaN(ring.inertia) || ring.inertia >= 0))
+    return "The ring's moment of inertia must be empty, 0 or more.";
+  for (const [k, { mass, at, angle, inertia }] of weights.entries()) {
+    if (!(mass >= 0)) return `Mass ${k + 1} must be 0 g or more.`;
+    if (!(at >= 0 && at <= ring.diameter / 2))
+      return `Mass ${k + 1} must be 0 to ${short(500 * ring.diameter)} mm from the axis, up to the radius.`;
+    if (!(Math.abs(angle) <= 2 * Math.PI)) return `The angle of mass ${k + 1} must be -360° to 360°.`;
+    if (!(inertia >= 0)) return `The own inertia of mass ${k + 1} must be 0 or more.`;
+  }
+  return null;
+}
+
+/** [hoop] as a spec has it. */
+const specOf = ({ ring, weights }) => ["[hoop]", `diameter = "${short(1000 * ring.diameter, 12)} mm"`,
+  `mass = "${short(1000 * ring.mass, 12)} g"`,
+  ...(Number.isNaN(ring.inertia) ? [] : [`inertia = "${ring.inertia} kg m2"`]),
+  ...weights.flatMap(({ mass, at, angle, inertia }, k) => ["[[hoop.weight]]", `name = "mass${k + 1}"`,
+    `mass = "${short(1000 * mass, 12)} g"`, `at = "${short(1000 * at, 12)} mm"`,
+    `angle = "${short(angle * 180 / Math.PI, 12)} deg"`, `inertia = "${inertia} kg m2"`])].join("\n");
+
+/** changed(body): the drawing is another; body: what it comes to, with its radius. */
+function drawingPart(solver, changed) {
+  const box = element("drawing-numbers"), now = { drawing: null };
+  const paperHoop = () => ({ ring: { diameter: 0.082, mass: 0.0082, inertia: NaN },
+    weights: [{ mass: 0.02, at: 0.041, angle: 0, inertia: 0 }] });
+
+  /** Takes what is typed, and says what is wrong with it. */
+  function take(drawing) {
+    const wrong = wrongIn(drawing), body = wrong ? null : solver.reduce(drawing);
+    const beyond = body && ["mass_ratio", "offset_ratio", "inertia_factor"]
+      .find((name) => !(body[name] >= solver.ranges[name][0] && body[name] <= solver.ranges[name][1]));
+    notice(wrong ?? (beyond ? `This hoop's ${beyond.replace("_", " ")} is ${short(body[beyond])}, which is ` +
+      `not between ${solver.ranges[beyond].map((v) => short(v)).join(" and ")}.` : ""));
+    if (wrong || beyond) return;
+    now.drawing = drawing;
+    tell(body);
+    changed({ ...body, radius: drawing.ring.diameter / 2 });
+    noteAddress();
+  }
+
+  function tell(body) {
+    const R = now.drawing.ring.diameter / 2;
+    element("drawing-told").textContent = `${short(1000 * body.total_mass, 5)} g in all; centre of mass ` +
+      `${short(1000 * body.eccentricity * R, 4)} mm from the axis; moment of inertia about the axis ` +
+      `${short(body.inertia * body.total_mass * R * R, 4)} kg m²`;
+    element("drawing-spec").textContent = specOf(now.drawing);
+  }
+
+  function input(part, [name, words, unit], label) {
+    const made = document.createElement("input");
+    Object.assign(made, { type: "number", step: "any",
+      value: Number.isFinite(part[name]) ? Number((part[name] / unit).toPrecision(12)) : "" });
+    made.setAttribute("aria-label", `${label}: ${words}`);
+    made.dataset.drawn = `${label}.${name}`;
+    stepsOf(made, () => Number(made.value) || 1);
+    made.addEventListener("change", () => {
+      part[name] = made.value === "" ? NaN : Number(made.value) * unit;
+      take(now.typed);
+    });
+    return made;
+  }
+
+  function show(drawing) {
+    now.typed = drawing;
+    const row = (label, rows, part, ...more) => {
+      const line = document.createElement("fieldset"), name = document.createElement("legend");
+      name.textContent = label;
+      line.append(name, ...rows.map((each) => {
+        const words = document.createElement("label");
+        words.append(each[1], input(part, each, label));
+        return words;
+      }), ...more);
+      return line;
+    };
+    box.replaceChildren(row("ring", RING, drawing.ring), ...drawing.weights.map((weight, k) => {
+      const remove = document.createElement("button");
+      Object.assign(remove, { type: "button", textContent: "remove" });
+      remove.setAttribute("aria-label", `remove mass ${k + 1}`);
+      remove.addEventListener("click", () => { drawing.weights.splice(k, 1); show(drawing); take(drawing); });
+      return row(`mass ${k + 1}`, WEIGHT, weight, remove);
+    }));
+  }
+  element("drawing-add").addEventListener("click", () => {
+    now.typed.weights.push({ ...NEW_WEIGHT });
+    show(now.typed);
+    take(now.typed);
+  });
+  show(paperHoop());
+
+  return {
+    write(words) { if (now.drawing) words.set("drawing", drawingWord(now.drawing)); },
+    /** The hoop itself is told by other words. */
+    read(words) {
+      now.drawing = drawingOf(words.get("drawing"));
+      if (words.has("drawing") && !now.drawing) notice("The address describes a drawing that is not possible.");
+      if (now.drawing) { show(now.drawing); tell(solver.reduce(now.drawing)); }
+    },
+  };
+}

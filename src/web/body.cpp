@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A hoop from a drawing, reduced.
+#include "physics/body.hpp"
+
+#include <array>
+#include <vector>
+
+#include "web/page.hpp"
+
+namespace leapmap::web {
+namespace {
+
+/// What is reduced: diameter, mass and inertia of the ring, then mass, at, angle and inertia of each weight.
+std::vector<double> numbers;
+constexpr std::size_t of_ring = 3, of_weight = 4;
+/// What it comes to, in this order.
+constexpr std::array reduced_names{"total_mass",   "eccentricity",   "inertia",  "mass_ratio",
+                                   "offset_ratio", "inertia_factor", "direction"};
+std::array<double, reduced_names.size()> reduced;
+
+}  // namespace
+
+/// Names by number, null after the last.
+LEAPMAP_EXPORT const char* reduced_name(int i) {
+  return i >= 0 && static_cast<std::size_t>(i) < reduced_names.size()
+             ? reduced_names[static_cast<std::size_t>(i)]
+             : nullptr;
+}
+
+/// Where the page puts the numbers of a hoop with so many weights.
+LEAPMAP_EXPORT double* body_numbers(int weights) {
+  numbers.resize(of_ring + of_weight * static_cast<std::size_t>(weights));
+  return numbers.data();
+}
+
+/// Reduces it; the page has checked its numbers.
+LEAPMAP_EXPORT const double* reduce_body() {
+  Body body{numbers[0], numbers[1], numbers[2], {}};
+  for (std::size_t at = of_ring; at < numbers.size(); at += of_weight)
+    body.weights.push_back({"", numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]});
+  const ReducedBody found = reduce_checked(body);
+  reduced = {found.total_mass,   found.eccentricity,   found.inertia,  found.mass_ratio,
+             found.offset_ratio, found.inertia_factor, found.direction};
+  return reduced.data();
+}
+
+}  // namespace leapmap::web
