@@ -206,10 +206,13 @@ void check_hoop(const Spec& spec) {
   check_ratios(spec);
 }
 
+bool mass_varies(const Spec& spec) {
+  const auto is_mass = [](const Axis& axis) { return is_body_mass(axis.key); };
+  return std::ranges::any_of(spec.axes, is_mass) || std::ranges::any_of(spec.list.columns, is_mass);
+}
+
 void forget_mass_that_varies(Spec& spec) {
-  for (const auto* varying : {&spec.axes, &spec.list.columns})
-    for (const Axis& axis : *varying)
-      if (is_body_mass(axis.key)) spec.scene.mass = 0.0;
+  if (mass_varies(spec)) spec.scene.mass = 0.0;
 }
 
 std::vector<std::string> body_keys(const Spec& spec) {

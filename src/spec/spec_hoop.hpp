@@ -29,6 +29,8 @@ void assign_to_hoop(const Entry& entry, Spec& spec);
 /// Throws InputError for a body that cannot be, nominal or along the axes.
 void check_hoop(const Spec& spec);
 
+/// Whether masses of the body differ from design to design.
+bool mass_varies(const Spec& spec);
 /// Where masses of the body vary, no total mass is known.
 void forget_mass_that_varies(Spec& spec);
 

@@ -182,6 +182,7 @@ def test_one_animation_runs_however_many_designs_were_clicked(page):
     assert 1 <= drawn <= 2.5, "the hoop and its mass are two arcs a picture"
 
 
+@pytest.mark.slow
 def test_a_run_of_a_thousand_turns_is_shown_too(browser, tmp_path):
     path = sweep(
         tmp_path,
@@ -341,7 +342,7 @@ def test_the_page_fits_a_phone_and_a_screenshot_is_kept(page):
 
 @pytest.mark.parametrize(
     "slopes, most_bytes",
-    [(25, 1_200_000), pytest.param(241, 3_000_000, marks=pytest.mark.slow)])
+    [(25, 1_300_000), pytest.param(241, 3_000_000, marks=pytest.mark.slow)])
 def test_the_page_needs_no_network_and_stays_below_three_megabytes(slopes, most_bytes, tmp_path):
     path = sweep(tmp_path, f"""[design]
 slope = {{ from = "2 deg", to = "50 deg", count = {slopes} }}
@@ -487,6 +488,7 @@ def test_a_map_of_hoops_as_drawn_has_no_ghosts(page):
     assert not page.find_element("id", "ghosts-label").is_displayed()
 
 
+@pytest.mark.slow  # its twin is of the charts, by the same rule
 def test_pixels_beside_a_cliff_are_of_the_side_they_are_on(browser, tmp_path):
     spec = SPEC.replace("offset_ratio = { values = [0.6, 1.0] }", "offset_ratio = 1.0")
     path = sweep(tmp_path, spec)
@@ -713,6 +715,7 @@ def test_the_bifurcation_picture_is_drawn_once_it_is_opened(page):
     page.execute_script("document.getElementById('gaits').open = false")
 
 
+@pytest.mark.slow  # its twin types hoops, in test_page_parts.py
 def test_the_solver_on_the_page_is_as_good_as_the_program_on_random_designs(page):
     """A hundred designs with and without slip, through the page's WebAssembly and through leapmap hop."""
     random = np.random.default_rng(7)

@@ -97,6 +97,7 @@ def test_every_number_is_that_of_leapmap_hop_whatever_is_typed(count, live):
     assert jumped >= 2 * count
 
 
+@pytest.mark.slow  # its twin types hoops with friction, in test_page_parts.py
 def test_with_friction_too(live):
     live.execute_script("document.getElementById('map').dataset.whole = 'false'")
     Select(live.find_element("id", "live-model")).select_by_value("coulomb")
@@ -251,7 +252,7 @@ def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(
         "return document.getElementById('map').toDataURL()") != marked, "the map marks what is pinned"
 
 
-@pytest.mark.parametrize("friction", [False, True])
+@pytest.mark.parametrize("friction", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(friction, live):
     option = ("return [...document.getElementById('field').options].find((o) => o.textContent === 'number "
               "of jumps').disabled")
@@ -393,6 +394,7 @@ def test_the_yield_of_hoops_as_made_is_a_field_by_the_tolerances_and_goals_that_
     assert len(cells) >= 20 and same_as_made(cells, told_as_made(cells, tmp_path, *settings)) >= 3
 
 
+@pytest.mark.slow  # its twin is above, with goals
 def test_without_a_goal_the_yield_counts_hoops_that_jump_and_a_tolerance_changed_changes_it(live, tmp_path):
     live.get("about:blank")
     live.get(page_at(tmp_path).as_uri() + "#live&samples=32&field=yield")

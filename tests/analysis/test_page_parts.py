@@ -154,7 +154,7 @@ def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(pag
     address = page.execute_script("return location.hash")
     at(page, html, address)
     assert numbers(page) == shown
-    assert page.find_element("id", "drawing-told").text == told
+    assert page.find_element("id", "drawing-told").get_property("textContent") == told
 
 
 @pytest.mark.parametrize(("name", "value", "words"), [("ring.diameter", "-1", "diameter"), ("mass 1.at", "42", "41 mm"),
@@ -365,7 +365,7 @@ def saved(page, button):
 
 @pytest.mark.parametrize(("button", "words", "images"),
                          [("map-svg", ["slope [degrees]", "mass ratio", "mm", "power 0.6"], 1),
-                          ("plots-svg", ["height [mm]", "force [N]", "time since release [s]"], 0),
+                          ("plots-svg", ["height [mm]", "force [weights]", "time since release [s]"], 0),
                           ("cut-x-svg", ["slope [degrees]", "jump height [mm]"], 0),
                           ("gaits-svg", ["jump height [mm]", "slope [°]"], 1)])
 def test_charts_are_saved_as_svg_with_texts_that_are_texts(button, words, images, page):

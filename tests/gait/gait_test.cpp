@@ -160,7 +160,7 @@ TEST(Gaits, AreThoseOfBruteForceWithFriction) { check_against_brute_force(Fricti
 
 TEST(Gaits, LoseWhatTheSlopeAndTheMotorGive) {
   Scene scene = gait_scene(Friction::sticking);
-  const Design hoop{.slope = 0.15, .mass_ratio = 3.0, .offset_ratio = 0.5, .drive_torque = 0.02};
+  const Design hoop{.slope = 0.15, .mass_ratio = 4.0, .offset_ratio = 0.5, .drive_torque = 0.02};
   const Outcome outcome = solve(hoop, scene);
   ASSERT_GE(outcome.gait_period, 1);
   ASSERT_LE(outcome.gait_period, 16);
