@@ -149,9 +149,10 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
   }
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].outcome = std::move(outcomes[i]);
   const GradientWanted derivatives = derivatives_of(request_of(spec));
+  const bool by_ratios = !derives_by_body(request_of(spec));  // else the map lacks some
   for (const auto of : derivatives.of)
     for (const std::size_t by : derivatives.by) {
-      if (samples.empty()) continue;
+      if (samples.empty() || !by_ratios) continue;
       const std::vector<double> values =
           map.read(std::string(find_gradient(of, differentiable[by])->name), tile);
       for (std::size_t i = 0; i < samples.size(); ++i) samples[i].gradient.push_back(values[drawn[i]]);

@@ -36,10 +36,7 @@ std::vector<Variable> given_variables(const Spec& spec, const GradientWanted& wa
       if (member_of(*parameter) == differentiable[by] && !follows)
         given.push_back(*find_variable(parameter->key, nullptr));
     }
-  for (const std::string& key : body_keys(spec))
-    if (const auto variable = find_variable(key, &*spec.hoop);
-        variable && !std::isnan(variable->of(spec.design, *spec.hoop)))
-      given.push_back(*variable);
+  if (spec.hoop) std::ranges::copy(variables_of(*spec.hoop), std::back_inserter(given));
   return given;
 }
 

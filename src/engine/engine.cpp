@@ -2,6 +2,7 @@
 #include "engine/engine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <random>
@@ -35,6 +36,7 @@ struct Item {
 
 std::span<const double> Solved::column(const Field& field) const {
   const auto* derivative = std::get_if<Derivative>(&field.source);
+  if (derivative && !derivative->by) return std::ranges::find(by_body, &field, &BodyColumn::field)->values;
   return derivative ? gradients.column(derivative->of, derivative->by) : made.column(field);
 }
 
@@ -43,7 +45,11 @@ BlockSolver::BlockSolver(const Request& request, std::size_t most_designs,
     : solver_(make_gradient_solver(request)),
       gradients_(derivatives_of(request)),
       made_(statistics_of(request)),
+      nominal_(request.hoop.value_or(Body{})),
       outcomes_(most_designs) {
+  for (const Field* column : request.columns)
+    if (const auto* derivative = std::get_if<Derivative>(&column->source); derivative && !derivative->by)
+      by_body_.push_back({column, *find_variable(derivative->hoop, &nominal_), {}});
   if (wants_samples(request)) scatter_.emplace(scatter_solver_of(request, points));
 }
 
@@ -51,7 +57,23 @@ Solved BlockSolver::solve(std::span<const Design> designs, std::span<const Body>
   const std::span outcomes = std::span(outcomes_).first(designs.size());
   solver_(designs, outcomes, gradients_);
   if (scatter_) scatter_->solve(designs, made_, bodies);
-  return {outcomes, gradients_, made_};
+  derive_by_body(designs.size(), bodies);
+  return {outcomes, gradients_, made_, by_body_};
+}
+
+/// From those by the ratios.
+void BlockSolver::derive_by_body(std::size_t designs, std::span<const Body> bodies) {
+  for (BodyColumn& column : by_body_) {
+    const OutcomeNumber& of = std::get<Derivative>(column.field->source).of;
+    std::array<std::span<const double>, body_ratios.size()> by_ratio;
+    for (std::size_t k = 0; k < by_ratio.size(); ++k) by_ratio[k] = gradients_.column(of, body_ratios[k]);
+    column.values.resize(designs);
+    Design by;
+    for (std::size_t i = 0; i < designs; ++i) {
+      for (std::size_t k = 0; k < by_ratio.size(); ++k) by.*body_ratios[k] = by_ratio[k][i];
+      column.values[i] = column.variable.derivative(by, bodies.empty() ? nominal_ : bodies[i]);
+    }
+  }
 }
 
 std::function<TileWork()> in_order(TileSink sink) {
@@ -82,45 +104,46 @@ std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& ti
 
   const std::size_t piece = std::min(piece_of(request), tiling.largest_tile());
   const auto points = points_of(request.scatter);
-  const bool scattered = wants_samples(request);
+  const bool scattered = wants_samples(request), needs_bodies = scattered || derives_by_body(request);
   const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
-    return [&, solver = BlockSolver(request, piece, points), work = make_work(),
-            block = std::vector<Design>(piece),
-            bodies = std::vector<Body>(scattered && space.varies_body() ? piece : 0)](std::size_t i) mutable {
-      try {
-        const std::size_t number = options.first_tile + i;
-        const Tile tile = tiling.tile(number);
-        for (std::size_t first = 0; first < tile.count; first += piece) {
-          // A tile of many hoops as made may take minutes, and is given up; any other is brought to its end,
-          // unless that takes seconds.
-          if (scattered && options.stop_requested && options.stop_requested()) {
-            delivery.close(number);
+    return
+        [&, solver = BlockSolver(request, piece, points), work = make_work(),
+         block = std::vector<Design>(piece),
+         bodies = std::vector<Body>(needs_bodies && space.varies_body() ? piece : 0)](std::size_t i) mutable {
+          try {
+            const std::size_t number = options.first_tile + i;
+            const Tile tile = tiling.tile(number);
+            for (std::size_t first = 0; first < tile.count; first += piece) {
+              // A tile of many hoops as made may take minutes, and is given up; any other is brought to its
+              // end, unless that takes seconds.
+              if (scattered && options.stop_requested && options.stop_requested()) {
+                delivery.close(number);
+                return false;
+              }
+              const std::size_t count = std::min(piece, tile.count - first);
+              const std::span some(block.data(), count);
+              const std::span of_some(bodies.data(), std::min(count, bodies.size()));
+              space.fill(tile, first, some, of_some);
+              work.take(tile, first, solver.solve(some, of_some));
+            }
+            Prepared prepared = work.prepare(number, tile);
+            if (!prepared.take) {
+              delivery.close(number);
+              return false;
+            }
+            const std::size_t bytes = prepared.bytes;
+            const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
+            return wanted && !(options.stop_requested && options.stop_requested());
+          } catch (const Stopped&) {  // inside a design that takes long: the tile is given up
+            delivery.close(options.first_tile + i);
             return false;
+          } catch (...) {
+            delivery.abandon();
+            throw;
           }
-          const std::size_t count = std::min(piece, tile.count - first);
-          const std::span some(block.data(), count);
-          const std::span of_some(bodies.data(), std::min(count, bodies.size()));
-          space.fill(tile, first, some, of_some);
-          work.take(tile, first, solver.solve(some, of_some));
-        }
-        Prepared prepared = work.prepare(number, tile);
-        if (!prepared.take) {
-          delivery.close(number);
-          return false;
-        }
-        const std::size_t bytes = prepared.bytes;
-        const bool wanted = delivery.bring(number, {std::move(prepared), tile.count}, bytes);
-        return wanted && !(options.stop_requested && options.stop_requested());
-      } catch (const Stopped&) {  // inside a design that takes long: the tile is given up
-        delivery.close(options.first_tile + i);
-        return false;
-      } catch (...) {
-        delivery.abandon();
-        throw;
-      }
-    };
+        };
   });
   delivery.finish();
   return delivered;

@@ -11,6 +11,7 @@
 
 #include "leapmap/outcome.hpp"
 #include "map/tile.hpp"
+#include "model/variable.hpp"
 #include "request/solver.hpp"
 #include "spec/spec.hpp"
 #include "trajectory/gradient.hpp"
@@ -37,11 +38,19 @@ struct Prepared {
   std::size_t bytes = 0;
 };
 
+/// A derivative by a number of [hoop], of a block of designs.
+struct BodyColumn {
+  const Field* field;
+  Variable variable;
+  std::vector<double> values;
+};
+
 /// Everything that a request asks of a block of designs.
 struct Solved {
   std::span<const Outcome> outcomes;
   const Gradients& gradients;
   const MadeColumns& made;
+  const std::vector<BodyColumn>& by_body;
 
   /// Of a field that is no part of an outcome.
   std::span<const double> column(const Field& field) const;
@@ -57,10 +66,14 @@ class BlockSolver {
   Solved solve(std::span<const Design> designs, std::span<const Body> bodies = {});
 
  private:
+  void derive_by_body(std::size_t designs, std::span<const Body> bodies);
+
   GradientSolver solver_;
   Gradients gradients_;
   std::optional<ScatterSolver> scatter_;
   MadeColumns made_;
+  Body nominal_;
+  std::vector<BodyColumn> by_body_;
   std::vector<Outcome> outcomes_;
 };
 

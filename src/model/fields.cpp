@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "model/own_units.hpp"
 #include "model/parameters.hpp"
+#include "model/variable.hpp"
 #include "trajectory/later_jump.hpp"
 
 namespace leapmap {
@@ -271,8 +274,11 @@ bool can_be_differentiated(const Field& field) {
 namespace {
 
 std::string unit_of_derivative(std::string_view of, std::string_view by) {
-  if (by != "rad") return std::string(of);  // a pure number, or one that is told in words
-  return of == "rad" ? "1" : of == "1" ? "rad-1" : std::string(of) + " rad-1";
+  if (of == by) return "1";
+  std::string inverse = by == "kg m2" ? "kg-1 m-2" : std::string(by) + "-1";
+  if (by != "rad" && by != "kg" && by != "m" && by != "kg m2")
+    return std::string(of);  // a pure number, or one that is told in words
+  return of == "1" ? inverse : std::string(of) + " " + inverse;
 }
 
 struct GradientTable {
@@ -318,6 +324,39 @@ std::span<const Field> later_gradient_fields() {
 }
 
 }  // namespace
+
+const Field* find_body_gradient(const OutcomeNumber& of, std::string_view key) {
+  struct Row {
+    std::string key;
+    RowTexts texts;
+    Field field;
+  };
+  static std::mutex mutex;
+  static std::map<std::string, Row, std::less<>> rows;
+  const Field* field = nullptr;
+  for (const std::span<const Field> some : {map_fields(), jump_fields()})
+    for (const Field& each : some)
+      if (can_be_differentiated(each) && number_of(each) == of) field = &each;
+  const BodyNumber* number = find_body_number(key);
+  if (!field || !number || !number->varies) return nullptr;
+  std::string name = std::string(field->name) + "_by_" + std::string(key);
+  const std::lock_guard lock(mutex);
+  const auto [at, is_new] = rows.try_emplace(name);
+  Row& row = at->second;
+  if (!is_new) return &row.field;
+  row.key = key;
+  row.texts = {name, unit_of_derivative(field->unit, number->unit),
+               "derivative of " + std::string(field->name) + " by " + row.key};
+  row.field = Field{row.texts.name,
+                    Derivative{of, nullptr, row.key},
+                    row.texts.unit,
+                    row.texts.long_name,
+                    14,
+                    field->only_of,
+                    field->of_sequence};
+  row.field.needs = field->needs, row.field.of_wall = field->of_wall;
+  return &row.field;
+}
 
 const Field* find_gradient(const OutcomeNumber& of, double Design::*by) {
   for (const Field& field : of.jump == 1 ? gradient_fields() : later_gradient_fields()) {
@@ -388,6 +427,11 @@ const Field* find_field(std::string_view name) {
   if (const Field* found = find_among(fields, name)) return found;
   if (!name.empty() && name.back() >= '0' && name.back() <= '9')
     if (const Field* found = find_among(jump_fields(), name)) return found;
+  if (const std::size_t at = name.find("_by_hoop."); at != name.npos) {
+    const Field* of = find_field(name.substr(0, at));
+    const auto number = of ? number_of(*of) : std::nullopt;
+    return number ? find_body_gradient(*number, name.substr(at + std::string_view("_by_").size())) : nullptr;
+  }
   if (name.find("_by_") != name.npos) {
     if (const Field* found = find_among(gradient_fields(), name)) return found;
     if (const Field* found = find_among(later_gradient_fields(), name)) return found;

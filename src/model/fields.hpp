@@ -51,7 +51,8 @@ struct OfJump {
 /// apply or the derivative is infinite.
 struct Derivative {
   OutcomeNumber of;
-  double Design::*by;
+  double Design::*by;       ///< nullptr: by a number of [hoop]
+  std::string_view hoop{};  ///< its key, "hoop.slug.mass"
 };
 
 /// What is told of the hoops made after a drawing, of those that jump where it is of a quantity.
@@ -113,6 +114,10 @@ bool can_be_differentiated(const Field& field);
 std::span<const Field> gradient_fields();
 /// One of these; nullptr: the member is no quantity, or no parameter.
 const Field* find_gradient(const OutcomeNumber& of, double Design::*by);
+
+/// The derivative by a number of [hoop], jump_height_by_hoop.slug.mass. Weights have names of their own, so
+/// that such a row is made when it is first asked for; it lives as long as the program.
+const Field* find_body_gradient(const OutcomeNumber& of, std::string_view key);
 
 /// What a map may hold of hoops as made: yield, jump_height_mean and so on, each followed by its error.
 std::span<const Field> scatter_fields();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -101,6 +102,20 @@ double Variable::derivative(const Design& by, const Body& body) const {
   });
   return by.mass_ratio * ratios.mass_ratio.by[0] + by.offset_ratio * ratios.offset_ratio.by[0] +
          by.inertia_factor * ratios.inertia_factor.by[0];
+}
+
+std::vector<Variable> variables_of(const Body& body) {
+  std::vector<Variable> given;
+  const auto add = [&](const std::string& key) {
+    if (const auto variable = find_variable(key, &body); variable && !std::isnan(variable->of({}, body)))
+      given.push_back(*variable);
+  };
+  for (const BodyNumber& row : table) {
+    if (!row.of_weight()) add(std::string(section) + std::string(row.name));
+    for (const Weight& weight : body.weights)
+      if (row.of_weight()) add(std::string(section) + weight.name + "." + std::string(row.name));
+  }
+  return given;
 }
 
 std::vector<Variable> parameters_of(std::span<const Variable> variables) {

@@ -77,6 +77,9 @@ class Variable {
   double Weight::*of_weight_ = nullptr;
 };
 
+/// The numbers of a body that may vary and that it gives, in the table's order.
+std::vector<Variable> variables_of(const Body& body);
+
 /// The parameters by which derivatives are needed for those by the variables, each once.
 std::vector<Variable> parameters_of(std::span<const Variable> variables);
 

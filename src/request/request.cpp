@@ -8,6 +8,7 @@
 
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "model/variable.hpp"
 #include "spec/spec.hpp"
 
 namespace leapmap {
@@ -36,6 +37,22 @@ bool is_of_later_jumps(const Field* column) {
   return column->of_sequence && !is_statistic(column);
 }
 
+/// The derivatives by what the spec gives: its parameters, and in place of the ratios the numbers of [hoop].
+std::vector<const Field*> given_columns(const Spec& spec, const std::vector<OutcomeNumber>& of) {
+  const std::vector<std::string>& by = spec.output.gradients_by;
+  std::vector<const Field*> columns = derivative_columns(spec.scene, of, by);
+  if (spec.hoop && by.empty())
+    std::erase_if(columns, [](const Field* column) {
+      return follows_from_body(std::get<Derivative>(column->source).by);
+    });
+  if (!spec.hoop) return columns;
+  for (const OutcomeNumber& quantity : of)
+    for (const Variable& variable : variables_of(*spec.hoop))
+      if (by.empty() || std::ranges::find(by, variable.key) != by.end())
+        columns.push_back(find_body_gradient(quantity, variable.key));
+  return columns;
+}
+
 }  // namespace
 
 std::vector<const Field*> columns_of(const Spec& spec) {
@@ -44,8 +61,7 @@ std::vector<const Field*> columns_of(const Spec& spec) {
     if (stores(spec.output, *field)) columns.push_back(field);
   std::vector<OutcomeNumber> derived;
   for (const std::string& name : spec.output.gradients) derived.push_back(*number_of(*find_field(name)));
-  std::ranges::copy(derivative_columns(spec.scene, derived, spec.output.gradients_by),
-                    std::back_inserter(columns));
+  std::ranges::copy(given_columns(spec, derived), std::back_inserter(columns));
   if (spec.scatter.spreads.empty()) return columns;
   for (const Field& row : scatter_fields())
     if (is_asked_for(spec, row)) columns.push_back(&row);
@@ -97,6 +113,13 @@ bool wants(const Request& request, std::string_view field) {
 
 bool wants_samples(const Request& request) { return std::ranges::any_of(request.columns, is_statistic); }
 
+bool derives_by_body(const Request& request) {
+  return std::ranges::any_of(request.columns, [](const Field* column) {
+    const auto* derivative = std::get_if<Derivative>(&column->source);
+    return derivative && !derivative->by;
+  });
+}
+
 bool wants_gaits(const Request& request) {
   return request.scene.settle > 0 && std::ranges::any_of(request.columns, [](const Field* column) {
            return column->of_gait && !is_statistic(column);
@@ -121,9 +144,15 @@ GradientWanted derivatives_of(const Request& request) {
     const auto* derivative = std::get_if<Derivative>(&column->source);
     if (!derivative) continue;
     if (!wanted.wants(derivative->of)) wanted.of.push_back(derivative->of);
-    const auto place =
-        static_cast<std::size_t>(std::ranges::find(differentiable, derivative->by) - differentiable.begin());
-    if (std::ranges::find(wanted.by, place) == wanted.by.end()) wanted.by.push_back(place);
+    const auto add = [&](double Design::*by) {
+      const auto place =
+          static_cast<std::size_t>(std::ranges::find(differentiable, by) - differentiable.begin());
+      if (std::ranges::find(wanted.by, place) == wanted.by.end()) wanted.by.push_back(place);
+    };
+    if (derivative->by)
+      add(derivative->by);
+    else
+      for (double Design::*ratio : body_ratios) add(ratio);  // by way of them
   }
   return wanted;
 }

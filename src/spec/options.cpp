@@ -175,9 +175,14 @@ const std::array keys{
            "gradients_by",
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients_by; }},
            "",
-           "parameters of these derivatives",
+           "parameters of these derivatives; by default all of the model, with [hoop] its numbers in place "
+           "of the "
+           "ratios",
            {},
-           design_parameter_names},
+           design_parameter_names,
+           {},
+           [](std::string_view name) { return find_body_number(name) != nullptr; },
+           "numbers of [hoop]"},
     Option{"output",
            "order",
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.order; }},

@@ -74,6 +74,12 @@ void check_names(const Spec& spec) {
   for (const std::string& name : spec.minimize) look_at("goal.minimize", name);
 }
 
+std::vector<std::string> keys_of(const std::vector<Variable>& variables) {
+  std::vector<std::string> keys;
+  for (const Variable& variable : variables) keys.push_back(variable.key);
+  return keys;
+}
+
 /// That there is a method that has derivatives, and that the model has what is to be differentiated.
 void check_gradients(const Spec& spec) {
   const Output& output = spec.output;
@@ -87,10 +93,15 @@ void check_gradients(const Spec& spec) {
     if (const Field* field = find_field(name); field && !has(spec.scene.friction, field->only_of))
       refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)),
              with_model(*field->only_of));
-  for (const std::string& name : output.gradients_by)
+  const std::vector<Variable> of_body = spec.hoop ? variables_of(*spec.hoop) : std::vector<Variable>{};
+  for (const std::string& name : output.gradients_by) {
+    if (find_body_number(name) && std::ranges::find(of_body, name, &Variable::key) == of_body.end())
+      refuse(spec, "gradients_by", fmt::format("'{}' is no number of this spec's [hoop] that may vary", name),
+             of_body.empty() ? "with [hoop]" : fmt::format("{}", fmt::join(keys_of(of_body), ", ")));
     if (const Option* option = find_option("", name); option && !has(spec.scene.friction, option->only_of))
       refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene)),
              with_model(*option->only_of));
+  }
 }
 
 /// What all designs of the spec have in common.

@@ -476,3 +476,89 @@ def test_a_miss_says_how_near_it_came(drawing):
                    "--quiet")
     assert done.returncode == 1
     assert "it never lifts off" in done.stdout or "a jump is 0.05 or more" in done.stdout
+
+
+def test_newtons_of_a_map_are_of_each_design_s_own_mass(drawing, tmp_path):
+    made, table = tmp_path / "m.h5", tmp_path / "m.csv"
+    assert leapmap("sweep", drawing, "--hoop.slug.mass", '{from="40 g",to="160 g",count=5}', "--set",
+                   'slope="30 deg"', "--set", 'output.fields=["landing_impulse","max_normal_force"]', "-o", made,
+                   "--quiet").returncode == 0
+    assert leapmap("export", made, "-o", table, "--units", "g N N.s", "--quiet").returncode == 0
+    rows = list(csv.DictReader(table.open()))
+    assert [float(row["hoop.slug.mass [g]"]) for row in rows] == pytest.approx([40, 70, 100, 130, 160])
+    for row in rows:
+        grams = float(row["hoop.slug.mass [g]"])
+        alone = told(drawing, "--slope", "30deg", "--set", f"hoop.slug.mass={grams} g")
+        kg = alone["scene"]["mass"]
+        assert kg == pytest.approx((61 + grams + 12) / 1000, rel=1e-14)
+        assert float(row["max_normal_force [N]"]) == pytest.approx(
+            kg * 9.81 * alone["max_normal_force"], rel=1e-9)
+        assert float(row["landing_impulse [N.s]"]) == pytest.approx(
+            kg * math.sqrt(9.81 * 0.06) * alone["landing_impulse"], rel=1e-9)
+
+
+def test_a_map_has_derivatives_by_what_the_drawing_gives(drawing, tmp_path):
+    """Against differences along the axis: central ones of two steps, whose own error they tell."""
+    made = tmp_path / "m.h5"
+    step = 1e-3  # g
+    grams = [70 + k * step for k in (-2, -1, 0, 1, 2)]
+    axis = "{values=[" + ",".join(f'"{g!r} g"' for g in grams) + "]}"
+    quantities = ["jump_height", "jump_time", "max_normal_force", "landing_impulse"]
+    done = leapmap("sweep", drawing, "--set", 'slope="30 deg"', "--hoop.slug.mass", axis, "--set",
+                   f"output.gradients={json.dumps(quantities)}", "--set",
+                   f"output.fields={json.dumps(quantities)}", "--set", "numerics.audit=1", "-o", made)
+    assert done.returncode == 0 and "5 of them by differences in long double: 0 wrong" in done.stdout
+    with h5py.File(made) as m:
+        assert "jump_height_by_mass_ratio" not in m and "jump_height_by_slope" in m
+        assert m["jump_height_by_hoop.slug.mass"].attrs["units"] == "kg-1"
+        assert m["jump_time_by_hoop.slug.at"].attrs["units"] == "s m-1"
+        for name in quantities:
+            v, h = m[name][:], step / 1000
+            near, far = (v[3] - v[1]) / (2 * h), (v[4] - v[0]) / (4 * h)
+            ours = m[f"{name}_by_hoop.slug.mass"][2]
+            assert ours == pytest.approx((4 * near - far) / 3, rel=1e-6, abs=abs(near - far)), name
+    checked = leapmap("check", made)
+    assert checked.returncode == 0, checked.stderr
+    for wrong in ("hoop.bolt.mass", "hoop.diameter", "hoop.slug.colour"):
+        refused = leapmap("sweep", drawing, "--set", 'output.gradients=["jump_height"]', "--set",
+                          f'output.gradients_by=["{wrong}"]', "--dry-run")
+        assert refused.returncode == 2 and wrong in refused.stderr and refused.stderr.count("\n") == 1
+
+
+def test_a_design_found_is_shown_in_the_units_of_a_drawing(drawing):
+    question = ("design", drawing, "--set", 'slope="30 deg"', "--hoop.slug.mass", '{from="40 g",to="160 g"}',
+                "--set", 'goal.jump_height={at_least="40 mm"}', "--set", "minimize=hoop.slug.mass", "--most", 1,
+                "--sample", 4096)
+    plain = leapmap(*question).stdout
+    assert "0.333333 (40 mm)" in plain and " g)" in plain
+    shown = leapmap(*question, "--units", "g mm N J")
+    lines = {words[0]: words[1:] for words in map(str.split, shown.stdout.splitlines()) if len(words) == 3}
+    assert float(lines["jump_height"][0]) == pytest.approx(40, rel=1e-6) and lines["jump_height"][1] == "mm"
+    assert lines["landing_energy_lost"][1] == "J"
+    for units in ("furlongss", "T"):  # before anything is searched
+        done = leapmap(*question, "--units", units)
+        assert done.returncode == 2 and units in done.stderr and done.stderr.count("\n") == 1
+    film = leapmap("fit", TOP / "sweeps" / "paper_events.csv", "--units", "mm rpm")
+    assert film.returncode == 0 and "(82.93 mm)" in film.stdout and " rpm" in film.stdout
+
+
+def test_each_jump_of_a_sequence_has_a_landing_a_way_and_walls_of_its_own(drawing, tmp_path):
+    """A jump's measures are those of a hoop that is released as it has landed."""
+    made = tmp_path / "m.h5"
+    names = ["jump_range", "landing_normal_speed", "landing_impulse", "landing_energy_lost", "clears_from",
+             "clears_to", "max_normal_force", "motor_max_spin"]
+    done = leapmap("sweep", drawing, "--set", 'slope="18 deg"', "--set", "jumps=3", "--set", 'clear_height="5 mm"', "--set",
+                   f"output.fields={json.dumps([f'{n}_{k}' for n in names for k in (2, 3)])}", "--set",
+                   'release_spin={values=[0]}', "-o", made, "--quiet")
+    assert done.returncode == 0, done.stderr
+    trace = tmp_path / "t.h5"
+    assert leapmap("hop", drawing, "--slope", "18deg", "--set", "jumps=3", "--trace", trace).returncode == 0
+    with h5py.File(made) as m, h5py.File(trace) as t:
+        for k in (2, 3):
+            value = {name: m[f"{name}_{k}"][0] for name in names}
+            assert all(np.isfinite(list(value.values()))), value
+            assert 0 < value["clears_from"] < value["clears_to"] < value["jump_range"] + 1
+            assert value["landing_energy_lost"] > 0 and value["landing_impulse"] > value["landing_normal_speed"] * 0.1
+            assert value["max_normal_force"] > 1
+        most = np.nanmax(t["normal_force"][:])
+        assert max(m[f"max_normal_force_{k}"][0] for k in (2, 3)) <= most * (1 + 1e-3)

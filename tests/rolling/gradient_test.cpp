@@ -37,7 +37,7 @@ TEST(RollingGradients, AreThoseOfTheTableInFortyDigits) {
   RollingGradients(1e-10, {}, wanted).solve(designs, testing::idle_scene(), outcomes, gradients);
   std::size_t compared = 0;
   for (const Field& field : gradient_fields()) {
-    const auto& [of, by] = std::get<Derivative>(field.source);
+    const auto& [of, by, hoop] = std::get<Derivative>(field.source);
     const std::string name(field.name);
     if (!rows[0].cells.contains(name)) continue;
     for (std::size_t i = 0; i < rows.size(); ++i) {
