@@ -213,35 +213,44 @@ bool Explained::film_residuals(std::span<const double> at, std::span<const std::
          std::ranges::all_of(jacobian, [](double derivative) { return std::isfinite(derivative); });
 }
 
+template <class F>
+auto Explained::with_event_solver(bool derivatives, const F& f) const {
+  const auto make = [&] {
+    Request request = request_of_outcomes(spec_);
+    if (derivatives) {
+      std::vector<OutcomeNumber> of;
+      for (const MeasuredEvent& event : measured_.events)
+        if (const OutcomeNumber each = *number_of(*find_field(event.field));
+            std::ranges::find(of, each) == of.end())
+          of.push_back(each);
+      std::vector<std::string> by;
+      for (const FreeParameter& parameter : free_) by.push_back(parameter.name);
+      std::ranges::copy(derivative_columns(scene(), of, by), std::back_inserter(request.columns));
+    }
+    return EventSolver{make_gradient_solver(request), Gradients(derivatives_of(request))};
+  };
+  return event_solvers_[derivatives ? 1 : 0].with(make, f);
+}
+
 bool Explained::event_residuals(std::span<const double> at, std::span<double> residuals,
                                 std::span<double> jacobian) const {
-  Request request = request_of_outcomes(spec_);
-  if (!jacobian.empty()) {
-    std::vector<OutcomeNumber> of;
-    for (const MeasuredEvent& event : measured_.events)
-      if (const OutcomeNumber each = *number_of(*find_field(event.field));
-          std::ranges::find(of, each) == of.end())
-        of.push_back(each);
-    std::vector<std::string> by;
-    for (const FreeParameter& parameter : free_) by.push_back(parameter.name);
-    std::ranges::copy(derivative_columns(scene(), of, by), std::back_inserter(request.columns));
-  }
   const Design design = design_at(at);
-  Outcome outcome;
-  Gradients gradients(derivatives_of(request));
-  make_gradient_solver(request)({&design, 1}, {&outcome, 1}, gradients);
-  for (std::size_t i = 0; i < measured_.events.size(); ++i) {
-    const MeasuredEvent& event = measured_.events[i];
-    const auto member = std::get<Quantity>(find_field(event.field)->source).member;
-    residuals[i] = (outcome.*member - event.value) / event.error;
-    if (!std::isfinite(residuals[i])) return false;
-    for (std::size_t k = 0; k < free_.size() && !jacobian.empty(); ++k) {
-      const double by = gradients.column(member, free_[k].variable.parameter())[0];
-      if (!std::isfinite(by)) return false;
-      jacobian[i * free_.size() + k] = by / event.error;
+  return with_event_solver(!jacobian.empty(), [&](EventSolver& solver) {
+    Outcome outcome;
+    solver.solve({&design, 1}, {&outcome, 1}, solver.gradients);
+    for (std::size_t i = 0; i < measured_.events.size(); ++i) {
+      const MeasuredEvent& event = measured_.events[i];
+      const auto member = std::get<Quantity>(find_field(event.field)->source).member;
+      residuals[i] = (outcome.*member - event.value) / event.error;
+      if (!std::isfinite(residuals[i])) return false;
+      for (std::size_t k = 0; k < free_.size() && !jacobian.empty(); ++k) {
+        const double by = solver.gradients.column(member, free_[k].variable.parameter())[0];
+        if (!std::isfinite(by)) return false;
+        jacobian[i * free_.size() + k] = by / event.error;
+      }
     }
-  }
-  return true;
+    return true;
+  });
 }
 
 std::vector<double> Explained::with_origin(std::span<const double> at) const {
@@ -268,7 +277,7 @@ void Explained::coarse_sums(std::span<const std::vector<double>> places, std::sp
   std::vector<Design> designs;
   for (const std::vector<double>& place : places) designs.push_back(design_at(place));
   std::vector<Outcome> outcomes(designs.size());
-  make_solver(request_of_outcomes(spec_))(designs, outcomes);
+  with_event_solver(false, [&](EventSolver& solver) { solver.solve(designs, outcomes, solver.gradients); });
   for (std::size_t i = 0; i < places.size(); ++i) {
     double sum = 0.0;
     for (const MeasuredEvent& event : measured_.events) {

@@ -2,6 +2,7 @@
 /// Measurements and a model that is to explain them: free parameters, residuals and their derivatives.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "design/least_squares.hpp"
 #include "design/question.hpp"
 #include "leapmap/fit.hpp"
+#include "support/pool.hpp"
+#include "trajectory/gradient.hpp"
 
 namespace leapmap {
 
@@ -43,6 +46,13 @@ class Explained {
                       std::span<double> residuals, std::span<double> jacobian) const;
   bool event_residuals(std::span<const double> at, std::span<double> residuals,
                        std::span<double> jacobian) const;
+  /// A solver of the events' fields, with derivatives by the free parameters or without. f(EventSolver&).
+  struct EventSolver {
+    GradientSolver solve;
+    Gradients gradients;
+  };
+  template <class F>
+  auto with_event_solver(bool derivatives, const F& f) const;
   bool has_markers() const { return !measured_.film.markers[0].empty(); }
   std::size_t a_line() const { return has_markers() ? 4 : 1; }
   double error_of(std::size_t number) const;
@@ -54,6 +64,7 @@ class Explained {
   std::vector<FreeParameter> free_;
   std::vector<std::size_t> all_lines_, few_lines_;
   LeastSquares problem_;
+  mutable std::array<Pool<EventSolver>, 2> event_solvers_;  ///< without derivatives, with them
 };
 
 }  // namespace leapmap
