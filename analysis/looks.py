@@ -134,7 +134,7 @@ def quantity(m, name):
             return None
         height, time, apex = (np.asarray(p, float) for p in parts)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return 2 * m.numbers()["radius"] * height / (time + apex)
+            return 2 * m.radii() * height / (time + apex)
     values = m.fields.get(name)
     return None if values is None or name not in LOOKS else np.asarray(values, float)
 
@@ -144,10 +144,18 @@ def use_units(m, text, units_in_own):
     units_in_own(unit, field, scales): how large the field's own unit is in another."""
     numbers = m.numbers()
     scales = {key: numbers[key] for key in ("radius", "gravity", "mass") if numbers.get(key)}
+    radii = m.radii()
+
+    def size_of(word, name):
+        """How large the field's own unit is, for each design if they differ in size: a power of the radius."""
+        if np.ndim(radii) == 0:
+            return units_in_own(word, name, scales)
+        one, four = (units_in_own(word, name, scales | {"radius": r}) for r in (1.0, 4.0))
+        return None if one is None else one * radii**(np.log(four / one) / np.log(4))
     agility, used = quantity(m, "agility"), set()
     for name in set(m.fields) & set(LOOKS):
         for word in text.split():
-            if (size := units_in_own(word, name, scales)) is None:
+            if (size := size_of(word, name)) is None:
                 continue
             m.fields[name] = np.asarray(m.fields[name], float) * size
             LOOKS[name] = replace(LOOKS[name], unit=word, levels=LOOKS[name].levels and None)
@@ -258,7 +266,7 @@ def words_of(m, fixed):
     return [
         *(titled(k, fixed[k]) for k in told), "Coulomb friction" if m.slips else "no slip",
         f"rolling limit {numbers['runway']:g} revolutions", f"jump from {numbers['hop_height']:g} diameters",
-        f"R = {1e3 * numbers['radius']:g} mm"
+        *([f"R = {1e3 * numbers['radius']:g} mm"] if np.ndim(m.radii()) == 0 else [])
     ]
 
 

@@ -156,13 +156,26 @@ class Map:
                 found |= {key: float(value) for key, value in keys.items() if isinstance(value, (int, float))}
         return found | self._of_hoop()
 
+    def radii(self):
+        """R of the designs [m]: one number, or an array that goes with a field."""
+        if "hoop.diameter" in self.fields:  # of a list
+            return np.asarray(self.fields["hoop.diameter"]) / 2
+        if "hoop.diameter" not in self.dims:
+            return self.numbers()["radius"]
+        axis = list(self.dims).index("hoop.diameter")
+        shape = [-1 if k == axis else 1 for k in range(len(self.dims))]
+        return np.asarray(self.dims["hoop.diameter"]).reshape(shape) / 2
+
     def _of_hoop(self):
-        """What the numbers of [hoop] come to; only the radius where an axis varies one of them."""
+        """What the numbers of [hoop] come to; only the radius where an axis varies one of them, of the first
+        design if it is the diameter."""
         hoop = self.spec().get("hoop")
         if hoop is None:
             return {}
         try:
-            radius, weights = hoop["diameter"] / 2, hoop.get("weight", [])
+            diameter = hoop["diameter"]
+            radius = (diameter["values"][0] if isinstance(diameter, dict) else diameter) / 2
+            weights = hoop.get("weight", [])
             if any(isinstance(value, dict) for part in (hoop, *weights) for value in part.values()):
                 return {"radius": radius}
             m, at, angle, own = (np.array([weight[key] for weight in weights], float)

@@ -333,7 +333,14 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     const part = element("hop-part");
     if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight)
       part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
-    begin(designAt(map, index), `One hoop: ${placeText(map, index)}`, ["design", index.join(",")], goesOn);
+    const design = designAt(map, index);
+    if (map.hoop) {
+      Object.assign(chosen, { radius: design.radius, mass: design.mass });
+      units.mass = chosen.mass;
+      for (const [input, value] of [[radius, chosen.radius], [mass, chosen.mass]])
+        input.value = Number((1000 * value).toPrecision(12));
+    }
+    begin(design, `One hoop: ${placeText(map, index)}`, ["design", index.join(",")], goesOn);
   };
   addressPart({
     write(words) {

@@ -53,9 +53,25 @@ const withUnit = (text, unit) => (unit === "°" ? `${text}°` : unit ? `${text} 
 const parametersAt = (map, index) =>
   (map.columns ? map.columns.filter((c) => c.name !== "design" && !c.quantity)
   .map((c) => [c, c.values[index[0]]]) : map.axes.map((axis, k) => [axis, axis.values[index[k]]]));
-const designAt = (map, index) =>
-  ({ ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value]))
-  });
+const designAt = (map, index) => shapedBy(map,
+  { ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value])) });
+
+/** A design of a map over numbers of [hoop], such as "hoop.slug.mass", with what they come to, its radius and
+    its mass among it. */
+function shapedBy(map, design) {
+  if (!map.hoop) return design;
+  const ring = { ...map.hoop.ring }, weights = map.hoop.weights.map((weight) => ({ ...weight }));
+  for (const [key, value] of Object.entries(design)) {
+    const [section, ...path] = key.split(".");
+    if (section !== "hoop") continue;
+    const part = path.length === 1 ? ring : weights.find(({ name }) => name === path[0]);
+    part[path.at(-1)] = value;
+  }
+  ring.inertia ??= NaN;
+  const { total_mass, mass_ratio, offset_ratio, inertia_factor } = map.solver.reduce({ ring,
+    weights: weights.map((w) => ({ ...w, angle: w.angle ?? 0, inertia: w.inertia ?? 0 })) });
+  return { ...design, mass_ratio, offset_ratio, inertia_factor, radius: ring.diameter / 2, mass: total_mass };
+}
 const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : "") +
   parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1)
     .map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");

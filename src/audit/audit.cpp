@@ -18,6 +18,7 @@
 #include "request/solver.hpp"
 #include "spec/options.hpp"
 #include "trajectory/later_jump.hpp"
+#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {
@@ -217,6 +218,7 @@ Solver solver_by_referee(const Spec& spec, double tolerance) {
       map_fields(), [&](const Field& field) { return field.of_way && stores(spec.output, field); });
   return [referee](std::span<const Design> designs, std::span<Outcome> outcomes) {
     std::ranges::transform(designs, outcomes.begin(), [&](const Design& d) { return referee->solve(d); });
+    resize(designs, outcomes);
   };
 }
 

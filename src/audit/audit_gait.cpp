@@ -90,8 +90,8 @@ auto GaitAuditor::verdict_on(const Design& design, const Outcome& ours, AuditRep
     if (!std::isnan(stored)) error = std::max(error, std::abs(stored - right) / (1.0 + std::abs(right)));
   };
   compare(ours.gait_height, seen.height);
-  compare(ours.gait_speed, seen.speed);
-  compare(ours.gait_jump_time, seen.jump_time);
+  compare(ours.gait_speed, seen.speed * std::sqrt(design.size));
+  compare(ours.gait_jump_time, seen.jump_time * std::sqrt(design.size));
   compare(ours.gait_energy_lost, seen.energy_lost);
   report.gait_max_error = std::max(report.gait_max_error, error);
   if (error > allowed_ * growth.back()) return Verdict::wrong;

@@ -14,6 +14,7 @@
 #include "request/request.hpp"
 #include "request/solver.hpp"
 #include "spec/designs.hpp"
+#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {
@@ -46,6 +47,7 @@ bool look_beside(const Design& original, const Scene& scene, double Design::*par
     beside.outcomes[k] = need(model_of(scene), &Model::refined, "solver in long double")(moved, scene);
     if (!same_flags(beside.outcomes[k], ours)) return false;
     if (follow_up) follow_up({&moved, 1}, {&beside.outcomes[k], 1});
+    resize(moved, beside.outcomes[k]);
   }
   return true;
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "leapmap/errors.hpp"
+#include "spec/options.hpp"
 #include "support/closest.hpp"
 #include "support/number.hpp"
 #include "support/wrapped.hpp"
@@ -102,6 +103,9 @@ std::string unknown_words(const CLI::App& app) {
   }
   const std::vector<std::string_view> candidates(names.begin(), names.end());
   const std::string suggestion = did_you_mean(word, candidates);
+  if (command != &app && is_flag && suggestion.empty() && command->get_option_no_throw("--set"))
+    if (std::string key = word.substr(2); std::ranges::replace(key, '-', '_'), find_option("", key))
+      return fmt::format("{}: unknown option; allowed: --set {}=...", word, key);
   if (command != &app)
     return fmt::format("{}: unknown {}{} (leapmap {} --help)", word, is_flag ? "option" : "argument",
                        suggestion, command->get_name());

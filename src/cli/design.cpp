@@ -42,6 +42,16 @@ struct DesignArguments {
   Locking locking = Locking::required;
 };
 
+/// The scales of the hoop that these values of the free parameters make.
+Scales scales_at(const Question& question, std::span<const double> free) {
+  Scales scales = scales_of(question.one.scene);
+  if (!question.designs.varies_body()) return scales;
+  Body body;
+  scales.radius *= question.designs.at(free, &body).size;
+  scales.mass = reduce_checked(body).total_mass;
+  return scales;
+}
+
 /// The units of a report, for the hoop that each design is.
 struct Report {
   const Question& question;
@@ -55,15 +65,7 @@ struct Report {
     units.refuse_unused();
   }
   /// free: the values of the free parameters.
-  void scale_to(std::span<const double> free) {
-    Scales scales = scales_of(question.one.scene);
-    if (question.designs.varies_body()) {
-      Body body;
-      question.designs.at(free, &body);
-      scales.mass = reduce_checked(body).total_mass;
-    }
-    units.scale(scales);
-  }
+  void scale_to(std::span<const double> free) { units.scale(scales_at(question, free)); }
 };
 
 std::string told_parameters(Report& report, const FoundDesign& found) {
@@ -94,24 +96,35 @@ std::string told_fields(Report& report, const FoundDesign& found) {
   return fmt::format("{}", fmt::join(told, ", "));
 }
 
-void print_gradients(const Question& question, const FoundDesign& found) {
+/// In which steps people think of a parameter: the step, in its own unit, and its name.
+std::pair<double, std::string_view> step_of(const Variable& variable) {
+  if (variable.unit == "rad") return {std::numbers::pi / 180.0, "a degree"};
+  if (variable.unit == "kg") return {1e-3, "a gram"};
+  if (variable.unit == "m") return {1e-3, "a millimetre"};
+  return {1.0, "a unit"};
+}
+
+void print_gradients(Report& report, const FoundDesign& found) {
   for (const FieldGradient& gradient : found.gradients) {
     std::vector<std::string> parts;
-    for (std::size_t k = 0; k < question.free.size(); ++k) {
-      const FreeParameter& parameter = question.free[k];
-      const double by = gradient.by_free[k];
-      const bool angle = parameter.variable.unit == "rad";
-      if (!std::isnan(by))
-        parts.push_back(fmt::format("{:+.4g} {}{}", by * (angle ? std::numbers::pi / 180.0 : 1.0),
-                                    angle ? "a degree of " : "a unit of ", parameter.name));
+    for (std::size_t k = 0; k < report.question.free.size(); ++k) {
+      const FreeParameter& parameter = report.question.free[k];
+      const auto [step, name] = step_of(parameter.variable);
+      const double change = gradient.by_free[k] * step;
+      if (!std::isnan(change))
+        parts.push_back(fmt::format("{}{} {} of {}", change < 0.0 ? "" : "+",
+                                    report.units.told(change, *find_field(gradient.of)), name,
+                                    parameter.name));
     }
     if (!parts.empty()) say("     {} changes by {}\n", gradient.of, fmt::join(parts, ", "));
   }
 }
 
 /// What tells it again, as made too where hoops are.
-std::string command_of(const Question& question, const Design& design) {
-  std::string command = hop_command(question.one, design);
+std::string command_of(const Question& question, const FoundDesign& found) {
+  Spec one = question.one;
+  one.scene.mass = scales_at(question, found.free).mass;
+  std::string command = hop_command(one, found.design);
   const Scatter scatter = fresh_samples(question.one.scatter);
   const auto is_of_body = [](const Spread& spread) { return find_body_number(spread.parameter) != nullptr; };
   // Tolerances of [hoop] need the spec's file; the nominal hoop follows from its ratios.
@@ -139,8 +152,8 @@ void print_design(Report& report, const FoundDesign& found, std::size_t number) 
   if (!found.cliff.empty())
     say("     nearest discontinuity: at {:.2g} of the bounds' range, {}; beyond: {}\n",
         found.cliff[0].distance, name_of(found.cliff[0].kind), told(found.cliff[0].beyond));
-  print_gradients(question, found);
-  say("     {}\n", command_of(question, found.design));
+  print_gradients(report, found);
+  say("     {}\n", command_of(question, found));
 }
 
 /// The ends of a front and the designs between them that turn the most.
@@ -197,7 +210,7 @@ void print_miss(const Spec& spec, Report& report, const FoundDesigns& found) {
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
     say("     {} {}: {}\n", spec.goals[k].field, text_of(spec.goals[k]),
         std::isnan(found.missed[k]) ? "does not apply" : fmt::format("{:.10g}", found.missed[k]));
-  say("     {}\n", command_of(question, nearest.design));
+  say("     {}\n", command_of(question, nearest));
 }
 
 Json json_of(const Question& question, const FoundDesign& found) {
@@ -211,7 +224,7 @@ Json json_of(const Question& question, const FoundDesign& found) {
       {"binds", found.binds},
       {"cliff",
        near ? Json{{"distance", found.cliff[0].distance}, {"kind", name_of(found.cliff[0].kind)}} : Json()},
-      {"hop", command_of(question, found.design)}};
+      {"hop", command_of(question, found)}};
   for (std::size_t k = 0; k < question.free.size(); ++k)
     json["parameters"][question.free[k].name] = found.free[k];
   for (std::size_t k = 0; k < question.objectives.size(); ++k)

@@ -39,7 +39,7 @@ struct Column {
   const Field* field = nullptr;        ///< none: a parameter
   std::optional<std::size_t> along{};  ///< the axis whose values it has; none: a dataset
   ShownUnit shown{};
-  bool by_mass = false;  ///< the factor is for a kilogram, and each design has its own mass
+  bool by_hoop = false;  ///< the factor is another for each design's mass and radius
 };
 
 /// What is not found along the map is no column of it.
@@ -70,29 +70,32 @@ std::vector<Column> columns_of(const MapReader& map, const ExportArguments& argu
   return columns;
 }
 
-/// varies: whether designs differ in their mass.
-void choose_units(std::vector<Column>& columns, const std::string& text, Scales scales, bool varies) {
-  if (varies) scales.mass = 1.0;
-  ShownUnits units(text, scales);
-  const auto shown = [&](const Column& column) {
-    return column.field ? units.of(*column.field) : units.of(column.name);
-  };
-  for (Column& column : columns) column.shown = shown(column);
-  units.refuse_unused();
-  if (!varies) return;
-  scales.mass = 2.0;
+/// Of a column, where the hoop is of that size and mass.
+ShownUnit shown_by(ShownUnits& units, const Column& column, const Scales& scales) {
   units.scale(scales);
-  for (Column& column : columns) column.by_mass = shown(column).factor != column.shown.factor;
+  return column.field ? units.of(*column.field) : units.of(column.name);
 }
 
-/// The total masses of a block's designs.
-std::vector<double> masses_of(const DesignSpace& space, const Tile& block) {
+/// varies: whether designs differ in mass or size.
+void choose_units(std::vector<Column>& columns, ShownUnits& units, Scales scales, bool varies) {
+  if (varies && !(scales.mass > 0.0)) scales.mass = 1.0;
+  for (Column& column : columns) column.shown = shown_by(units, column, scales);
+  units.refuse_unused();
+  if (!varies) return;
+  scales.mass *= 2.0, scales.radius *= 3.0;
+  for (Column& column : columns)
+    column.by_hoop = shown_by(units, column, scales).factor != column.shown.factor;
+}
+
+/// The sizes and total masses of a block's designs.
+std::vector<Scales> scales_of(const DesignSpace& space, const Scene& scene, const Tile& block) {
   std::vector<Design> designs(block.count);
   std::vector<Body> bodies(block.count);
   space.fill(block, 0, designs, bodies);
-  std::vector<double> masses;
-  for (const Body& body : bodies) masses.push_back(reduce_checked(body).total_mass);
-  return masses;
+  std::vector<Scales> scales;
+  for (std::size_t i = 0; i < block.count; ++i)
+    scales.push_back({scene.radius * designs[i].size, scene.gravity, reduce_checked(bodies[i]).total_mass});
+  return scales;
 }
 
 /// Every digit of what the map holds; of what is converted as many as hold.
@@ -101,8 +104,9 @@ std::string text_of(double value, double factor) {
 }
 
 /// A column's texts for the designs of a block.
+/// hoops: of the block's designs, where their scales differ.
 std::vector<std::string> texts_of(const MapReader& map, const Column& column, const Tile& block,
-                                  const std::vector<double>& masses) {
+                                  ShownUnits& units, const std::vector<Scales>& hoops) {
   std::vector<std::string> texts(block.count);
   if (column.field && std::holds_alternative<Word>(column.field->source)) {
     const std::vector<std::uint64_t> words = map.read_words(column.name, block);
@@ -124,7 +128,8 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
       else if (code->names.empty() && number != code->fill)
         texts[i] = fmt::format("{}", number);
     } else if (std::isfinite(values[i])) {
-      texts[i] = text_of(values[i], column.shown.factor * (column.by_mass ? masses[i] : 1.0));
+      const bool own = column.by_hoop && !hoops.empty();
+      texts[i] = text_of(values[i], own ? shown_by(units, column, hoops[i]).factor : column.shown.factor);
     }
   }
   return texts;
@@ -148,9 +153,10 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-std::string table_of(const MapReader& map, const Spec& spec, const std::vector<Column>& columns) {
+std::string table_of(const MapReader& map, const Spec& spec, const std::vector<Column>& columns,
+                     ShownUnits& units) {
   const DesignSpace space(spec);
-  const bool weighs = std::ranges::any_of(columns, &Column::by_mass);
+  const bool differ = std::ranges::any_of(columns, &Column::by_hoop);
   const std::vector<std::string> labels = map.is_list() ? map.labels() : std::vector<std::string>{};
   std::vector<std::string> header;
   if (!labels.empty()) header.emplace_back(label_name);
@@ -161,8 +167,8 @@ std::string table_of(const MapReader& map, const Spec& spec, const std::vector<C
   const std::size_t rows = map.blocks(map.fields()[0]).tile_shape()[0];
   for_each_block(map.shape(), rows, [&](const Tile& block) {
     std::vector<std::vector<std::string>> cells;
-    const std::vector<double> masses = weighs ? masses_of(space, block) : std::vector<double>{};
-    for (const Column& column : columns) cells.push_back(texts_of(map, column, block, masses));
+    const auto hoops = differ ? scales_of(space, spec.scene, block) : std::vector<Scales>{};
+    for (const Column& column : columns) cells.push_back(texts_of(map, column, block, units, hoops));
     for (std::size_t i = 0; i < block.count; ++i) {
       if (!labels.empty()) text += quoted(labels[block.start[0] + i]) + ",";
       for (std::size_t k = 0; k < cells.size(); ++k) (text += k > 0 ? "," : "") += cells[k][i];
@@ -192,12 +198,14 @@ int run(const ExportArguments& arguments) {
                     arguments.map, grouped(designs), grouped(most_rows)));
   const Spec spec = spec_of(map, arguments.map);
   std::vector<Column> columns = columns_of(map, arguments);
-  choose_units(columns, arguments.units, scales_of(spec.scene), mass_varies(spec));
+  const Scales scales = leapmap::scales_of(spec.scene);
+  ShownUnits units(arguments.units, scales);
+  choose_units(columns, units, scales, mass_varies(spec) || find_varying(spec, "hoop.diameter"));
   if (!map.is_whole()) tell(arguments.map + ": is INCOMPLETE: designs not computed have empty cells");
   TextOutput file("-o", arguments.output, {}, arguments.overwrite);
   note_signals();
   try {
-    const std::string table = table_of(map, spec, columns);
+    const std::string table = table_of(map, spec, columns, units);
     file.commit(table);
   } catch (const Stopped&) {
     tell("interrupted; nothing was written");

@@ -13,6 +13,7 @@
 #include "cli/audit_lines.hpp"
 #include "cli/commands.hpp"
 #include "cli/hop_gradient.hpp"
+#include "cli/hop_jump.hpp"
 #include "cli/hop_scatter.hpp"
 #include "cli/json.hpp"
 #include "cli/motor.hpp"
@@ -97,68 +98,6 @@ std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b)
                      later.empty() ? "" : "\n" + later);
 }
 
-/// How many jumps there are, and why no more.
-std::string sequence_line(const Spec& spec, const Outcome& outcome) {
-  const std::string heights = [&] {
-    std::string text = fmt::format("{:.6f}", outcome.jump_height);
-    for (const Jump& jump : outcome.later_jumps) text += fmt::format(", {:.6f}", jump.height);
-    return text;
-  }();
-  const std::string_view end = outcome.sequence_end == Status::jumped    ? "all requested"
-                               : outcome.sequence_end == Status::no_jump ? "then it reaches the rolling limit"
-                               : outcome.sequence_end == Status::stalled ? "then it is trapped"
-                               : outcome.sequence_end == Status::indeterminate
-                                   ? "then the rigid-body equations have no solution or two"
-                                   : "then the method failed";
-  return fmt::format("{} jumps of {}: {} diameters; {}.", outcome.jumps(), spec.scene.jumps, heights, end);
-}
-
-/// "0.2515 N s", or in leapmap's own unit where no mass is known.
-std::string with_mass(double value, int digits, std::string_view own, std::string_view si,
-                      const Scene& scene) {
-  const OwnUnit& unit = *find_own_unit(own);
-  return scene.mass > 0.0 ? fmt::format("{:.{}g} {}", value * unit.size(scales_of(scene)), digits, si)
-                          : fmt::format("{:.{}g} {}", value, digits, own);
-}
-
-void print_wall(const Scene& scene, const Outcome& jump) {
-  const double wall = 2.0 * scene.radius * scene.clear_height;
-  if (std::isnan(jump.clears_from))
-    say("Clears no wall of {:.4g} m.\n", wall);
-  else
-    say("Clears a wall of {:.4g} m that stands {:.4g} m to {:.4g} m from the lift-off along the plane.\n",
-        wall, jump.clears_from * scene.radius, jump.clears_to * scene.radius);
-}
-
-void print_jump(const Spec& spec, const Motion& motion, const Outcome& checked) {
-  const Outcome& jump = motion.outcome;
-  if (jump.status == Status::jumped) {
-    say("Height {:.6f} diameters ({:.4g} m), apex {:.6f} s and landing {:.6f} s after lift-off",
-        jump.jump_height, 2.0 * spec.scene.radius * jump.jump_height, jump.apex_time, jump.flight_time);
-    if (jump.dip < 0.0) say("; penetration depth {:.4g} diameters", -jump.dip);
-    say(".\n");
-    const double speed = std::sqrt(spec.scene.gravity * spec.scene.radius);
-    say("Flies {:.6g} R ({:.4g} m) along the plane; lands with {:.4g} m/s towards it and {:.4g} m/s along "
-        "it, impulse {}, {} lost.\n",
-        jump.jump_range, jump.jump_range * spec.scene.radius, jump.landing_normal_speed * speed,
-        jump.landing_tangential_speed * speed,
-        with_mass(jump.landing_impulse, 4, "(m + m_p) sqrt(g R)", "N s", spec.scene),
-        with_mass(jump.landing_energy_lost, 4, "(m + m_p) g R", "J", spec.scene));
-    if (std::isfinite(jump.max_normal_force))
-      say("The plane pushes with at most {} until lift-off.\n",
-          with_mass(jump.max_normal_force, 4, "(m + m_p) g", "N", spec.scene));
-    if (spec.scene.clear_height > 0.0) print_wall(spec.scene, jump);
-    if (std::isfinite(jump.energy_lost)) {
-      say("Slid {:.6g} R, lost {} until lift-off, spin after the landing {:.6g} rad/s.\n", jump.slip_distance,
-          with_mass(jump.energy_lost, 6, "(m + m_p) g R", "J", spec.scene),
-          jump.landing_spin / time_unit(spec.scene));
-    }
-  }
-  if (spec.scene.jumps > 1 && jump.status == Status::jumped) say("{}\n", sequence_line(spec, jump));
-  if (spec.scene.settle > 0) say("{}\n", settled_line(jump, spec.scene.settle));
-  say("{}\n", check_line(spec, motion, checked));
-}
-
 /// Every phase, flights with how they go; and lift-offs after which the hoop is taken to roll on.
 void print_phases(const Motion& motion) {
   const auto begins = [](double t, double phi, double spin) {
@@ -231,7 +170,9 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
   print_phases(motion);
   if (motion.outcome.phase_sequence != 0) say("\n{}", phase_letters(motion.outcome.phase_sequence));
   say("\n{}\n", verdict(motion, spec.scene));
-  print_jump(spec, motion, checked);
+  print_jump(spec, motion.outcome);
+  if (spec.scene.settle > 0) say("{}\n", settled_line(motion.outcome, spec.scene.settle));
+  say("{}\n", check_line(spec, motion, checked));
   if (motor) print_motor(*motor);
   for (const Graze& graze : motion.grazes)
     say("Grazing contact: at {:.6f} s the normal force has a {} of {:.3g} weights, counted as {}lift-off.\n",

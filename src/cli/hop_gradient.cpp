@@ -12,6 +12,7 @@
 #include "request/solver.hpp"
 #include "spec/options.hpp"
 #include "spec/spec_hoop.hpp"
+#include "trajectory/units.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -61,7 +62,8 @@ Table table_of(const Spec& original) {
     for (std::size_t j = 0; j < wanted.by.size(); ++j)
       by.*differentiable[wanted.by[j]] = gradients.column(i, j)[0];
     for (const Variable& variable : table.variables)
-      row.by.push_back(variable.derivative(by, spec.hoop.value_or(Body{})));
+      row.by.push_back(variable.derivative(by, spec.hoop.value_or(Body{}),
+                                           grows_with_size(wanted.of[i]) ? wanted.of[i].of(outcome) : 0.0));
     table.rows.push_back(row);
   }
   return table;

@@ -24,6 +24,7 @@
 #include "model/fields.hpp"
 #include "spec/designs.hpp"
 #include "spec/map_spec.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/printable.hpp"
 
 namespace leapmap::cli {
@@ -276,9 +277,7 @@ int run(const InfoArguments& arguments) {
     print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at);
     return 0;
   }
-  const Scales scales = arguments.units.empty()
-                            ? Scales{}
-                            : scales_of(parse_map_spec(map.attribute("spec"), arguments.path).scene);
+  const Scales scales = arguments.units.empty() ? Scales{} : common_scales(spec_of(map, arguments.path));
   ShownUnits units(arguments.units, scales);
   print_origin(map, arguments.path);
   print_audit(map);

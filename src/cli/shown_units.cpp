@@ -16,14 +16,19 @@
 namespace leapmap::cli {
 namespace {
 
-constexpr std::string_view example = "\"mm deg ms rpm N.m\"";
+constexpr std::string_view example = "\"mm deg ms rpm N.m N.s\"";
 
 }  // namespace
 
 /// A unit of several words is written with points: "N.m".
 ShownUnits::ShownUnits(const std::string& text, const Scales& scales) : scales_(scales) {
   std::istringstream words(text);
-  for (std::string word; words >> word;) units_.push_back(word);
+  for (std::string word; words >> word;) {
+    if (!units_.empty() && units_.back() == "N" && (word == "s" || word == "m"))
+      throw InputError(
+          fmt::format("--units: 'N {0}' may be one unit or two; allowed: N.{0}, or {0} before N", word));
+    units_.push_back(word);
+  }
   used_.resize(units_.size());
   try {
     for (const std::string& unit : units_) static_cast<void>(units_in_own(unit, "m", scales));
@@ -100,7 +105,11 @@ void ShownUnits::refuse_unused() const {
       throw InputError(fmt::format(
           "--units: no column can be given in {}{}; allowed: units of the columns with "
           "blanks between them, for example {}",
-          units_[k], scales_.mass > 0.0 ? "" : " (no total mass is known, by scene.mass or [hoop])",
+          units_[k],
+          scales_.mass > 0.0 && scales_.radius > 0.0 ? ""
+                                                     : " (the total mass or the size is not known, or each "
+                                                       "design has its own: leapmap export converts "
+                                                       "those)",
           example));
 }
 

@@ -5,6 +5,7 @@
 #include "design/descend.hpp"
 #include "leapmap/errors.hpp"
 #include "request/solver.hpp"
+#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {
@@ -87,8 +88,9 @@ class Slope {
     Design by;
     for (const Variable& parameter : parameters_)
       by.*parameter.parameter() = gradients_.column(of, parameter.parameter())[0];
+    const double in_seconds = grows_with_size(of) ? outcome_.*of : 0.0;
     for (std::size_t k = 0; k < slope.size(); ++k)
-      slope[k] = sign * per_place(k) * judge_.question().free[k].variable.derivative(by, body_);
+      slope[k] = sign * per_place(k) * judge_.question().free[k].variable.derivative(by, body_, in_seconds);
     const double value = sign * outcome_.*of;
     for (const double part : slope)
       if (!std::isfinite(part)) throw nlopt::forced_stop();  // out of the branch, or on its edge

@@ -21,6 +21,7 @@
 #include "request/solver.hpp"
 #include "spec/options.hpp"
 #include "support/stop.hpp"
+#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {
@@ -288,9 +289,11 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
           const SolveOptions how{.tolerance = question.one.numerics.tolerance, .threads = 1};
           FieldGradient& slope = one.gradients.emplace_back();
           slope.of = field->name;
-          slope.by = gradient(one.design, std::get<Quantity>(field->source).member, question.one.scene, how);
+          const auto of = std::get<Quantity>(field->source).member;
+          slope.by = gradient(one.design, of, question.one.scene, how);
+          const double in_seconds = grows_with_size(of) ? one.outcome.*of : 0.0;
           for (const FreeParameter& parameter : question.free)
-            slope.by_free.push_back(parameter.variable.derivative(slope.by, body));
+            slope.by_free.push_back(parameter.variable.derivative(slope.by, body, in_seconds));
         }
       if (judge.makes_hoops()) put_statistics(question, body, one);
       one.binds = binding(question, places[i], one);

@@ -14,6 +14,7 @@
 #include "leapmap/errors.hpp"
 #include "request/solver.hpp"
 #include "spec/designs.hpp"
+#include "trajectory/units.hpp"
 
 namespace leapmap {
 
@@ -71,7 +72,8 @@ void BlockSolver::derive_by_body(std::size_t designs, std::span<const Body> bodi
     Design by;
     for (std::size_t i = 0; i < designs; ++i) {
       for (std::size_t k = 0; k < by_ratio.size(); ++k) by.*body_ratios[k] = by_ratio[k][i];
-      column.values[i] = column.variable.derivative(by, bodies.empty() ? nominal_ : bodies[i]);
+      column.values[i] = column.variable.derivative(by, bodies.empty() ? nominal_ : bodies[i],
+                                                    grows_with_size(of) ? of.of(outcomes_[i]) : 0.0);
     }
   }
 }

@@ -25,6 +25,7 @@ struct Design {
       std::numeric_limits<double>::quiet_NaN();  ///< kinetic, in [0, 1e6]; NaN: equal to
                                                  ///< mu_static; larger: mu_static is set to it
   double restitution = 0.0;                      ///< Poisson's, in [0, 1]
+  double size = 1.0;  ///< radius over Scene::radius, > 0; scales times and speeds only
 };
 
 }  // namespace leapmap

@@ -338,7 +338,7 @@ const Field* find_body_gradient(const OutcomeNumber& of, std::string_view key) {
     for (const Field& each : some)
       if (can_be_differentiated(each) && number_of(each) == of) field = &each;
   const BodyNumber* number = find_body_number(key);
-  if (!field || !number || !number->varies) return nullptr;
+  if (!field || !number) return nullptr;
   std::string name = std::string(field->name) + "_by_" + std::string(key);
   const std::lock_guard lock(mutex);
   const auto [at, is_new] = rows.try_emplace(name);

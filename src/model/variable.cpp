@@ -16,7 +16,7 @@ namespace {
 constexpr double turn = 2.0 * std::numbers::pi, largest = 1e6;
 
 const std::array table{
-    BodyNumber{"diameter", &Body::diameter, "m", true, "outer diameter of the hoop", {2e-9, largest}, false},
+    BodyNumber{"diameter", &Body::diameter, "m", true, "outer diameter of the hoop", {2e-9, largest}},
     BodyNumber{"mass",
                &Body::mass,
                "kg",
@@ -91,7 +91,7 @@ double Variable::of(const Design& design, const Body& body) const {
   return ring_ ? body.*ring_ : body.weights[weight_].*of_weight_;
 }
 
-double Variable::derivative(const Design& by, const Body& body) const {
+double Variable::derivative(const Design& by, const Body& body, double in_seconds) const {
   if (parameter_) return by.*parameter_;
   using Number = Dual<double, 1>;
   const void* const here =
@@ -101,7 +101,8 @@ double Variable::derivative(const Design& by, const Body& body) const {
     return &number == here ? Number::parameter(number, 0) : Number(number);
   });
   return by.mass_ratio * ratios.mass_ratio.by[0] + by.offset_ratio * ratios.offset_ratio.by[0] +
-         by.inertia_factor * ratios.inertia_factor.by[0];
+         by.inertia_factor * ratios.inertia_factor.by[0] +
+         (ring_ == &Body::diameter ? 0.5 * in_seconds / body.diameter : 0.0);
 }
 
 std::vector<Variable> variables_of(const Body& body) {
@@ -147,7 +148,7 @@ std::optional<Variable> find_variable(std::string_view key, const Body* body) {
     return variable;
   }
   const BodyNumber* row = body ? find_body_number(key) : nullptr;
-  if (!row || !row->varies) return {};
+  if (!row) return {};
   variable.unit = row->unit, variable.range = row->range;
   variable.order = all.size() + static_cast<std::size_t>(row - table.data());
   if (!row->of_weight()) {

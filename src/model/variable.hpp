@@ -25,7 +25,6 @@ struct BodyNumber {
   bool needed;
   std::string_view meaning;  ///< of a weight: {} stands for its name
   Range range;               ///< of a weight's `at`: before the radius is known
-  bool varies = true;        ///< false: the same for all designs of a spec
 
   bool of_weight() const { return std::holds_alternative<double Weight::*>(member); }
   /// The meaning with the weight's name, or with "the weight".
@@ -67,7 +66,8 @@ class Variable {
   double& in(Design& design, Body& body) const;
   double of(const Design& design, const Body& body) const;
   /// The derivative by it, from those by the parameters: of a number of the body, by way of the three ratios.
-  double derivative(const Design& by, const Body& body) const;
+  /// in_seconds: the value itself, if it is a time or a speed, which grows with the root of the diameter.
+  double derivative(const Design& by, const Body& body, double in_seconds = 0.0) const;
 
  private:
   friend std::optional<Variable> find_variable(std::string_view key, const Body* body);

@@ -10,6 +10,7 @@
 #include "spec/spec.hpp"
 #include "trajectory/clearance.hpp"
 #include "trajectory/sequence.hpp"
+#include "trajectory/units.hpp"
 
 namespace leapmap {
 
@@ -42,17 +43,19 @@ Solver jump_measures(const Request& request) {
       return field->*kind && !std::holds_alternative<Derivative>(field->source);
     });
   };
-  const bool clears = asks(&Field::of_wall), ways = asks(&Field::of_way);
   const Scene scene = scene_asked(request);
+  const Model& model = model_of(scene);
+  const bool clears = asks(&Field::of_wall), ways = model.ways && asks(&Field::of_way);
   if (!clears && !ways) return {};
   if (!ways && scene.jumps == 1)
     return [scene](std::span<const Design> designs, std::span<Outcome> outcomes) {
       find_clearances(scene, designs, outcomes);
     };
-  const Model& model = model_of(scene);
   const double tolerance = std::min(request.numerics.tolerance, 1e-10);
-  JumpSolver<double> next = ways ? need(model, &Model::ways, "forces on the way to a jump")(scene, tolerance)
-                                 : need(model, &Model::jumps, semi_analytic)(scene, tolerance, Wanted{});
+  JumpSolver<double> next = ways          ? model.ways(scene, tolerance)
+                            : model.jumps ? model.jumps(scene, tolerance, Wanted{})
+                                          : need(model, &Model::integrated_jumps, integrator)(
+                                                scene, integration_options(request.numerics));
   if (clears)
     next = [next, scene](Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
                          std::span<Outcome> outcomes) {
@@ -101,7 +104,10 @@ Solver follow_up(const Request& request) {
   };
 }
 
-Solver make_solver(const Request& request) {
+namespace {
+
+/// Of hoops of the scene's radius.
+Solver solver_at_unit_size(const Request& request) {
   const Scene scene = scene_asked(request);
   const Model& model = model_of(scene);
   Solver solver =
@@ -116,11 +122,12 @@ Solver make_solver(const Request& request) {
   };
 }
 
-GradientSolver make_gradient_solver(const Request& request) {
+GradientSolver gradient_solver_at_unit_size(const Request& request) {
   const GradientWanted asked = derivatives_of(request);
   if (asked.of.empty())
-    return [solver = make_solver(request)](std::span<const Design> designs, std::span<Outcome> outcomes,
-                                           Gradients&) { solver(designs, outcomes); };
+    return
+        [solver = solver_at_unit_size(request)](std::span<const Design> designs, std::span<Outcome> outcomes,
+                                                Gradients&) { solver(designs, outcomes); };
   const Scene scene = scene_asked(request);
   const bool clears = asked.wants(&Outcome::clears_from) || asked.wants(&Outcome::clears_to);
   const GradientWanted flights = clears ? with_flights(asked) : asked;
@@ -138,6 +145,28 @@ GradientSolver make_gradient_solver(const Request& request) {
     solver(designs, outcomes, *flown);
     gradients.take(*flown, designs.size());
     find_clearances(scene, designs, outcomes, *flown, &gradients);
+  };
+}
+
+}  // namespace
+
+Solver make_solver(const Request& request) {
+  return
+      [solver = solver_at_unit_size(request)](std::span<const Design> designs, std::span<Outcome> outcomes) {
+        solver(designs, outcomes);
+        resize(designs, outcomes);
+      };
+}
+
+GradientSolver make_gradient_solver(const Request& request) {
+  return [solver = gradient_solver_at_unit_size(request)](std::span<const Design> designs,
+                                                          std::span<Outcome> outcomes, Gradients& gradients) {
+    solver(designs, outcomes, gradients);
+    resize(designs, outcomes);
+    for (std::size_t i = 0; i < designs.size(); ++i)
+      if (designs[i].size != 1.0)
+        for (const OutcomeNumber& of : gradients.wanted().of)
+          if (grows_with_size(of)) gradients.scale(of, i, std::sqrt(designs[i].size));
   };
 }
 

@@ -55,7 +55,10 @@ Design VariedDesigns::at(std::span<const double> values, Body* wanted) const {
   Body& body = wanted ? *wanted : own;
   if (wanted || varies_body_) body = body_;
   for (std::size_t k = 0; k < values.size(); ++k) variables_[k].in(design, body) = values[k];
-  if (varies_body_) apply_ratios(reduce_checked(body), design);
+  if (varies_body_) {
+    apply_ratios(reduce_checked(body), design);
+    design.size = body.diameter / body_.diameter;
+  }
   return design;
 }
 
@@ -132,7 +135,8 @@ std::string hop_command(const Spec& spec, const Design& design) {
     if (const auto* member = std::get_if<double Scene::*>(&parameter.member);
         member && has(spec.scene.friction, parameter.only_of) &&
         !(*member == &Scene::mass && spec.scene.mass == 0.0))
-      command += fmt::format(" --set {}={}", parameter.name, spec.scene.**member);
+      command += fmt::format(" --set {}={}", parameter.name,
+                             spec.scene.**member * (*member == &Scene::radius ? design.size : 1.0));
   if (!spec.scene.motor_in_flight && design.drive_torque != 0.0) command += " --set motor_in_flight=false";
   if (spec.scene.jumps > 1) command += fmt::format(" --set scene.jumps={}", spec.scene.jumps);
   if (spec.scene.settle > 0)

@@ -27,9 +27,11 @@ std::string default_value(const Option& option) {
         } else if constexpr (std::is_same_v<Slot, TextSlot>) {
           return fmt::format("\"{}\"", slot(spec));
         } else if constexpr (std::is_same_v<Slot, TextsSlot>) {
-          return option.key == "order"                                    ? "as given"
-                 : option.key == "fields" || option.key == "gradients_by" ? "all"
-                                                                          : "none";
+          return option.key == "order"          ? "as given"
+                 : option.key == "gradients_by" ? "all"
+                 : option.key == "fields"       ? "all but measures of landings and of the way, and "
+                                                  "sequence_condition"
+                                                : "none";
         } else if constexpr (std::is_same_v<Slot, SwitchSlot>) {
           return slot(spec) ? "true" : "false";
         } else if constexpr (std::is_same_v<Slot, HoopSlot> || std::is_same_v<Slot, SpreadSlot> ||

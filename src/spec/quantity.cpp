@@ -138,6 +138,8 @@ double number_in_own_unit(std::string_view text, std::string_view own, const Sca
   }
   if (!size) throw InputError(fmt::format("'{}' cannot be converted to {}", text, known->si));
   const double ours = known->size(scales);
+  if (std::isnan(ours))
+    throw InputError(fmt::format("'{}' needs the diameter, and each hoop has its own", text));
   if (!(ours > 0.0))
     throw InputError(fmt::format("'{}' needs the total mass too, by [hoop], scene.mass or --mass", text));
   return *number * *size / ours;

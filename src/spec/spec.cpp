@@ -269,7 +269,7 @@ void read_points_of(Spec& spec) {
   if (spec.points.empty()) return;
   spec.points =
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
-  spec.list = read_points(spec.points, origin_of(spec), scales_of(spec.scene));
+  spec.list = read_points(spec.points, origin_of(spec), common_scales(spec));
   for (const Axis& column : spec.list.columns) {
     if (find_body_number(column.key)) continue;  // check_hoop's
     const Option& option = *find_option("design", column.key);
@@ -313,7 +313,7 @@ void add_overrides(const std::vector<std::string>& overrides, const Spec& spec,
   for (const std::string& set : overrides) {
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos) throw InputError(fmt::format("--set {}: allowed: KEY=VALUE", set));
-    const std::string name = set.substr(0, equals);
+    const std::string name = set.substr(0, set.find_last_not_of(" \t", equals == 0 ? 0 : equals - 1) + 1);
     const std::size_t dot = name.find('.');
     const std::string section = section_of(dot == std::string::npos ? "" : name.substr(0, dot));
     const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
@@ -353,11 +353,16 @@ void assign(std::vector<Entry>& entries, Spec& spec) {
   const bool made = any([](const Entry& entry) {
     return std::holds_alternative<SpreadSlot>(entry.option->slot) && is_body_mass(entry.key);
   });
+  const bool sized = any([](const Entry& entry) {
+    return std::holds_alternative<SpreadSlot>(entry.option->slot) && entry.key == "hoop.diameter";
+  });
   const bool listed = spec.hoop && any([](const Entry& entry) { return entry.option->key == "points"; });
   for (Entry& entry : entries) {
     if (sets_scale(entry)) continue;
-    entry.scales = scales_of(spec.scene);
-    if (listed || (made && std::holds_alternative<GoalSlot>(entry.option->slot))) entry.scales.mass = 0.0;
+    entry.scales = common_scales(spec);
+    const bool of_made = std::holds_alternative<GoalSlot>(entry.option->slot);
+    if (listed || (made && of_made)) entry.scales.mass = 0.0;
+    if (sized && of_made) entry.scales.radius = std::numeric_limits<double>::quiet_NaN();
     std::visit(Assign{entry, spec}, entry.option->slot);
   }
   put_axes_in_order(entries, spec);

@@ -98,13 +98,7 @@ void check_axis(const Spec& spec, const Axis& axis) {
         fmt::format("{}: {}: there is no [hoop]; allowed: with [hoop] in the spec, which gives the rest",
                     origin_of(spec), axis.key));
   const auto variable = find_variable(axis.key, &*spec.hoop);
-  if (!variable) {
-    check_hoop_key(*spec.hoop, axis.key, origin_of(spec));
-    throw InputError(
-        fmt::format("{}: {}: takes no axis, because it scales lengths and times of the whole map; allowed: "
-                    "one number",
-                    origin_of(spec), axis.key));
-  }
+  if (!variable) check_hoop_key(*spec.hoop, axis.key, origin_of(spec));
   for (const double value : axis.values)
     if (!variable->range.holds(value))
       throw InputError(fmt::format("{}: {} = {} is out of range; allowed: {}", origin_of(spec), axis.key,
@@ -122,12 +116,16 @@ std::pair<double, double> bounds_of(const Spec& spec, const std::string& key, do
 /// That no ratio of any design is beyond what a design may have; weights count as if they were on the rim.
 void check_ratios(const Spec& spec) {
   const Body& body = *spec.hoop;
-  const double square = 0.25 * body.diameter * body.diameter;
+  const double radius = 0.5 * bounds_of(spec, "hoop.diameter", body.diameter).first, square = radius * radius;
   double weights = 0.0,
          inertia = std::isnan(body.inertia) ? 0.0 : bounds_of(spec, "hoop.inertia", body.inertia).second;
   for (const Weight& weight : body.weights) {
     const std::string of = "hoop." + weight.name;
     const double mass = bounds_of(spec, of + ".mass", weight.mass).second;
+    const double at = bounds_of(spec, of + ".at", weight.at).second;
+    if (at > radius)
+      throw InputError(fmt::format("{}: {}.at = {} is beyond the rim of the smallest hoop; allowed: up to {}",
+                                   origin_of(spec), of, at, radius));
     weights += mass, inertia += mass * square + bounds_of(spec, of + ".inertia", weight.inertia).second;
   }
   const double ring = bounds_of(spec, "hoop.mass", body.mass).first;
@@ -182,13 +180,8 @@ Entry hoop_override(const Body& body, const std::string& key, const toml::node& 
 void assign_to_hoop(const Entry& entry, Spec& spec) {
   Body& body = *spec.hoop;
   if (const toml::table* table = entry.node->as_table()) {
-    if (!find_body_number(entry.key)->varies)
-      leapmap::refuse(entry, "takes no axis, because it scales lengths and times of the whole map",
-                      "one number");
     spec.axes.push_back(to_axis(entry, *table));
     find_variable(entry.key, &body)->in(spec.design, body) = spec.axes.back().values.front();
-  } else if (entry.key == "hoop.diameter") {
-    body.diameter = to_number(entry, *entry.node);
   } else {
     find_variable(entry.key, &body)->in(spec.design, body) = to_number(entry, *entry.node);
   }
@@ -204,6 +197,13 @@ void check_hoop(const Spec& spec) {
     throw InputError(fmt::format("{}: {}", origin_of(spec), error.what()));
   }
   check_ratios(spec);
+}
+
+Scales common_scales(const Spec& spec) {
+  Scales scales = scales_of(spec.scene);
+  if (mass_varies(spec)) scales.mass = 0.0;
+  if (find_varying(spec, "hoop.diameter")) scales.radius = std::numeric_limits<double>::quiet_NaN();
+  return scales;
 }
 
 bool mass_varies(const Spec& spec) {
@@ -234,7 +234,7 @@ std::string hoop_help() {
   const auto add = [&](bool of_weight) {
     for (const BodyNumber& row : body_numbers())
       if (row.of_weight() == of_weight)
-        help += list_entry(fmt::format("  {} {}", row.name, row.varies ? "*" : ""),
+        help += list_entry(fmt::format("  {} {}", row.name, "*"),
                            fmt::format("{} [{}], for example in {}.", row.meaning_of(), row.unit,
                                        find_own_unit(row.unit)->example),
                            column);

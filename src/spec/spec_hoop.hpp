@@ -29,6 +29,9 @@ void assign_to_hoop(const Entry& entry, Spec& spec);
 /// Throws InputError for a body that cannot be, nominal or along the axes.
 void check_hoop(const Spec& spec);
 
+/// What units of the spec's numbers are converted by: without the mass, or the radius, of which each design
+/// has its own.
+Scales common_scales(const Spec& spec);
 /// Whether masses of the body differ from design to design.
 bool mass_varies(const Spec& spec);
 /// Where masses of the body vary, no total mass is known.

@@ -111,7 +111,10 @@ void MadeHoops::take_body(const Body& made, const ReducedBody& nominal, Design& 
   constexpr double balanced = 1e-12;
   if (nominal.eccentricity > balanced && reduced.eccentricity > balanced)
     design.release_angle += std::remainder(reduced.direction - nominal.direction, 2.0 * std::numbers::pi);
-  design.drive_torque *= nominal.total_mass / reduced.total_mass;
+  const double larger = made.diameter / body_.diameter;
+  design.size *= larger;
+  design.release_spin *= std::sqrt(larger);
+  design.drive_torque *= nominal.total_mass / (reduced.total_mass * larger);
 }
 
 void MadeHoops::fill(std::size_t first, std::span<Design> made) const {

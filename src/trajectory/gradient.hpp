@@ -127,6 +127,11 @@ class Gradients {
       }
   }
 
+  /// Multiplies the derivatives of a quantity of one design.
+  void scale(const OutcomeNumber& quantity, std::size_t design, double factor) {
+    for_each(quantity, [&](std::vector<double>& column, std::size_t) { column[design] *= factor; });
+  }
+
  private:
   template <class Visit>
   void for_each(const OutcomeNumber& quantity, const Visit& visit) {

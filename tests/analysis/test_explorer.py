@@ -15,7 +15,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 from support.browser import agrees, numbers, opened, told_by_leapmap, waited
-from support.program import PROGRAM, finished, leapmap, scripted, sweep
+from support.program import PROGRAM, TOP, finished, leapmap, scripted, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
 ARTEFACTS = Path(os.environ["LEAPMAP_BUILD"]) / "artefacts"
@@ -738,3 +738,27 @@ def test_the_solver_on_the_page_is_as_good_as_the_program_on_random_designs(page
                      *(["--set", "friction=coulomb"] if slips else [])).stdout)
         assert outcome["status"] == told["status"], design
         assert agrees(outcome, told) >= 10
+
+
+@pytest.mark.parametrize("key, values", [("hoop.slug.mass", ("40 g", "160 g")), ("hoop.diameter", ("100 mm", "180 mm"))])
+def test_a_design_of_a_map_over_the_hoop_jumps_as_leapmap_tells(key, values, browser, tmp_path):
+    spec = TOP / "sweeps" / "drawing.toml"
+    low, high = values
+    done = leapmap("sweep", spec, "--set", 'slope={from="15 deg",to="40 deg",count=6}', f"--{key}",
+                   f'{{from="{low}",to="{high}",count=7}}', "-o", tmp_path / "m.h5", "--quiet")
+    assert done.returncode == 0, done.stderr
+    assert explorer(tmp_path / "m.h5", "-o", tmp_path / "m.html").returncode == 0
+    opened(browser, tmp_path / "m.html")
+    browser.execute_script("const { view, pick } = window.explorer.view; view.index = [4, 5]; pick()")
+    shown = numbers(browser)
+    with h5py.File(tmp_path / "m.h5") as m:
+        names = list(m["jump_height"].dims[k][0].name.strip("/") for k in range(2))
+        at = dict(zip(names, (m[names[0]][4], m[names[1]][5])))
+        own = {name: m[name][4, 5] for name in ("jump_height", "jump_time")}
+    told = json.loads(leapmap("hop", spec, "--slope", at["slope"], "--set", f"{key}={at[key]!r}", "--json").stdout)
+    for name in own:
+        assert float(shown[name]) == pytest.approx(told[name], rel=1e-9) == pytest.approx(own[name], rel=1e-9)
+    assert float(browser.find_element("id", "mass").get_attribute("value")) == pytest.approx(
+        1000 * told["scene"]["mass"], rel=1e-9)
+    assert float(browser.find_element("id", "radius").get_attribute("value")) == pytest.approx(
+        1000 * told["scene"]["radius"], rel=1e-9)

@@ -82,8 +82,8 @@ def test_a_wall_that_is_cleared_is_told_in_the_hoop_s_size(drawing):
     assert hop["scene"]["clear_height"] == pytest.approx(1 / 3, rel=1e-14)
     assert 0 < hop["clears_from"] < hop["clears_to"] < hop["jump_range"]
     lines = leapmap("hop", drawing, "--slope", "33.58 deg", "--clear-height", "40 mm").stdout
-    assert f"Clears a wall of 0.04 m that stands {0.06 * hop['clears_from']:.4g} m" in lines
-    assert "Clears no wall of 0.07 m." in leapmap("hop", drawing, "--slope", "33.58 deg", "--clear-height",
+    assert f"It clears a wall of 0.04 m that stands {0.06 * hop['clears_from']:.4g} m" in lines
+    assert "It clears no wall of 0.07 m." in leapmap("hop", drawing, "--slope", "33.58 deg", "--clear-height",
                                                   "70 mm").stdout
     assert "clears_from" not in told(drawing, "--slope", "33.58 deg")
     refused = leapmap("hop", drawing, "--set", "goal.clears_to={at_least=3}", "--scatter")
@@ -143,7 +143,8 @@ WRONG_UNITS = {
     "rad": ("3 mm", "180", "3 %", "4 turn s")
 }
 BODIES = [(f"hoop.{key}={value}", f"hoop.{key}", value) for key, (unit, _) in KEYS.items()
-          for value in (*WRONG_UNITS[unit], "nan mm", "abc", "1e999 mm", "{from=1,to=2,count=3}")]
+          for value in (*WRONG_UNITS[unit], "nan mm", "abc", "1e999 mm", "7 Pa", "1 2 mm", "4 lightweeks s",
+                        "{from=1,to=2,count=3}")]
 FLAGS = [(f"{key}={value}", key, value) for key, values in {
     "hop_height": ("3 s", "3 kg", "-1 mm", "5 mmm",
                    "3 deg"), "radius": ("3 s", "-4 mm", "0 mm", "41 g", "41 K"), "gravity": (
@@ -163,7 +164,7 @@ PLACES = [("axis", 'slope={{from="1 deg",to="{}",count=3}}'), ("list", 'slope={{
           ("tolerance", 'scatter.slope={{normal="{}"}}'), ("goal", 'goal.jump_angle={{at_least="{}"}}'),
           ("time", 'goal.jump_time={{at_most="{}"}}'), ("height", 'goal.jump_height={{at_least="{}"}}')]
 SPEC_TEXTS = [(text.format(value), text.split("=")[0].split(".")[-1], value) for (_, text), value in
-              itertools.product(PLACES, ("3 kg", "4 furlongss", "5 K", "x mm", "--3 deg"))]
+              itertools.product(PLACES, ("3 kg", "4 furlongss", "5 K", "x mm", "--3 deg", "2 mm mm", "1 200 mm"))]
 
 
 def test_bad_units_and_bodies_are_a_line_each_with_key_value_and_what_is_allowed(drawing):
@@ -180,7 +181,7 @@ def test_bad_units_and_bodies_are_a_line_each_with_key_value_and_what_is_allowed
         if not fine or not as_typed:
             wrong.append((given, done.returncode, line))
     assert wrong == []
-    assert len(cases) > 160
+    assert len(cases) > 200
 
 
 TEXTS = [("name = \"slug\"", "name = \"battery\"", "'battery' appears twice"),
@@ -406,7 +407,7 @@ def test_a_list_may_vary_numbers_of_the_hoop(drawing, tmp_path):
         heights = m["jump_height"][:]
     assert heights[1] == told(drawing, "--slope", "30deg", "--hoop.slug.mass", "90g")["jump_height"]
     assert "right" in leapmap("check", tmp_path / "l.h5", "--sample", 2).stdout
-    for header in ("hoop.slg.mass", "hoop.slug.weight", "hoop.diameter", "mass_ratio"):
+    for header in ("hoop.slg.mass", "hoop.slug.weight", "mass_ratio"):
         (tmp_path / "bad.csv").write_text(f"slope,{header}\n0.4,0.085\n")
         bad = leapmap("sweep", drawing, "--points", tmp_path / "bad.csv", "-o", tmp_path / "b.h5")
         assert bad.returncode == 2 and bad.stderr.count("\n") == 1 and header.split(".")[-1] in bad.stderr
@@ -519,7 +520,7 @@ def test_a_map_has_derivatives_by_what_the_drawing_gives(drawing, tmp_path):
             assert ours == pytest.approx((4 * near - far) / 3, rel=1e-6, abs=abs(near - far)), name
     checked = leapmap("check", made)
     assert checked.returncode == 0, checked.stderr
-    for wrong in ("hoop.bolt.mass", "hoop.diameter", "hoop.slug.colour"):
+    for wrong in ("hoop.bolt.mass", "hoop.slug.colour"):
         refused = leapmap("sweep", drawing, "--set", 'output.gradients=["jump_height"]', "--set",
                           f'output.gradients_by=["{wrong}"]', "--dry-run")
         assert refused.returncode == 2 and wrong in refused.stderr and refused.stderr.count("\n") == 1
@@ -562,3 +563,45 @@ def test_each_jump_of_a_sequence_has_a_landing_a_way_and_walls_of_its_own(drawin
             assert value["max_normal_force"] > 1
         most = np.nanmax(t["normal_force"][:])
         assert max(m[f"max_normal_force_{k}"][0] for k in (2, 3)) <= most * (1 + 1e-3)
+
+
+def test_the_diameter_is_an_axis_a_tolerance_and_free_as_any_number(drawing, tmp_path):
+    """Times grow with the root of the size, lengths with it, and weights sit where they sat, in mm."""
+    made, table = tmp_path / "m.h5", tmp_path / "m.csv"
+    quantities = '["jump_height","jump_time","landing_impulse"]'
+    done = leapmap("sweep", drawing, "--set", 'slope="30 deg"', "--hoop.diameter", '{from="100 mm",to="180 mm",count=5}',
+                   "--set", f"output.fields={quantities}", "--set", f"output.gradients={quantities}", "--set",
+                   "numerics.audit=1", "-o", made)
+    assert done.returncode == 0, done.stderr
+    assert "0 flags differ" in done.stdout and "0 wrong" in done.stdout
+    assert leapmap("export", made, "-o", table, "--units", "mm ms N.s", "--quiet").returncode == 0
+    rows = list(csv.DictReader(table.open()))
+    with h5py.File(made) as m:
+        by = {name: m[f"{name}_by_hoop.diameter"][:] for name in ("jump_height", "jump_time", "landing_impulse")}
+    for k, row in enumerate(rows):
+        mm = float(row["hoop.diameter [mm]"])
+        one = {way: told(drawing, "--slope", "30deg", "--set", f"hoop.diameter={mm + way} mm")
+               for way in (-1e-3, 0, 1e-3)}
+        alone = one[0]
+        assert float(row["jump_height [mm]"]) == pytest.approx(mm * alone["jump_height"], rel=1e-12)
+        assert float(row["jump_time [ms]"]) == pytest.approx(1000 * alone["jump_time"], rel=1e-9)
+        assert float(row["landing_impulse [N.s]"]) == pytest.approx(
+            0.158 * math.sqrt(9.81 * mm / 2000) * alone["landing_impulse"], rel=1e-12)
+        for name, values in by.items():  # the differences' own errors are of the second order
+            assert values[k] == pytest.approx((one[1e-3][name] - one[-1e-3][name]) / 2e-6, rel=1e-5, abs=1e-5), name
+    found = json.loads(leapmap("design", drawing, "--set", 'slope="30 deg"', "--hoop.diameter",
+                               '{from="100 mm",to="180 mm"}', "--set", "minimize=jump_time", "--json", "--sample",
+                               4096).stdout)["designs"][0]
+    alone = told(drawing, "--slope", "30deg", "--set", f"hoop.diameter={found['parameters']['hoop.diameter']!r}")
+    assert found["objectives"]["jump_time"] == pytest.approx(alone["jump_time"], rel=1e-9)
+    again = json.loads(leapmap(*found["hop"].split()[1:], "--json").stdout)
+    assert again["jump_time"] == pytest.approx(alone["jump_time"], rel=1e-9)
+    made_hoops = leapmap("hop", drawing, "--slope", "30deg", "--scatter", "--set",
+                         'tolerances.hoop.diameter={normal="1 mm"}', "--json")
+    assert made_hoops.returncode == 0, made_hoops.stderr
+    sd = json.loads(made_hoops.stdout)["scatter"]["quantities"]["jump_time"]["sd"]["value"]
+    at_120 = by["jump_time"][1]
+    assert sd == pytest.approx(abs(at_120) * 1e-3, rel=0.3), "to first order, but for the release's spin"
+    for more in (("--set", 'clear_height="10 mm"'), ("--set", 'hop_height="6 mm"')):
+        refused = leapmap("sweep", drawing, "--hoop.diameter", '{from="100 mm",to="180 mm",count=5}', *more, "--dry-run")
+        assert refused.returncode == 2 and "each hoop has its own" in refused.stderr

@@ -161,9 +161,10 @@ TEST(HoopNumbers, ThatCannotVaryAreRefused) {
   const auto says = [](const std::string& text, const std::string& what) {
     EXPECT_NE(text.find(what), std::string::npos) << text;
   };
-  says(refusal("", {"hoop.diameter={from=0.1,to=0.2,count=3}"}), "hoop.diameter = ");
+  says(refusal("", {"hoop.diameter={values=[0.12,0.09]}"}), "hoop.slug.at = 0.047 is beyond the rim");
   says(refusal("", {"hoop.slug.at={from=\"40 mm\",to=\"61 mm\",count=3}"}), "hoop.slug.at = 0.061");
-  says(refusal("", {"scatter.hoop.diameter={normal=\"1 mm\"}"}), "scatter.hoop.diameter");
+  says(refusal("", {"hoop.diameter={from=0.1,to=0.2,count=3}", "clear_height=10 mm"}),
+       "each hoop has its own");
   says(refusal("", {"scatter.hoop.slg.mass={normal=\"1 g\"}"}), "did you mean slug?");
   says(refusal("", {"scatter.hoop.slug.mass={normal=\"1 mm\"}"}), "scatter.hoop.slug.mass");
   says(refusal("[tolerances]\nhoop.slug.mass = { normal = \"1 g\" }\nmass_ratio = { normal = \"1 %\" }\n"),
