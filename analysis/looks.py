@@ -147,7 +147,8 @@ def use_units(m, text, units_in_own):
     radii = m.radii()
 
     def size_of(word, name):
-        """How large the field's own unit is, for each design if they differ in size: a power of the radius."""
+        """How large the field's own unit is, for each design if they differ in size: a power of the
+        radius."""
         if np.ndim(radii) == 0:
             return units_in_own(word, name, scales)
         one, four = (units_in_own(word, name, scales | {"radius": r}) for r in (1.0, 4.0))

@@ -120,7 +120,8 @@ function drawingPart(solver, changed) {
     /** The hoop itself is told by other words. */
     read(words) {
       now.drawing = drawingOf(words.get("drawing"));
-      if (words.has("drawing") && !now.drawing) notice("The address describes a drawing that is not possible.");
+      if (words.has("drawing") && !now.drawing)
+        notice("The address describes a drawing that is not possible.");
       if (now.drawing) { show(now.drawing); tell(solver.reduce(now.drawing)); }
     },
   };

@@ -740,7 +740,8 @@ def test_the_solver_on_the_page_is_as_good_as_the_program_on_random_designs(page
         assert agrees(outcome, told) >= 10
 
 
-@pytest.mark.parametrize("key, values", [("hoop.slug.mass", ("40 g", "160 g")), ("hoop.diameter", ("100 mm", "180 mm"))])
+@pytest.mark.parametrize("key, values", [("hoop.slug.mass", ("40 g", "160 g")),
+                                         ("hoop.diameter", ("100 mm", "180 mm"))])
 def test_a_design_of_a_map_over_the_hoop_jumps_as_leapmap_tells(key, values, browser, tmp_path):
     spec = TOP / "sweeps" / "drawing.toml"
     low, high = values
@@ -755,7 +756,8 @@ def test_a_design_of_a_map_over_the_hoop_jumps_as_leapmap_tells(key, values, bro
         names = list(m["jump_height"].dims[k][0].name.strip("/") for k in range(2))
         at = dict(zip(names, (m[names[0]][4], m[names[1]][5])))
         own = {name: m[name][4, 5] for name in ("jump_height", "jump_time")}
-    told = json.loads(leapmap("hop", spec, "--slope", at["slope"], "--set", f"{key}={at[key]!r}", "--json").stdout)
+    told = json.loads(
+        leapmap("hop", spec, "--slope", at["slope"], "--set", f"{key}={at[key]!r}", "--json").stdout)
     for name in own:
         assert float(shown[name]) == pytest.approx(told[name], rel=1e-9) == pytest.approx(own[name], rel=1e-9)
     assert float(browser.find_element("id", "mass").get_attribute("value")) == pytest.approx(

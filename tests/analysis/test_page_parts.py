@@ -124,7 +124,8 @@ def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, 
 
 
 def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(page, html, tmp_path):
-    """120 mm, ring of 61 g with 1.9e-4 kg m2, a slug of 85 g at 47 mm, a battery of 12 g opposite at 30 mm."""
+    """120 mm, ring of 61 g with 1.9e-4 kg m2, a slug of 85 g at 47 mm, a battery of 12 g opposite at 30
+    mm."""
     page.execute_script("document.getElementById('map').dataset.whole = 'false'")
     Select(page.find_element("id", "live-model")).select_by_value("coulomb")
     waited(page, lambda b: b.find_element("id", "map").get_attribute("data-whole") == "true", 120)
@@ -142,8 +143,9 @@ def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(pag
     give(page, "#hoop-inputs input[data-parameter=mu_static]", "0.6")
     shown = numbers(page)
     spec = tmp_path / "hoop.toml"
-    spec.write_text("scene.friction = 'coulomb'\nscene.mu_static = 0.6\ngait.settle = 100\ndesign.slope = '18 deg'\n" +
-                    page.find_element("id", "drawing-spec").text)
+    spec.write_text(
+        "scene.friction = 'coulomb'\nscene.mu_static = 0.6\ngait.settle = 100\ndesign.slope = '18 deg'\n" +
+        page.find_element("id", "drawing-spec").text)
     of_spec = json.loads(finished(PROGRAM, "hop", spec, "--json").stdout)
     assert shown["phase_sequence"] == of_spec["phase_sequence"] == "RSRSF"
     assert float(shown["jump_height"]) == pytest.approx(of_spec["jump_height"], rel=1e-9)
@@ -157,8 +159,10 @@ def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(pag
     assert page.find_element("id", "drawing-told").get_property("textContent") == told
 
 
-@pytest.mark.parametrize(("name", "value", "words"), [("ring.diameter", "-1", "diameter"), ("mass 1.at", "42", "41 mm"),
-                                                      ("mass 1.mass", "-2", "Mass 1"), ("ring.mass", "", "ring")])
+@pytest.mark.parametrize(("name", "value", "words"), [("ring.diameter", "-1", "diameter"),
+                                                      ("mass 1.at", "42", "41 mm"),
+                                                      ("mass 1.mass", "-2", "Mass 1"),
+                                                      ("ring.mass", "", "ring")])
 def test_a_drawing_of_what_is_no_hoop_is_refused_and_changes_nothing(name, value, words, page):
     show(page, [120, 60])
     before = numbers(page)

@@ -163,8 +163,9 @@ FLAGS = [(f"{key}={value}", key, value) for key, values in {
 PLACES = [("axis", 'slope={{from="1 deg",to="{}",count=3}}'), ("list", 'slope={{values=["{}"]}}'),
           ("tolerance", 'scatter.slope={{normal="{}"}}'), ("goal", 'goal.jump_angle={{at_least="{}"}}'),
           ("time", 'goal.jump_time={{at_most="{}"}}'), ("height", 'goal.jump_height={{at_least="{}"}}')]
-SPEC_TEXTS = [(text.format(value), text.split("=")[0].split(".")[-1], value) for (_, text), value in
-              itertools.product(PLACES, ("3 kg", "4 furlongss", "5 K", "x mm", "--3 deg", "2 mm mm", "1 200 mm"))]
+SPEC_TEXTS = [(text.format(value), text.split("=")[0].split(".")[-1], value)
+              for (_, text), value in itertools.product(PLACES, ("3 kg", "4 furlongss", "5 K", "x mm",
+                                                                 "--3 deg", "2 mm mm", "1 200 mm"))]
 
 
 def test_bad_units_and_bodies_are_a_line_each_with_key_value_and_what_is_allowed(drawing):
@@ -482,8 +483,8 @@ def test_a_miss_says_how_near_it_came(drawing):
 def test_newtons_of_a_map_are_of_each_design_s_own_mass(drawing, tmp_path):
     made, table = tmp_path / "m.h5", tmp_path / "m.csv"
     assert leapmap("sweep", drawing, "--hoop.slug.mass", '{from="40 g",to="160 g",count=5}', "--set",
-                   'slope="30 deg"', "--set", 'output.fields=["landing_impulse","max_normal_force"]', "-o", made,
-                   "--quiet").returncode == 0
+                   'slope="30 deg"', "--set", 'output.fields=["landing_impulse","max_normal_force"]', "-o",
+                   made, "--quiet").returncode == 0
     assert leapmap("export", made, "-o", table, "--units", "g N N.s", "--quiet").returncode == 0
     rows = list(csv.DictReader(table.open()))
     assert [float(row["hoop.slug.mass [g]"]) for row in rows] == pytest.approx([40, 70, 100, 130, 160])
@@ -528,8 +529,8 @@ def test_a_map_has_derivatives_by_what_the_drawing_gives(drawing, tmp_path):
 
 def test_a_design_found_is_shown_in_the_units_of_a_drawing(drawing):
     question = ("design", drawing, "--set", 'slope="30 deg"', "--hoop.slug.mass", '{from="40 g",to="160 g"}',
-                "--set", 'goal.jump_height={at_least="40 mm"}', "--set", "minimize=hoop.slug.mass", "--most", 1,
-                "--sample", 4096)
+                "--set", 'goal.jump_height={at_least="40 mm"}', "--set", "minimize=hoop.slug.mass", "--most",
+                1, "--sample", 4096)
     plain = leapmap(*question).stdout
     assert "0.333333 (40 mm)" in plain and " g)" in plain
     shown = leapmap(*question, "--units", "g mm N J")
@@ -548,7 +549,8 @@ def test_each_jump_of_a_sequence_has_a_landing_a_way_and_walls_of_its_own(drawin
     made = tmp_path / "m.h5"
     names = ["jump_range", "landing_normal_speed", "landing_impulse", "landing_energy_lost", "clears_from",
              "clears_to", "max_normal_force", "motor_max_spin"]
-    done = leapmap("sweep", drawing, "--set", 'slope="18 deg"', "--set", "jumps=3", "--set", 'clear_height="5 mm"', "--set",
+    done = leapmap("sweep", drawing, "--set", 'slope="18 deg"', "--set", "jumps=3", "--set",
+                   'clear_height="5 mm"', "--set",
                    f"output.fields={json.dumps([f'{n}_{k}' for n in names for k in (2, 3)])}", "--set",
                    'release_spin={values=[0]}', "-o", made, "--quiet")
     assert done.returncode == 0, done.stderr
@@ -559,7 +561,8 @@ def test_each_jump_of_a_sequence_has_a_landing_a_way_and_walls_of_its_own(drawin
             value = {name: m[f"{name}_{k}"][0] for name in names}
             assert all(np.isfinite(list(value.values()))), value
             assert 0 < value["clears_from"] < value["clears_to"] < value["jump_range"] + 1
-            assert value["landing_energy_lost"] > 0 and value["landing_impulse"] > value["landing_normal_speed"] * 0.1
+            assert value["landing_energy_lost"] > 0
+            assert value["landing_impulse"] > value["landing_normal_speed"] * 0.1
             assert value["max_normal_force"] > 1
         most = np.nanmax(t["normal_force"][:])
         assert max(m[f"max_normal_force_{k}"][0] for k in (2, 3)) <= most * (1 + 1e-3)
@@ -569,15 +572,17 @@ def test_the_diameter_is_an_axis_a_tolerance_and_free_as_any_number(drawing, tmp
     """Times grow with the root of the size, lengths with it, and weights sit where they sat, in mm."""
     made, table = tmp_path / "m.h5", tmp_path / "m.csv"
     quantities = '["jump_height","jump_time","landing_impulse"]'
-    done = leapmap("sweep", drawing, "--set", 'slope="30 deg"', "--hoop.diameter", '{from="100 mm",to="180 mm",count=5}',
-                   "--set", f"output.fields={quantities}", "--set", f"output.gradients={quantities}", "--set",
-                   "numerics.audit=1", "-o", made)
+    done = leapmap("sweep", drawing, "--set", 'slope="30 deg"', "--hoop.diameter",
+                   '{from="100 mm",to="180 mm",count=5}', "--set", f"output.fields={quantities}", "--set",
+                   f"output.gradients={quantities}", "--set", "numerics.audit=1", "-o", made)
     assert done.returncode == 0, done.stderr
     assert "0 flags differ" in done.stdout and "0 wrong" in done.stdout
     assert leapmap("export", made, "-o", table, "--units", "mm ms N.s", "--quiet").returncode == 0
     rows = list(csv.DictReader(table.open()))
     with h5py.File(made) as m:
-        by = {name: m[f"{name}_by_hoop.diameter"][:] for name in ("jump_height", "jump_time", "landing_impulse")}
+        by = {
+            name: m[f"{name}_by_hoop.diameter"][:] for name in ("jump_height", "jump_time", "landing_impulse")
+        }
     for k, row in enumerate(rows):
         mm = float(row["hoop.diameter [mm]"])
         one = {way: told(drawing, "--slope", "30deg", "--set", f"hoop.diameter={mm + way} mm")
@@ -588,11 +593,14 @@ def test_the_diameter_is_an_axis_a_tolerance_and_free_as_any_number(drawing, tmp
         assert float(row["landing_impulse [N.s]"]) == pytest.approx(
             0.158 * math.sqrt(9.81 * mm / 2000) * alone["landing_impulse"], rel=1e-12)
         for name, values in by.items():  # the differences' own errors are of the second order
-            assert values[k] == pytest.approx((one[1e-3][name] - one[-1e-3][name]) / 2e-6, rel=1e-5, abs=1e-5), name
-    found = json.loads(leapmap("design", drawing, "--set", 'slope="30 deg"', "--hoop.diameter",
-                               '{from="100 mm",to="180 mm"}', "--set", "minimize=jump_time", "--json", "--sample",
-                               4096).stdout)["designs"][0]
-    alone = told(drawing, "--slope", "30deg", "--set", f"hoop.diameter={found['parameters']['hoop.diameter']!r}")
+            assert values[k] == pytest.approx((one[1e-3][name] - one[-1e-3][name]) / 2e-6, rel=1e-5,
+                                              abs=1e-5), name
+    found = json.loads(
+        leapmap("design", drawing, "--set", 'slope="30 deg"', "--hoop.diameter",
+                '{from="100 mm",to="180 mm"}', "--set", "minimize=jump_time", "--json", "--sample",
+                4096).stdout)["designs"][0]
+    alone = told(drawing, "--slope", "30deg", "--set",
+                 f"hoop.diameter={found['parameters']['hoop.diameter']!r}")
     assert found["objectives"]["jump_time"] == pytest.approx(alone["jump_time"], rel=1e-9)
     again = json.loads(leapmap(*found["hop"].split()[1:], "--json").stdout)
     assert again["jump_time"] == pytest.approx(alone["jump_time"], rel=1e-9)
@@ -603,5 +611,6 @@ def test_the_diameter_is_an_axis_a_tolerance_and_free_as_any_number(drawing, tmp
     at_120 = by["jump_time"][1]
     assert sd == pytest.approx(abs(at_120) * 1e-3, rel=0.3), "to first order, but for the release's spin"
     for more in (("--set", 'clear_height="10 mm"'), ("--set", 'hop_height="6 mm"')):
-        refused = leapmap("sweep", drawing, "--hoop.diameter", '{from="100 mm",to="180 mm",count=5}', *more, "--dry-run")
+        refused = leapmap("sweep", drawing, "--hoop.diameter", '{from="100 mm",to="180 mm",count=5}', *more,
+                          "--dry-run")
         assert refused.returncode == 2 and "each hoop has its own" in refused.stderr
