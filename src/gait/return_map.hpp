@@ -44,7 +44,7 @@ struct Orbit {
   double multiplier = 0.0;  ///< the largest eigenvalue by size of the return map's derivative round the orbit
   double height = 0.0;      ///< mean of the jumps [hoop diameters]
   double speed = 0.0;       ///< of the hoop's centre down the plane [m/s]
-  double jump_time = 0.0;    ///< from one jump to the next [s]
+  double jump_time = 0.0;   ///< from one jump to the next [s]
   double energy_lost = 0.0;  ///< a jump, over (m + m_p) g R
 };
 

@@ -55,13 +55,13 @@ std::string phase_letters(std::uint64_t sequence);
 /// One jump of a sequence: lift-off, flight and landing. NaN: does not apply, or was not requested.
 struct Jump {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  double height = none;         ///< of the apex above the plane [hoop diameters]
-  double time = none;           ///< from release to lift-off [s]
-  double angle = none;          ///< phi at lift-off [rad]
-  double spin = none;           ///< w at lift-off [sqrt(g/R)]
-  double distance = none;       ///< travelled by the hoop's centre from release to lift-off [R]
-  double flight_time = none;    ///< from lift-off to landing [s]
-  double landing_spin = none;   ///< w after the landing [sqrt(g/R)]
+  double height = none;        ///< of the apex above the plane [hoop diameters]
+  double time = none;          ///< from release to lift-off [s]
+  double angle = none;         ///< phi at lift-off [rad]
+  double spin = none;          ///< w at lift-off [sqrt(g/R)]
+  double distance = none;      ///< travelled by the hoop's centre from release to lift-off [R]
+  double flight_time = none;   ///< from lift-off to landing [s]
+  double landing_spin = none;  ///< w after the landing [sqrt(g/R)]
   // As those of Outcome:
   double range = none, landing_normal_speed = none, landing_tangential_speed = none, landing_impulse = none,
          landing_energy_lost = none;
