@@ -5,6 +5,7 @@ const RING = [["diameter", "outer diameter [mm]", 1e-3], ["mass", "mass of the r
   ["inertia", "its moment of inertia [kg m²]; empty: a thin ring", 1]];
 const WEIGHT = [["mass", "mass [g]", 1e-3], ["at", "from the axis [mm]", 1e-3],
   ["angle", "angle [°]", Math.PI / 180], ["inertia", "own inertia [kg m²]", 1]];
+const RATIOS = ["mass_ratio", "offset_ratio", "inertia_factor"];
 const NEW_WEIGHT = { mass: 0.02, at: 0, angle: 0, inertia: 0 };
 
 /** In words: "0.12:0.061:0.00019;0.085:0.047:0:0": the ring's numbers, then each mass's, in SI. */
@@ -24,7 +25,7 @@ function drawingOf(word) {
 
 /** What no hoop can have, in words; null: nothing. */
 function wrongIn({ ring, weights }) {
-  if (!(ring.diameter > 2e-9 && ring.diameter <= 1e6)) return "The diameter must be above 0.";
+  if (!(ring.diameter > 2e-9 && ring.diameter <= 200)) return "The diameter must be above 0, up to 200 m.";
   if (!(ring.mass > 1e-9 && ring.mass <= 1e6)) return "The mass of the ring must be above 0.";
   if (!(Number.isNaN(ring.inertia) || ring.inertia >= 0))
     return "The ring's moment of inertia must be empty, 0 or more.";
@@ -55,8 +56,7 @@ function drawingPart(solver, changed) {
   /** Takes what is typed, and says what is wrong with it. */
   function take(drawing) {
     const wrong = wrongIn(drawing), body = wrong ? null : solver.reduce(drawing);
-    const beyond = body && ["mass_ratio", "offset_ratio", "inertia_factor"]
-      .find((name) => !(body[name] >= solver.ranges[name][0] && body[name] <= solver.ranges[name][1]));
+    const beyond = body && RATIOS.find((name) => !(body[name] >= solver.ranges[name][0] && body[name] <= solver.ranges[name][1]));
     notice(wrong ?? (beyond ? `This hoop's ${beyond.replace("_", " ")} is ${short(body[beyond])}, which is ` +
       `not between ${solver.ranges[beyond].map((v) => short(v)).join(" and ")}.` : ""));
     if (wrong || beyond) return;
@@ -72,6 +72,12 @@ function drawingPart(solver, changed) {
       `${short(1000 * body.eccentricity * R, 4)} mm from the axis; moment of inertia about the axis ` +
       `${short(body.inertia * body.total_mass * R * R, 4)} kg m²`;
     element("drawing-spec").textContent = specOf(now.drawing);
+  }
+
+  /** The inputs stay as they were typed. */
+  function forget() {
+    now.drawing = null;
+    element("drawing-told").textContent = element("drawing-spec").textContent = "";
   }
 
   function input(part, [name, words, unit], label) {
@@ -116,10 +122,20 @@ function drawingPart(solver, changed) {
   show(paperHoop());
 
   return {
+    /** The hoop shown is another: the drawing is none of it any more. */
+    follow(design) {
+      if (!now.drawing) return;
+      const body = solver.reduce(now.drawing);
+      const same = RATIOS.every((name) => design[name] === body[name])
+        && Math.abs(design.radius / now.drawing.ring.diameter * 2 - 1) < 1e-9;
+      if (!same) forget();
+    },
     write(words) { if (now.drawing) words.set("drawing", drawingWord(now.drawing)); },
     /** The hoop itself is told by other words. */
     read(words) {
+      forget();
       now.drawing = drawingOf(words.get("drawing"));
+      if (!now.drawing) show(paperHoop());
       if (words.has("drawing") && !now.drawing)
         notice("The address describes a drawing that is not possible.");
       if (now.drawing) { show(now.drawing); tell(solver.reduce(now.drawing)); }

@@ -37,7 +37,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   });
   const showInputs = hoopInputs(map, solver, (design) => typed(design)),
     showGradient = gradientPart(map, solver);
-  addressPart(drawingPart(solver, (body) => {
+  const drawing = drawingPart(solver, (body) => {
     const { radius: R, total_mass: kg, mass_ratio, offset_ratio, inertia_factor } = body;
     mass.value = Number((1000 * kg).toPrecision(12));
     chosen.mass = units.mass = kg;
@@ -46,7 +46,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     typed({ ...(now.design ?? { ...map.fixed, ...map.paper }), mass_ratio, offset_ratio, inertia_factor },
       "One hoop: from a drawing");
     otherUnits();
-  }));
+  });
+  addressPart(drawing);
 
   const pins = pinsPart(map, solver, (design) => commandPieces(design).join(" "),
     () => { if (now.story) haunt(); pinned(); noteAddress(); });
@@ -160,6 +161,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     showGaits(design);
     showInputs(design);
     showGradient(design);
+    drawing.follow(design);
   }
 
   const goalsOfHoops = () => (map.live ? map.hoopGoals() : map.goals);

@@ -13,9 +13,11 @@
 #include "leapmap/errors.hpp"
 #include "map/hdf5.hpp"
 #include "model/fields.hpp"
+#include "model/variable.hpp"
 #include "numerics/mixed.hpp"
 #include "referee/referee.hpp"
 #include "request/solver.hpp"
+#include "spec/designs.hpp"
 #include "spec/options.hpp"
 #include "trajectory/later_jump.hpp"
 #include "trajectory/units.hpp"
@@ -127,6 +129,60 @@ Solver retry_solver(const MapReader& map, const Spec& spec) {
 
 }  // namespace
 
+namespace {
+
+/// The derivatives by the ratios, which a map lacks that has those by numbers of [hoop], solved again; NaN
+/// where the map's do not follow from them.
+void derive_by_ratios(const MapReader& map, const Request& request, const Tile& tile,
+                      const DesignSpace& space, const std::vector<std::size_t>& drawn,
+                      std::span<const Design> designs, Gradients& solved) {
+  std::vector<Outcome> outcomes(designs.size());
+  make_gradient_solver(request)(designs, outcomes, solved);
+  std::vector<Body> bodies(drawn.size(), request.hoop.value_or(Body{}));
+  Design unused;
+  for (std::size_t i = 0; i < drawn.size() && space.varies_body(); ++i)
+    space.fill(tile, drawn[i], {&unused, 1}, {&bodies[i], 1});
+  constexpr double near = 1e-9;  // roundings of the chain rule, and of f4 more
+  for (const Field* column : request.columns) {
+    const auto* derivative = std::get_if<Derivative>(&column->source);
+    if (!derivative || derivative->by) continue;
+    const Variable variable = *find_variable(derivative->hoop, &bodies[0]);
+    const std::vector<double> stored = map.read(std::string(column->name), tile);
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      Design by;
+      for (double Design::*ratio : body_ratios) by.*ratio = solved.column(derivative->of, ratio)[i];
+      const double value = derivative->of.of(outcomes[i]),
+                   right = variable.derivative(by, bodies[i], grows_with_size(derivative->of) ? value : 0.0);
+      const double single = stored[drawn[i]] == static_cast<float>(stored[drawn[i]]) ? 1e-6 : 0.0;
+      if (std::abs(stored[drawn[i]] - right) <= (near + single) * (1.0 + std::abs(right))) continue;
+      if (std::isnan(stored[drawn[i]]) && std::isnan(right)) continue;
+      solved.scale(derivative->of, i, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
+/// What the map has of the derivatives that are compared.
+void read_gradients(const MapReader& map, const Spec& spec, const Tile& tile,
+                    const std::vector<std::size_t>& drawn, std::span<const Design> designs,
+                    std::vector<AuditSample>& samples) {
+  const Request request = request_of(spec);
+  const GradientWanted derivatives = derivatives_of(request);
+  Gradients solved(derivatives);
+  if (derives_by_body(request))
+    derive_by_ratios(map, request, tile, DesignSpace(spec), drawn, designs, solved);
+  for (const auto of : derivatives.of)
+    for (const std::size_t by : derivatives.by) {
+      const std::string name(find_gradient(of, differentiable[by])->name);
+      const bool is_stored = map.has(name);
+      const std::vector<double> values = is_stored ? map.read(name, tile) : std::vector<double>{};
+      for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i].gradient.push_back(is_stored ? values[drawn[i]]
+                                                : solved.column(of, differentiable[by])[i]);
+    }
+}
+
+}  // namespace
+
 std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, double share,
                                        const Tiling& tiling, const Tile& tile, const Solver& solve) {
   const std::vector<std::size_t> drawn = audit_draw(share, tiling, tile);
@@ -149,15 +205,7 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
       if (gave_up[i]) retry({&designs[i], 1}, {&outcomes[i], 1});
   }
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].outcome = std::move(outcomes[i]);
-  const GradientWanted derivatives = derivatives_of(request_of(spec));
-  const bool by_ratios = !derives_by_body(request_of(spec));  // else the map lacks some
-  for (const auto of : derivatives.of)
-    for (const std::size_t by : derivatives.by) {
-      if (samples.empty() || !by_ratios) continue;
-      const std::vector<double> values =
-          map.read(std::string(find_gradient(of, differentiable[by])->name), tile);
-      for (std::size_t i = 0; i < samples.size(); ++i) samples[i].gradient.push_back(values[drawn[i]]);
-    }
+  if (!samples.empty()) read_gradients(map, spec, tile, drawn, designs, samples);
   if (retried)
     for (std::size_t i = 0; i < samples.size(); ++i)
       if (gave_up[i]) samples[i].gradient.clear();

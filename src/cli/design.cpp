@@ -60,9 +60,9 @@ struct Report {
   /// Before the search, not after it.
   void refuse_unusable() {
     scale_to(question.values(std::vector<double>(question.dimensions(), 0.5)));
-    for (const FreeParameter& one : question.free) units.of(one.name);
-    for (const Field* field : fields_of(question.one.scene)) units.of(*field);
-    units.refuse_unused();
+    std::vector<std::string> names;
+    for (const FreeParameter& one : question.free) names.push_back(one.name);
+    units.refuse_unusable(question.one.scene, names);
   }
   /// free: the values of the free parameters.
   void scale_to(std::span<const double> free) { units.scale(scales_at(question, free)); }
@@ -273,6 +273,8 @@ int run(const DesignArguments& arguments) {
   const Question question = question_of(spec);
   Report report{question, ShownUnits(arguments.units, scales_of(spec.scene))};
   report.refuse_unusable();
+  if (arguments.json && !arguments.units.empty())
+    throw InputError("--units has no effect with --json; allowed: one of them");
   const std::string map = behind_links(arguments.output.empty() ? spec.output.file : arguments.output);
   const std::array inputs{NamedPath{"SPEC", arguments.spec}, NamedPath{"design.points", spec.points}};
   const std::array outputs{NamedPath{"-o", map, true}, NamedPath{"--csv", arguments.csv}};

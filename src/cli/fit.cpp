@@ -237,6 +237,9 @@ int run(const FitArguments& arguments) {
   }
   const Spec spec = read_given_spec(arguments.spec, overrides);
   ShownUnits units(arguments.units, scales_of(spec.scene));
+  units.refuse_unusable(spec.scene);
+  if (arguments.json && !arguments.units.empty())
+    throw InputError("--units has no effect with --json; allowed: one of them");
   tell_fitted_anew(spec);
   const std::array inputs{NamedPath{"DATA", arguments.data}, NamedPath{"SPEC", arguments.spec}};
   const std::array outputs{NamedPath{"--csv", arguments.csv}};

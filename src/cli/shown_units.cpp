@@ -99,6 +99,12 @@ std::string ShownUnits::lines_of(const Outcome& outcome, const Scene& scene) {
   return lines;
 }
 
+void ShownUnits::refuse_unusable(const Scene& scene, const std::vector<std::string>& parameters) {
+  for (const std::string& parameter : parameters) of(parameter);
+  for (const Field* field : fields_of(scene)) of(*field);
+  refuse_unused();
+}
+
 void ShownUnits::refuse_unused() const {
   for (std::size_t k = 0; k < units_.size(); ++k)
     if (!used_[k])

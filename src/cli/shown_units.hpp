@@ -36,6 +36,8 @@ class ShownUnits {
   std::string told(double value, std::string_view parameter);
   /// A line for each number of an outcome, in the units asked for.
   std::string lines_of(const Outcome& outcome, const Scene& scene);
+  /// Throws InputError if a unit fits neither a field of the scene nor one of these parameters.
+  void refuse_unusable(const Scene& scene, const std::vector<std::string>& parameters = {});
   /// Throws InputError if a unit has fitted nothing.
   void refuse_unused() const;
 

@@ -54,7 +54,7 @@ class Chain {
   }
 
   /// Asks for what the way to the jump asks of hoop and motor.
-  void follow_way() { meter_.emplace(hoop_); }
+  void follow_way() { meter_.emplace(hoop_, at_.spin); }
 
   /// put(quantity, value, unit) takes what is known; a chain that breaks puts no more, and returns false.
   template <class Put>

@@ -13,8 +13,7 @@ namespace {
 /// Up to the lift-off that is the jump.
 Way<double> way_of(const RecordedWay& recorded, const Hoop<double>& hoop, const Contact<double>& contact,
                    const SlidingPanels<double>& panels) {
-  WayMeter<double> meter(hoop);
-  meter.meet_spin(recorded.phases.front().at.spin);
+  WayMeter<double> meter(hoop, recorded.phases.front().at.spin);
   std::size_t flight = 0, slide = 0;
   for (std::size_t k = 0; k + 1 < recorded.phases.size(); ++k) {
     const RecordedWay::Begun& begun = recorded.phases[k];

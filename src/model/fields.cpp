@@ -275,10 +275,11 @@ namespace {
 
 std::string unit_of_derivative(std::string_view of, std::string_view by) {
   if (of == by) return "1";
-  std::string inverse = by == "kg m2" ? "kg-1 m-2" : std::string(by) + "-1";
-  if (by != "rad" && by != "kg" && by != "m" && by != "kg m2")
-    return std::string(of);  // a pure number, or one that is told in words
-  return of == "1" ? inverse : std::string(of) + " " + inverse;
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> inverses{
+      {{"rad", "rad-1"}, {"kg", "kg-1"}, {"m", "m-1"}, {"kg m2", "kg-1 m-2"}}};
+  for (const auto& [unit, inverse] : inverses)
+    if (by == unit) return std::string(of == "1" ? "" : of) + (of == "1" ? "" : " ") + std::string(inverse);
+  return std::string(of);  // by a pure number, or one that is told in words
 }
 
 struct GradientTable {
@@ -333,12 +334,12 @@ const Field* find_body_gradient(const OutcomeNumber& of, std::string_view key) {
   };
   static std::mutex mutex;
   static std::map<std::string, Row, std::less<>> rows;
-  const Field* field = nullptr;
-  for (const std::span<const Field> some : {map_fields(), jump_fields()})
-    for (const Field& each : some)
-      if (can_be_differentiated(each) && number_of(each) == of) field = &each;
+  const auto all = of.jump == 1 ? map_fields() : jump_fields();
+  const auto field = std::find_if(all.begin(), all.end(), [&](const Field& each) {
+    return can_be_differentiated(each) && number_of(each) == of;
+  });
   const BodyNumber* number = find_body_number(key);
-  if (!field || !number) return nullptr;
+  if (field == all.end() || !number) return nullptr;
   std::string name = std::string(field->name) + "_by_" + std::string(key);
   const std::lock_guard lock(mutex);
   const auto [at, is_new] = rows.try_emplace(name);

@@ -11,6 +11,7 @@
 #include "trajectory/clearance.hpp"
 #include "trajectory/sequence.hpp"
 #include "trajectory/units.hpp"
+#include "trajectory/way.hpp"
 
 namespace leapmap {
 
@@ -33,6 +34,27 @@ Wanted wanted_of(const Request& request) {
   for (const Field* column : request.columns)
     if (column->needs) wanted.*column->needs = true;
   return wanted;
+}
+
+/// Whether two solutions make the same jump, as far as errors let them.
+bool is_same(const Jump& a, const Jump& b) {
+  constexpr double near = 1e-6;
+  return std::abs(a.distance - b.distance) <= near * (1.0 + std::abs(a.distance)) &&
+         std::abs(a.height - b.height) <= near;
+}
+
+/// What `again` has of walls and ways, of as many jumps as both make alike.
+void take_measures(const Outcome& again, bool clears, bool ways, Outcome& outcome) {
+  std::size_t alike = 0;
+  const std::size_t most = std::min(outcome.later_jumps.size(), again.later_jumps.size());
+  while (alike < most && is_same(outcome.later_jumps[alike], again.later_jumps[alike])) ++alike;
+  for (const JumpRow& row : jump_rows) {
+    const bool is_wall = row.first == &Outcome::clears_from || row.first == &Outcome::clears_to;
+    if (!(is_wall ? clears : ways && is_of_way(row.first))) continue;
+    outcome.*row.first = again.*row.first;
+    for (std::size_t k = 0; k < alike; ++k)
+      outcome.later_jumps[k].*row.later = again.later_jumps[k].*row.later;
+  }
 }
 
 /// Fills in where walls may stand and what the way to each jump asks: every jump is solved once more, but for
@@ -62,21 +84,16 @@ Solver jump_measures(const Request& request) {
       next(start, designs, states, outcomes);
       find_clearances(scene, designs, outcomes);
     };
-  return [scene, sequences = std::make_shared<Sequences<double>>(next), again = std::vector<Outcome>()](
-             std::span<const Design> designs, std::span<Outcome> outcomes) mutable {
-    again.assign(designs.size(), {});
-    sequences->solve(designs, scene, again);
-    for (std::size_t i = 0; i < designs.size(); ++i) {
-      if (outcomes[i].status != Status::jumped || !same_flags(again[i], outcomes[i])) continue;
-      auto &ours = outcomes[i].later_jumps, &theirs = again[i].later_jumps;
-      for (const JumpRow& row : jump_rows) {
-        if (!std::isnan(outcomes[i].*row.first)) continue;
-        outcomes[i].*row.first = again[i].*row.first;
-        for (std::size_t k = 0; k < std::min(ours.size(), theirs.size()); ++k)
-          ours[k].*row.later = theirs[k].*row.later;
-      }
-    }
-  };
+  return
+      [scene, clears, ways, sequences = std::make_shared<Sequences<double>>(next),
+       again = std::vector<Outcome>()](std::span<const Design> designs, std::span<Outcome> outcomes) mutable {
+        again.assign(designs.size(), {});
+        sequences->solve(designs, scene, again);
+        for (std::size_t i = 0; i < designs.size(); ++i) {
+          if (outcomes[i].status != Status::jumped || !same_flags(again[i], outcomes[i])) continue;
+          take_measures(again[i], clears, ways, outcomes[i]);
+        }
+      };
 }
 
 /// And the derivatives of what clearances follow from.

@@ -13,8 +13,7 @@ namespace leapmap {
 /// whichever way the hoop rolls. spin: at the release.
 template <class S>
 Way<S> way_to(const Roll<S>& roll, const S& spin, const FoundLiftOffs& found, const S& end) {
-  WayMeter<S> meter(roll.hoop);
-  meter.meet_spin(spin);
+  WayMeter<S> meter(roll.hoop, spin);
   meter.roll(roll, spin, std::span(found.turns).first(found.legs.back()), end);
   return meter.way();
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "map/hdf5_trust.hpp"
+#include "model/fields.hpp"
 #include "model/model.hpp"
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
@@ -75,10 +76,23 @@ std::optional<std::string> body_difference(const Spec& there, const Spec& here) 
   return {};
 }
 
+/// What maps of that minor version of the format hold by default, as if it were named.
+void name_defaults(std::int64_t minor, Spec& spec) {
+  if (minor >= 14) return;
+  if (spec.output.fields.empty() && spec.scene.settle > 0)
+    for (const Field* field : fields_of(spec.scene))
+      if (field->by_default == ByDefault::stored && field->since <= minor)
+        spec.output.fields.emplace_back(field->name);
+  if (spec.hoop && !spec.output.gradients.empty() && spec.output.gradients_by.empty())
+    for (const Option* parameter : design_parameters(spec))
+      spec.output.gradients_by.emplace_back(parameter->key);
+}
+
 }  // namespace
 
 Spec spec_of(const MapReader& map, const std::string& origin) {
   Spec spec = parse_map_spec(map.attribute("spec"), origin);
+  name_defaults(hdf5::read_integers(map.file(), "version")[1], spec);
   if (!spec.axes.empty()) return spec;
   spec.list = {spec.points, {}, map.labels(), map.shape()[0]};
   const Tile all{{0}, {spec.list.count}, spec.list.count};

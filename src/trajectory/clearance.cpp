@@ -104,7 +104,8 @@ Extreme largest_below(const Passage<double>& passage, double side, double from, 
   if (!(pieces < most_pieces)) return {HUGE_VAL, from};
   Extreme most{-HUGE_VAL, from};
   for (double k = 0.0; k < pieces; ++k) {
-    const double a = from + (to - from) * k / pieces, b = from + (to - from) * (k + 1.0) / pieces;
+    const double a = from + (to - from) * k / pieces,
+                 b = k + 1.0 < pieces ? from + (to - from) * (k + 1.0) / pieces : to;  // to the last digit
     const bool rises = passage.climb(a) > 0.0;
     double turn = b;
     if (rises != (passage.climb(b) > 0.0))

@@ -71,8 +71,9 @@ void take_larger(S& most, const S& value) {
 /// Of a roll, at an angle.
 template <class S>
 S vis_viva_at(const Roll<S>& roll, const S& angle, const Trig<S>& phi) {
-  const S E = vis_viva(roll, angle, phi);
-  return E > S(0.0) ? E : S(0.0);
+  S E = vis_viva(roll, angle, phi);
+  if (E < S(0.0)) E -= S(value_of(E));  // a rounding; its rate is none
+  return E;
 }
 template <class S>
 S force_at(const Roll<S>& roll, const S& angle) {
@@ -109,7 +110,9 @@ S kink_at_zero_of(const S& number) {
 }  // namespace
 
 template <class S>
-WayMeter<S>::WayMeter(const Hoop<S>& hoop) : hoop_(hoop), turns_on_(any_aloft(hoop)) {}
+WayMeter<S>::WayMeter(const Hoop<S>& hoop, const S& spin) : hoop_(hoop), turns_on_(any_aloft(hoop)) {
+  meet_spin(spin);
+}
 
 template <class S>
 void WayMeter<S>::meet_spin(const S& spin) {
@@ -143,7 +146,9 @@ void WayMeter<S>::roll_on(const Roll<S>& roll, const S& from, const S& spin, con
   const auto angle_at = [&](double place) { return place == first ? from : place == last ? to : S(place); };
   const S way(ahead ? 1.0 : -1.0);
   const auto spin_at = [&](double place) {
-    return place == first ? spin : way * sqrt(spin_squared_at(roll, angle_at(place)));
+    if (place == first) return spin;
+    const S square = spin_squared_at(roll, angle_at(place));
+    return square > S(0.0) ? way * sqrt(square) : S(0.0);
   };
   take_larger(way_.normal_force, force_at(roll, angle_at(place_of(1.0, force_at<Rated>))));
   meet_spin(spin_at(place_of(1.0, spin_squared_at<Rated>)));

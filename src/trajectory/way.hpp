@@ -59,7 +59,8 @@ struct ForceAndSpin {
 template <class S>
 class WayMeter {
  public:
-  explicit WayMeter(const Hoop<S>& hoop);
+  /// spin: with which the way begins.
+  WayMeter(const Hoop<S>& hoop, const S& spin);
 
   /// Rolling from where the roll begins, with that spin, to an angle, turning round at `turns`, in order.
   void roll(const Roll<S>& roll, const S& spin, std::span<const double> turns, const S& to);
@@ -68,8 +69,6 @@ class WayMeter {
              const std::function<ForceAndSpin<S>(double)>& at);
   /// One place of a slide.
   void meet(const ForceAndSpin<S>& at);
-  /// A spin that it has.
-  void meet_spin(const S& spin);
   /// A flight, in which a motor that is on turns the hoop steadily.
   void fly(const S& spin, const S& time);
   /// The motor turned the hoop so far.
@@ -78,6 +77,7 @@ class WayMeter {
   const Way<S>& way() const { return way_; }
 
  private:
+  void meet_spin(const S& spin);
   void roll_on(const Roll<S>& roll, const S& from, const S& spin, const S& to);
 
   Hoop<S> hoop_;

@@ -11,8 +11,8 @@ namespace leapmap::web {
 namespace {
 
 /// What is reduced: diameter, mass and inertia of the ring, then mass, at, angle and inertia of each weight.
-std::vector<double> numbers;
 constexpr std::size_t of_ring = 3, of_weight = 4;
+std::vector<double> numbers(of_ring);
 /// What it comes to, in this order.
 constexpr std::array reduced_names{"total_mass",   "eccentricity",   "inertia",  "mass_ratio",
                                    "offset_ratio", "inertia_factor", "direction"};

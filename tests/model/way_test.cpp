@@ -31,6 +31,7 @@ INSTANTIATE_TEST_SUITE_P(BothModels, Ways, ::testing::Values(Friction::sticking,
 Design random_design(std::mt19937_64& random, Friction friction) {
   Design design = testing::either_way(random, friction);
   if (random() % 2 == 0) design.drive_torque = uniform(random, -0.8, 0.8);
+  if (random() % 3 == 0) design.release_spin = 0.0;
   return design;
 }
 
@@ -67,6 +68,30 @@ TEST_P(Ways, HaveTheMaximaThatAFineTraceComesNearTo) {
     }
   }
   EXPECT_GT(jumps, 3);
+}
+
+/// The largest force is 6.5 ms after the release, where the spin has no rate by the angle.
+TEST(WaysFromRest, HaveTheMaximumJustAfterTheRelease) {
+  Scene scene;
+  scene.hop_height = 0.0, scene.runway = 8.0;
+  const Design design{.slope = 0.5929345339421771,
+                      .mass_ratio = 16.66888738301438,
+                      .offset_ratio = 0.9795358578478384,
+                      .inertia_factor = 0.5364811938311462,
+                      .release_angle = 0.31380181583088884,
+                      .drive_torque = 0.3987155562627727};
+  double force = 0.0;
+  for (const MotionPoint& at : trace(design, scene, {.interval = 1e-5}).points)
+    if (at.t < 0.02) force = std::max(force, at.normal_force);
+  const Outcome o = solve(design, scene);
+  EXPECT_GE(o.max_normal_force, force * (1.0 - 1e-14));
+  EXPECT_NEAR(o.max_normal_force, force, 1e-8);  // quadratic in what lies between two samples
+  const double h = 1e-5;
+  Design above = design, below = design;
+  above.release_angle += h, below.release_angle -= h;
+  const double difference =
+      (solve(above, scene).max_normal_force - solve(below, scene).max_normal_force) / (2.0 * h);
+  EXPECT_NEAR(gradient(design, &Outcome::max_normal_force, scene).release_angle, difference, 1e-6);
 }
 
 /// Of later jumps: never below a fine trace from the landing before, and hardly above it; and walls that they
