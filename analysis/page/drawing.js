@@ -56,7 +56,8 @@ function drawingPart(solver, changed) {
   /** Takes what is typed, and says what is wrong with it. */
   function take(drawing) {
     const wrong = wrongIn(drawing), body = wrong ? null : solver.reduce(drawing);
-    const beyond = body && RATIOS.find((name) => !(body[name] >= solver.ranges[name][0] && body[name] <= solver.ranges[name][1]));
+    const beyond = body && RATIOS.find((name) =>
+      !(body[name] >= solver.ranges[name][0] && body[name] <= solver.ranges[name][1]));
     notice(wrong ?? (beyond ? `This hoop's ${beyond.replace("_", " ")} is ${short(body[beyond])}, which is ` +
       `not between ${solver.ranges[beyond].map((v) => short(v)).join(" and ")}.` : ""));
     if (wrong || beyond) return;
