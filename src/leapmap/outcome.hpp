@@ -54,20 +54,25 @@ std::string phase_letters(std::uint64_t sequence);
 
 /// One jump of a sequence: lift-off, flight and landing. NaN: does not apply, or was not requested.
 struct Jump {
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  double height = none;        ///< of the apex above the plane [hoop diameters]
-  double time = none;          ///< from release to lift-off [s]
-  double angle = none;         ///< phi at lift-off [rad]
-  double spin = none;          ///< w at lift-off [sqrt(g/R)]
-  double distance = none;      ///< travelled by the hoop's centre from release to lift-off [R]
-  double flight_time = none;   ///< from lift-off to landing [s]
-  double landing_spin = none;  ///< w after the landing [sqrt(g/R)]
-  // As those of Outcome:
-  double range = none, landing_normal_speed = none, landing_tangential_speed = none, landing_impulse = none,
-         landing_energy_lost = none;
-  double clears_from = none, clears_to = none;
-  // On the way from the landing before to the lift-off of this jump, as those of Outcome:
-  double max_normal_force = none, motor_energy = none, motor_max_power = none, motor_max_spin = none;
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();  ///< a number that does not apply
+  double height = none;                    ///< of the apex above the plane [hoop diameters]
+  double time = none;                      ///< from release to lift-off [s]
+  double angle = none;                     ///< phi at lift-off [rad]
+  double spin = none;                      ///< w at lift-off [sqrt(g/R)]
+  double distance = none;                  ///< travelled by the hoop's centre from release to lift-off [R]
+  double flight_time = none;               ///< from lift-off to landing [s]
+  double landing_spin = none;              ///< w after the landing [sqrt(g/R)]
+  double range = none;                     ///< travel of the centre from lift-off to landing [R]
+  double landing_normal_speed = none;      ///< as Outcome::landing_normal_speed
+  double landing_tangential_speed = none;  ///< as Outcome::landing_tangential_speed
+  double landing_impulse = none;           ///< as Outcome::landing_impulse
+  double landing_energy_lost = none;       ///< as Outcome::landing_energy_lost
+  double clears_from = none;               ///< as Outcome::clears_from
+  double clears_to = none;                 ///< as Outcome::clears_to
+  double max_normal_force = none;          ///< on the way from the landing before [(m + m_p) g]
+  double motor_energy = none;              ///< on that way, as Outcome::motor_energy
+  double motor_max_power = none;           ///< on that way, as Outcome::motor_max_power
+  double motor_max_spin = none;            ///< on that way, as Outcome::motor_max_spin
 };
 
 /// Largest number of jumps that a scene may ask for.
