@@ -149,11 +149,11 @@ class Referee::Slipping {
     begin(Phase::flight);
     const bool jumps = referee_.count_lift_off(flown);
     if (jumps && referee_.meets_forces) outcome_.motor_energy = driven_ / (weight * R);
-    if (!jumps && referee_.meets_forces && body_.turn != 0.0) {
+    if (!jumps && referee_.meets_forces) {  // a hop: its spin may be the largest, whoever turns it
       const double ends = at_.spin + body_.turn * flown.landing_time;
       for (const double spin : {at_.spin, ends}) {
         referee_.spin_ = std::max(referee_.spin_, std::abs(spin));
-        referee_.power_ = std::max(referee_.power_, body_.motor * spin);
+        if (body_.turn != 0.0) referee_.power_ = std::max(referee_.power_, body_.motor * spin);
       }
     }
     if (jumps) outcome_.energy_lost = (released_ + driven_ - energy(body_, at_)) / (weight * R);
