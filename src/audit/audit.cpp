@@ -127,10 +127,6 @@ Solver retry_solver(const MapReader& map, const Spec& spec) {
   return make_solver(request);
 }
 
-}  // namespace
-
-namespace {
-
 /// The derivatives by the ratios, which a map lacks that has those by numbers of [hoop], solved again; NaN
 /// where the map's do not follow from them.
 void derive_by_ratios(const MapReader& map, const Request& request, const Tile& tile,

@@ -43,13 +43,14 @@ AuditSolver SequenceAuditor::second(std::size_t jumps) const {
 double SequenceAuditor::error_of(const Outcome& ours, const Outcome& theirs, std::size_t jump,
                                  bool stored_only) const {
   double most = 0.0;
-  for (const Field* field : fields_of(scene_)) {
-    const auto* later = std::get_if<OfJump>(&field->source);
-    if (!later || later->number.jump != jump || field->of_wall || field->of_way) continue;
-    if ((stored_only || field->by_default != ByDefault::stored) && !stores(spec_.output, *field)) continue;
-    const double x = later->number.of(ours), y = later->number.of(theirs);
+  const std::size_t each = jump_fields().size() / static_cast<std::size_t>(most_jumps - 1);
+  for (const Field& field : jump_fields().subspan((jump - 2) * each, each)) {
+    const auto& later = std::get<OfJump>(field.source);
+    if (field.of_wall || field.of_way) continue;
+    if ((stored_only || field.by_default != ByDefault::stored) && !stores(spec_.output, field)) continue;
+    const double x = later.number.of(ours), y = later.number.of(theirs);
     if (std::isnan(x) && std::isnan(y)) continue;
-    const double size = (later->measure == Measure::time ? 0.0 : 1.0) + std::abs(y);
+    const double size = (later.measure == Measure::time ? 0.0 : 1.0) + std::abs(y);
     most =
         std::max(most, std::isnan(x - y) ? std::numeric_limits<double>::infinity() : std::abs(x - y) / size);
   }

@@ -97,7 +97,7 @@ double stored_number(const Field& field, const Outcome& outcome);
 /// hoops as made.
 std::span<const Field> map_fields();
 
-/// jump_height_2, jump_time_2, jump_height_3 and so on.
+/// jump_height_2, jump_time_2 and so on: the same fields for each jump, those of jump 2 first.
 std::span<const Field> jump_fields();
 
 /// Those of both that a scene has.

@@ -99,19 +99,20 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
   }
 }
 
-/// Looks at a step in equal parts, and closes in on the largest force and spin by thirds.
+/// Looks at a step in equal parts, and closes in on the largest force, spin and power by thirds.
 void Referee::meet(const Mode& mode, double end) {
   constexpr int parts = 8;
   struct Look {
-    double force, speed;
+    double force, speed, power;
   };
   const auto look = [&](double tau) {
     Y y = integrator_.step().y0;
     if (tau > 0.0) integrator_.retake(tau, y);
     const Motion at = motion_of(y);
-    const Look here{forces_of(system_.body, mode, at).normal, std::abs(at.spin)};
+    const Look here{forces_of(system_.body, mode, at).normal, std::abs(at.spin),
+                    system_.body.motor * at.spin};
     force_ = std::max(force_, here.force), spin_ = std::max(spin_, here.speed);
-    power_ = std::max(power_, system_.body.motor * at.spin);
+    power_ = std::max(power_, here.power);
     return here;
   };
   std::array<Look, parts + 1> looks;
@@ -131,6 +132,7 @@ void Referee::meet(const Mode& mode, double end) {
   const auto most = [&](double Look::*of) { return std::ranges::max(looks, {}, of).*of; };
   if (most(&Look::force) > 0.8 * force_) close_in(&Look::force);
   if (most(&Look::speed) > 0.99 * spin_) close_in(&Look::speed);
+  if (most(&Look::power) > power_ - 0.01 * std::abs(power_)) close_in(&Look::power);
 }
 
 Outcome Referee::solve(const Design& design) {

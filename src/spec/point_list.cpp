@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
 #include "leapmap/errors.hpp"
@@ -53,6 +54,7 @@ PointList read_points(const std::string& path, const std::string& origin, Scales
     units.push_back(unit.empty() ? "" : " " + unit);
     if (columns.back()) list.columns.push_back({name, {}});
     if (is_body_mass(name)) scales.mass = 0.0;  // each design has its own
+    if (name == "hoop.diameter") scales.radius = std::numeric_limits<double>::quiet_NaN();
   }
   if (!columns.empty() && list.columns.empty())
     throw InputError(file.place() + ": no column is a parameter of a design; allowed: at least one");

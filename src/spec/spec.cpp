@@ -349,7 +349,7 @@ void assign(std::vector<Entry>& entries, Spec& spec) {
     apply_hoop(spec);
   }
   const auto any = [&](const auto& holds) { return std::ranges::any_of(entries, holds); };
-  // Manufactured hoops differ in mass, and the designs of a list may: no mass is right for all of them.
+  // Manufactured hoops differ in mass or size, and the designs of a list may: none is right for all of them.
   const bool made = any([](const Entry& entry) {
     return std::holds_alternative<SpreadSlot>(entry.option->slot) && is_body_mass(entry.key);
   });
@@ -362,7 +362,7 @@ void assign(std::vector<Entry>& entries, Spec& spec) {
     entry.scales = common_scales(spec);
     const bool of_made = std::holds_alternative<GoalSlot>(entry.option->slot);
     if (listed || (made && of_made)) entry.scales.mass = 0.0;
-    if (sized && of_made) entry.scales.radius = std::numeric_limits<double>::quiet_NaN();
+    if (listed || (sized && of_made)) entry.scales.radius = std::numeric_limits<double>::quiet_NaN();
     std::visit(Assign{entry, spec}, entry.option->slot);
   }
   put_axes_in_order(entries, spec);

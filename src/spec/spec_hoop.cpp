@@ -234,7 +234,7 @@ std::string hoop_help() {
   const auto add = [&](bool of_weight) {
     for (const BodyNumber& row : body_numbers())
       if (row.of_weight() == of_weight)
-        help += list_entry(fmt::format("  {} {}", row.name, "*"),
+        help += list_entry(fmt::format("  {} *", row.name),
                            fmt::format("{} [{}], for example in {}.", row.meaning_of(), row.unit,
                                        find_own_unit(row.unit)->example),
                            column);

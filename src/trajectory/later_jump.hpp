@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What is told of every jump of a sequence: of the first in members of Outcome, of later ones in Jump.
+/// The quantities of every jump of a sequence: members of Outcome for the first, of Jump for later ones.
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "leapmap/outcome.hpp"
@@ -38,14 +37,8 @@ constexpr double Jump::*later_member(double Outcome::*first) {
     if (row.first == first) return row.later;
   return nullptr;
 }
-/// And back.
-constexpr double Outcome::*first_member(double Jump::*later) {
-  for (const JumpRow& row : jump_rows)
-    if (row.later == later) return row.first;
-  return nullptr;
-}
 
-/// A jump after the first, of which `outcome` tells as of a first one.
+/// A jump after the first, which a solver reports in an Outcome as if it were the first.
 inline Jump jump_of(const Outcome& outcome, double landing_spin) {
   Jump jump;
   for (const JumpRow& row : jump_rows) jump.*row.later = outcome.*row.first;

@@ -614,3 +614,11 @@ def test_the_diameter_is_an_axis_a_tolerance_and_free_as_any_number(drawing, tmp
         refused = leapmap("sweep", drawing, "--hoop.diameter", '{from="100 mm",to="180 mm",count=5}', *more,
                           "--dry-run")
         assert refused.returncode == 2 and "each hoop has its own" in refused.stderr
+    listed = tmp_path / "list.csv"
+    listed.write_text("hoop.diameter [mm],release_spin [rpm]\n120,10\n160,10\n")
+    refused = leapmap("sweep", drawing, "--points", listed, "-o", tmp_path / "l.h5")
+    assert refused.returncode == 2 and "each hoop has its own" in refused.stderr
+    listed.write_text("hoop.diameter [mm]\n120\n160\n")
+    refused = leapmap("sweep", drawing, "--points", listed, "--set", 'hop_height="6 mm"', "-o",
+                      tmp_path / "l.h5")
+    assert refused.returncode == 2 and "each hoop has its own" in refused.stderr
