@@ -92,8 +92,8 @@ def draw_panel(axis, crisp, plane, flags, course, told, scale, ink):
             axis.contour(*corners, hatched, levels=[0.5], colors=style.EDGE, linewidths=0.7)
 
 
-def chart(grid, name, panels_of):
-    """One figure of one quantity. panels_of: cliffs.Panel of each panel."""
+def chart(grid, name, panels_of, drawing=None):
+    """One figure of one quantity. panels_of: cliffs.Panel of each panel. drawing: looks.in_drawing."""
     m, look = grid.map, looks.LOOKS[name]
     values = looks.quantity(m, name)
     panels = grid.cut(values)
@@ -121,6 +121,10 @@ def chart(grid, name, panels_of):
                           label=look.title, ticks=levels, shrink=0.9, pad=0.015)
     bar.ax.set_yticks(levels, [f"{v:g}" for v in levels])
     bar.ax.minorticks_off()
+    if drawing:
+        unit, factor = drawing
+        bar.set_label(f"{look.label} [{look.unit}] (in {unit})")
+        bar.ax.set_yticks(levels, [f"{v:g} ({v * factor:.4g})" for v in levels])
     if look.log or look.exponent != 1.0:
         bar.ax.set_title(looks.scale_words(look), fontsize=7)
     if name == "agility":
@@ -172,7 +176,7 @@ def main():
     m = read_map(arguments.source)
     if arguments.units:
         in_units(m, arguments.units)
-    drawn = [name for name in planes.FIELDS if looks.quantity(m, name) is not None]
+    drawn = [name for name in (*planes.FIELDS, "gait_height") if looks.quantity(m, name) is not None]
     if not drawn:
         raise NotAMap(f"{m.path}: has no jump_height or jump_time; a design chart wants one of them")
     grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)
@@ -183,8 +187,10 @@ def main():
             file=sys.stderr)
     curves = cliffs.read_cliffs(m, arguments.cliffs)
     panels_of = [cliffs.Panel(grid, panel, curves) for panel in grid.panels]
+    core = style.leapmap_module()._core if "hoop" in m.spec() and not arguments.units else None
     for name in drawn:
-        style.save(chart(grid, name, panels_of), f"{style.stem(arguments.output)}_{name}")
+        drawing = looks.in_drawing(m, name, core.units_in_own) if core else None
+        style.save(chart(grid, name, panels_of, drawing), f"{style.stem(arguments.output)}_{name}")
 
 
 if __name__ == "__main__":

@@ -170,6 +170,20 @@ def use_units(m, text, units_in_own):
             "them, for example \"mm m/s ms\"")
 
 
+def in_drawing(m, name, units_in_own):
+    """The unit in which a drawing has a quantity, and how many of it are one of the map's; None: the map is not
+    of a hoop from a drawing, its hoops differ in size, or no unit is better than the map's."""
+    numbers = m.numbers()
+    if "hoop" not in m.spec() or np.ndim(m.radii()) > 0:
+        return None
+    scales = {key: numbers[key] for key in ("radius", "gravity", "mass") if numbers.get(key)}
+    for word in ("mm", "N", "N.s", "J", "W", "rpm"):
+        factor = units_in_own(word, name, scales)
+        if factor is not None:
+            return word, factor
+    return None
+
+
 def levels_of(look, values):
     """Where the isolines lie: given, or 1-2-5 steps that give 8 to 16 of them over the middle of the data."""
     if look.levels is not None:

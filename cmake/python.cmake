@@ -2,7 +2,7 @@
 # beside it.
 set(package ${PROJECT_BINARY_DIR}/python/leapmap)
 pybind11_add_module(leapmap-python MODULE NO_EXTRAS src/python/arguments.cpp src/python/design.cpp
-  src/python/module.cpp src/python/results.cpp)
+  src/python/hoops.cpp src/python/module.cpp src/python/results.cpp)
 set_target_properties(leapmap-python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${package}
                                                 CXX_VISIBILITY_PRESET hidden)
 target_link_libraries(leapmap-python PRIVATE leapmap leapmap-options)

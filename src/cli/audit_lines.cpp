@@ -50,7 +50,7 @@ void say_audit(const AuditReport& report) {
         error(report.multiplier_max_error), and_some(report.gaits_undecided, "inconclusive"));
 }
 
-std::string settled_line(const Outcome& outcome, long settle) {
+std::string settled_line(const Outcome& outcome, long settle, ShownUnits& units) {
   if (outcome.status != Status::jumped)
     return fmt::format("After this release it does not jump: {}.", told(discrete(outcome, false)));
   if (outcome.gait_period == 0)
@@ -60,11 +60,16 @@ std::string settled_line(const Outcome& outcome, long settle) {
   if (outcome.gait_period == Outcome::no_gait)
     return fmt::format("After this release no period was found within {} jumps, or errors grow too much.",
                        settle);
+  const auto told = [&](const char* field, double value) {
+    return units.with_unit(value, *find_field(field));
+  };
   return fmt::format(
-      "After this release its jumps converge to a gait of period {}: {:.6f} diameters, {:.4g} m/s down the "
-      "plane, {:.4g} s and {:.6g} (m + m_p) g R lost per jump; Floquet multiplier {:.6f}.",
-      outcome.gait_period, outcome.gait_height, outcome.gait_speed, outcome.gait_jump_time,
-      outcome.gait_energy_lost, outcome.gait_multiplier);
+      "After this release its jumps converge to a gait of period {}: {}, {} down the plane, {} and {} lost "
+      "per "
+      "jump; Floquet multiplier {:.6f}.",
+      outcome.gait_period, told("gait_height", outcome.gait_height), told("gait_speed", outcome.gait_speed),
+      told("gait_jump_time", outcome.gait_jump_time), told("gait_energy_lost", outcome.gait_energy_lost),
+      outcome.gait_multiplier);
 }
 
 std::string later_jumps_line(const AuditReport& report, const Outcome& outcome) {

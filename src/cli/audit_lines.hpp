@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "cli/shown_units.hpp"
 #include "leapmap/audit.hpp"
 #include "leapmap/outcome.hpp"
 
@@ -13,7 +14,7 @@ namespace leapmap::cli {
 void say_audit(const AuditReport& report);
 
 /// What a release comes to: its gait, after so many jumps.
-std::string settled_line(const Outcome& outcome, long settle);
+std::string settled_line(const Outcome& outcome, long settle, ShownUnits& units);
 
 /// How many of a hoop's later jumps the audit has confirmed, and how far to believe them; empty: it makes
 /// none.

@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/json.hpp"
 #include "cli/output.hpp"
+#include "cli/shown_units.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/gait.hpp"
 #include "model/model.hpp"
@@ -22,7 +23,7 @@ namespace leapmap::cli {
 namespace {
 
 struct GaitArguments {
-  std::string spec;
+  std::string spec, units;
   std::vector<std::string> overrides, flags;
   int most_period = 0;  // 0: not given
   bool json = false;
@@ -35,23 +36,40 @@ double degrees_within_a_turn(double radians) {
   return turned < 0.0 ? turned + 360.0 : turned;
 }
 
-void print_gaits(const Gaits& found, int most_period) {
+/// "height [mm]", and what its numbers are multiplied by.
+struct GaitColumn {
+  std::string header;
+  double factor;
+};
+
+GaitColumn column_of(std::string_view name, std::string_view field, ShownUnits& units) {
+  const ShownUnit shown = units.of(*find_field(field));
+  return {fmt::format("{} [{}]", name, shown.unit), shown.factor};
+}
+
+void print_gaits(const Gaits& found, int most_period, ShownUnits& units) {
   if (found.gaits.empty()) {
     say("No gait of up to {} jumps found: the return map, sampled at {} points, has no periodic orbit.\n",
         most_period, found.returns.size());
     return;
   }
+  const GaitColumn height = column_of("height", "gait_height", units),
+                   speed = column_of("speed", "gait_speed", units),
+                   lost = column_of("lost", "gait_energy_lost", units);
   say("Gaits of up to {} jumps, from {} points of the return map and a grid of starting points:\n\n"
-      "{:>6} {:>9} {:>12} {:>12} {:>11} {:>12}  {}\n",
-      most_period, found.returns.size(), "period", "", "multiplier", "height [2R]", "speed [m/s]",
-      "energy lost", "lift-offs [deg]: heights [2R]");
+      "{:>6} {:>9} {:>12} {:>23} {:>16} {:>19}  {}\n",
+      most_period, found.returns.size(), "period", "", "multiplier", height.header, speed.header, lost.header,
+      "lift-offs [deg]: heights");
   for (const Gait& gait : found.gaits) {
     std::vector<std::string> jumps;
     for (const Jump& jump : gait.jumps)
-      jumps.push_back(fmt::format("{:.4f}: {:.6f}", degrees_within_a_turn(jump.angle), jump.height));
-    say("{:>6} {:>9} {:>12.6f} {:>12.6f} {:>11.4f} {:>12.6f}  {}\n", gait.jumps.size(),
-        gait.is_stable() ? "stable" : "unstable", gait.multiplier, gait.height, gait.speed, gait.energy_lost,
-        fmt::join(jumps, ", "));
+      jumps.push_back(
+          fmt::format("{:.4f}: {:.6f}", degrees_within_a_turn(jump.angle), jump.height * height.factor));
+    say("{:>6} {:>9} {:>12.6f} {:>23} {:>16.4f} {:>19.6f}  {}\n", gait.jumps.size(),
+        gait.is_stable() ? "stable" : "unstable", gait.multiplier,
+        fmt::format("{:.6f}{}", gait.height * height.factor,
+                    units.beside(gait.height, *find_field("gait_height"))),
+        gait.speed * speed.factor, gait.energy_lost * lost.factor, fmt::join(jumps, ", "));
   }
   say("\n");
   if (!found.is_whole)
@@ -123,6 +141,10 @@ int run(const GaitArguments& arguments) {
   spec.scene.jumps = 1;
   spec.output = {};
   check_spec(spec);
+  ShownUnits units(arguments.units, scales_of(spec.scene));
+  for (const std::string_view field : {"gait_height", "gait_speed", "gait_jump_time", "gait_energy_lost"})
+    units.of(*find_field(field));
+  units.refuse_unused();
   Outcome outcome;
   make_solver(request_of(spec))({&spec.design, 1}, {&outcome, 1});
   Gaits found;
@@ -134,8 +156,8 @@ int run(const GaitArguments& arguments) {
     say_json(json_of(spec, slips ? nullptr : &found, outcome));
     return 0;
   }
-  if (!slips) print_gaits(found, most_period);
-  say("{}\n", settled_line(outcome, spec.scene.settle));
+  if (!slips) print_gaits(found, most_period, units);
+  say("{}\n", settled_line(outcome, spec.scene.settle, units));
   return 0;
 }
 
@@ -156,6 +178,12 @@ void add_gait(CommandLine& line, int& status) {
   command.value("--most-period", arguments->most_period, "longest period to search for, in jumps; default: 2")
       .check(whole_number(1, 16));
   command.flag("--json", arguments->json, "print JSON, with the return map");
+  command
+      .value("--units", arguments->units,
+             "units of the report, with blanks between them, for example \"mm ms J\"; default: leapmap's "
+             "own, and "
+             "beside them those of a drawing")
+      .excludes("--json");
   command.footer(
       "A gait is stable if its Floquet multiplier, the growth of a small deviation over one period, is below "
       "1 in size.\n"

@@ -145,6 +145,7 @@ void print_motor(const Motor& motor) {
 
 void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
                  const std::optional<Motor>& motor) {
+  ShownUnits units("", scales_of(spec.scene));
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters(spec)) {
     double value = effective_value(*parameter, spec.design);
@@ -171,7 +172,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
   if (motion.outcome.phase_sequence != 0) say("\n{}", phase_letters(motion.outcome.phase_sequence));
   say("\n{}\n", verdict(motion, spec.scene));
   print_jump(spec, motion.outcome);
-  if (spec.scene.settle > 0) say("{}\n", settled_line(motion.outcome, spec.scene.settle));
+  if (spec.scene.settle > 0) say("{}\n", settled_line(motion.outcome, spec.scene.settle, units));
   say("{}\n", check_line(spec, motion, checked));
   if (motor) print_motor(*motor);
   for (const Graze& graze : motion.grazes)

@@ -253,10 +253,21 @@ void print_fields(const MapReader& map, ShownUnits& units) {
       const std::string unit = shown.unit.empty() ? "" : " " + shown.unit;
       for (const auto& [words, extreme] :
            {std::pair{"least", &summary.least}, std::pair{"most", &summary.most}})
-        say("  {:<5} {:<12.8g}{} at {}\n", words, extreme->value * shown.factor, unit,
-            place(map, labels, extreme->design, units));
+        say("  {:<5} {:<12.8g}{}{} at {}\n", words, extreme->value * shown.factor, unit,
+            field ? units.beside(extreme->value, *field) : "", place(map, labels, extreme->design, units));
       if (summary.missing > 0) say("  none  in {} designs\n", summary.missing);
     }
+  }
+}
+
+/// Of all designs. Of a map whose spec cannot be read nothing is known, which matters where units are asked
+/// for.
+Scales scales_of(const MapReader& map, const InfoArguments& arguments) {
+  try {
+    return common_scales(spec_of(map, arguments.path));
+  } catch (const std::exception&) {
+    if (!arguments.units.empty()) throw;
+    return {.radius = Outcome::none, .gravity = Outcome::none, .mass = 0.0};
   }
 }
 
@@ -277,8 +288,7 @@ int run(const InfoArguments& arguments) {
     print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at);
     return 0;
   }
-  const Scales scales = arguments.units.empty() ? Scales{} : common_scales(spec_of(map, arguments.path));
-  ShownUnits units(arguments.units, scales);
+  ShownUnits units(arguments.units, scales_of(map, arguments));
   print_origin(map, arguments.path);
   print_audit(map);
   print_dimensions(map, units);
@@ -311,9 +321,10 @@ void add_info(CommandLine& line, int& status) {
       .excludes("--spec")
       .excludes("--failed");
   command
-      .value(
-          "--units", arguments->units,
-          "units of axes and fields, with blanks between them, for example \"mm deg ms\"; default: the map's")
+      .value("--units", arguments->units,
+             "units of axes and fields, with blanks between them, for example \"mm deg ms\"; default: the "
+             "map's, "
+             "and beside them those of a drawing")
       .excludes("--spec")
       .excludes("--failed")
       .excludes("--at");

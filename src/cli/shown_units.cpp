@@ -69,15 +69,36 @@ std::string ShownUnits::told(double value, std::string_view own, bool is_torque)
   const ShownUnit asked = choose(own, is_torque);
   if (asked.unit != own && !asked.unit.empty())
     return fmt::format("{:.6g} {}", value * asked.factor, asked.unit);
-  if (own == "rad") return fmt::format("{:.6g} deg", value * 180.0 / std::numbers::pi);
+  if (own == "rad") return in_drawing(value, own, is_torque);
   const OwnUnit* row = find_own_unit(own);
   if (!row) return fmt::format("{:.6g}", value);
-  const bool is_si = own == row->si;
-  const std::string text = is_si ? fmt::format("{:.6g} {}", value, own) : fmt::format("{:.6g}", value);
-  if (is_si && own != "m" && own != "kg") return text;
+  const std::string text =
+      own == row->si ? fmt::format("{:.6g} {}", value, own) : fmt::format("{:.6g}", value);
+  const std::string drawn = in_drawing(value, own, is_torque);
+  return drawn.empty() ? text : fmt::format("{} ({})", text, drawn);
+}
+
+std::string ShownUnits::in_drawing(double value, std::string_view own, bool is_torque) const {
+  const OwnUnit* row = find_own_unit(own);
+  if (!row) return {};
+  if (own == "rad") return fmt::format("{:.6g} deg", value * 180.0 / std::numbers::pi);
+  if (own == row->si && own != "m" && own != "kg") return {};
   const std::string drawn(own == "(m + m_p) g R" && !is_torque ? "J" : row->example);
   const auto factor = units_in_own(drawn, own, scales_);
-  return factor ? fmt::format("{} ({:.4g} {})", text, value * *factor, drawn) : text;
+  return factor ? fmt::format("{:.4g} {}", value * *factor, drawn) : std::string();
+}
+
+std::string ShownUnits::beside(double value, const Field& field) {
+  if (std::holds_alternative<Derivative>(field.source)) return {};
+  const std::string_view own = own_unit(field);
+  const std::string drawn = in_drawing(value, own, false);
+  return drawn.empty() || choose(own, false).unit != own ? "" : " (" + drawn + ")";
+}
+
+std::string ShownUnits::with_unit(double value, const Field& field) {
+  const ShownUnit shown = of(field);
+  return fmt::format("{:.6g}{}{}{}", value * shown.factor, shown.unit.empty() ? "" : " ", shown.unit,
+                     beside(value, field));
 }
 
 std::string ShownUnits::told(double value, const Field& field) { return told(value, own_unit(field), false); }

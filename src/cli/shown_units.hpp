@@ -34,6 +34,11 @@ class ShownUnits {
   /// where the scale is known: "0.5 (60 mm)".
   std::string told(double value, const Field& field);
   std::string told(double value, std::string_view parameter);
+  /// The value in the unit of a drawing, where the scale is known and no unit asked for fits: " (60 mm)";
+  /// else empty.
+  std::string beside(double value, const Field& field);
+  /// A value in the unit asked for, or in leapmap's own and that of a drawing: "0.5 hoop diameters (60 mm)".
+  std::string with_unit(double value, const Field& field);
   /// A line for each number of an outcome, in the units asked for.
   std::string lines_of(const Outcome& outcome, const Scene& scene);
   /// Throws InputError if a unit fits neither a field of the scene nor one of these parameters.
@@ -44,6 +49,8 @@ class ShownUnits {
  private:
   ShownUnit choose(std::string_view own, bool is_torque);
   std::string told(double value, std::string_view own, bool is_torque);
+  /// "60 mm" of a value in leapmap's own unit; empty: the scale is not known, or there is no better unit.
+  std::string in_drawing(double value, std::string_view own, bool is_torque) const;
 
   std::vector<std::string> units_;
   std::vector<bool> used_;

@@ -17,12 +17,14 @@
 #include "model/parameters.hpp"
 #include "python/arguments.hpp"
 #include "python/calls.hpp"
+#include "python/hoops.hpp"
 #include "python/results.hpp"
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
 #include "spec/quantity.hpp"
 #include "spec/spec.hpp"
 #include "support/printable.hpp"
+#include "trajectory/units.hpp"
 
 namespace py = pybind11;
 
@@ -238,18 +240,6 @@ py::list field_rows() {
   return rows;
 }
 
-/// What a body comes to: total mass, eccentricity, inertia; mass_ratio, offset_ratio, inertia_factor.
-/// Weights: name, mass, at, angle, inertia.
-std::tuple<double, double, double, double, double, double> reduced(
-    double diameter, double mass, double inertia,
-    const std::vector<std::tuple<std::string, double, double, double, double>>& weights) {
-  Body body{.diameter = diameter, .mass = mass, .inertia = inertia, .weights = {}};
-  for (const auto& [name, of_weight, at, angle, own] : weights)
-    body.weights.push_back({name, of_weight, at, angle, own});
-  const ReducedBody to = reduce_body(body);
-  return {to.total_mass, to.eccentricity, to.inertia, to.mass_ratio, to.offset_ratio, to.inertia_factor};
-}
-
 }  // namespace
 }  // namespace leapmap::python
 
@@ -299,7 +289,12 @@ PYBIND11_MODULE(_core, module) {
     return known ? units_in_own(unit, own_unit(*known), scales_of(python::Designs(beside, {}).scene()))
                  : std::nullopt;
   });
-  module.def("reduce_body", &python::reduced);
+  module.def("reduce_hoops", &python::reduce_hoops);
+  module.def("differentiate_by_hoop", &python::differentiate_by_hoop);
+  module.def("grows_with_size", [](const std::string& field) {
+    const auto number = number_of(*find_field(field));
+    return number && grows_with_size(*number);
+  });
   module.def("after_fork_in_child", [] { python::forked() = true; });
   py::class_<python::Watch>(module, "Watch")
       .def(py::init<>())

@@ -43,6 +43,23 @@ def charts(tmp_path_factory):
     return folder
 
 
+def test_a_chart_of_a_drawing_s_hoop_shows_millimetres_beside_diameters(tmp_path):
+    spec = """[hoop]
+diameter = "120 mm"
+mass = "61 g"
+[[hoop.weight]]
+name = "slug"
+mass = { from = "60 g", to = "120 g", count = 5 }
+at = "47 mm"
+[design]
+slope = { from = "20 deg", to = "40 deg", count = 5 }
+"""
+    done = draw("design_chart.py", sweep(tmp_path, spec), "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    words = texts(tmp_path / "chart_jump_height.svg")
+    assert "jump height [hoop diameters] (in mm)" in words and "0.5 (60)" in words
+
+
 @pytest.mark.parametrize("field,label,level",
                          [("jump_height", "jump height [hoop diameters]", "0.75"),
                           ("jump_time", "time from release to the jump [s]", "0.4"),

@@ -129,6 +129,16 @@ def test_gait_tells_every_gait_of_a_hoop_and_which_the_release_settles_on():
     assert slope[nearest] == pytest.approx(stable[0]["multiplier"], abs=0.02)
 
 
+def test_gait_shows_the_units_of_a_drawing_and_those_asked_for():
+    plain = leapmap("gait", *HOOP, "--set", "radius=0.06", "--most-period", "1").stdout
+    height = told("gait", *HOOP, "--set", "radius=0.06", "--most-period", "1")["gait_height"]
+    assert f"{height:.6f} ({120 * height:.4g} mm)" in plain and "height [hoop diameters]" in plain
+    asked = leapmap("gait", *HOOP, "--set", "radius=0.06", "--most-period", "1", "--units", "mm ms").stdout
+    assert "height [mm]" in asked and f"period 1: {120 * height:.6g} mm, " in asked
+    refused = leapmap("gait", *HOOP, "--units", "N")
+    assert refused.returncode == 2 and "no column can be given in N" in refused.stderr
+
+
 def test_hop_says_how_many_later_jumps_were_checked_and_how_far_to_believe_them():
     tame = leapmap("hop", *HOOP, "--jumps", "5", "--set", "runway=20").stdout
     assert "Later jumps: 4 of 4 compared, all within" in tame

@@ -112,6 +112,7 @@ def test_info_counts_statuses_and_places_extremes(tmp_path):
         place = (f"at slope {m['slope'][i]:.6g}, mass_ratio {m['mass_ratio'][j]:.6g}, offset_ratio "
                  f"{m['offset_ratio'][k]:.6g}")
         assert f"most  {height[i, j, k]:.8g}" in text and place in text
+        assert f" ({82 * height[i, j, k]:.4g} mm) at slope" in text  # of the paper's hoop
         assert f"none  in {np.isnan(height).sum()} designs" in text
     assert "check    14 designs" in text  # 5 % of 264, rounded up
     assert leapmap("info", path, "--spec").stdout.startswith("[scene]")  # a TOML and nothing else

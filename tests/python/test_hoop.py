@@ -42,6 +42,44 @@ def test_a_weight_may_be_an_array():
         assert o.jump_height[1, k] == pytest.approx(one.jump_height, rel=1e-14, nan_ok=True)
 
 
+@pytest.mark.parametrize("of", ["jump_height", "jump_time"])
+def test_derivatives_are_by_the_numbers_of_the_drawing(of):
+    def hoop(numbers):
+        slug = leapmap.Weight(numbers["slug.mass"], numbers["slug.at"], inertia=numbers["slug.inertia"],
+                              name="slug")
+        battery = leapmap.Weight("12 g", "30 mm", angle=numbers["weights[1].angle"])
+        return leapmap.Hoop(numbers["diameter"], numbers["mass"], numbers["inertia"], [slug, battery])
+
+    numbers = {
+        "diameter": 0.12, "mass": 0.061, "inertia": 1.9e-4, "slug.mass": 0.085, "slug.at": 0.047,
+        "slug.inertia": 2e-6, "weights[1].angle": 3.0
+    }
+    asked = {"slope": [0.55, 0.65], "friction": "coulomb", "mu_static": 0.6}
+    by = leapmap.gradient(hoop=hoop(numbers), of=of, **asked)
+    assert "mass_ratio" not in by and by["slope"].shape == (2,)
+    for name, value in numbers.items():
+        def at(change):
+            return getattr(leapmap.solve(hoop=hoop(numbers | {name: value + change}), tolerance=1e-13, **asked),
+                           of)
+        step = 1e-4 * value
+        differences = (8 * (at(step) - at(-step)) - (at(2 * step) - at(-2 * step))) / (12 * step)
+        # Differences of the fourth order lose digits where a number hardly matters.
+        assert by[f"hoop.{name}"] == pytest.approx(differences, rel=1e-7, abs=1e-9 / value), name
+    of_many = hoop(numbers | {"slug.mass": np.array([[0.08], [0.085], [0.09]])})
+    assert leapmap.gradient(hoop=of_many, of=of, **asked)["hoop.slug.at"][1] == pytest.approx(
+        by["hoop.slug.at"], rel=1e-12)
+
+
+def test_newtons_of_hoops_with_masses_of_their_own():
+    o = leapmap.solve(hoop=drawing(leapmap.Weight([0.04, 0.085], at="47 mm")), slope=[[0.5], [0.6]])
+    one = leapmap.solve(hoop=drawing(), slope=0.6).to("N.s mm")
+    shown = o.to("N.s mm")
+    assert shown.landing_impulse.shape == (2, 2)
+    assert shown.landing_impulse[1, 1] == pytest.approx(one.landing_impulse, rel=1e-12)
+    assert shown.jump_height[1, 1] == pytest.approx(one.jump_height, rel=1e-12)
+    assert shown.to_xarray().landing_impulse.attrs["units"] == "N.s"
+
+
 def test_outcomes_are_shown_in_a_drawing_s_units():
     o = leapmap.solve(hoop=drawing(), slope=[0.5, 0.01], friction="coulomb", mu_static=0.6)
     shown = o.to("mm deg ms rpm N.s J mm/s")

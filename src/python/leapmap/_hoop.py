@@ -3,9 +3,10 @@
 import numpy as np
 
 import leapmap._core as _core
-from leapmap._arguments import array, shown
+from leapmap._arguments import array, shown, text
 
-_OWN = ("mass_ratio", "offset_ratio", "inertia_factor", "radius", "mass")
+_RATIOS = ("mass_ratio", "offset_ratio", "inertia_factor")
+_OWN = (*_RATIOS, "radius", "mass")
 
 
 def _number(name, value, unit):
@@ -36,6 +37,8 @@ class Weight:
         the weights' common centre of mass.
     inertia : float, str or array_like, default 0
         Moment of inertia about its own centre, in kg m2.
+    name : str, optional
+        What derivatives and messages call it; default: its place among the weights, "weights[0]".
 
     Examples
     --------
@@ -44,7 +47,8 @@ class Weight:
     0.085
     """
 
-    def __init__(self, mass, at, angle=0.0, inertia=0.0):
+    def __init__(self, mass, at, angle=0.0, inertia=0.0, name=None):
+        self.name = None if name is None else text("weight.name", name)
         self.mass = _number("weight.mass", mass, "kg")
         self.at = _number("weight.at", at, "m")
         self.angle = _number("weight.angle", angle, "rad")
@@ -108,22 +112,39 @@ class Hoop:
         if diameter.ndim:
             raise ValueError(f"diameter = {shown(diameter)} is an array; allowed: one number")
 
-        def reduced(mass, inertia, *numbers):
-            return _core.reduce_body(
-                float(diameter), mass, inertia,
-                [(f"weights[{k}]", *numbers[4 * k:4 * k + 4]) for k in range(len(weights))])
-
         numbers = [v for w in weights for v in (w.mass, w.at, w.angle, w.inertia)]
-        ring = (_number("mass", mass, "kg"),
+        ring = (diameter, _number("mass", mass, "kg"),
                 np.asarray(np.nan) if inertia is None else _number("inertia", inertia, "kg m2"))
         try:
-            np.broadcast_shapes(*(number.shape for number in (*ring, *numbers)))
+            self._numbers = np.stack(np.broadcast_arrays(*ring, *numbers), axis=-1)
         except ValueError:
             raise ValueError("the arrays of a hoop do not broadcast; allowed: numpy's rules") from None
-        self.total_mass, self.eccentricity, self.inertia_ratio, *ratios = np.vectorize(
-            reduced, otypes=[float] * 6)(*ring, *numbers)
+        self._names = [f"weights[{k}]" if w.name is None else w.name for k, w in enumerate(weights)]
+        reduced = {
+            name: values.reshape(self._numbers.shape[:-1])
+            for name, values in _core.reduce_hoops(_rows(self._numbers), self._names).items()
+        }
+        self.total_mass, self.eccentricity, self.inertia_ratio = (
+            reduced.pop(name) for name in ("total_mass", "eccentricity", "inertia_ratio"))
         one = {} if self.total_mass.ndim else {"mass": float(self.total_mass)}
-        self.parameters = dict(zip(_OWN, (v[()] for v in ratios))) | {"radius": float(diameter) / 2} | one
+        self.parameters = {name: values[()] for name, values in reduced.items()}
+        self.parameters |= {"radius": float(diameter) / 2} | one
+
+    def _differentiate(self, by, values):
+        """Derivatives by the hoop's own numbers, in place of those by its ratios.
+
+        values: the quantity itself, if it is a time or a speed; else None.
+        """
+        ratios = [by.pop(name) for name in _RATIOS]
+        shape = np.shape(ratios[0])
+        numbers = np.broadcast_to(self._numbers, (*shape, self._numbers.shape[-1]))
+        found = _core.differentiate_by_hoop(_rows(numbers), self._names, _rows(np.stack(ratios, axis=-1)),
+                                            np.empty(0) if values is None else np.ravel(values))
+        return by | {name: column.reshape(shape)[()] for name, column in found.items()}
+
+
+def _rows(numbers):
+    return numbers.reshape(-1, numbers.shape[-1])
 
 
 def with_hoop(hoop, parameters):

@@ -49,8 +49,9 @@ class Outcomes:
     ['jumped', 'jumped']
     """
 
-    def __init__(self, fields, given, original=None, units=None):
+    def __init__(self, fields, given, original=None, units=None, mass=None):
         self.__dict__.update(fields)
+        self.__dict__["_mass"] = mass  # of each design's hoop, if hoops were given
         self.__dict__["_fields"], self.__dict__["_given"] = fields, given
         # What it was converted from by `to`, and the units of those fields that were.
         self.__dict__["_original"], self.__dict__["_units"] = original or self, units or {}
@@ -106,10 +107,11 @@ class Outcomes:
         if self._given.get("friction") == "any":
             raise ValueError("units: outcomes of a search do not know their scene; allowed: those of solve")
         given = {name: self._given[name] for name in _SCALES if name in self._given}
+        mass = self._mass if "mass" not in given else None
         wanted, fitting, chosen = text("units", units).split(), set(), {}
         fields = dict(self._original._fields)
         for name in fields:
-            factors = {unit: _core.units_in_own(unit, name, given) for unit in wanted}
+            factors = {unit: self._factor(unit, name, given, mass) for unit in wanted}
             fits = [unit for unit in wanted if factors[unit] is not None]
             fitting |= set(fits)
             if fits:
@@ -118,9 +120,18 @@ class Outcomes:
         for unit in wanted:
             if unit not in fitting:
                 raise ValueError(f"units: no field can be given in {unit}" + (
-                    "" if "mass" in given else " (newtons and joules need the parameter mass)") +
+                    "" if "mass" in given or mass is not None else " (newtons and joules need the parameter mass)") +
                                  "; allowed: units such as mm, deg, ms, rpm, N.s")
-        return Outcomes(fields, self._given, self._original, chosen)
+        return Outcomes(fields, self._given, self._original, chosen, self._mass)
+
+    @staticmethod
+    def _factor(unit, name, given, mass):
+        """From the field's own unit; of designs with masses of their own an array."""
+        factor = _core.units_in_own(unit, name, given)
+        if factor is None and mass is not None:
+            of_a_kilogram = _core.units_in_own(unit, name, given | {"mass": 1.0})
+            return None if of_a_kilogram is None else of_a_kilogram * mass
+        return factor
 
     def to_xarray(self):
         """Convert to an xarray.Dataset.

@@ -75,7 +75,8 @@ def solve(*, hoop=None, friction="sticking", jumps=1, settle=0, most_period=16, 
         name: np.array(value) if isinstance(value, np.ndarray) else value
         for name, value in parameters.items()
     }
-    return Outcomes({name: column[()] for name, column in columns.items()}, given | {"friction": friction})
+    return Outcomes({name: column[()] for name, column in columns.items()}, given | {"friction": friction},
+                    mass=None if hoop is None else hoop.total_mass)
 
 
 def gradient(*, hoop=None, of="jump_height", friction="sticking", tolerance=1e-10, threads=0, **parameters):
@@ -84,7 +85,8 @@ def gradient(*, hoop=None, of="jump_height", friction="sticking", tolerance=1e-1
     Parameters
     ----------
     hoop : Hoop, optional
-        As in solve.
+        As in solve; derivatives are by its own numbers then, in place of the three ratios: "hoop.mass",
+        "hoop.slug.at", in kg, m, rad and kg m2, and by hoop.diameter too.
     of : str, default "jump_height"
         Name of the quantity.
     friction : str, default "sticking"
@@ -115,7 +117,15 @@ def gradient(*, hoop=None, of="jump_height", friction="sticking", tolerance=1e-1
     """
     columns = _core.gradient(_whole_counts(with_hoop(hoop, parameters)), text("friction", friction),
                              text("of", of), real("tolerance", tolerance), whole("threads", threads, 0, 4096))
-    return {name: column[()] for name, column in columns.items()}
+    by = {name: column[()] for name, column in columns.items()}
+    if hoop is None:
+        return by
+    values = None
+    if _core.grows_with_size(of):
+        values = getattr(
+            solve(hoop=hoop, friction=friction, fields=[of], tolerance=tolerance, threads=threads,
+                  **parameters), of)
+    return hoop._differentiate(by, values)
 
 
 def trace(*, hoop=None, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10,

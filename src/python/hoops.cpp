@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/hoops.hpp"
+
+#include <array>
+#include <span>
+
+#include "leapmap/body.hpp"
+#include "model/variable.hpp"
+
+namespace py = pybind11;
+
+namespace leapmap::python {
+namespace {
+
+using Numbers = py::array_t<double>;
+
+std::span<const double> row_of(const Rows& table, py::ssize_t row) {
+  return {table.data(row, 0), static_cast<std::size_t>(table.shape(1))};
+}
+
+Body body_of(std::span<const double> numbers, const std::vector<std::string>& weights) {
+  Body body{.diameter = numbers[0], .mass = numbers[1], .inertia = numbers[2], .weights = {}};
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const auto own = numbers.subspan(3 + 4 * k);
+    body.weights.push_back({weights[k], own[0], own[1], own[2], own[3]});
+  }
+  return body;
+}
+
+}  // namespace
+
+py::dict reduce_hoops(const Rows& hoops, const std::vector<std::string>& weights) {
+  struct Column {
+    const char* name;
+    double ReducedBody::*member;
+    Numbers values;
+  };
+  const py::ssize_t count = hoops.shape(0);
+  std::array columns{Column{"total_mass", &ReducedBody::total_mass, Numbers(count)},
+                     Column{"eccentricity", &ReducedBody::eccentricity, Numbers(count)},
+                     Column{"inertia_ratio", &ReducedBody::inertia, Numbers(count)},
+                     Column{"mass_ratio", &ReducedBody::mass_ratio, Numbers(count)},
+                     Column{"offset_ratio", &ReducedBody::offset_ratio, Numbers(count)},
+                     Column{"inertia_factor", &ReducedBody::inertia_factor, Numbers(count)}};
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const ReducedBody reduced = reduce_body(body_of(row_of(hoops, i), weights));
+    for (Column& column : columns) column.values.mutable_at(i) = reduced.*column.member;
+  }
+  py::dict arrays;
+  for (const Column& column : columns) arrays[column.name] = column.values;
+  return arrays;
+}
+
+py::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>& weights, const Rows& by,
+                               const Rows& values) {
+  const py::ssize_t count = hoops.shape(0);
+  if (count == 0) return {};
+  const std::vector<Variable> variables = variables_of(body_of(row_of(hoops, 0), weights));
+  std::vector<Numbers> columns;
+  for (std::size_t k = 0; k < variables.size(); ++k) columns.emplace_back(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const Body body = body_of(row_of(hoops, i), weights);
+    Design by_ratios;
+    for (std::size_t k = 0; k < body_ratios.size(); ++k)
+      by_ratios.*body_ratios[k] = by.at(i, static_cast<py::ssize_t>(k));
+    const double in_seconds = values.size() > 0 ? values.at(i) : 0.0;
+    for (std::size_t k = 0; k < variables.size(); ++k)
+      columns[k].mutable_at(i) = variables[k].derivative(by_ratios, body, in_seconds);
+  }
+  py::dict arrays;
+  for (std::size_t k = 0; k < variables.size(); ++k) arrays[py::str(variables[k].key)] = columns[k];
+  return arrays;
+}
+
+}  // namespace leapmap::python
