@@ -187,9 +187,13 @@ def main():
             file=sys.stderr)
     curves = cliffs.read_cliffs(m, arguments.cliffs)
     panels_of = [cliffs.Panel(grid, panel, curves) for panel in grid.panels]
-    core = style.leapmap_module()._core if "hoop" in m.spec() and not arguments.units else None
+    try:  # without the module a chart shows the map's own units alone
+        units_in_own = style.leapmap_module()._core.units_in_own
+    except OSError:
+        units_in_own = None
     for name in drawn:
-        drawing = looks.in_drawing(m, name, core.units_in_own) if core else None
+        beside = units_in_own and not arguments.units
+        drawing = looks.in_drawing(m, name, units_in_own) if beside else None
         style.save(chart(grid, name, panels_of, drawing), f"{style.stem(arguments.output)}_{name}")
 
 
