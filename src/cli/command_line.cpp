@@ -210,6 +210,11 @@ Flag& Flag::with_commas() {
   return *this;
 }
 
+Flag& Flag::several() {
+  option_->expected(1, CLI::detail::expected_max_vector_size);
+  return *this;
+}
+
 Flag& Flag::at_once() {
   option_->trigger_on_parse();
   return *this;

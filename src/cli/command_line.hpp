@@ -45,6 +45,8 @@ class Flag {
   Flag& excludes(const std::string& other);
   /// Takes several values, with commas between.
   Flag& with_commas();
+  /// Takes several values, one after the other.
+  Flag& several();
   /// Takes effect before the line has been read to its end.
   Flag& at_once();
   /// The value's name in --help, for example "FILE".

@@ -18,22 +18,26 @@
 #include "cli/shown_units.hpp"
 #include "cli/spoken.hpp"
 #include "engine/parallel.hpp"
+#include "film/film_model.hpp"
+#include "film/observations.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
+#include "spec/quantity.hpp"
 #include "support/output_file.hpp"
 
 namespace leapmap::cli {
 namespace {
 
 struct FitArguments {
-  std::string data, spec, csv, units, model = "both";
-  std::vector<std::string> overrides;
+  std::vector<std::string> inputs;  // films or a table of events, and a spec
+  std::string csv, units, model = "both", loss = "squares";
+  std::vector<std::string> overrides, free, markers;
   MeasurementOptions reading;
   FitOptions options;
-  bool json = false, overwrite = false;
+  bool json = false, overwrite = false, dry_run = false;
 };
 
 /// What hop needs of it.
@@ -45,13 +49,17 @@ Spec spec_of(const ModelFit& fit) {
 
 /// With two digits of its error.
 std::string told(const FittedParameter& parameter) {
-  const bool angle = find_option("", parameter.name)->unit == "rad";
+  const CameraNumber* camera = find_camera_number(parameter.name);
+  const std::string_view own = camera ? camera->unit : find_option("", parameter.name)->unit;
+  const bool angle = own == "rad";
   const double unit = angle ? 180.0 / std::numbers::pi : 1.0;
-  const std::string_view name = angle ? " deg" : "";
+  const std::string_view name = angle ? " deg" : camera && own == "s" ? " s" : camera ? " m per unit" : "";
   if (!parameter.identified)
     return fmt::format("{:>12.6g} not identified: from {:.4g} to {:.4g}{} all fit equally well",
                        parameter.value * unit, parameter.low * unit, parameter.high * unit, name);
   const double error = parameter.error * unit;
+  if (error > 0.0 && error < 1e-12)
+    return fmt::format("{:>12.6g} +- {:.2g}{}", parameter.value * unit, error, name);
   const int digits = error > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
   return fmt::format("{:>12.{}f} +- {:.{}f}{}{}", parameter.value * unit, digits, error, digits, name,
                      parameter.at_bound ? "; at its bound: wider bounds may fit better" : "");
@@ -86,6 +94,64 @@ void print_correlations(const ModelFit& fit) {
   }
 }
 
+/// What would measure a parameter alone.
+struct Remedy {
+  std::string_view parameter, measurement;
+};
+constexpr std::array remedies{
+    Remedy{"slope", "a spirit level on the plane"},
+    Remedy{"resisting_torque", "a film of the hoop as it rolls to rest on level ground"},
+    Remedy{"drive_torque", "a torque wrench on the locked motor"},
+    Remedy{"mass_ratio", "a balance"},
+    Remedy{"offset_ratio", "a ruler from the axis to the mass"},
+    Remedy{"inertia_factor", "the period of the hoop as a pendulum"},
+    Remedy{"mu_static", "the slope on which the locked hoop begins to slide"},
+    Remedy{"mu_kinetic", "a film in which the hoop slides for longer"},
+    Remedy{"restitution", "a drop of the hoop on the plane"},
+    Remedy{"release_angle", "a picture of the hoop before the release"},
+    Remedy{"release_spin", "a film that begins before the release"},
+    Remedy{"time_offset", "a film that shows the release"},
+    Remedy{"angle_offset", "the reading with the mass at the bottom"},
+    Remedy{"scale", "a ruler in the picture"},
+    Remedy{"tilt", "a plumb line in the picture"}};
+
+std::string_view remedy_of(std::string_view parameter) {
+  const auto found = std::ranges::find(remedies, parameter, &Remedy::parameter);
+  return found == remedies.end() ? "another measurement of it" : found->measurement;
+}
+
+/// Pairs of parameters of which the data determine little more than one combination.
+void print_indistinguishable(const ModelFit& fit) {
+  constexpr double alike = 0.98;
+  const std::size_t count = fit.parameters.size();
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const double correlation = fit.correlations[i * count + j];
+      if (!(std::abs(correlation) > alike)) continue;
+      const std::string &one = fit.parameters[i].name, &other = fit.parameters[j].name;
+      say("  {} and {} cannot be distinguished: their correlation is {:.4f}. Measure one of them: {}, or "
+          "{}.\n",
+          one, other, correlation, remedy_of(one), remedy_of(other));
+    }
+  for (const FittedParameter& parameter : fit.parameters)
+    if (!parameter.identified)
+      say("  {} is not determined by these data. Measure it: {}.\n", parameter.name,
+          remedy_of(parameter.name));
+}
+
+/// The bad points of a fit with a robust loss.
+void print_outliers(const Measurements& measured, const ModelFit& fit) {
+  if (fit.outliers.empty()) return;
+  constexpr std::size_t most = 20;
+  const std::vector<Observation> observations = observations_of(measured.film);
+  say("  {} bad points, which hardly count:", fit.outliers.size());
+  for (std::size_t k = 0; k < std::min(most, fit.outliers.size()); ++k) {
+    const Observation& one = observations[fit.outliers[k]];
+    say("{} {} at {:.6g} s", k > 0 ? "," : "", name_of(one, measured.film), one.t);
+  }
+  say("{}\n", fit.outliers.size() > most ? ", ..." : "");
+}
+
 void print_events(const Measurements& measured, const ModelFit& fit) {
   for (std::size_t i = 0; i < measured.events.size(); ++i) {
     const MeasuredEvent& event = measured.events[i];
@@ -94,6 +160,19 @@ void print_events(const Measurements& measured, const ModelFit& fit) {
         event.value, event.error, unit == "1" ? "" : " ", unit == "1" ? "" : unit, fit.model[i],
         fit.residuals[i]);
   }
+}
+
+std::string_view unit_of_film(const Film& film) {
+  return film.tracks.empty() ? std::string_view("rad") : std::string_view(film.unit);
+}
+
+/// The number of different times of a film.
+std::size_t lines_of(const Film& film) {
+  const std::vector<Observation> observations = observations_of(film);
+  std::size_t lines = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    lines += i == 0 || observations[i].t > observations[i - 1].t;
+  return lines;
 }
 
 void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& units) {
@@ -115,12 +194,12 @@ void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& un
             ? ": each free parameter uses up one number, so a true model passes within their errors"
             : fmt::format("; a true model exceeds it in {:.2g} of 100 cases", 100.0 * fit.probability));
   if (film)
-    say("  residuals {:.3g} {} rms{}\n", fit.error, measured.film.phi.empty() ? "m" : "rad",
+    say("  residuals {:.3g} {} rms{}\n", fit.error, unit_of_film(measured.film),
         std::isnan(measured.film.error) ? "; the errors above follow from them" : "");
   if (film && fit.correlation > 1.0 && explains(fit))
     say("  residuals are correlated over {:.3g} lines, as in a smoothed film: {:.3g} of {} lines are "
         "independent, and the errors are widened to match\n",
-        fit.correlation, fit.independent, grouped(measured.film.t.size()));
+        fit.correlation, fit.independent, grouped(lines_of(measured.film)));
   if (!fit.judged)
     say("  Too few lines to accept or reject this model; allowed: more lines, or --error.\n");
   else if (!explains(fit))
@@ -130,7 +209,12 @@ void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& un
         : runs(fit) ? fmt::format(": the residuals are systematic, only {:.3g} lines are independent",
                                   fit.independent)
                     : fmt::format(": residuals are {:.3g} times their scatter from line to line", fit.misfit),
-        film && measured.film.phi.empty() ? ", --scale, --y-down and the sign of x" : "");
+        !film ? ""
+        : measured.film.tracks.empty()
+            ? ", the zero of the angle (--free angle_offset) and of the time (--free time_offset)"
+            : ", --marker, --scale, and the time of the release (--free time_offset)");
+  print_indistinguishable(fit);
+  print_outliers(measured, fit);
   print_events(measured, fit);
   if (fit.after_landing > 0)
     say("  {} lines of the film are after the model's last landing and are not used: leave them out, or "
@@ -195,18 +279,14 @@ std::string csv_of(const Measurements& measured, const FitReport& report) {
   for (const ModelFit& fit : report.models)
     if (fit.found) text += fmt::format(",model_{0},residual_{0}", model_of(fit.scene).name);
   text += "\n";
-  const bool markers = !measured.film.markers[0].empty();
-  constexpr std::array<std::string_view, 4> names{"x_P", "y_P", "x_O", "y_O"};
-  const std::size_t a_line = markers ? 4 : 1;
-  const std::size_t numbers = measured.events.size() + measured.film.t.size() * a_line;
+  const std::vector<Observation> observations = observations_of(measured.film);
+  const std::size_t numbers = measured.events.size() + observations.size();
   for (std::size_t i = 0; i < numbers; ++i) {
     if (!measured.events.empty())
       text += fmt::format(",{},{}", measured.events[i].field, measured.events[i].value);
-    else if (markers)
-      text +=
-          fmt::format("{},{},{}", measured.film.t[i / 4], names[i % 4], measured.film.markers[i % 4][i / 4]);
     else
-      text += fmt::format("{},phi,{}", measured.film.t[i], measured.film.phi[i]);
+      text += fmt::format("{},{},{}", observations[i].t, name_of(observations[i], measured.film),
+                          observations[i].value);
     for (const ModelFit& fit : report.models)
       if (fit.found) text += fmt::format(",{},{}", fit.model[i], fit.residuals[i]);
     text += "\n";
@@ -225,6 +305,72 @@ void tell_fitted_anew(const Spec& spec) {
                       name, given));
 }
 
+/// "rim: at=47 mm, angle=0 deg", with or without the track's name.
+Marker marker_of(const std::string& text) {
+  const auto refuse = [&](std::string_view what) {
+    throw InputError(
+        fmt::format("--marker '{}': {}; allowed: \"at=47 mm\", \"at=47 mm, angle=0 deg\", and before it "
+                    "a track's name with a colon",
+                    text, what));
+  };
+  Marker marker;
+  std::string_view rest = text;
+  if (const std::size_t colon = rest.find(':'); colon != rest.npos) {
+    marker.track = rest.substr(0, colon);
+    rest.remove_prefix(colon + 1);
+  }
+  bool has_place = false;
+  while (!rest.empty()) {
+    std::string_view part = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+    part.remove_prefix(std::min(part.find_first_not_of(' '), part.size()));
+    const std::size_t equals = part.find('=');
+    if (equals == part.npos) refuse("a part without '='");
+    const std::string_view key = part.substr(0, equals), value = part.substr(equals + 1);
+    try {
+      if (key == "at")
+        marker.at = number_in_own_unit(value, "m", {}), has_place = true;
+      else if (key == "angle")
+        marker.angle = number_in_own_unit(value, "rad", {});
+      else
+        refuse(fmt::format("'{}' is unknown", key));
+    } catch (const InputError& error) {
+      if (std::string_view(error.what()).starts_with("--marker")) throw;
+      refuse(error.what());
+    }
+  }
+  if (!has_place) refuse("no place");
+  return marker;
+}
+
+MeasurementOptions reading_of(const FitArguments& arguments) {
+  MeasurementOptions reading = arguments.reading;
+  for (const std::string& marker : arguments.markers) reading.markers.push_back(marker_of(marker));
+  reading.free = arguments.free;
+  return reading;
+}
+
+/// The first rows of each series as understood.
+void print_as_read(const Measurements& measured) {
+  constexpr std::size_t rows = 5;
+  for (const std::string& note : measured.notes) say("{}\n", note);
+  const Film& film = measured.film;
+  for (const Track& track : film.tracks) {
+    say("\n'{}'\n{:>12} {:>12} {:>12}\n", track.name, "t [s]", fmt::format("x [{}]", film.unit),
+        fmt::format("y [{}]", film.unit));
+    for (std::size_t i = 0; i < std::min(rows, track.t.size()); ++i)
+      say("{:>12.6g} {:>12.6g} {:>12.6g}\n", track.t[i], track.x[i], track.y[i]);
+  }
+  if (!film.t.empty())
+    say("\n{:>12} {:>12} {:>12}\n", "t [s]", "phi [rad]", film.spin.empty() ? "" : "spin [rad/s]");
+  for (std::size_t i = 0; i < std::min(rows, film.t.size()); ++i)
+    say("{:>12.6g} {:>12.6g} {:>12}\n", film.t[i], film.phi[i],
+        film.spin.empty() ? "" : fmt::format("{:.6g}", film.spin[i]));
+  for (std::size_t i = 0; i < std::min(rows, measured.events.size()); ++i)
+    say("{}: {} = {} +- {}\n", measured.origin, measured.events[i].field, measured.events[i].value,
+        measured.events[i].error);
+}
+
 int run(const FitArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   const Model* only = find_model(arguments.model);
@@ -235,18 +381,39 @@ int run(const FitArguments& arguments) {
                                      arguments.model, set));
     if (only->slips) overrides.insert(overrides.begin(), "scene.friction=" + arguments.model);
   }
-  const Spec spec = read_given_spec(arguments.spec, overrides);
+  std::vector<std::string> films;
+  std::string spec_path;
+  for (const std::string& input : arguments.inputs) {
+    if (!input.ends_with(".toml")) {
+      films.push_back(input);
+      continue;
+    }
+    if (!spec_path.empty())
+      throw InputError(fmt::format("{} and {}: two specs; allowed: one", spec_path, input));
+    spec_path = input;
+  }
+  if (films.empty())
+    throw InputError(fmt::format(
+        "{}: no film or table of events; allowed: leapmap fit FILM [FILM ...] [SPEC.toml]", spec_path));
+  const Spec spec = read_given_spec(spec_path, overrides);
   ShownUnits units(arguments.units, scales_of(spec.scene));
   units.refuse_unusable(spec.scene);
   if (arguments.json && !arguments.units.empty())
     throw InputError("--units has no effect with --json; allowed: one of them");
   tell_fitted_anew(spec);
-  const std::array inputs{NamedPath{"DATA", arguments.data}, NamedPath{"SPEC", arguments.spec}};
+  std::vector<NamedPath> inputs{{"SPEC", spec_path}};
+  for (const std::string& film : films) inputs.push_back({"FILM", film});
   const std::array outputs{NamedPath{"--csv", arguments.csv}};
   refuse_same_files(inputs, outputs);
-  const Measurements measured = read_measurements(arguments.data, arguments.reading);
+  const Measurements measured = read_measurements(films, spec, reading_of(arguments));
+  if (arguments.dry_run) {
+    print_as_read(measured);
+    return 0;
+  }
   FitOptions options = arguments.options;
   if (only) options.models = {only->friction};
+  options.free = parameters_among(arguments.free);
+  if (arguments.loss == "huber") options.loss = Loss::huber;
   note_signals();
   TextOutput csv("--csv", arguments.csv, csv_head, arguments.overwrite);
   options.stop_requested = [] { return noted_signal() != 0; };
@@ -258,11 +425,12 @@ int run(const FitArguments& arguments) {
     return 128 + noted_signal();
   }
   if (arguments.json) {
-    Json json{{"seconds", report.seconds}, {"models", Json::array()}};
+    Json json{{"seconds", report.seconds}, {"notes", measured.notes}, {"models", Json::array()}};
     for (const ModelFit& one : report.models) json["models"].push_back(json_of(one));
     say_json(json);
   } else {
-    say("{} in {}\n", arguments.data, spoken_duration(report.seconds));
+    for (const std::string& note : measured.notes) say("{}\n", note);
+    say("{} in {}\n", measured.origin, spoken_duration(report.seconds));
     for (const ModelFit& one : report.models) print_fit(measured, one, units);
     print_preference(report);
   }
@@ -280,16 +448,14 @@ void add_fit(CommandLine& line, int& status) {
                      "a film, with a free mass ratio; residuals as a table"}});
   auto arguments = std::make_shared<FitArguments>();
   command
-      .value(
-          "DATA", arguments->data,
-          "measurements (CSV); columns t [s since the release], phi [rad]; or t, x_P, y_P, x_O, y_O [m]; or "
-          "event, value, error in the unit of the field")
-      .required()
-      .check(named_file());
-  command
-      .value("SPEC", arguments->spec,
-             "a spec (TOML) with the hoop, and free parameters { from, to }; default: the paper's hoop")
-      .check(named_file());
+      .value("FILM", arguments->inputs,
+             "films of one motion: Tracker .trk, .trz and text, DLTdv, DeepLabCut, Kinovea, an encoder's "
+             "log, CSV; or a "
+             "CSV table with columns event, value, error; and a spec, SPEC.toml, with the hoop and free "
+             "parameters "
+             "{ from, to }; default: the paper's hoop")
+      .several()
+      .required();
   std::vector<std::string> names{"both"};
   for (const std::string_view name : model_names()) names.emplace_back(name);
   command.group("Model");
@@ -299,15 +465,31 @@ void add_fit(CommandLine& line, int& status) {
   command.value("--seed", arguments->options.seed, "seed of the initial sample; default: 1")
       .check(whole_number(0, most_seed));
   add_threads(command, arguments->options.threads);
+  command
+      .value("--free", arguments->free,
+             "what is free, separated by commas: parameters within usual bounds, and of a film time_offset, "
+             "angle_offset, scale, tilt")
+      .with_commas();
   command.group("Film");
+  command.value(
+      "--marker", arguments->markers,
+      "where a track is on the hoop: \"at=47 mm, angle=0 deg\", before it the track's name and a colon if "
+      "several have no known place; may be given again");
+  command.value("--fps", arguments->reading.recording.fps, "frames per second, for tables without times")
+      .check(number({0.0, 1e300, false}));
+  command.value("--loss", arguments->loss, "squares, or huber for films with bad points, which are listed")
+      .check(one_of({"squares", "huber"}));
+  command.flag("--dry-run", arguments->dry_run, "print how the film was read, with its first rows, and stop");
   command
       .value("--error", arguments->reading.error,
-             "standard error of angles [rad] or positions [m]; default: from the residuals")
+             "standard error of angles [rad] or of positions in the film's unit; default: from the residuals")
       .check(number({0.0, 1e300, false}));
-  command.value("--scale", arguments->reading.scale, "metres per unit of marker positions, for pixels")
+  command
+      .value("--scale", arguments->reading.scale,
+             "metres per unit of positions; default: found from the size of the hoop")
       .check(number({0.0, 1e300, false}));
   command.flag("--y-down", arguments->reading.y_down,
-               "marker positions y grow towards the plane, as rows of a picture do");
+               "y is downwards, as rows of a picture are; default: found from two tracks");
   command.flag("--allow-gaps", arguments->reading.allow_gaps, "accept films with missing lines");
   command.group("Output");
   command

@@ -79,19 +79,4 @@ Correlation correlation_of(std::span<const double> residuals, std::size_t column
   return found;
 }
 
-double scatter_of(const Film& film) {
-  std::vector<double> differences;
-  for (const auto* column :
-       {&film.phi, &film.markers[0], &film.markers[1], &film.markers[2], &film.markers[3]})
-    for (std::size_t i = 3; i < column->size(); ++i) {
-      const auto at = [&](std::size_t back) { return (*column)[i - back]; };
-      differences.push_back(std::abs(at(0) - 3.0 * at(1) + 3.0 * at(2) - at(3)));
-    }
-  if (differences.size() < 2) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::ranges::nth_element(differences, middle);
-  const double of_normal = 0.6745 * std::sqrt(20.0);  // 1 + 9 + 9 + 1
-  return *middle / of_normal;
-}
-
 }  // namespace leapmap

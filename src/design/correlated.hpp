@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The noise of a film; and residuals whose neighbours are alike, as smoothing and interpolation make them:
+/// Residuals whose neighbours are alike, as smoothing and interpolation make them:
 /// so many lines are not as many measurements.
 #pragma once
 
 #include <cstddef>
 #include <span>
-
-#include "leapmap/fit.hpp"
 
 namespace leapmap {
 
@@ -24,9 +22,5 @@ struct Correlation {
 /// given back. Smoothing leaves the slow third of what passes it as it was: the variance is the larger one of
 /// all residuals' and of their slow cosine coefficients'.
 Correlation correlation_of(std::span<const double> residuals, std::size_t columns, std::size_t parameters);
-
-/// The scatter of a film from line to line, by third differences, which a smooth motion hardly has: their
-/// median, so that single slips count for nothing. NaN of four lines or fewer.
-double scatter_of(const Film& film);
 
 }  // namespace leapmap

@@ -2,144 +2,247 @@
 #include "design/explained.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
-#include "design/motion_at.hpp"
+#include "film/film_angles.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
-#include "physics/rolling.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
+#include "support/closest.hpp"
+#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {
 
-/// The error that residuals are over where nobody told one: 1 mrad, 1 mm.
+/// The error that residuals are over where none is given: 1 mrad, 1 mm.
 constexpr double usual_error = 1e-3;
+constexpr double pi = std::numbers::pi;
 
 FreeParameter free_parameter(std::string_view name, double low, double high) {
   return {std::string(name), *find_variable(name, nullptr), {low, high}};
 }
 
-/// Angles of a film, going on over turns.
-std::vector<double> angles_of(const Film& film) {
-  if (!film.phi.empty()) return film.phi;
-  const auto& [x_P, y_P, x_O, y_O] = film.markers;
-  std::vector<double> angles;
-  for (std::size_t i = 0; i < x_P.size(); ++i) {
-    const double angle = std::atan2(x_O[i] - x_P[i], y_O[i] - y_P[i]), turn = 2.0 * std::numbers::pi;
-    angles.push_back(i == 0 ? angle - turn * std::floor(angle / turn)
-                            : angle + turn * std::round((angles.back() - angle) / turn));
+/// The spec with the model's friction; what that model has not is as it is by default.
+Spec spec_of_model(Spec spec, Friction friction) {
+  constexpr Design usual;
+  spec.scene.friction = friction;
+  spec.axes.clear(), spec.output = {};
+  for (const Parameter& parameter : parameters()) {
+    if (has(friction, parameter.only_of)) continue;
+    if (const auto* of_design = std::get_if<double Design::*>(&parameter.member))
+      spec.design.** of_design = usual.**of_design;
+    else
+      spec.scene.*std::get<double Scene::*>(parameter.member) =
+          Scene{}.*std::get<double Scene::*>(parameter.member);
   }
-  return angles;
+  return spec;
 }
 
-/// Angle and spin [rad/s] at the release, by the cubic that fits a film's beginning best: so long that noise
-/// of a frame counts little, so short that it holds.
-std::pair<double, double> begin_of(const Film& film, double second) {
-  constexpr double long_enough = 1.5;  // in sqrt(R/g)
-  const std::vector<double> angles = angles_of(film);
-  std::size_t some = 0;
-  while (some < film.t.size() && film.t[some] <= film.t[0] + long_enough * second) ++some;
-  some = std::clamp<std::size_t>(some, 3, film.t.size());
-  const auto rows = static_cast<Eigen::Index>(some);
-  const Eigen::Index columns = std::min<Eigen::Index>(4, rows);
-  Eigen::MatrixXd powers(rows, columns);
-  Eigen::VectorXd measured(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const double t = film.t[static_cast<std::size_t>(i)] / second;
-    for (Eigen::Index k = 0; k < columns; ++k) powers(i, k) = std::pow(t, static_cast<double>(k));
-    measured[i] = angles[static_cast<std::size_t>(i)];
-  }
-  const Eigen::VectorXd cubic = powers.colPivHouseholderQr().solve(measured);
-  return {cubic[0], cubic[1] / second};
+/// Bounds of a parameter that is free without any: about its value, and within its range.
+Side usual_bounds(const Variable& variable, double value) {
+  struct Reach {
+    std::string_view name;
+    double low, high;
+  };
+  constexpr std::array reaches{Reach{"mu_static", 0.05, 1.5}, Reach{"mu_kinetic", 0.05, 1.5},
+                               Reach{"restitution", 0.0, 0.9}, Reach{"resisting_torque", 0.0, 0.3}};
+  for (const Reach& reach : reaches)
+    if (reach.name == variable.key) return {reach.low, reach.high};
+  constexpr double angle = 0.3, torque = 0.3;
+  const double about = variable.unit == "rad" ? angle
+                       : variable.unit == "1" ? 0.5 * std::abs(value)
+                                              : torque + 0.5 * std::abs(value);
+  return {std::max(value - about, variable.range.least),
+          std::min(variable.unit == "1" ? 2.0 * value : value + about, variable.range.most)};
 }
 
 }  // namespace
 
-Explained::Explained(const Measurements& measured, const Spec& spec, Friction friction)
-    : measured_(measured), spec_(spec) {
-  spec_.scene.friction = friction;
-  spec_.axes.clear(), spec_.output = {};
-  std::vector<FreeParameter> asked = free_parameters(spec);
-  constexpr Design usual;
-  for (const Parameter& parameter : parameters()) {  // what the model has not is as it is by default
-    if (has(friction, parameter.only_of)) continue;
-    if (const auto* of_design = std::get_if<double Design::*>(&parameter.member))
-      spec_.design.** of_design = usual.**of_design;
-    else
-      spec_.scene.*std::get<double Scene::*>(parameter.member) =
-          Scene{}.*std::get<double Scene::*>(parameter.member);
-    std::erase_if(asked, [&](const FreeParameter& one) { return one.name == parameter.name; });
-  }
-  free_ = std::move(asked);
+Explained::Explained(const Measurements& measured, const Spec& spec, Friction friction,
+                     std::span<const std::string> free)
+    : measured_(measured), spec_(spec_of_model(spec, friction)), film_(measured.film, spec_.scene) {
+  for (const FreeParameter& parameter : free_parameters(spec))
+    if (has(friction, parameter.variable.only_of)) free_.push_back(parameter);
+  if (spec.axes.empty() && free.empty()) free_by_default();
+  free_by_name(free);
   for (const FreeParameter& parameter : free_)
     if (parameter.variable.of_body())
       throw InputError(
           fmt::format("{}: {}: a fit frees no numbers of [hoop]; allowed: parameters of a design",
                       origin_of(spec), parameter.name));
-  if (spec.axes.empty()) {
-    free_by_default();
-    const bool frees_friction = std::ranges::find(free_, "mu_static", &FreeParameter::name) != free_.end();
-    if (frees_friction && spec_.design.mu_kinetic == spec_.design.mu_static)
-      spec_.design.mu_kinetic = usual.mu_kinetic;  // follows it
-  }
-  if (free_.empty())
+  const bool frees_friction = std::ranges::find(free_, "mu_static", &FreeParameter::name) != free_.end();
+  if (spec.axes.empty() && frees_friction && spec_.design.mu_kinetic == spec_.design.mu_static)
+    spec_.design.mu_kinetic = Design{}.mu_kinetic;  // follows it
+  if (is_film()) free_camera();
+  if (free_.empty() && camera_.empty())
     throw InputError(fmt::format(
         "{}: no parameter of the model \"{}\" is free; allowed: for example release_angle = {{ from, to }}",
         origin_of(spec), model_of(friction).name));
   check_spec(spec_);
 
-  problem_.residuals = measured.events.size() + measured.film.t.size() * a_line();
-  for (const FreeParameter& parameter : free_) problem_.bounds.push_back(parameter.side);
-  if (!measured.events.empty()) {
+  for (const FreeParameter& parameter : free_) {
+    problem_.bounds.push_back(parameter.side);
+    by_design_.push_back(static_cast<std::size_t>(
+        std::ranges::find(differentiable, parameter.variable.parameter()) - differentiable.begin()));
+  }
+  for (const FreeCamera& free_number : camera_) {
+    problem_.bounds.push_back(free_number.side);
+    by_camera_.push_back(free_number.number->member);
+  }
+  if (!is_film()) {
+    searched_ = free_.size();
+    problem_.residuals = measured.events.size();
     problem_.evaluate = [this](std::span<const double> at, std::span<double> residuals,
                                std::span<double> jacobian) {
       return event_residuals(at, residuals, jacobian);
     };
     return;
   }
-  constexpr std::size_t few = 40;
-  all_lines_.resize(measured.film.t.size());
-  std::iota(all_lines_.begin(), all_lines_.end(), std::size_t{0});
-  const std::size_t every = (all_lines_.size() + few - 1) / few;
-  for (std::size_t i = 0; i < all_lines_.size(); i += every) few_lines_.push_back(i);
-  if (has_markers())
-    for (const std::size_t k : {std::size_t{2}, std::size_t{3}}) {
-      const auto [low, high] = std::ranges::minmax(measured.film.markers[k]);
-      const double reach = high - low + 20.0 * spec_.scene.radius;
-      problem_.bounds.push_back({low - reach, high + reach});
-    }
-  problem_.evaluate = [this](std::span<const double> at, std::span<double> residuals,
-                             std::span<double> jacobian) {
-    return jacobian.empty() ? film_residuals<double>(at, all_lines_, residuals, jacobian)
-                            : film_residuals<DesignDual>(at, all_lines_, residuals, jacobian);
+  choose_numbers();
+  const auto over = [this](const std::vector<std::size_t>& numbers) {
+    return LeastSquares{.bounds = problem_.bounds,
+                        .residuals = numbers.size(),
+                        .evaluate = [this, &numbers](std::span<const double> at, std::span<double> residuals,
+                                                     std::span<double> jacobian) {
+                          return film_residuals(at, numbers, residuals, jacobian);
+                        }};
   };
+  problem_ = over(all_numbers_), small_problem_ = over(few_numbers_);
 }
 
 void Explained::free_by_default() {
-  const double pi = std::numbers::pi;
-  if (measured_.film.t.empty()) {
+  const bool slips = model_of(spec_.scene).slips;
+  const Film& film = measured_.film;
+  const auto is_free = [&](std::string_view name) {
+    return std::ranges::find(film.free, name) != film.free.end();
+  };
+  if (!is_film()) {
     free_ = {free_parameter("release_angle", 0.5 * pi, 1.95 * pi), free_parameter("release_spin", -1.0, 3.0)};
+  } else if (is_free("time_offset")) {
+    free_ = {release_angle_of_film()};
   } else {
+    const FilmAngles angles = angles_of(film, spec_.design.slope);
     const double second = time_unit(spec_.scene);
-    constexpr double late = 0.3;  // sqrt(R/g): from farther off nobody can tell where it was at the release
-    if (measured_.film.t.front() > late * second)
-      throw InputError(
-          fmt::format("{}: the film begins at t = {} s, too late to estimate the release; allowed: times "
-                      "counted from its "
-                      "first line, or release_angle and release_spin with bounds, {{ from, to }}",
-                      measured_.origin, measured_.film.t.front()));
-    const auto [angle, spin] = begin_of(measured_.film, second);
-    free_ = {free_parameter("release_angle", angle - 0.3, angle + 0.3),
-             free_parameter("release_spin", spin * second - 0.5, spin * second + 0.5)};
+    constexpr double late = 0.3;  // sqrt(R/g): from farther off the release is not known
+    const double first = observations().front().t;
+    if (first > late * second)
+      throw InputError(fmt::format(
+          "{}: the film begins at t = {} s, too late to estimate the release; allowed: times counted "
+          "from its first line, --free time_offset, or release_angle and release_spin with bounds, "
+          "{{ from, to }}",
+          measured_.origin, first));
+    free_ = {release_angle_of_film()};
+    if (angles.t.size() >= 3) {
+      const double spin = release_of(angles, second).second * second;
+      free_.push_back(free_parameter("release_spin", spin - 0.5, spin + 0.5));
+    } else {
+      free_.push_back(free_parameter("release_spin", -0.5, 1.0));
+    }
   }
-  if (model_of(spec_.scene).slips) free_.push_back(free_parameter("mu_static", 0.05, 1.5));
+  if (slips) free_.push_back(free_parameter("mu_static", 0.05, 1.5));
+}
+
+FreeParameter Explained::release_angle_of_film() const {
+  const Film& film = measured_.film;
+  const auto is_free = [&](std::string_view name) {
+    return std::ranges::find(film.free, name) != film.free.end();
+  };
+  const FilmAngles angles = angles_of(film, spec_.design.slope);
+  constexpr double about = 0.3;
+  if (angles.t.size() < 3 || is_free("angle_offset"))
+    return free_parameter("release_angle", 0.5 * pi, 1.95 * pi);
+  double at = release_of(angles, time_unit(spec_.scene)).first;
+  if (is_free("time_offset")) {
+    std::vector<double> held;
+    for (std::size_t i = 0; i < angles.t.size() && (i < 3 || angles.t[i] < film.camera.time_offset); ++i)
+      held.push_back(angles.phi[i]);
+    std::ranges::nth_element(held, held.begin() + static_cast<std::ptrdiff_t>(held.size() / 2));
+    at = held[held.size() / 2];
+  }
+  return free_parameter("release_angle", at - about, at + about);
+}
+
+void Explained::free_by_name(std::span<const std::string> names) {
+  for (const std::string& name : names) {
+    const std::optional<Variable> variable = find_variable(name, spec_.hoop ? &*spec_.hoop : nullptr);
+    if (!variable) {
+      std::vector<std::string_view> all;
+      for (const CameraNumber& number : camera_numbers)
+        if (!number.unit.empty()) all.push_back(number.name);
+      for (const Parameter& parameter : parameters())
+        if (std::holds_alternative<double Design::*>(parameter.member)) all.push_back(parameter.name);
+      throw InputError(fmt::format("--free {}: is no parameter of a fit{}; allowed: {}", name,
+                                   did_you_mean(name, all), fmt::join(all, ", ")));
+    }
+    const bool there = std::ranges::find(free_, name, &FreeParameter::name) != free_.end();
+    if (there || variable->of_body() || !has(spec_.scene.friction, variable->only_of)) continue;
+    if (name == "release_angle" && is_film())
+      free_.push_back(release_angle_of_film());
+    else if (name == "release_angle")
+      free_.push_back(free_parameter(name, 0.5 * pi, 1.95 * pi));
+    else if (name == "release_spin")
+      free_.push_back(free_parameter(name, -1.0, 3.0));
+    else
+      free_.push_back({name, *variable, usual_bounds(*variable, spec_.design.*variable->parameter())});
+  }
+}
+
+void Explained::free_camera() {
+  const Film& film = measured_.film;
+  const double second = time_unit(spec_.scene), R = spec_.scene.radius;
+  const auto bounds_of = [&](const CameraNumber& number) -> Side {
+    const double value = film.camera.*number.member;
+    if (number.member == &Camera::time_offset) return {value - 5.0 * second, value + 0.3 * second};
+    if (number.member == &Camera::scale) return {0.5 * value, 2.0 * value};
+    if (number.member == &Camera::tilt) return {value - 0.7, value + 0.7};
+    if (number.member == &Camera::angle_offset) {
+      const double first = film.phi.empty() ? 0.0 : film.phi.front();
+      return {-3.0 * pi - first, 5.0 * pi - first};
+    }
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const Observation& one : observations())
+      if (is_position(one.kind)) low = std::min(low, one.value), high = std::max(high, one.value);
+    const double reach = high - low + 20.0 * R / film.camera.scale;
+    return {low - reach, high + reach};
+  };
+  for (const bool linear : {false, true}) {
+    for (const CameraNumber& number : camera_numbers) {
+      const bool is_origin = number.unit.empty();
+      const bool free =
+          is_origin ? !film.tracks.empty() : std::ranges::find(film.free, number.name) != film.free.end();
+      if (free && number.is_linear == linear) camera_.push_back({&number, bounds_of(number)});
+    }
+    if (!linear) searched_ = free_.size() + camera_.size();
+  }
+}
+
+void Explained::choose_numbers() {
+  constexpr std::size_t few = 40;
+  const std::vector<Observation>& all = observations();
+  all_numbers_.resize(all.size());
+  std::iota(all_numbers_.begin(), all_numbers_.end(), std::size_t{0});
+  std::size_t times = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) times += i == 0 || all[i].t > all[i - 1].t;
+  const std::size_t every = (times + few - 1) / few;
+  for (std::size_t i = 0, time = 0; i < all.size(); ++i) {
+    time += i > 0 && all[i].t > all[i - 1].t;
+    if (time % every == 0) few_numbers_.push_back(i);
+  }
+  const Film& film = measured_.film;
+  const bool has_angles = !film.phi.empty(), has_spins = !film.spin.empty();
+  constexpr double least = 1e-6;
+  const double usual_angle = has_spins ? std::max(scatter_of(all, Measured::angle), least) : usual_error;
+  errors_ = {errors_known() && has_angles ? film.error : usual_angle,
+             std::max(scatter_of(all, Measured::spin), least),
+             errors_known() ? film.error : usual_error / film.camera.scale};
+  for (double& error : errors_)
+    if (!(error > 0.0)) error = usual_error;  // too few numbers to know their scatter
 }
 
 Design Explained::design_at(std::span<const double> at) const {
@@ -148,21 +251,22 @@ Design Explained::design_at(std::span<const double> at) const {
   return design;
 }
 
-bool Explained::errors_known() const {
-  return !measured_.events.empty() || !std::isnan(measured_.film.error);
+Camera Explained::camera_at(std::span<const double> at) const {
+  Camera camera = measured_.film.camera;
+  for (std::size_t k = free_.size(); k < at.size(); ++k) camera.*by_camera_[k - free_.size()] = at[k];
+  return camera;
 }
 
-double Explained::unit_error() const {
-  return measured_.events.empty() ? (errors_known() ? measured_.film.error : usual_error) : 1.0;
-}
+bool Explained::errors_known() const { return !is_film() || !std::isnan(measured_.film.error); }
 
 double Explained::error_of(std::size_t number) const {
-  return measured_.events.empty() ? unit_error() : measured_.events[number].error;
+  if (!is_film()) return measured_.events[number].error;
+  const Measured kind = observations()[number].kind;
+  return errors_[kind == Measured::angle ? 0 : kind == Measured::spin ? 1 : 2];
 }
 
 double Explained::measured_at(std::size_t number) const {
-  if (!measured_.events.empty()) return measured_.events[number].value;
-  return has_markers() ? measured_.film.markers[number % 4][number / 4] : measured_.film.phi[number];
+  return is_film() ? observations()[number].value : measured_.events[number].value;
 }
 
 std::vector<double> Explained::model_at(std::span<const double> residuals) const {
@@ -172,45 +276,17 @@ std::vector<double> Explained::model_at(std::span<const double> residuals) const
   return model;
 }
 
-template <class S>
-bool Explained::film_residuals(std::span<const double> at, std::span<const std::size_t> lines,
+bool Explained::film_residuals(std::span<const double> at, std::span<const std::size_t> numbers,
                                std::span<double> residuals, std::span<double> jacobian) const {
-  const Design design = design_at(at);
-  std::vector<double> times;
-  for (const std::size_t line : lines) times.push_back(measured_.film.t[line]);
-  const std::vector<MotionAt<S>> motion = motion_at<S>(design, spec_.scene, times);
-  if (motion.empty()) return false;
+  if (!film_.residuals(design_at(at), camera_at(at), {numbers, by_design_, by_camera_}, residuals, jacobian))
+    return false;
   const std::size_t columns = problem_.bounds.size();
-  const double error = unit_error(), R = spec_.scene.radius;
-  const auto put = [&](std::size_t row, std::size_t number, const S& model, std::size_t origin) {
-    residuals[row] = (value_of(model) - measured_at(number)) / error;
-    if constexpr (has_derivatives<S>) {
-      for (std::size_t k = 0; k < free_.size(); ++k) {
-        const auto place =
-            std::ranges::find(differentiable, free_[k].variable.parameter()) - differentiable.begin();
-        jacobian[row * columns + k] = model.by[static_cast<std::size_t>(place)] / error;
-      }
-      for (std::size_t k = free_.size(); k < columns; ++k)
-        jacobian[row * columns + k] = k - free_.size() == origin ? 1.0 / error : 0.0;
-    }
-  };
-  const double x = at.size() > free_.size() ? at[free_.size()] : 0.0,
-               y = at.size() > free_.size() ? at[free_.size() + 1] : 0.0;
-  S L(design.offset_ratio);
-  if constexpr (has_derivatives<S>) L = S::parameter(design.offset_ratio, 2);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (!has_markers()) {
-      put(i, lines[i], motion[i].phi, 0);
-      continue;
-    }
-    const Trig<S> phi = trig(motion[i].phi);  // P is at (-L sin phi, -L cos phi) from O
-    put(4 * i, 4 * lines[i], (motion[i].x - L * phi.sin) * R + x, 0);
-    put(4 * i + 1, 4 * lines[i] + 1, (motion[i].y - L * phi.cos) * R + y, 1);
-    put(4 * i + 2, 4 * lines[i] + 2, motion[i].x * R + x, 0);
-    put(4 * i + 3, 4 * lines[i] + 3, motion[i].y * R + y, 1);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const double error = error_of(numbers[i]);
+    residuals[i] /= error;
+    for (std::size_t k = 0; k < columns && !jacobian.empty(); ++k) jacobian[i * columns + k] /= error;
   }
-  return std::ranges::all_of(residuals, [](double residual) { return std::isfinite(residual); }) &&
-         std::ranges::all_of(jacobian, [](double derivative) { return std::isfinite(derivative); });
+  return true;
 }
 
 template <class F>
@@ -253,25 +329,33 @@ bool Explained::event_residuals(std::span<const double> at, std::span<double> re
   });
 }
 
-std::vector<double> Explained::with_origin(std::span<const double> at) const {
-  std::vector<double> whole(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(free_.size()));
-  if (!has_markers()) return whole;
-  std::vector<double> residuals(4 * few_lines_.size());
-  whole.resize(problem_.bounds.size(), 0.0);
-  if (!film_residuals<double>(whole, few_lines_, residuals, {})) return whole;
-  for (std::size_t i = 0; i < residuals.size(); ++i)
-    whole[free_.size() + i % 2] -=
-        residuals[i] * unit_error() / (0.5 * static_cast<double>(residuals.size()));
+std::vector<double> Explained::with_camera(std::span<const double> at) const {
+  std::vector<double> whole(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(searched_));
+  if (!is_film()) return whole;
+  Camera camera = camera_at(whole);
+  std::vector<double> residuals(few_numbers_.size());
+  film_.residuals_with_camera(design_at(whole), camera, by_camera_, few_numbers_, residuals);
+  for (std::size_t k = searched_; k < problem_.bounds.size(); ++k) {
+    const Side& side = problem_.bounds[k];
+    whole.push_back(std::clamp(camera.*by_camera_[k - free_.size()], side.low, side.high));
+  }
   return whole;
 }
 
 void Explained::coarse_sums(std::span<const std::vector<double>> places, std::span<double> sums) const {
   std::ranges::fill(sums, HUGE_VAL);
-  if (measured_.events.empty()) {
-    std::vector<double> residuals(few_lines_.size() * a_line());
-    for (std::size_t i = 0; i < places.size(); ++i)
-      if (film_residuals<double>(with_origin(places[i]), few_lines_, residuals, {}))
-        sums[i] = std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), 0.0);
+  if (is_film()) {
+    std::vector<double> residuals(few_numbers_.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      Camera camera = camera_at(places[i]);
+      if (!film_.residuals_with_camera(design_at(places[i]), camera, by_camera_, few_numbers_, residuals))
+        continue;
+      sums[i] = 0.0;
+      for (std::size_t k = 0; k < residuals.size(); ++k) {
+        const double over_error = residuals[k] / error_of(few_numbers_[k]);
+        sums[i] += over_error * over_error;
+      }
+    }
     return;
   }
   std::vector<Design> designs;

@@ -43,7 +43,7 @@ struct CoarsePlace {
 void map_coarsely(const Explained& explained, const FitOptions& options, const SobolPoints& points,
                   std::span<const double> centre, double share, std::vector<CoarsePlace>& places) {
   constexpr std::size_t a_block = 256;
-  const std::size_t samples = points.samples(), dimensions = explained.free().size();
+  const std::size_t samples = points.samples(), dimensions = explained.searched();
   std::vector<std::vector<double>> found(samples, std::vector<double>(dimensions));
   std::vector<double> sums(samples);
   parallel_for_each((samples + a_block - 1) / a_block, options.threads, options.stop_requested, [&] {
@@ -73,7 +73,8 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
   };
   const std::size_t samples = SobolPoints::whole(usual(options.coarse, 4096, 1 << 16)),
                     most = usual(options.starts, 8, 24);
-  const std::size_t dimensions = explained.free().size();
+  const std::size_t dimensions = explained.searched();
+  if (dimensions == 0) return {{}};
   std::vector<double> middle;
   for (std::size_t k = 0; k < dimensions; ++k) middle.push_back(explained.problem().bounds[k].value(0.5));
   std::vector<CoarsePlace> places;
@@ -105,9 +106,10 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
   return starts;
 }
 
-/// The best of fits from several starts, side by side.
-LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<std::vector<double>>& starts,
-                         const FitOptions& options, std::size_t& evaluations) {
+/// Fits from several starts, side by side, best first; those that found nothing are left out.
+std::vector<LeastSquaresFit> fits_from(const LeastSquares& problem,
+                                       const std::vector<std::vector<double>>& starts,
+                                       const FitOptions& options, std::size_t& evaluations) {
   std::vector<LeastSquaresFit> fits(starts.size());
   parallel_for_each(starts.size(), options.threads, options.stop_requested, [&] {
     return [&](std::size_t i) {
@@ -117,7 +119,26 @@ LeastSquaresFit best_fit(const LeastSquares& problem, const std::vector<std::vec
     };
   });
   for (const LeastSquaresFit& fit : fits) evaluations += fit.evaluations;
-  return *std::ranges::min_element(fits, {}, &LeastSquaresFit::sum);
+  std::erase_if(fits, [](const LeastSquaresFit& fit) { return fit.residuals.empty(); });
+  std::ranges::stable_sort(fits, {}, &LeastSquaresFit::sum);
+  return fits;
+}
+
+/// The best of fits from several starts. Of a film they are followed over a few of its numbers; all of them
+/// decide between the best two.
+LeastSquaresFit best_fit(const Explained& explained, const LeastSquares& problem,
+                         std::vector<std::vector<double>> starts, const FitOptions& options,
+                         std::size_t& evaluations) {
+  constexpr std::size_t finalists = 2;
+  if (explained.is_film()) {
+    const std::vector<LeastSquaresFit> fits =
+        fits_from(explained.small_problem(), starts, options, evaluations);
+    starts.clear();
+    for (const LeastSquaresFit& fit : fits)
+      if (starts.size() < finalists && (starts.empty() || fit.at != starts.front())) starts.push_back(fit.at);
+  }
+  std::vector<LeastSquaresFit> fits = fits_from(problem, starts, options, evaluations);
+  return fits.empty() ? LeastSquaresFit{} : std::move(fits.front());
 }
 
 /// The least sum of squares with one parameter held, the others refitted from a place.
@@ -227,13 +248,93 @@ void refuse_what_has_no_use(const Spec& spec) {
   if (resolved_method(spec.numerics) != "exact") refuse("a method other than \"exact\"");
 }
 
-/// Lines later than the landing of the last jump that the model follows.
-std::size_t lines_after_landing(const Measurements& measured, const Outcome& outcome) {
+/// Times of a film later than the landing of the last jump that the model follows.
+std::size_t times_after_landing(std::span<const Observation> observations, const Outcome& outcome,
+                                double release) {
   const bool first = outcome.later_jumps.empty();
   const double landing = first ? outcome.jump_time + outcome.flight_time
                                : outcome.later_jumps.back().time + outcome.later_jumps.back().flight_time;
-  return static_cast<std::size_t>(
-      std::ranges::count_if(measured.film.t, [&](double t) { return t > landing; }));
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    count += observations[i].t - release > landing && (i == 0 || observations[i].t > observations[i - 1].t);
+  return count;
+}
+
+/// Residuals line by line, of the times at which all was measured that ever was.
+struct Lines {
+  std::vector<double> residuals{};
+  std::size_t columns = 0;
+
+  double count() const { return static_cast<double>(residuals.size() / columns); }
+};
+
+Lines lines_of(std::span<const Observation> observations, std::span<const double> residuals) {
+  Lines lines;
+  const auto end_of_time = [&](std::size_t i) {
+    std::size_t end = i;
+    while (end < observations.size() && observations[end].t == observations[i].t) ++end;
+    return end;
+  };
+  for (std::size_t i = 0; i < observations.size(); i = end_of_time(i))
+    lines.columns = std::max(lines.columns, end_of_time(i) - i);
+  for (std::size_t i = 0; i < observations.size(); i = end_of_time(i))
+    if (end_of_time(i) - i == lines.columns)
+      lines.residuals.insert(lines.residuals.end(), residuals.begin() + static_cast<std::ptrdiff_t>(i),
+                             residuals.begin() + static_cast<std::ptrdiff_t>(end_of_time(i)));
+  return lines;
+}
+
+/// Huber's loss: residuals up to so many standard errors count by their squares, larger ones by their size.
+constexpr double huber_limit = 1.345;
+
+/// The standard deviation of residuals most of which are normal.
+double robust_deviation(std::span<const double> residuals) {
+  std::vector<double> sizes;
+  for (const double residual : residuals) sizes.push_back(std::abs(residual));
+  std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
+  constexpr double of_normal = 0.6745;
+  return std::max(sizes[sizes.size() / 2] / of_normal, 1e-12);
+}
+
+/// The residuals, the large ones cut to what counts of them.
+std::vector<double> limited(std::span<const double> residuals, double deviation) {
+  std::vector<double> limited;
+  for (const double residual : residuals)
+    limited.push_back(std::clamp(residual, -huber_limit * deviation, huber_limit * deviation));
+  return limited;
+}
+
+/// A fit with Huber's loss, from one of least squares: by weights until they stay as they are.
+LeastSquaresFit robust_fit(const LeastSquares& problem, LeastSquaresFit best, std::size_t& evaluations) {
+  constexpr int most_rounds = 30;
+  for (int round = 0; round < most_rounds; ++round) {
+    const double deviation = robust_deviation(best.residuals);
+    std::vector<double> weights;
+    for (const double residual : best.residuals)
+      weights.push_back(
+          std::sqrt(std::min(1.0, huber_limit * deviation / std::max(std::abs(residual), 1e-300))));
+    LeastSquares weighted{.bounds = problem.bounds, .residuals = problem.residuals, .evaluate = {}};
+    weighted.evaluate = [&](std::span<const double> at, std::span<double> residuals,
+                            std::span<double> jacobian) {
+      if (!problem.evaluate(at, residuals, jacobian)) return false;
+      for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] *= weights[i];
+      for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= weights[i / problem.bounds.size()];
+      return true;
+    };
+    const LeastSquaresFit next = minimize(weighted, best.at);
+    evaluations += next.evaluations;
+    if (next.residuals.empty()) return best;
+    double moved = 0.0;
+    for (std::size_t k = 0; k < next.at.size(); ++k)
+      moved = std::max(moved,
+                       std::abs(next.at[k] - best.at[k]) / (problem.bounds[k].high - problem.bounds[k].low));
+    best.at = next.at;
+    if (!problem.evaluate(best.at, best.residuals, best.jacobian)) return best;
+    constexpr double still = 1e-9;
+    if (moved < still) break;
+  }
+  best.sum = sum_of_squares(best.residuals);
+  return best;
 }
 
 /// A model's fit, and what its information needs.
@@ -251,9 +352,89 @@ double information_of(const Fitted& fitted, double correlation) {
   return 2.0 * free + numbers * std::log(fitted.sum / (numbers * correlation));
 }
 
+/// How much of the residuals counts, and what that makes of the errors of parameters.
+struct Spreading {
+  double sum = 0.0;          ///< of squares that count
+  double variance = 1.0;     ///< of a residual over its error
+  double uncertainty = 1.0;  ///< what errors of parameters follow from
+};
+
+/// With Huber's loss the variance is that of its influence function: of residuals cut at the limit, over the
+/// square of the fraction that is not cut.
+Spreading spreading_of(std::span<const double> residuals, std::size_t degrees, bool errors_known, Loss loss) {
+  // Of numbers without any error the residuals are those of rounding.
+  constexpr double rounding = 1e-20;
+  const double numbers = static_cast<double>(residuals.size());
+  Spreading spreading{.sum = sum_of_squares(residuals)};
+  double inside = 1.0;
+  if (loss == Loss::huber) {
+    const std::vector<double> cut = limited(residuals, robust_deviation(residuals));
+    spreading.sum = sum_of_squares(cut);
+    std::size_t whole = 0;
+    for (std::size_t i = 0; i < cut.size(); ++i) whole += cut[i] == residuals[i];
+    inside = static_cast<double>(whole) / numbers;
+  }
+  if (!errors_known) spreading.sum = std::max(spreading.sum, rounding * numbers);
+  if (!errors_known || loss == Loss::huber)
+    spreading.variance = spreading.sum / static_cast<double>(degrees) / (inside * inside);
+  spreading.uncertainty = spreading.variance;
+  return spreading;
+}
+
+/// What a film's residuals say of the fit: how many of its lines are independent, and whether the residuals
+/// are larger than its noise.
+void judge_film(const Explained& explained, std::span<const double> residuals, Spreading& spreading,
+                ModelFit& told) {
+  const std::vector<Observation>& observations = explained.observations();
+  const Lines lines = lines_of(observations, residuals);
+  const Correlation correlation =
+      correlation_of(lines.residuals, lines.columns, explained.problem().bounds.size());
+  told.correlation = correlation.lines;
+  told.independent = std::min(lines.count() / correlation.lines, correlation.carrying);
+  if (correlation.lines > 1.0) spreading.uncertainty = std::max(spreading.variance, correlation.variance);
+  const Measured first = observations.front().kind;
+  double squares = 0.0, over_scatter = 0.0;
+  std::size_t alike = 0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!are_alike(observations[i].kind, first)) continue;
+    const double residual = residuals[i] * explained.error_of(i);
+    squares += residual * residual, ++alike;
+  }
+  told.error = std::sqrt(squares / static_cast<double>(alike));
+  told.judged = explained.errors_known();
+  if (told.judged) return;
+  constexpr double least_scatter = 1e-6;  // of numbers without noise no more is asked than six digits
+  for (const Measured kind : {Measured::angle, Measured::spin, Measured::x}) {
+    const double scatter = scatter_of(observations, kind);
+    if (std::isnan(scatter)) continue;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+      if (are_alike(observations[i].kind, kind)) {
+        const double residual = residuals[i] * explained.error_of(i);
+        sum += residual * residual, ++count;
+      }
+    if (count == 0) continue;
+    told.judged = true;
+    const double least = is_position(kind) ? least_scatter * explained.units_per_metre() : least_scatter;
+    over_scatter =
+        std::max(over_scatter, std::sqrt(sum / static_cast<double>(count)) / std::max(scatter, least));
+  }
+  if (told.judged) told.misfit = over_scatter;
+}
+
+void name_parameters(const Explained& explained, const LeastSquaresFit& best, ModelFit& told) {
+  for (std::size_t k = 0; k < explained.free().size(); ++k)
+    told.parameters.push_back({.name = explained.free()[k].name, .value = best.at[k]});
+  for (std::size_t k = 0; k < explained.camera().size(); ++k)
+    if (const CameraNumber& number = *explained.camera()[k].number; !number.unit.empty())
+      told.parameters.push_back(
+          {.name = std::string(number.name), .value = best.at[explained.free().size() + k]});
+}
+
 Fitted fit_model(const Measurements& measured, const Spec& spec, Friction friction,
                  const FitOptions& options) {
-  const Explained explained(measured, spec, friction);
+  const Explained explained(measured, spec, friction, options.free);
   LeastSquares problem = explained.problem();
   problem.evaluate = [&](std::span<const double> at, std::span<double> residuals,
                          std::span<double> jacobian) {
@@ -272,51 +453,50 @@ Fitted fit_model(const Measurements& measured, const Spec& spec, Friction fricti
   told.starts = starts.size();
   if (starts.empty()) return fitted;
   std::vector<std::vector<double>> whole;
-  for (const auto& start : starts) whole.push_back(explained.with_origin(start));
-  const LeastSquaresFit best = best_fit(problem, whole, options, told.evaluations);
+  for (const auto& start : starts) whole.push_back(explained.with_camera(start));
+  LeastSquaresFit best = best_fit(explained, problem, whole, options, told.evaluations);
   if (best.residuals.empty()) return fitted;
+  if (options.loss == Loss::huber) best = robust_fit(problem, std::move(best), told.evaluations);
   told.found = true;
-  told.design = explained.design_at(best.at);
+  told.design = explained.design_at(best.at), told.camera = explained.camera_at(best.at);
   told.outcome = solve(told.design, told.scene);
-  told.after_landing = lines_after_landing(measured, told.outcome);
   const auto numbers = static_cast<double>(problem.residuals);
   told.degrees = problem.residuals - problem.bounds.size();
-  // Where nobody says how good the numbers are, the residuals do; those of numbers without any error by a
-  // rounding.
-  constexpr double rounding = 1e-20;
-  fitted.sum = known ? best.sum : std::max(best.sum, rounding * numbers);
-  const double variance = known ? 1.0 : fitted.sum / static_cast<double>(told.degrees);
-  double uncertainty = variance;  // what errors of parameters are told by
+  Spreading spreading = spreading_of(best.residuals, told.degrees, known, options.loss);
+  fitted.sum = spreading.sum;
+  told.chi_square = known ? spreading.sum : static_cast<double>(told.degrees);
   if (explained.is_film()) {
-    const std::size_t columns = problem.residuals / measured.film.t.size();
-    const Correlation correlation = correlation_of(best.residuals, columns, problem.bounds.size());
-    told.correlation = correlation.lines;
-    told.independent =
-        std::min(static_cast<double>(measured.film.t.size()) / correlation.lines, correlation.carrying);
-    if (correlation.lines > 1.0) uncertainty = std::max(variance, correlation.variance);
+    told.after_landing = times_after_landing(explained.observations(), told.outcome, told.camera.time_offset);
+    judge_film(explained, best.residuals, spreading, told);
   }
-  told.chi_square = known ? best.sum : static_cast<double>(told.degrees);
-  told.error = std::sqrt(best.sum / numbers) * explained.unit_error();
-  constexpr double least_scatter = 1e-6;  // of numbers without noise no more is asked than six digits
-  const double scatter = explained.is_film() && !known ? scatter_of(measured.film) : nan;
-  if (!std::isnan(scatter)) told.misfit = told.error / std::max(scatter, least_scatter);
-  told.judged = known || !std::isnan(scatter);
-  for (std::size_t k = 0; k < explained.free().size(); ++k)
-    told.parameters.push_back({.name = explained.free()[k].name, .value = best.at[k]});
-  tell_uncertainty(problem, best, uncertainty, told);
+  name_parameters(explained, best, told);
+  tell_uncertainty(problem, best, spreading.uncertainty, told);
   if (known) {
     // A true model passes through as many numbers as it has free parameters, but those at their bounds.
     const auto held =
         static_cast<double>(std::ranges::count(told.parameters, true, &FittedParameter::at_bound));
     const double freedom = numbers - static_cast<double>(problem.bounds.size()) + held;
-    told.probability = gsl_cdf_chisq_Q(best.sum, std::max(freedom, 1.0));
+    told.probability = gsl_cdf_chisq_Q(spreading.sum, std::max(freedom, 1.0));
   }
   told.model = explained.model_at(best.residuals);
-  for (const double residual : best.residuals) told.residuals.push_back(residual / std::sqrt(variance));
+  const double deviation = robust_deviation(best.residuals);
+  constexpr double bad = 4.0;  // deviations: one of 16,000 normal residuals
+  for (std::size_t i = 0; i < best.residuals.size(); ++i) {
+    told.residuals.push_back(best.residuals[i] * (explained.is_film() ? explained.error_of(i) : 1.0));
+    if (options.loss == Loss::huber && std::abs(best.residuals[i]) > bad * deviation)
+      told.outliers.push_back(i);
+  }
   return fitted;
 }
 
 }  // namespace
+
+std::vector<std::string> parameters_among(const std::vector<std::string>& names) {
+  std::vector<std::string> parameters;
+  std::ranges::copy_if(names, std::back_inserter(parameters),
+                       [](const std::string& name) { return !find_camera_number(name); });
+  return parameters;
+}
 
 FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& asked) {
   const auto begin = std::chrono::steady_clock::now();
@@ -325,6 +505,8 @@ FitReport fit(const Measurements& measured, const Spec& spec, const FitOptions& 
   const StopScope scope(options.stop_requested);
   refuse_what_has_no_use(spec);
   check_measurements(measured, spec);
+  if (options.loss != Loss::squares && !measured.events.empty())
+    throw InputError(measured.origin + ": holds events; a loss has no effect on them; allowed: with a film");
   FitReport report;
   std::vector<Fitted> fits;
   std::size_t refused = 0;

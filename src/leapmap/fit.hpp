@@ -3,7 +3,6 @@
 /// Identification of release, friction, torque or hoop from a measured motion.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +13,7 @@
 
 #include "leapmap/design.hpp"
 #include "leapmap/errors.hpp"
+#include "leapmap/film.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/spec.hpp"
 
@@ -26,14 +26,31 @@ struct MeasuredEvent {
   double error = 0.0;   ///< standard error in the same unit, > 0
 };
 
-/// A measured motion over time: the angle, or two markers, P on the mass and O on the hoop's centre. Marker
-/// coordinates are along the plane, downhill, and away from it.
+/// Where a film's numbers lie against the hoop's: a point that is X downhill along the plane and Y above it
+/// [m] has the positions
+///   x + (X cos a + Y sin a) / scale,  y + (Y cos a - X sin a) / scale.
+/// The angle a by which the plane descends in the film is tilt, or slope + tilt if the film is level.
+struct Camera {
+  double time_offset = 0.0;   ///< time of the release in the film [s]; before it the hoop is held
+  double angle_offset = 0.0;  ///< the hoop's angle phi where the film's angle is 0 [rad]
+  double scale = 1.0;         ///< metres per unit of positions
+  double tilt = 0.0;          ///< [rad]
+  double x = 0.0;             ///< of where the hoop's centre would touch the plane at the release
+  double y = 0.0;             ///< likewise
+};
+
+/// A measured motion over time: angles, or points of the hoop.
 struct Film {
-  std::vector<double> t{};                       ///< times since release [s], ascending
-  std::vector<double> phi{};                     ///< angles [rad]; empty: markers are given
-  std::array<std::vector<double>, 4> markers{};  ///< x_P, y_P, x_O, y_O [m], any origin; empty: phi is given
+  std::vector<double> t{};      ///< times of the angles [s], ascending
+  std::vector<double> phi{};    ///< angles [rad]; NaN: none at that time; empty: points are given
+  std::vector<double> spin{};   ///< angular velocities at these times [rad/s]; NaN: none; empty: not measured
+  std::vector<Track> tracks{};  ///< of points; y is upwards, and the hoop moves towards larger x
+  bool is_level = false;        ///< x is horizontal; false: x is along the plane, downhill
+  std::string unit = "m";       ///< of positions, for reports
+  Camera camera{};              ///< values of what is fixed, and first estimates of what is free
+  std::vector<std::string> free{};  ///< names of the camera's numbers that are free; x and y always are
   double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error; NaN: from the residuals
-  bool allow_gaps = false;                                  ///< accept gaps of five time steps or more
+  bool allow_gaps = false;  ///< accept gaps of five time steps or more between angles
 };
 
 /// Measurements: events or a film.
@@ -41,20 +58,43 @@ struct Measurements {
   std::string origin{};                 ///< file name for messages
   std::vector<MeasuredEvent> events{};  ///< empty: a film is given
   Film film{};                          ///< used if there are no events
+  std::vector<std::string> notes{};     ///< how a film was understood, a line each
   std::vector<long> lines{};            ///< line numbers of the file for messages; empty: counted from 1
+};
+
+/// A mark on the hoop that a track follows.
+struct Marker {
+  std::string track{};  ///< name of the track; empty: the only one that is not the centre's
+  double at = 0.0;      ///< distance from the axis [m]
+  double angle = 0.0;   ///< direction, counted as the weights' of a [hoop], or from the mass [rad]
 };
 
 /// How read_measurements interprets a film.
 struct MeasurementOptions {
-  double scale = 1.0;       ///< metres per unit of marker positions
-  bool y_down = false;      ///< y grows towards the plane, as rows of a picture do
-  bool allow_gaps = false;  ///< accept gaps of five time steps or more
+  double scale = std::numeric_limits<double>::quiet_NaN();  ///< metres per unit of positions; NaN: found
+  bool y_down = false;  ///< y grows towards the plane, as rows of a picture do; false: found from two tracks
+  bool allow_gaps = false;                                  ///< accept gaps of five time steps or more
   double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error [rad or m]; NaN: unknown
+  std::vector<Marker> markers{};  ///< where tracks are on the hoop; others are found from their names
+  std::vector<std::string>
+      free{};  ///< of time_offset, angle_offset, scale, tilt; more are freed if a film needs it
+  RecordingOptions recording{};  ///< how to read the files
 };
 
-/// Reads a CSV file with the columns t, phi; or t, x_P, y_P, x_O, y_O; or event, value, error.
-/// @throws InputError with line and column for anything that is not a number; IoError
-Measurements read_measurements(const std::string& path, const MeasurementOptions& options = {});
+/// Reads measurements of one motion: a CSV file with the columns event, value, error; or films, as read_film
+/// does. Units, axes, marks and the time of the release are found from the film and the hoop.
+/// @param paths  of one file of events, or of one or more films
+/// @param spec   the hoop that was filmed
+/// @throws InputError with line and column for anything that is not a number, and for a film that does not
+/// fit the
+///         hoop; IoError
+Measurements read_measurements(const std::vector<std::string>& paths, const Spec& spec,
+                               const MeasurementOptions& options = {});
+
+/// Measurements of one motion as recorded, understood as read_measurements does.
+/// @throws InputError for a recording that does not fit the hoop
+Measurements measurements_of(const Recording& recording, const Spec& spec,
+                             const MeasurementOptions& options = {});
 
 /// Checks measurements.
 /// @param spec  describes the hoop that was filmed
@@ -77,6 +117,7 @@ struct FittedParameter {
 struct ModelFit {
   Scene scene{};                  ///< its scene
   Design design{};                ///< the best fit
+  Camera camera{};                ///< the best fit's, of a film
   bool found = false;             ///< false: no design within the bounds shows all that was measured
   std::string why{};              ///< reason why the model was not fitted, if it was not
   Outcome outcome{};              ///< outcome of the best fit
@@ -85,7 +126,7 @@ struct ModelFit {
   std::vector<double> correlations{};         ///< matrix, row by row, of size parameters x parameters
   double chi_square = std::numeric_limits<double>::quiet_NaN();  ///< sum of squares of residuals over errors
   std::size_t degrees = 0;                                       ///< degrees of freedom
-  double error = 0.0;                                            ///< film: rms of the residuals [rad or m]
+  double error = 0.0;  ///< film: rms of the residuals, in its own unit
   /// Probability of a chi-square at least as large if the model is true; NaN: errors are unknown.
   double probability = std::numeric_limits<double>::quiet_NaN();
   /// Film: rms of the residuals over their scatter from line to line.
@@ -94,10 +135,12 @@ struct ModelFit {
   double independent = std::numeric_limits<double>::quiet_NaN();  ///< film: number of independent lines
   bool judged = true;  ///< false: the film has too few lines to accept or reject the model
   double information = std::numeric_limits<double>::infinity();  ///< Akaike's criterion; less is better
-  std::vector<double> model{};      ///< the model's value of every number measured
-  std::vector<double> residuals{};  ///< of every number measured, over its error
-  std::size_t starts = 0;           ///< number of starting points followed
-  std::size_t evaluations = 0;      ///< number of designs solved
+  std::vector<double> model{};  ///< the model's value of every number measured
+  /// Model less measured, of every number: of events over their errors, of a film in its own unit.
+  std::vector<double> residuals{};
+  std::vector<std::size_t> outliers{};  ///< with a robust loss: numbers measured that hardly count
+  std::size_t starts = 0;               ///< number of starting points followed
+  std::size_t evaluations = 0;          ///< number of designs solved
 };
 
 /// Whether residuals keep their sign for so long that another motion would fit better.
@@ -120,10 +163,21 @@ struct FitReport {
   double seconds = 0.0;            ///< duration [s]
 };
 
+/// What residuals count.
+enum class Loss {
+  squares,  ///< their squares: for normal errors
+  huber     ///< squares up to 1.345 standard errors, then only their size: for films with bad points
+};
+
+/// Those of names that a fit may free that are of the hoop, not of the camera.
+std::vector<std::string> parameters_among(const std::vector<std::string>& names);
+
 /// Options of fit.
 struct FitOptions {
   std::vector<Friction> models{Friction::sticking, Friction::coulomb};  ///< models to fit
-  std::uint64_t seed = 1;  ///< of the initial sample; equal seeds give equal fits
+  std::vector<std::string> free{};  ///< parameters that are free beside the spec's axes, within usual bounds
+  Loss loss = Loss::squares;        ///< of a film's residuals
+  std::uint64_t seed = 1;           ///< of the initial sample; equal seeds give equal fits
   std::size_t coarse = 0;  ///< size of the initial sample, a multiple of 16; 0: 4,096 for a film, else 65,536
   std::size_t starts = 0;  ///< its best points that are followed; 0: 8 for a film, 24 for events
   int threads = 0;         ///< number of threads; 0: all that OpenMP offers

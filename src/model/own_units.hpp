@@ -42,6 +42,7 @@ inline constexpr std::array own_units{
     OwnUnit{"kg", "kg", own::one, "g"},
     OwnUnit{"kg m2", "kg m2", own::one, "g mm2"},
     OwnUnit{"m s-1", "m s-1", own::one, "mm/s"},
+    OwnUnit{"rad s-1", "rad s-1", own::one, "rpm"},
     OwnUnit{"m s-2", "m s-2", own::one, "m/s2"},
     OwnUnit{"R", "m", [](const Scales& s) { return s.radius; }, "mm"},
     OwnUnit{"hoop diameters", "m", [](const Scales& s) { return 2.0 * s.radius; }, "mm"},

@@ -176,27 +176,74 @@ class Problem {
   std::mutex busy_;  // its workspaces are for one call at a time
 };
 
-/// t, phi; t and markers; or events as [(name, value, error)].
-Measurements measurements_of(const py::dict& given, double error, bool allow_gaps) {
-  Measurements measured{.origin = "measurements"};
-  measured.film.error = error, measured.film.allow_gaps = allow_gaps;
+std::vector<double> column_of(const py::handle& value) {
+  const Numbers numbers = py::cast<Numbers>(value);
+  return {numbers.data(), numbers.data() + numbers.size()};
+}
+
+/// Drops the times at which a point is missing.
+void drop_missing(Track& track) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < track.t.size(); ++i) {
+    if (std::isnan(track.x[i]) || std::isnan(track.y[i])) continue;
+    track.t[kept] = track.t[i], track.x[kept] = track.x[i], track.y[kept] = track.y[i], ++kept;
+  }
+  for (auto* column : {&track.t, &track.x, &track.y}) column->resize(kept);
+}
+
+/// t, phi, spin; t and x_NAME, y_NAME of each point; or events as [(name, value, error)].
+Measurements measurements_from(const py::dict& given, const Spec& spec, const MeasurementOptions& options) {
+  if (!given.contains("t")) {
+    Measurements measured{.origin = "measurements"};
+    for (const auto& [key, value] : given) {
+      const auto [measured_value, its_error] = py::cast<std::pair<double, double>>(value);
+      measured.events.push_back({py::cast<std::string>(key), measured_value, its_error});
+    }
+    return measured;
+  }
+  Recording recording{.unit = "m"};
+  const std::vector<double> t = column_of(given["t"]);
   for (const auto& [key, value] : given) {
     const auto name = py::cast<std::string>(key);
-    constexpr std::array<std::string_view, 4> markers{"x_P", "y_P", "x_O", "y_O"};
-    const auto marker = std::find(markers.begin(), markers.end(), name);
-    if (name == "t" || name == "phi" || marker != markers.end()) {
-      auto& column = name == "t" ? measured.film.t
-                     : name == "phi"
-                         ? measured.film.phi
-                         : measured.film.markers[static_cast<std::size_t>(marker - markers.begin())];
-      const Numbers numbers = py::cast<Numbers>(value);
-      column.assign(numbers.data(), numbers.data() + numbers.size());
+    if (name == "t") continue;
+    const std::vector<double> column = column_of(value);
+    if (column.size() != t.size())
+      throw InputError(fmt::format("{}: a column of {} numbers beside {} times; allowed: equal numbers", name,
+                                   column.size(), t.size()));
+    if (name == "phi" || name == "spin") {
+      recording.t = t, (name == "phi" ? recording.phi : recording.spin) = column;
+    } else if (name.starts_with("x_") || name.starts_with("y_")) {
+      auto track = std::ranges::find(recording.tracks, name.substr(2), &Track::name);
+      if (track == recording.tracks.end())
+        track = recording.tracks.insert(track, {.name = name.substr(2), .t = t});
+      (name.starts_with("x_") ? track->x : track->y) = column;
     } else {
-      const auto [measured_value, its_error] = py::cast<std::pair<double, double>>(value);
-      measured.events.push_back({name, measured_value, its_error});
+      throw InputError(
+          fmt::format("'{}' is no column of a film; allowed: t, phi, spin, x_NAME, y_NAME", name));
     }
   }
-  return measured;
+  for (const Track& track : recording.tracks)
+    if (track.x.empty() || track.y.empty())
+      throw InputError(
+          fmt::format("'{}' has one coordinate; allowed: x_{} and y_{}", track.name, track.name, track.name));
+  return measurements_of(recording, spec, options);
+}
+
+/// A recording's columns by name.
+py::dict dict_of(const Recording& recording) {
+  const auto array = [](const std::vector<double>& values) {
+    return Numbers(static_cast<py::ssize_t>(values.size()), values.data());
+  };
+  py::dict columns, tracks;
+  for (const Track& track : recording.tracks) {
+    py::dict one;
+    one["t"] = array(track.t), one["x"] = array(track.x), one["y"] = array(track.y);
+    tracks[py::str(track.name)] = one;
+  }
+  columns["tracks"] = tracks, columns["unit"] = recording.unit, columns["notes"] = py::cast(recording.notes);
+  if (!recording.t.empty()) columns["t"] = array(recording.t), columns["phi"] = array(recording.phi);
+  if (!recording.spin.empty()) columns["spin"] = array(recording.spin);
+  return columns;
 }
 
 py::dict dict_of(const ModelFit& fit) {
@@ -219,6 +266,7 @@ py::dict dict_of(const ModelFit& fit) {
   told["information"] = fit.information, told["correlation"] = fit.correlation,
   told["independent"] = fit.independent;
   told["model"] = py::array_t<double>(static_cast<py::ssize_t>(fit.model.size()), fit.model.data());
+  told["outliers"] = py::cast(fit.outliers);
   told["residuals"] =
       py::array_t<double>(static_cast<py::ssize_t>(fit.residuals.size()), fit.residuals.data());
   return told;
@@ -227,14 +275,23 @@ py::dict dict_of(const ModelFit& fit) {
 py::list fit(const py::object& data, const std::string& path_or_text,
              const std::optional<std::string>& origin, const std::vector<std::string>& overrides,
              const std::vector<std::string>& names, double error, bool allow_gaps, std::uint64_t seed,
-             int threads) {
+             int threads, const std::vector<std::string>& free,
+             const std::vector<std::tuple<std::string, double, double>>& markers, double fps, double scale,
+             bool robust) {
   const Spec spec = spec_of(path_or_text, origin, overrides);
+  MeasurementOptions reading{.scale = scale, .allow_gaps = allow_gaps, .error = error, .free = free};
+  reading.recording.fps = fps;
+  for (const auto& [track, at, angle] : markers) reading.markers.push_back({track, at, angle});
   const Measurements measured =
       py::isinstance<py::dict>(data)
-          ? measurements_of(py::cast<py::dict>(data), error, allow_gaps)
-          : read_measurements(py::cast<std::string>(data), {.allow_gaps = allow_gaps, .error = error});
+          ? measurements_from(py::cast<py::dict>(data), spec, reading)
+          : read_measurements(py::cast<std::vector<std::string>>(data), spec, reading);
   Interrupts interrupts;
-  FitOptions options{.models = {}, .seed = seed, .threads = threads_here(threads)};
+  FitOptions options{.models = {},
+                     .free = parameters_among(free),
+                     .loss = robust ? Loss::huber : Loss::squares,
+                     .seed = seed,
+                     .threads = threads_here(threads)};
   for (const std::string& name : names) {
     const Model* model = find_model(name);
     if (!model) throw InputError("model = '" + name + "' is unknown; allowed: sticking, coulomb, both");
@@ -258,6 +315,9 @@ py::list fit(const py::object& data, const std::string& path_or_text,
 
 void add_design(py::module_& module) {
   module.def("fit", &fit);
+  module.def("read_film", [](const std::vector<std::string>& paths, double fps) {
+    return dict_of(leapmap::read_film(paths, {.fps = fps}));
+  });
   module.def("design", &design);
   py::class_<Problem>(module, "Problem")
       .def(py::init<const std::string&, const std::optional<std::string>&, const std::vector<std::string>&,

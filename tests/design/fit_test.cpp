@@ -10,7 +10,7 @@
 #include <random>
 
 #include "design/least_squares.hpp"
-#include "design/motion_at.hpp"
+#include "film/motion_at.hpp"
 #include "leapmap/leapmap.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
@@ -162,13 +162,16 @@ Measurements film_of(const Design& truth, const Scene& scene, double error, int 
   std::normal_distribution<double> off(0.0, error);
   Measurements measured{.origin = "film"};
   const Motion motion = trace(truth, scene, {.interval = 1e-3});
+  Track mass{.name = "P"}, centre{.name = "O", .at = 0.0};
   for (const MotionPoint& point : motion.points) {
-    if (!measured.film.t.empty() && point.t <= measured.film.t.back()) continue;
-    measured.film.t.push_back(point.t);
+    if (!mass.t.empty() && point.t <= mass.t.back()) continue;
+    mass.t.push_back(point.t), centre.t.push_back(point.t);
     const double x = point.x + 0.11, y = point.y + scene.radius - 0.02, L = truth.offset_ratio * scene.radius;
-    const std::array markers{x - L * std::sin(point.phi), y - L * std::cos(point.phi), x, y};
-    for (std::size_t k = 0; k < 4; ++k) measured.film.markers[k].push_back(markers[k] + off(random));
+    mass.x.push_back(x - L * std::sin(point.phi) + off(random));
+    mass.y.push_back(y - L * std::cos(point.phi) + off(random));
+    centre.x.push_back(x + off(random)), centre.y.push_back(y + off(random));
   }
+  measured.film.tracks = {mass, centre};
   return measured;
 }
 
@@ -262,7 +265,7 @@ std::string refusal_of(const std::string& text) {
   const testing::TemporaryFolder folder;
   folder.write("data.csv", text);
   try {
-    check_measurements(read_measurements(folder / "data.csv"), {});
+    check_measurements(read_measurements({folder / "data.csv"}, {}), {});
   } catch (const InputError& error) {
     return error.what();
   }
@@ -278,24 +281,34 @@ TEST_P(BadMeasurements, AreRefusedWithOneLineThatSaysWhere) {
 INSTANTIATE_TEST_SUITE_P(
     Kinds, BadMeasurements,
     ::testing::Values(
-        BadData{"no_lines", "t,phi\n", {"no line"}},
-        BadData{"unknown_columns", "time,angle\n0,1\n", {"data.csv:1", "time, angle", "t, phi"}},
-        BadData{"a_column_missing", "t,x_P,y_P,x_O\n0,1,1,1\n", {"data.csv:1", "x_P, y_P, x_O, y_O"}},
-        BadData{"a_column_too_many", "t,phi,spin\n0,1,1\n", {"data.csv:1"}},
-        BadData{"nan", "t,phi\n0,3.1\n0.001,nan\n0.002,3.1\n", {"data.csv:3", "phi", "nan", "--allow-gaps"}},
-        BadData{"an_empty_cell", "t,phi\n0,3.1\n0.001,\n0.002,3.1\n", {"data.csv:3", "phi"}},
+        BadData{"no_lines", "t,phi\n", {"data.csv", "no line of numbers"}},
+        BadData{"unknown_columns", "time,height\n0,1\n", {"data.csv", "time, height", "t, phi"}},
+        BadData{"a_coordinate_missing", "t,x_P\n0,1\n1,1\n2,1\n", {"data.csv", "t, x_P", "x and y"}},
+        BadData{"a_cell_too_many", "t,phi\n0,1\n0.1,1,1\n", {"data.csv:3", "3 cells"}},
+        BadData{"text_among_numbers", "t,phi\n0,3.1\n0.001,three\n", {"data.csv:3", "column 2", "'three'"}},
+        BadData{"no_number_at_all", "t,phi\n0,NaN\n0.001,NaN\n0.002,\n", {"data.csv", "0 rows"}},
         BadData{"unsorted_times", "t,phi\n0,3.1\n0.002,3.1\n0.001,3.1\n", {"data.csv:4", "ascend"}},
         BadData{"the_same_time_twice", "t,phi\n0,3.1\n0.001,3.1\n0.001,3.1\n", {"data.csv:4", "ascend"}},
+        BadData{"a_unit_of_another_kind", "t [mm],phi\n0,3.1\n1,3.1\n", {"data.csv", "'t'", "mm"}},
+        BadData{"an_unknown_unit", "t,phi [degs]\n0,3.1\n1,3.1\n", {"data.csv", "'phi'", "degs"}},
+        BadData{"a_point_twice", "t,x,y,x\n0,1,1,1\n", {"data.csv", "'x'", "twice"}},
+        BadData{"frames_without_a_rate", "frame,x,y\n0,1,1\n1,1,1\n", {"data.csv", "frame numbers", "--fps"}},
+        BadData{"no_times", "x,y\n0,1\n1,1\n", {"data.csv", "a row for each frame", "--fps"}},
+        BadData{"whole_numbers_as_times",
+                "t,x,y\n0,1,1\n1,1,1\n2,1,1\n3,1,1\n",
+                {"data.csv", "'t' counts frames or milliseconds", "t [ms]", "--fps"}},
+        BadData{"two_tracks_without_a_time_in_common",
+                "t,x,y,t,x,y\n0,0,1,0.5,0,0\n0.1,0,1,0.6,0,0\n0.2,0,1,0.7,0,0\n",
+                {"data.csv", "twice"}},
         BadData{"a_gap",
                 "t,phi\n0,3.1\n0.001,3.1\n0.002,3.1\n0.003,3.1\n0.020,3.1\n",
-                {"data.csv:6", "gap", "--allow-gaps"}},
-        BadData{
-            "milliseconds", "t,phi\n0,3.1\n500,3.2\n1000,3.3\n", {"data.csv:4", "another unit", "seconds"}},
-        BadData{"degrees", "t,phi\n0,180\n0.001,181\n0.002,182\n", {"data.csv:3", "degrees"}},
-        BadData{"an_angle_cut_at_a_turn", "t,phi\n0,6.2\n0.001,6.25\n0.002,0.02\n", {"data.csv:4", "turn"}},
-        BadData{"millimetres",
-                "t,x_P,y_P,x_O,y_O\n0,0,41,0,0\n0.001,0,41,0,0\n0.002,0,41,0,0\n",
-                {"another unit", "--scale 0.001"}},
+                {"data.csv", "t = 0.003 to 0.02", "gap", "--allow-gaps"}},
+        BadData{"milliseconds", "t,phi\n0,3.1\n500,3.2\n1000,3.3\n", {"t = 1000", "another unit", "seconds"}},
+        BadData{"degrees", "t,phi\n0,180\n0.001,181\n0.002,182\n", {"phi changes", "degrees", "phi [deg]"}},
+        BadData{"an_angle_cut_at_a_turn", "t,phi\n0,6.2\n0.001,6.25\n0.002,0.02\n", {"t = 0.002", "turn"}},
+        BadData{"no_unit_that_fits",
+                "t,x_P,y_P,x_O,y_O\n0,0,0.5,0,0\n0.001,0,0.5,0,0\n0.002,0,0.5,0,0\n",
+                {"another unit", "--scale 0.08"}},
         BadData{"two_lines", "t,phi\n0,3.1\n0.001,3.1\n", {"three or more"}},
         BadData{
             "an_unknown_event", "event,value,error\njump,1,0.1\n", {"data.csv:2", "'jump'", "jump_height"}},

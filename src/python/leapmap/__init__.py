@@ -28,7 +28,7 @@ except ModuleNotFoundError as error:
         "Python that it was "
         "built for, usually /usr/bin/python3, or a build with cmake -DLEAPMAP_PYTHON=...") from None
 from leapmap._design import DesignProblem, Found, design
-from leapmap._fit import Fit, FittedParameter, fit
+from leapmap._fit import Fit, FittedParameter, fit, read_film
 from leapmap._hoop import Hoop, Weight
 from leapmap._results import Motion, Outcomes, Status
 from leapmap._scatter import Estimate, scatter
@@ -36,7 +36,7 @@ from leapmap._solve import gaits, gradient, solve, trace
 from leapmap._sweep import load, sweep
 
 __all__ = [
-    "solve", "gradient", "trace", "gaits", "scatter", "design", "fit", "sweep", "load", "Hoop", "Weight",
+    "solve", "gradient", "trace", "gaits", "scatter", "design", "fit", "read_film", "sweep", "load", "Hoop", "Weight",
     "DesignProblem", "Found", "Fit", "FittedParameter", "Outcomes", "Motion", "Estimate", "Status",
     "phase_letters", "instruction_set", "instruction_sets", "use_instruction_set"
 ]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from leapmap import _core
-from leapmap._arguments import array, path, real, shown, text, whole
+from leapmap._arguments import array, mapping, names, path, real, shown, text, whole
 from leapmap._design import _question
 
 
@@ -61,8 +61,10 @@ class Fit:
     information : float
         Akaike's criterion; less is better.
     model, residuals : ndarray
-        For every number measured, in the order of the data: the model's value, and the residual over its
-        error.
+        For every number measured, in the order of the times: the model's value, and model less measured, of a
+        film in its own unit, of events over their errors.
+    outliers : list of int
+        With loss "huber": numbers whose residuals are larger than four standard deviations.
     """
     friction: str
     found: bool
@@ -82,6 +84,7 @@ class Fit:
     independent: float
     model: np.ndarray
     residuals: np.ndarray
+    outliers: list
 
 
 def _event(name, value):
@@ -94,23 +97,35 @@ def _event(name, value):
     return float(pair[0]), float(pair[1])
 
 
-def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, threads=0, **overrides):
+def fit(data, spec=None, *, model="both", free=(), markers=None, error=None, scale=None, fps=None,
+        loss="squares", allow_gaps=False, seed=1, threads=0, **overrides):
     """Identify release, friction and torque from a measured motion, by least squares.
 
     Parameters
     ----------
-    data : path or mapping
-        A CSV file; or arrays {"t", "phi"} or {"t", "x_P", "y_P", "x_O", "y_O"} in s, rad and m; or events
-        {field: (value, standard error)}. The angle phi is 0 if the mass touches the plane. x is along the
-        plane, downhill; y is away from it. P is the mass, O the hoop's centre. Convert pixels to metres
-        first.
+    data : path, sequence of paths, or mapping
+        Files of one motion, as read_film reads; a CSV file with columns event, value, error; arrays {"t", "phi"}
+        or {"t", "x_NAME", "y_NAME", ...} in s, rad and m; or events {field: (value, standard error)}. The angle
+        phi is 0 if the mass touches the plane. x is downhill, y upwards.
     spec : path or mapping, optional
         The hoop, and free parameters {"from", "to"}. Without any these are release_angle, release_spin and,
         with friction, mu_static.
     model : str, default "both"
         "sticking", "coulomb" or "both".
+    free : sequence of str
+        What is free beside the spec's axes: parameters, and of the film time_offset, angle_offset, scale, tilt.
+        Pixels free scale, a film with horizontal axes tilt, and one that shows the hoop held time_offset.
+    markers : mapping, optional
+        {track: distance from the axis [m]}, or {track: (distance, direction [rad])}; default: from the names of
+        tracks and weights.
     error : float, optional
         Standard error of a film's angles [rad] or positions [m]; default: from the residuals.
+    scale : float, optional
+        Metres per unit of positions; default: from the size of the hoop.
+    fps : float, optional
+        Frames per second, for films with frame numbers instead of times.
+    loss : str, default "squares"
+        "squares", or "huber" for films with bad points.
     allow_gaps : bool, default False
         Accept films with missing lines.
     seed : int, default 1
@@ -151,15 +166,67 @@ def fit(data, spec=None, *, model="both", error=None, allow_gaps=False, seed=1, 
                 )
         data = {key: _event(key, value) for key, value in data.items()}
     else:
-        data = path("data", data)
+        data = _paths(data)
     if error is not None and not 0.0 < real("error", error) < float("inf"):
         raise ValueError(f"error = {shown(error)} is out of range; allowed: a standard error above 0")
+    if text("loss", loss) not in ("squares", "huber"):
+        raise ValueError(f"loss = {shown(loss)} is unknown; allowed: squares, huber")
     toml, origin, changes = _question(spec, None, (), (), None, overrides)
     told = _core.fit(data, toml, origin, changes, models,
-                     float("nan") if error is None else float(error), bool(allow_gaps), whole(
-                         "seed", seed, 0), whole("threads", threads, 0, 4096))
+                     _optional("error", error), bool(allow_gaps), whole("seed", seed, 0),
+                     whole("threads", threads, 0, 4096), names("free", free), _markers(markers),
+                     _optional("fps", fps), _optional("scale", scale), loss == "huber")
     return [
         Fit(**one | {"parameters": {name: FittedParameter(**of)
                                     for name, of in one["parameters"].items()}})
         for one in told
     ]
+
+
+def read_film(data, *, fps=None):
+    """Read the files of one motion: Tracker's projects and text, DLTdv, DeepLabCut, Kinovea, encoders' logs, CSV.
+
+    Parameters
+    ----------
+    data : path or sequence of paths
+        One or several files.
+    fps : float, optional
+        Frames per second, for files with frame numbers instead of times.
+
+    Returns
+    -------
+    dict
+        tracks: {name: {"t" [s], "x", "y"}}; unit of positions, "" if it is not stated; or t [s], phi [rad] and
+        spin [rad/s] of an encoder. notes: how each file's columns were read.
+
+    Raises
+    ------
+    ValueError
+        With file, line and what is allowed.
+
+    Examples
+    --------
+    >>> leapmap.read_film("film.csv")["notes"]  # doctest: +SKIP
+    ["film.csv: time in s; 'weight' x, y in mm from columns 2, 3, 240 points"]
+    """
+    return _core.read_film(_paths(data), _optional("fps", fps))
+
+
+def _paths(data):
+    return [path("data", one) for one in data] if isinstance(data, (list, tuple)) else [path("data", data)]
+
+
+def _optional(name, value):
+    if value is None:
+        return float("nan")
+    if not 0.0 < real(name, value) < float("inf"):
+        raise ValueError(f"{name} = {shown(value)} is out of range; allowed: a number above 0")
+    return float(value)
+
+
+def _markers(markers):
+    found = []
+    for track, place in mapping("markers", markers).items():
+        at, angle = place if isinstance(place, (tuple, list)) and len(place) == 2 else (place, 0.0)
+        found.append((text("a name in markers", track), real("markers", at), real("markers", angle)))
+    return found

@@ -13,8 +13,10 @@ namespace leapmap {
 /// S: double, or DesignDual for derivatives.
 template <class S>
 struct MotionAt {
-  S phi;   ///< [rad]
-  S x, y;  ///< travel of the centre, height of the lowest point above the plane [R]
+  S phi;                             ///< [rad]
+  S x, y;                            ///< travel of the centre, height of the lowest point above the plane [R]
+  S spin;                            ///< [sqrt(g/R)]
+  double x_rate, y_rate, spin_rate;  ///< of these over time, in sqrt(R/g)
 };
 
 /// The motion at times since release [s], in ascending order; empty if the design cannot be solved. After the

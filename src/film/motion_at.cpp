@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "design/motion_at.hpp"
+#include "film/motion_at.hpp"
 
 #include <algorithm>
 #include <array>
@@ -114,7 +114,8 @@ class Walk {
     double time = from;
     for (const double sample : times) {
       at_ = integrated(at_, sample - time, rate, budget_), time = sample;
-      taken.push_back({at_[0], at_[2], S(0.0)});
+      const Moving<S> rates = rate(at_);
+      taken.push_back({at_[0], at_[2], S(0.0), at_[1], value_of(rates[2]), 0.0, value_of(rates[1])});
     }
     if (std::isfinite(to)) at_ = integrated(at_, to - time, rate, budget_);
   }
@@ -135,9 +136,11 @@ class Walk {
     const Trig<S> phi = trig(at_[0]);
     for (const double sample : times) {
       const S t = S(sample - from) - late_;
-      taken.push_back({at_[0] + turned_in_flight(hoop_, at_[1], t).value,
-                       at_[2] + travel_in_flight(hoop_, phi, at_[1], at_[3], t).value,
-                       height_above_plane(hoop_, phi, at_[1], t, normal_).value});
+      const Turned<S> turned = turned_in_flight(hoop_, at_[1], t);
+      const Sample<S> travel = travel_in_flight(hoop_, phi, at_[1], at_[3], t);
+      const auto height = height_above_plane(hoop_, phi, at_[1], t, normal_);
+      taken.push_back({at_[0] + turned.value, at_[2] + travel.value, height.value, turned.rate,
+                       value_of(travel.rate), value_of(height.rate), value_of(hoop_.aloft)});
     }
     if (!std::isfinite(flight_time)) return;
     S flown(flight_time);

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "film/film_angles.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace leapmap {
+
+std::pair<const Track*, const Track*> centre_and_mark(const Film& film) {
+  const Track *centre = nullptr, *mark = nullptr;
+  const auto distance = [](const Track& track) { return std::isnan(track.at) ? HUGE_VAL : track.at; };
+  for (const Track& track : film.tracks) {
+    if (track.at == 0.0)
+      centre = &track;
+    else if (!mark || distance(track) > distance(*mark))
+      mark = &track;
+  }
+  return {centre, mark};
+}
+
+FilmAngles angles_of(const Film& film, double slope) {
+  FilmAngles angles;
+  constexpr double turn = 2.0 * std::numbers::pi;
+  if (film.tracks.empty()) {
+    for (std::size_t i = 0; i < film.phi.size(); ++i)
+      if (!std::isnan(film.phi[i])) angles.t.push_back(film.t[i]), angles.phi.push_back(film.phi[i]);
+    return angles;
+  }
+  const auto [centre, mark] = centre_and_mark(film);
+  if (!centre || !mark) return angles;
+  const double turned = film.camera.tilt + (film.is_level ? slope : 0.0) + mark->angle;
+  for (std::size_t i = 0, k = 0; i < mark->t.size(); ++i) {
+    while (k < centre->t.size() && centre->t[k] < mark->t[i]) ++k;
+    if (k == centre->t.size() || centre->t[k] != mark->t[i]) continue;
+    const double angle = std::atan2(centre->x[k] - mark->x[i], centre->y[k] - mark->y[i]) - turned;
+    angles.t.push_back(mark->t[i]);
+    angles.phi.push_back(angles.phi.empty() ? angle - turn * std::floor(angle / turn)
+                                            : angle + turn * std::round((angles.phi.back() - angle) / turn));
+  }
+  return angles;
+}
+
+std::pair<double, double> release_of(const FilmAngles& angles, double second) {
+  constexpr double long_enough = 1.5;  // in sqrt(R/g)
+  std::size_t some = 0;
+  while (some < angles.t.size() && angles.t[some] <= angles.t[0] + long_enough * second) ++some;
+  some = std::clamp<std::size_t>(some, 3, angles.t.size());
+  const auto rows = static_cast<Eigen::Index>(some);
+  const Eigen::Index columns = std::min<Eigen::Index>(4, rows);
+  Eigen::MatrixXd powers(rows, columns);
+  Eigen::VectorXd measured(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double t = angles.t[static_cast<std::size_t>(i)] / second;
+    for (Eigen::Index k = 0; k < columns; ++k) powers(i, k) = std::pow(t, static_cast<double>(k));
+    measured[i] = angles.phi[static_cast<std::size_t>(i)];
+  }
+  const Eigen::VectorXd cubic = powers.colPivHouseholderQr().solve(measured);
+  return {cubic[0], cubic[1] / second};
+}
+
+}  // namespace leapmap

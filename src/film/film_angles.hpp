@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The hoop's angle in a film: measured, or by two tracks.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "leapmap/fit.hpp"
+
+namespace leapmap {
+
+struct FilmAngles {
+  std::vector<double> t{};  ///< [s]
+  std::vector<double>
+      phi{};  ///< [rad], continued over revolutions; of tracks with the camera's estimated tilt
+};
+
+/// Empty: one track alone does not show the angle.
+FilmAngles angles_of(const Film& film, double slope);
+
+/// The centre's track, and the one farthest from it; nullptr: there is none.
+std::pair<const Track*, const Track*> centre_and_mark(const Film& film);
+
+/// Angle and spin [rad/s] at the release at t = 0, by the cubic that fits the beginning best: so long that
+/// noise of a frame hardly counts, so short that the cubic holds. second: sqrt(R/g) [s].
+std::pair<double, double> release_of(const FilmAngles& angles, double second);
+
+}  // namespace leapmap

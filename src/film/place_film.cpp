@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "film/place_film.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "film/film_angles.hpp"
+#include "film/film_model.hpp"
+#include "film/observations.hpp"
+#include "spec/spacing.hpp"
+#include "trajectory/units.hpp"
+
+namespace leapmap {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+bool names_centre(std::string_view name) {
+  const std::string small = lower(name);
+  for (const std::string_view word : {"centre", "center", "axis", "axle", "hub", "middle", "mitte"})
+    if (small.find(word) != small.npos) return true;
+  return small == "o" || small == "c";
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// The length of a track's way, coarsely enough that noise hardly counts.
+double way_of(const Track& track) {
+  const std::size_t step = std::max<std::size_t>(1, track.t.size() / 50);
+  double way = 0.0;
+  for (std::size_t i = step; i < track.t.size(); i += step)
+    way += std::hypot(track.x[i] - track.x[i - step], track.y[i] - track.y[i - step]);
+  return way;
+}
+
+/// Distances L of the mass from the axis [m], from the least to the most that it may be.
+Side length_of(const Spec& spec) {
+  const double R = spec.scene.radius;
+  const auto axis = std::ranges::find(spec.axes, "offset_ratio", &Axis::key);
+  if (axis == spec.axes.end()) return {spec.design.offset_ratio * R, spec.design.offset_ratio * R};
+  return {std::ranges::min(axis->values) * R, std::ranges::max(axis->values) * R};
+}
+
+/// A direction on the hoop, counted from that of the mass: of [hoop] that is the weights' common centre.
+double from_mass(const Spec& spec, double angle) {
+  return spec.hoop ? angle - reduce_body(*spec.hoop).direction : angle;
+}
+
+std::string place_words(const Track& track) {
+  if (track.at == 0.0) return "the hoop's centre";
+  if (std::isnan(track.at)) return "the mass, at L";
+  return fmt::format("{:.4g} mm from the axis", 1000.0 * track.at);
+}
+
+/// Where tracks are on the hoop: by --marker, by the names of weights, by names of the centre; of two tracks
+/// the one with the shorter way is the centre.
+class Places {
+ public:
+  Places(Film& film, const Spec& spec, const std::vector<Marker>& markers) : film_(film), spec_(spec) {
+    known_.resize(film.tracks.size(), false);
+    for (std::size_t k = 0; k < film.tracks.size(); ++k)
+      if (names_centre(film.tracks[k].name)) put(k, 0.0, 0.0);
+    for (std::size_t k = 0; k < film.tracks.size() && spec.hoop; ++k)
+      for (const Weight& weight : spec.hoop->weights)
+        if (lower(weight.name) == lower(film.tracks[k].name))
+          put(k, weight.at, from_mass(spec, weight.angle));
+    for (const Marker& marker : markers)
+      if (!marker.track.empty()) put(find(marker), marker.at, from_mass(spec, marker.angle));
+    find_centre();
+    for (const Marker& marker : markers)
+      if (marker.track.empty()) put(the_unknown(), marker.at, from_mass(spec, marker.angle));
+    take_the_rest_as_the_mass();
+  }
+
+ private:
+  void put(std::size_t track, double at, double angle) {
+    if (!(at >= 0.0 && at <= spec_.scene.radius))
+      throw InputError(fmt::format("--marker at={} m is out of range; allowed: from 0 to the radius, {} m",
+                                   at, spec_.scene.radius));
+    film_.tracks[track].at = at, film_.tracks[track].angle = angle, known_[track] = true;
+  }
+  std::size_t find(const Marker& marker) const {
+    const auto track = std::ranges::find(film_.tracks, marker.track, &Track::name);
+    if (track != film_.tracks.end()) return static_cast<std::size_t>(track - film_.tracks.begin());
+    std::vector<std::string> names;
+    for (const Track& one : film_.tracks) names.push_back(one.name);
+    throw InputError(fmt::format("--marker {}: no track has that name; allowed: {}", marker.track,
+                                 fmt::join(names, ", ")));
+  }
+  std::size_t the_unknown() const {
+    if (std::ranges::count(known_, false) != 1)
+      throw InputError(
+          "--marker without a track's name: several tracks have no known place; allowed: \"NAME: at=..., "
+          "angle=...\"");
+    return static_cast<std::size_t>(std::ranges::find(known_, false) - known_.begin());
+  }
+  void find_centre() {
+    if (film_.tracks.size() != 2 || known_[0] || known_[1]) return;
+    put(way_of(film_.tracks[0]) < way_of(film_.tracks[1]) ? 0 : 1, 0.0, 0.0);
+  }
+  void take_the_rest_as_the_mass() {
+    if (std::ranges::count(known_, false) > 1) {
+      std::vector<std::string> names;
+      for (std::size_t k = 0; k < known_.size(); ++k)
+        if (!known_[k]) names.push_back(film_.tracks[k].name);
+      throw InputError(
+          fmt::format("tracks {} have no known place on the hoop; allowed: --marker \"NAME: at=47 mm, "
+                      "angle=0 deg\" for each",
+                      fmt::join(names, ", ")));
+    }
+    if (spec_.hoop && spec_.hoop->weights.size() > 1 && std::ranges::count(known_, false) == 1)
+      throw InputError(
+          fmt::format("the track '{}' has the name of no weight, and [hoop] has {}; allowed: --marker "
+                      "\"at=47 mm, angle=0 deg\"",
+                      film_.tracks[the_unknown()].name, spec_.hoop->weights.size()));
+    if (spec_.hoop && spec_.hoop->weights.size() == 1 && std::ranges::count(known_, false) == 1)
+      put(the_unknown(), spec_.hoop->weights[0].at, 0.0);
+  }
+
+  Film& film_;
+  const Spec& spec_;
+  std::vector<bool> known_;
+};
+
+void multiply(std::vector<double>& values, double factor) {
+  for (double& value : values) value *= factor;
+}
+
+/// Turns positions so that y is upwards and the hoop moves towards larger x. A hoop that rolls on a plane
+/// below it turns clockwise when it moves to the right: with y downwards it seems to turn the other way.
+void orient(Film& film, bool y_down, std::vector<std::string>& notes) {
+  const auto [centre, mark] = centre_and_mark(film);
+  const Track& moving = centre ? *centre : *mark;
+  const double moved = moving.x.back() - moving.x.front();
+  bool flip = y_down;
+  if (!y_down && centre && mark) {
+    double turned = 0.0, last = 0.0;
+    for (std::size_t i = 0, k = 0, seen = 0; i < mark->t.size(); ++i) {
+      while (k < centre->t.size() && centre->t[k] < mark->t[i]) ++k;
+      if (k == centre->t.size() || centre->t[k] != mark->t[i]) continue;
+      const double angle = std::atan2(mark->y[i] - centre->y[k], mark->x[i] - centre->x[k]);
+      if (seen++ > 0) turned += std::remainder(angle - last, 2.0 * std::numbers::pi);
+      last = angle;
+    }
+    flip = turned * moved > 0.0;
+    if (flip) notes.push_back("y is downwards in the film: the hoop would roll the wrong way otherwise");
+  }
+  for (Track& track : film.tracks) {
+    if (flip) multiply(track.y, -1.0);
+    if (moved < 0.0) multiply(track.x, -1.0);
+  }
+  if (moved < 0.0) notes.push_back("the hoop moves to the left in the film: x is mirrored");
+}
+
+/// The unit of positions. Where none is stated it is that of m, cm and mm in which the hoop has its size, or
+/// else pixels. low, high: what the film shows, if nothing is known but that, from the least to the most [m].
+void find_unit(Film& film, const std::string& stated, const Spec& spec, double scale,
+               std::vector<std::string>& notes, const std::string& origin) {
+  const auto [centre, mark] = centre_and_mark(film);
+  if (!mark) {
+    if (!std::isnan(scale))
+      for (Track& track : film.tracks) multiply(track.x, scale), multiply(track.y, scale);
+    return;
+  }
+  const Side length = std::isnan(mark->at) ? length_of(spec) : Side{mark->at, mark->at};
+  double shown = 0.0, allowed = 1.5;  // in the film's unit: the distance of the mark from the axis
+  if (centre) {
+    std::vector<double> apart;
+    for (std::size_t i = 0, k = 0; i < mark->t.size(); ++i) {
+      while (k < centre->t.size() && centre->t[k] < mark->t[i]) ++k;
+      if (k < centre->t.size() && centre->t[k] == mark->t[i])
+        apart.push_back(std::hypot(mark->x[i] - centre->x[k], mark->y[i] - centre->y[k]));
+    }
+    if (apart.size() < 3)
+      throw InputError(
+          fmt::format("{}: '{}' and '{}' have {} times in common; allowed: tracks of the same frames", origin,
+                      mark->name, centre->name, apart.size()));
+    shown = median(apart);
+  } else {
+    const auto [low, high] = std::ranges::minmax(mark->y);
+    shown = 0.5 * (high - low), allowed = 6.0;  // its way may be that of a jump, or of a part of a revolution
+  }
+  if (!std::isnan(scale)) {
+    for (Track& track : film.tracks) multiply(track.x, scale), multiply(track.y, scale);
+    shown *= scale;
+  } else if (stated.empty()) {
+    constexpr double close = 1.25;
+    for (const auto& [unit, metres] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}}) {
+      const double size = shown * metres, off = centre ? close : 2.5;
+      if (!(size < off * length.high && size > length.low / off)) continue;
+      for (Track& track : film.tracks) multiply(track.x, metres), multiply(track.y, metres);
+      shown *= metres;
+      if (metres != 1.0) notes.push_back(fmt::format("positions are in {}, by the size of the hoop", unit));
+      break;
+    }
+  }
+  const bool fits = shown < allowed * length.high && shown > length.low / allowed;
+  if (fits || length.high == 0.0) return;
+  const double metres = 0.5 * (length.low + length.high) / shown;
+  const bool pixels = shown > 20.0 && stated != "m" && std::isnan(scale);
+  if (!pixels)
+    throw InputError(fmt::format(
+        "{}: the markers are {:.4g} apart, and L of the hoop is {:.4g} m: another unit? allowed: metres, or "
+        "--scale {:.4g} (metres a unit); or the radius of the hoop that was filmed, --set radius=...",
+        origin, shown, length.high, metres * (std::isnan(scale) ? 1.0 : scale)));
+  film.unit = "px", film.camera.scale = metres;
+  notes.push_back(
+      fmt::format("positions are in pixels; scale is free, about {:.4g} mm a pixel", 1e3 * metres));
+}
+
+/// The angle by which the plane descends in the film: of the line through the centre's way.
+double descent_of(const Film& film) {
+  const auto [centre, mark] = centre_and_mark(film);
+  const Track& track = centre ? *centre : *mark;
+  constexpr double rolls = 0.7;  // of the way: the rest may be a jump
+  const double end = track.x.front() + rolls * (track.x.back() - track.x.front());
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  for (std::size_t i = 0; i < track.t.size() && track.x[i] <= end; ++i) {
+    const double at_x = track.x[i] - track.x.front(), at_y = track.y[i] - track.y.front();
+    n += 1.0, x += at_x, y += at_y, xx += at_x * at_x, xy += at_x * at_y;
+  }
+  const double spread = xx - x * x / n;
+  return spread > 0.0 ? -std::atan((xy - x * y / n) / spread) : 0.0;
+}
+
+bool has(const std::vector<std::string>& names, std::string_view name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+void find_axes(Film& film, const Spec& spec, std::vector<std::string>& notes) {
+  const double descent = descent_of(film), slope = spec.design.slope;
+  film.is_level = std::abs(descent) > 0.5 * std::abs(slope) && std::abs(slope) > 0.02;
+  film.camera.tilt = 0.0;
+  if (!film.is_level && !has(film.free, "tilt")) return;
+  film.camera.tilt = descent - (film.is_level ? slope : 0.0);
+  if (film.is_level && !has(film.free, "tilt")) film.free.push_back("tilt");
+  notes.push_back(fmt::format(
+      "axes: {}; the hoop descends by {:.3g} deg, so that tilt, which is free, is about {:.2g} deg",
+      film.is_level ? "horizontal" : "along the plane", descent * 180.0 / std::numbers::pi,
+      film.camera.tilt * 180.0 / std::numbers::pi));
+}
+
+void refuse_unknown_free(const std::vector<std::string>& names, const Film& film) {
+  for (const std::string& name : names) {
+    const CameraNumber* number = find_camera_number(name);
+    if (!number) continue;  // a parameter of the hoop
+    const bool of_points = name == "scale" || name == "tilt" || number->unit.empty();
+    if (of_points == film.tracks.empty() && name != "time_offset")
+      throw InputError(
+          fmt::format("--free {}: has no effect on a film of {}; allowed: {}", name,
+                      film.tracks.empty() ? "angles" : "points",
+                      film.tracks.empty() ? "time_offset, angle_offset" : "time_offset, scale, tilt"));
+  }
+}
+
+}  // namespace
+
+std::optional<double> leaves_at(const Film& film, double slope, double second) {
+  constexpr std::size_t first = 5;
+  const std::vector<Observation> observations = observations_of(film);
+  const Measured kind = film.tracks.empty() ? Measured::angle : Measured::x;
+  const double scatter = scatter_of(observations, kind);
+  // One series: angles, or the way along x and y of a mark, or of the centre.
+  std::vector<double> t, away;
+  if (film.tracks.empty()) {
+    const FilmAngles angles = angles_of(film, slope);
+    if (angles.t.size() < 3 * first) return {};
+    const double from = median({angles.phi.begin(), angles.phi.begin() + first});
+    t = angles.t;
+    for (const double phi : angles.phi) away.push_back(std::abs(phi - from));
+  } else {
+    const auto [centre, mark] = centre_and_mark(film);
+    const Track& track = mark ? *mark : *centre;
+    if (track.t.size() < 3 * first) return {};
+    const double x = median({track.x.begin(), track.x.begin() + first}),
+                 y = median({track.y.begin(), track.y.begin() + first});
+    t = track.t;
+    for (std::size_t i = 0; i < t.size(); ++i) away.push_back(std::hypot(track.x[i] - x, track.y[i] - y));
+  }
+  const double still = 6.0 * scatter + (film.tracks.empty() ? 1e-3 : 1e-6 / film.camera.scale);
+  std::size_t leaves = away.size();
+  while (leaves > 0 && away[leaves - 1] > still) --leaves;
+  if (leaves == away.size()) return {};
+  constexpr double long_held = 1.0;  // sqrt(R/g): a free hoop may move that little for so long
+  if (leaves < 2 * first || t[leaves] - t.front() < long_held * second) return {};
+  return t[leaves];
+}
+
+Film place_film(const Recording& recording, const Spec& spec, const MeasurementOptions& options,
+                std::vector<std::string>& notes) {
+  Film film{.t = recording.t,
+            .phi = recording.phi,
+            .spin = recording.spin,
+            .tracks = recording.tracks,
+            .error = options.error,
+            .allow_gaps = options.allow_gaps};
+  const std::string origin = recording.notes.empty()
+                                 ? std::string("film")
+                                 : recording.notes[0].substr(0, recording.notes[0].find(": "));
+  for (const std::string& name : options.free)
+    if (find_camera_number(name)) film.free.push_back(name);
+  refuse_unknown_free(options.free, film);
+  if (film.tracks.empty()) {
+    if (!std::isnan(options.scale) || options.y_down || !options.markers.empty())
+      throw InputError(origin +
+                       ": holds angles; --scale, --y-down and --marker have no effect; allowed: with "
+                       "positions");
+  } else {
+    Places(film, spec, options.markers);
+    for (const Track& track : film.tracks)
+      notes.push_back(fmt::format("'{}' is {}", track.name, place_words(track)));
+    orient(film, options.y_down, notes);
+    find_unit(film, recording.unit, spec, options.scale, notes, origin);
+    if (film.unit == "px" && !has(film.free, "scale")) film.free.push_back("scale");
+    find_axes(film, spec, notes);
+  }
+  const double second = time_unit(spec.scene);
+  const auto leaves = leaves_at(film, spec.design.slope, second);
+  const double first = observations_of(film).front().t;
+  if (has(film.free, "time_offset")) {
+    film.camera.time_offset = leaves.value_or(first);
+  } else if (leaves) {
+    film.free.push_back("time_offset"), film.camera.time_offset = *leaves;
+    notes.push_back(
+        fmt::format("the hoop is held at first: it has left its place at t = {:.4g} s; time_offset, the time "
+                    "of the release, is "
+                    "free",
+                    *leaves));
+  }
+  return film;
+}
+
+}  // namespace leapmap
