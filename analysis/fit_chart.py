@@ -3,7 +3,8 @@
 """Draw a fit, from the table of leapmap fit DATA.csv --csv FIT.csv: measurements and models over time, and
 residuals.
 
-Residuals are over their errors. Events have one bar each.
+Residuals of a film are in its own unit, for all models on one scale. Events have one bar each, over their
+errors.
 """
 import csv
 
@@ -16,27 +17,28 @@ from style import plt
 COLOURS = {"sticking": "#d95f02", "coulomb": "#1f4e79"}
 WORDS = {"sticking": "no slip", "coulomb": "Coulomb friction"}
 SHOWN = {
-    "phi": "φ [rad]", "x_P": "x of the mass [m]", "y_P": "y of the mass [m]", "x_O": "x of the centre [m]",
-    "y_O": "y of the centre [m]"
+    "phi": "φ", "spin": "spin", "x_P": "x of the mass", "y_P": "y of the mass", "x_O": "x of the centre",
+    "y_O": "y of the centre"
 }
 
 
 def read(path):
-    """Columns by name: texts of the quantity, numbers of the rest."""
+    """Quantities with their units, models, and columns of numbers by name."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     models = [n.removeprefix("model_") for n in (rows[0] if rows else {}) if n.startswith("model_")]
-    if not rows or not {"t", "quantity", "measured"} <= rows[0].keys() or not models:
+    if not rows or not {"t", "quantity", "unit", "measured"} <= rows[0].keys() or not models:
         raise NotAMap(f"{path}: is not what leapmap fit --csv writes")
     numbers = lambda name: np.array([float(row[name]) if row[name] else np.nan for row in rows])
     try:
-        return np.array(
-            [row["quantity"] for row in rows]), models, {n: numbers(n) for n in rows[0] if n != "quantity"}
+        units = {row["quantity"]: row["unit"] for row in rows}
+        names = np.array([row["quantity"] for row in rows])
+        return names, units, models, {n: numbers(n) for n in rows[0] if n not in ("quantity", "unit")}
     except (TypeError, ValueError):
         raise NotAMap(f"{path}: is not what leapmap fit --csv writes") from None
 
 
-def film(quantities, models, of):
+def film(quantities, units, models, of):
     names = list(dict.fromkeys(quantities))
     figure, axes = plt.subplots(2 * len(names), 1, sharex=True, figsize=(7.2, 2.6 * len(names) + 1.4),
                                 layout="constrained", gridspec_kw={"height_ratios": [2, 1] * len(names)},
@@ -50,17 +52,17 @@ def film(quantities, models, of):
             above.plot(of["t"][here], of[f"model_{model}"][here], linewidth=1.2, color=COLOURS.get(model),
                        label=f"{WORDS.get(model, model)}")
             below.plot(of["t"][here], residuals, ".", markersize=2, color=COLOURS.get(model))
-        best = of[f"residual_{models[0]}"][here]
-        below.set_ylim(*(1.3 * max(4.0, np.nanmax(np.abs(best))) * np.array([-1, 1])))
+        largest = max(np.nanmax(np.abs(of[f"residual_{model}"][here])) for model in models)
+        below.set_ylim(*(1.1 * max(largest, 1e-12) * np.array([-1, 1])))
         below.axhline(0, color=style.EDGE, linewidth=0.6)
-        above.set_ylabel(SHOWN.get(name, name))
-        below.set_ylabel("residual\n[errors]")
-    axes[-1, 0].set_xlabel("time since release [s]")
+        above.set_ylabel(f"{SHOWN.get(name, name)} [{units[name]}]")
+        below.set_ylabel(f"residual\n[{units[name]}]")
+    axes[-1, 0].set_xlabel("time in the film [s]")
     axes[0, 0].legend()
     return figure
 
 
-def events(quantities, models, of):
+def events(quantities, units, models, of):
     figure, axis = plt.subplots(figsize=(6.4, 1.2 + 0.6 * len(quantities)), layout="constrained")
     places = np.arange(len(quantities))
     for k, model in enumerate(models):
@@ -78,8 +80,9 @@ def events(quantities, models, of):
 def main():
     p = style.parser(__doc__, "what leapmap fit --csv wrote", "_fit")
     arguments = p.parse_args()
-    quantities, models, of = read(arguments.source)
-    style.save((events if np.isnan(of["t"]).all() else film)(quantities, models, of), arguments.output)
+    quantities, units, models, of = read(arguments.source)
+    draw = events if np.isnan(of["t"]).all() else film
+    style.save(draw(quantities, units, models, of), arguments.output)
 
 
 if __name__ == "__main__":

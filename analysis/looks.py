@@ -16,6 +16,7 @@ PARAMETERS = {
     "release_angle": ("release angle", "release angle", "°"),
     "release_spin": ("release spin [√(g/R)]", "release spin", ""),
     "drive_torque": ("drive torque τ [(m + mₚ) g R]", "τ", ""),
+    "resisting_torque": ("resisting torque [(m + mₚ) g R]", "resisting torque", ""),
     "mu_static": ("static friction coefficient μ", "μ", ""),
     "mu_kinetic": ("kinetic friction coefficient", "μ kinetic", ""),
     "restitution": ("restitution", "restitution", ""),
@@ -275,7 +276,7 @@ def words_of(m, fixed):
     contact = ("mu_static", "mu_kinetic", "restitution")
     told = [
         k for k in PARAMETERS
-        if k in fixed and (k not in contact or m.slips) and (k != "drive_torque" or fixed[k] != 0)
+        if k in fixed and (k not in contact or m.slips) and (not k.endswith("_torque") or fixed[k] != 0)
     ]
     numbers = m.numbers()
     return [

@@ -5,7 +5,8 @@ const SETTLE = 200, KEEP = 100;  // jumps of each hoop that are let go by, and t
 const COLUMNS = 512, ROWS = 320, MOST_AT_ONCE = 16;  // hoops, and heights told apart
 const SLICE = 14;  // ms of computing between two pictures
 const OVER = { slope: [0.05, 0.6], mass_ratio: [0.2, 12], offset_ratio: [0.05, 1], inertia_factor: [0.5, 1],
-  release_angle: [-Math.PI, Math.PI], release_spin: [0, 5], drive_torque: [0, 0.2] };
+  release_angle: [-Math.PI, Math.PI], release_spin: [0, 5], drive_torque: [0, 0.2],
+  resisting_torque: [0, 0.1] };
 
 /** Columns from coarse to fine: those of a level lie evenly between those before. */
 function* columnsInOrder() {

@@ -82,7 +82,7 @@ function gradientPart(map, solver) {
       .map(([name, { label, unit }]) => {
       // Of an angle and of what may be zero a step, of the rest a hundredth: what a workshop's tolerance is.
       const steps = unit === "°" ? [Math.PI / 180, "+ 1°"]
-        : ["release_spin", "drive_torque", "restitution"].includes(name) ? [0.01, "+ 0.01"]
+        : name.endsWith("_torque") || ["release_spin", "restitution"].includes(name) ? [0.01, "+ 0.01"]
         : [0.01 * now.design[name], "+ 1 %"];
       const tr = document.createElement("tr"), th = cell("th", `${label.split(" [")[0]} ${steps[1]}`);
       th.scope = "row";

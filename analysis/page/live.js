@@ -9,7 +9,8 @@ const REST = 150;    // ms without a change after which cliffs are looked for
 const LIVE_RANGES = {
   slope: [0.02, 0.87], mass_ratio: [0.1, 20], offset_ratio: [0.05, 1], inertia_factor: [0.5, 1],
   release_angle: [0, 2 * Math.PI], release_spin: [-3, 6],
-  drive_torque: [-0.2, 0.5], mu_static: [0.05, 1.5], mu_kinetic: [0.05, 1.5], restitution: [0, 0.9],
+  drive_torque: [-0.2, 0.5], resisting_torque: [0, 0.3],
+  mu_static: [0.05, 1.5], mu_kinetic: [0.05, 1.5], restitution: [0, 0.9],
   rest_speed: [0, 0.1], runway: [0.5, 10], hop_height: [0, 0.5], radius: [0.01, 0.5],
   gravity: [0.5, 25],
 };

@@ -74,7 +74,7 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
 function hopCommand(design, map, defaults, jumps) {
   const contact = ["mu_static", "mu_kinetic", "restitution"];
   const flags = ["slope", "mass_ratio", "offset_ratio", "inertia_factor", "release_angle", "release_spin",
-    "drive_torque", ...(map.slips ? contact : [])];
+    "drive_torque", "resisting_torque", ...(map.slips ? contact : [])];
   const words = ["leapmap hop", ...flags.filter((k) => Number.isFinite(design[k]))
     .map((k) => `--${k.replaceAll("_", "-")} ${design[k]}`)];
   if (map.slips) words.push("--set friction=coulomb", `--set rest_speed=${design.rest_speed}`);

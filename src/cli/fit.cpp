@@ -162,8 +162,8 @@ void print_events(const Measurements& measured, const ModelFit& fit) {
   }
 }
 
-std::string_view unit_of_film(const Film& film) {
-  return film.tracks.empty() ? std::string_view("rad") : std::string_view(film.unit);
+std::string_view unit_of(Measured kind, const Film& film) {
+  return is_position(kind) ? std::string_view(film.unit) : kind == Measured::angle ? "rad" : "rad s-1";
 }
 
 /// The number of different times of a film.
@@ -194,7 +194,8 @@ void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& un
             ? ": each free parameter uses up one number, so a true model passes within their errors"
             : fmt::format("; a true model exceeds it in {:.2g} of 100 cases", 100.0 * fit.probability));
   if (film)
-    say("  residuals {:.3g} {} rms{}\n", fit.error, unit_of_film(measured.film),
+    say("  residuals {:.3g} {} rms{}\n", fit.error,
+        unit_of(measured.film.tracks.empty() ? Measured::angle : Measured::x, measured.film),
         std::isnan(measured.film.error) ? "; the errors above follow from them" : "");
   if (film && fit.correlation > 1.0 && explains(fit))
     say("  residuals are correlated over {:.3g} lines, as in a smoothed film: {:.3g} of {} lines are "
@@ -271,7 +272,7 @@ Json json_of(const ModelFit& fit) {
           {"hop", fit.found ? hop_command(spec_of(fit), fit.design) : ""}};
 }
 
-constexpr std::string_view csv_head = "t,quantity,measured";
+constexpr std::string_view csv_head = "t,quantity,unit,measured";
 
 /// A line of each number measured: what it is, what each model has in its place.
 std::string csv_of(const Measurements& measured, const FitReport& report) {
@@ -283,10 +284,11 @@ std::string csv_of(const Measurements& measured, const FitReport& report) {
   const std::size_t numbers = measured.events.size() + observations.size();
   for (std::size_t i = 0; i < numbers; ++i) {
     if (!measured.events.empty())
-      text += fmt::format(",{},{}", measured.events[i].field, measured.events[i].value);
+      text += fmt::format(",{},{},{}", measured.events[i].field, find_field(measured.events[i].field)->unit,
+                          measured.events[i].value);
     else
-      text += fmt::format("{},{},{}", observations[i].t, name_of(observations[i], measured.film),
-                          observations[i].value);
+      text += fmt::format("{},{},{},{}", observations[i].t, name_of(observations[i], measured.film),
+                          unit_of(observations[i].kind, measured.film), observations[i].value);
     for (const ModelFit& fit : report.models)
       if (fit.found) text += fmt::format(",{},{}", fit.model[i], fit.residuals[i]);
     text += "\n";
@@ -473,7 +475,7 @@ void add_fit(CommandLine& line, int& status) {
   command.group("Film");
   command.value(
       "--marker", arguments->markers,
-      "where a track is on the hoop: \"at=47 mm, angle=0 deg\", before it the track's name and a colon if "
+      "place of a track on the hoop: \"at=47 mm, angle=0 deg\", before it the track's name and a colon if "
       "several have no known place; may be given again");
   command.value("--fps", arguments->reading.recording.fps, "frames per second, for tables without times")
       .check(number({0.0, 1e300, false}));

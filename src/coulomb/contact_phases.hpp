@@ -55,6 +55,7 @@ enum class PhaseEnd {
   runway_ends,
   indeterminate,
   too_long,
+  reverses,  ///< against a resisting torque
   failed
 };
 

@@ -86,7 +86,7 @@ class PhaseMachine {
   /// On from the end of the rolling or sliding that was told last, in which the hoop moved `to` there.
   std::optional<NextPhase> after(PhaseEnd end, const ContactState<S>& to) {
     using std::abs;
-    driven_ += hoop_.drive * (to.angle - at_.angle);
+    driven_ += hoop_.motor() * (to.angle - at_.angle);
     if (slides_) slipped_ += abs((to.travel - at_.travel) - (to.angle - at_.angle));
     const S turned_in_flight = at_.turned_in_flight;
     at_ = to, at_.turned_in_flight = turned_in_flight;
@@ -102,7 +102,10 @@ class PhaseMachine {
       case PhaseEnd::lifts_off:
         return go_on(ContactPhase::leaves);
       case PhaseEnd::stalls:
-        return ended_as(Status::stalled);
+        if (hoop_.resistance == S(0) || is_held(hoop_, trig(at_.angle))) return ended_as(Status::stalled);
+        [[fallthrough]];
+      case PhaseEnd::reverses:
+        return ended_as(Status::failed, reverses_against_resistance);
       case PhaseEnd::runway_ends:
         return ended_as(Status::no_jump);
       case PhaseEnd::indeterminate:
@@ -124,13 +127,15 @@ class PhaseMachine {
     const S left_at = at_.travel;
     const S left = at_.angle;
     at_ = after_flight(hoop_, at_, flight.flight_time);
-    if (hoop_.aloft != S(0)) driven_ += hoop_.drive * (at_.angle - left);
+    if (hoop_.aloft != S(0)) driven_ += hoop_.motor() * (at_.angle - left);
     if (!jumps && !(std::abs(at_.travel) < runway_)) return ended_as(Status::no_jump);
     const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
     if (jumps) keep_measures(measures_of(hoop_, S(at_.travel - left_at), at_, landing), outcome_);
     at_.spin = landing.after.spin, at_.slip = landing.after.slip;
     at_.normal = landing.after.normal;
+    if (!jumps && at_.spin * hoop_.resistance < S(0))
+      return ended_as(Status::failed, reverses_against_resistance);
     if (jumps) {
       outcome_.landing_spin = static_cast<double>(at_.spin);
       return ended_as(Status::jumped);
@@ -159,6 +164,10 @@ class PhaseMachine {
                                           ? endless_rebounds
                                           : "more phases than a design may go through");
     if (next == ContactPhase::leaves) return NextPhase{Phase::flight, 0};
+    // At rest the resistance is as large as it has to be for a hoop that does not slide.
+    if (hoop_.resistance != S(0) && next != ContactPhase::rolls && at_.spin == S(0) &&
+        is_held(hoop_, trig(at_.angle)))
+      return ended_as(Status::failed, reverses_against_resistance);
     slides_ = next != ContactPhase::rolls;
     const NextPhase phase{slides_ ? Phase::sliding : Phase::rolling, !slides_ ? 0
                                                                      : next == ContactPhase::slides_forwards
@@ -198,7 +207,7 @@ class PhaseMachine {
   /// consistent then.
   bool sinks_without_motor() const {
     const S held_down = hoop_.cos_slope + hoop_.rho * trig(at_.angle).cos * at_.spin * at_.spin;
-    const bool idles = hoop_.drive != S(0) && hoop_.aloft == S(0);
+    const bool idles = hoop_.motor() != S(0) && hoop_.aloft == S(0);
     return idles && !(at_.normal > S(0)) && held_down > S(1e-9);
   }
 

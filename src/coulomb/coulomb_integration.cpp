@@ -2,6 +2,7 @@
 #include "coulomb/coulomb_integration.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "coulomb/coulomb_automaton.hpp"
@@ -99,6 +100,7 @@ PhaseEnd CoulombIntegration::follow(Phase phase, int direction, ContactState<dou
   const Y start{at.angle, at.spin, at.slip, at.travel};
   const double began = at.time;
   std::array<Sample<double>, most_guards> now;
+  assert(guards.size() <= most_guards);
   for (std::size_t g = 0; g < guards.size(); ++g) now[g] = guards[g].sample(start);
   if (!integrator_.start(start, 0.01 / (1.0 + std::abs(at.spin)))) return PhaseEnd::failed;
   const auto retake = [&](double tau, Y& y) { return integrator_.retake(tau, y); };
@@ -151,14 +153,14 @@ PhaseEnd CoulombIntegration::roll(const Hoop<double>& hoop, const Contact<double
     const PhaseEnd end = follow(Phase::rolling, 0, at, guards, step_told);
     if (end != PhaseEnd::stalls) return end;
     at.spin = 0.0;
-    if (++turned == 2) return end;
+    if (hoop.resistance != 0.0 || ++turned == 2) return end;
   }
 }
 
 PhaseEnd CoulombIntegration::slide(const Hoop<double>& hoop, const Contact<double>& contact,
                                    ContactState<double>& at, double runway, int direction,
                                    const StepObserver& step_told) {
-  const double sign = direction;
+  const double sign = direction, way = std::copysign(1.0, hoop.resistance);
   system_.hoop = hoop, system_.friction = sign * contact.mu_kinetic;
   if (!(pivot(system_, {at.angle, at.spin}).value > 0.0)) return PhaseEnd::indeterminate;
   const auto rates = [&](const Y& y) {
@@ -172,8 +174,13 @@ PhaseEnd CoulombIntegration::slide(const Hoop<double>& hoop, const Contact<doubl
                                 },
                                 PhaseEnd::slip_ends},
                           guard_of_runway(runway),
-                          Guard{[&](const Y& y) { return pivot(system_, y); }, PhaseEnd::indeterminate}};
-  const PhaseEnd end = follow(Phase::sliding, direction, at, guards, step_told);
+                          Guard{[&](const Y& y) { return pivot(system_, y); }, PhaseEnd::indeterminate},
+                          Guard{[&](const Y& y) {
+                                  return Sample<double>{way * y[1], way * rates(y)[1]};
+                                },
+                                PhaseEnd::reverses}};
+  const std::size_t asked = guards.size() - (hoop.resistance == 0.0 ? 1 : 0);
+  const PhaseEnd end = follow(Phase::sliding, direction, at, std::span(guards).first(asked), step_told);
   if (end == PhaseEnd::slip_ends) at.slip = 0.0;
   return end;
 }

@@ -59,7 +59,7 @@ class CoulombIntegration {
   };
 
  private:
-  static constexpr std::size_t most_guards = 4;
+  static constexpr std::size_t most_guards = 5;
 
   PhaseEnd follow(Phase phase, int direction, ContactState<double>& at, std::span<const Guard> guards,
                   const StepObserver& step_told);

@@ -2,6 +2,7 @@
 /// One design's motion with friction and without an integrator: sliding by Picard's iteration from sample to
 /// sample.
 #include <cmath>
+#include <memory>
 
 #include "coulomb/coulomb.hpp"
 #include "coulomb/model.hpp"
@@ -18,6 +19,18 @@ struct Begun {
   int direction;
   std::vector<ContactState<double>> turns{};  ///< of a rolling one
 };
+
+/// The thread's solver to a tolerance. Its tables of nodes take longer to make than a design to solve.
+CoulombSolver<double>& solver_of(double tolerance) {
+  struct Made {
+    double tolerance;
+    CoulombSolver<double> solver;
+  };
+  thread_local std::unique_ptr<Made> last;
+  if (!last || last->tolerance != tolerance)
+    last = std::make_unique<Made>(Made{tolerance, CoulombSolver<double>(tolerance)});
+  return last->solver;
+}
 
 }  // namespace
 
@@ -37,7 +50,7 @@ Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, 
   };
   observer.turn = [&](const ContactState<double>& state) { phases.back().turns.push_back(state); };
   observer.end = [&](const ContactState<double>& state) { end = state; };
-  CoulombSolver<double> solver(tolerance);
+  CoulombSolver<double>& solver = solver_of(tolerance);
   Sequences<double>([&](Start start, std::span<const Design>, std::span<ContactState<double>> at,
                         std::span<Outcome> outcome) {
     outcome[0] = solver.solve(start, design, at[0], scene, observer);

@@ -118,7 +118,7 @@ class Chain {
     if (meter_) meter_->roll(roll, at_.spin, begun.turns, end);
     at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
     at_.travel += end - at_.angle;
-    driven_ += hoop_.drive * (end - at_.angle);
+    driven_ += hoop_.motor() * (end - at_.angle);
     at_.angle = end;
     at_.spin = to.spin < 0.0 ? -sqrt(left) : sqrt(left);
     return true;
@@ -159,7 +159,7 @@ class Chain {
       meter_->meet({force, at_.spin}), meter_->turn(turned);
     }
     if (slip_ends) at_.slip = D(0.0);
-    driven_ += hoop_.drive * turned;
+    driven_ += hoop_.motor() * turned;
     slipped_ += abs(at_.travel - from.travel - turned);
     return true;
   }
@@ -266,7 +266,7 @@ class Chain {
     if (meter_) meter_->fly(at_.spin, flown.flight_time);
     const D left_at = at_.travel, left = at_.angle;
     at_ = after_flight(hoop_, at_, flown.flight_time);
-    if (turns_on_) driven_ += hoop_.drive * (at_.angle - left);
+    if (turns_on_) driven_ += hoop_.motor() * (at_.angle - left);
     const Landing<D> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
     if (jumps)

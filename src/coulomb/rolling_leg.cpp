@@ -49,6 +49,7 @@ PhaseEnd RollingLeg<S>::run(const Hoop<S>& hoop, const S& mu_static, ContactStat
       return !(taken >= S(0)) ? PhaseEnd::failed : way < S(0) ? turned_over(end) : end;
     }
     at.spin = S(0);
+    if (hoop.resistance != S(0)) return taken >= S(0) ? end : PhaseEnd::failed;
     if (++turned == 2) return end;  // when nobody asks, and the integral may be hard
     if (!(taken >= S(0))) return PhaseEnd::failed;
     if (turns) turns(at);

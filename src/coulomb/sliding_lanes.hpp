@@ -113,7 +113,8 @@ class SlidingLanes {
   SlidingLeg<S> leg_;
   EdgeLooks<T> edge_looks_;
   std::vector<Slide> slides_;
-  PackedRows<S, 8> hoops_, states_;  // states: time, travel, angle, spin, slip; n0, friction, longest panel
+  PackedRows<S, 9> hoops_;
+  PackedRows<S, 8> states_;  // states: time, travel, angle, spin, slip; n0, friction, longest panel
   PackedRows<S, 8> zeros_;
   PackedRows<S, 4> stretches_;  // where given
   std::vector<std::uint32_t> waiting_;

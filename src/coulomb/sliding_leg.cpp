@@ -196,6 +196,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
     const SlidingMotion<S> start = sliding_motion(hoop, phi, S(at.spin * at.spin), friction,
                                                   slide.coefficients(hoop, phi, S(0)), slide.free_force);
     const S way = at.spin < S(0) || (at.spin == S(0) && start.angular < S(0)) ? S(-1) : S(1);
+    if (way * hoop.resistance < S(0)) return PhaseEnd::reverses;
     // Near the edge panels are as short as what is left, to which all that happens there is in proportion.
     Bounds bounds{S(longest_angle), S(shortest_angle) * (slide.edge ? slide.left : S(1) + std::abs(at.angle)),
                   S(shortest_time) * (slide.edge ? std::min(slide.left, S(1)) : S(1))};

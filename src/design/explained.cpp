@@ -10,11 +10,11 @@
 #include <numeric>
 
 #include "film/film_angles.hpp"
+#include "film/place_film.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
-#include "support/closest.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap {
@@ -169,17 +169,10 @@ FreeParameter Explained::release_angle_of_film() const {
 }
 
 void Explained::free_by_name(std::span<const std::string> names) {
+  const std::size_t first = free_.size();
   for (const std::string& name : names) {
     const std::optional<Variable> variable = find_variable(name, spec_.hoop ? &*spec_.hoop : nullptr);
-    if (!variable) {
-      std::vector<std::string_view> all;
-      for (const CameraNumber& number : camera_numbers)
-        if (!number.unit.empty()) all.push_back(number.name);
-      for (const Parameter& parameter : parameters())
-        if (std::holds_alternative<double Design::*>(parameter.member)) all.push_back(parameter.name);
-      throw InputError(fmt::format("--free {}: is no parameter of a fit{}; allowed: {}", name,
-                                   did_you_mean(name, all), fmt::join(all, ", ")));
-    }
+    if (!variable) refuse_free_name(name);
     const bool there = std::ranges::find(free_, name, &FreeParameter::name) != free_.end();
     if (there || variable->of_body() || !has(spec_.scene.friction, variable->only_of)) continue;
     if (name == "release_angle" && is_film())
@@ -191,6 +184,8 @@ void Explained::free_by_name(std::span<const std::string> names) {
     else
       free_.push_back({name, *variable, usual_bounds(*variable, spec_.design.*variable->parameter())});
   }
+  std::ranges::sort(free_.begin() + static_cast<std::ptrdiff_t>(first), free_.end(), {},
+                    [](const FreeParameter& one) { return one.variable.order; });
 }
 
 void Explained::free_camera() {

@@ -71,7 +71,7 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
   const auto usual = [&](std::size_t asked, std::size_t of_film, std::size_t of_events) {
     return asked > 0 ? asked : film ? of_film : of_events;
   };
-  const std::size_t samples = SobolPoints::whole(usual(options.coarse, 4096, 1 << 16)),
+  const std::size_t samples = SobolPoints::whole(usual(options.coarse, 2048, 1 << 16)),
                     most = usual(options.starts, 8, 24);
   const std::size_t dimensions = explained.searched();
   if (dimensions == 0) return {{}};
@@ -109,12 +109,13 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
 /// Fits from several starts, side by side, best first; those that found nothing are left out.
 std::vector<LeastSquaresFit> fits_from(const LeastSquares& problem,
                                        const std::vector<std::vector<double>>& starts,
-                                       const FitOptions& options, std::size_t& evaluations) {
+                                       const FitOptions& options, int most_iterations,
+                                       std::size_t& evaluations) {
   std::vector<LeastSquaresFit> fits(starts.size());
   parallel_for_each(starts.size(), options.threads, options.stop_requested, [&] {
     return [&](std::size_t i) {
       if (options.stop_requested && options.stop_requested()) throw Stopped("the fit was stopped");
-      fits[i] = minimize(problem, starts[i]);
+      fits[i] = minimize(problem, starts[i], most_iterations);
       return true;
     };
   });
@@ -130,14 +131,15 @@ LeastSquaresFit best_fit(const Explained& explained, const LeastSquares& problem
                          std::vector<std::vector<double>> starts, const FitOptions& options,
                          std::size_t& evaluations) {
   constexpr std::size_t finalists = 2;
+  constexpr int most_of_each = 30, most_of_finalists = 200;  // iterations
   if (explained.is_film()) {
     const std::vector<LeastSquaresFit> fits =
-        fits_from(explained.small_problem(), starts, options, evaluations);
+        fits_from(explained.small_problem(), starts, options, most_of_each, evaluations);
     starts.clear();
     for (const LeastSquaresFit& fit : fits)
       if (starts.size() < finalists && (starts.empty() || fit.at != starts.front())) starts.push_back(fit.at);
   }
-  std::vector<LeastSquaresFit> fits = fits_from(problem, starts, options, evaluations);
+  std::vector<LeastSquaresFit> fits = fits_from(problem, starts, options, most_of_finalists, evaluations);
   return fits.empty() ? LeastSquaresFit{} : std::move(fits.front());
 }
 

@@ -72,7 +72,7 @@ int jacobian_at(const gsl_vector* arcs, void* data, gsl_matrix* J) {
 
 }  // namespace
 
-LeastSquaresFit minimize(const LeastSquares& problem, std::span<const double> start) {
+LeastSquaresFit minimize(const LeastSquares& problem, std::span<const double> start, int most_iterations) {
   static const bool silenced = (gsl_set_error_handler_off(), true);
   static_cast<void>(silenced);
   const std::size_t rows = problem.residuals, columns = problem.bounds.size();
@@ -93,7 +93,6 @@ LeastSquaresFit minimize(const LeastSquares& problem, std::span<const double> st
     const double share = std::clamp((start[k] - side.low) / (side.high - side.low), inside, 1.0 - inside);
     gsl_vector_set(arcs.get(), k, std::asin(2.0 * share - 1.0));
   }
-  constexpr int most_iterations = 200;
   constexpr double step = 1e-12, slope = 1e-14;
   int info = 0;
   if (gsl_multifit_nlinear_init(arcs.get(), &system, workspace.get()) == GSL_SUCCESS)

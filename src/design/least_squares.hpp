@@ -30,6 +30,8 @@ struct LeastSquaresFit {
 
 /// Goes down from a start. Parameters stay within their bounds: each is followed as the arc sine of its place
 /// between them.
-LeastSquaresFit minimize(const LeastSquares& problem, std::span<const double> start);
+/// most_iterations: after so many it stays where it is.
+LeastSquaresFit minimize(const LeastSquares& problem, std::span<const double> start,
+                         int most_iterations = 200);
 
 }  // namespace leapmap

@@ -10,7 +10,7 @@
 namespace leapmap {
 namespace {
 
-constexpr std::size_t slope_place = 0, offset_place = 2, release_angle_place = 4;  // among `differentiable`
+constexpr double fine = 1e-11, coarse = 1e-6;  // relative errors of motions
 
 template <class S>
 S parameter_of(double value, std::size_t number) {
@@ -50,18 +50,18 @@ double FilmModel::descent(const Design& design, const Camera& camera) const {
 
 template <class S>
 bool FilmModel::see(const Design& design, const Camera& camera, std::span<const std::size_t> numbers,
-                    std::vector<Seen<S>>& seen) const {
+                    double accuracy, std::vector<Seen<S>>& seen) const {
   std::vector<double> times;  // after the release, each once
   for (const std::size_t number : numbers) {
     const double t = observations_[number].t - camera.time_offset;
     if (t >= 0.0 && (times.empty() || t > times.back())) times.push_back(t);
   }
-  const std::vector<MotionAt<S>> motion = motion_at<S>(design, scene_, times);
+  const std::vector<MotionAt<S>> motion = motion_at<S>(design, scene_, times, accuracy);
   if (motion.empty() && !times.empty()) return false;
-  const S held_at = parameter_of<S>(design.release_angle, release_angle_place);
+  const S held_at = parameter_of<S>(design.release_angle, by_release_angle);
   const MotionAt<S> held{held_at, S(0.0), S(0.0), S(0.0), 0.0, 0.0, 0.0};
   const double second = time_unit(scene_), R = scene_.radius;
-  const S L = parameter_of<S>(design.offset_ratio, offset_place);
+  const S L = parameter_of<S>(design.offset_ratio, by_offset_ratio);
   seen.clear();
   std::size_t at = 0;
   for (const std::size_t number : numbers) {
@@ -107,7 +107,7 @@ bool FilmModel::compare(std::span<const Seen<S>> seen, const Design& design, con
       double* row = jacobian.data() + i * (asked.by_design.size() + asked.by_camera.size());
       for (const std::size_t by : asked.by_design)
         *row++ = along * seen[i].a.by[by] + across * seen[i].b.by[by] +
-                 (film_.is_level && by == slope_place ? turned : 0.0);
+                 (film_.is_level && by == by_slope ? turned : 0.0);
       for (double Camera::*const by : asked.by_camera)
         *row++ = by == &Camera::time_offset    ? -along * seen[i].a_rate - across * seen[i].b_rate
                  : by == &Camera::angle_offset ? (one.kind == Measured::angle ? -1.0 : 0.0)
@@ -125,7 +125,7 @@ bool FilmModel::residuals(const Design& design, const Camera& camera, const Ques
                           std::span<double> residuals, std::span<double> jacobian) const {
   const auto run = [&]<class S>(S) {
     std::vector<Seen<S>> seen;
-    return see<S>(design, camera, asked.numbers, seen) &&
+    return see<S>(design, camera, asked.numbers, fine, seen) &&
            compare<S>(seen, design, camera, asked, residuals, jacobian);
   };
   return jacobian.empty() ? run(0.0) : run(DesignDual(0.0));
@@ -136,7 +136,7 @@ bool FilmModel::residuals_with_camera(const Design& design, Camera& camera,
                                       std::span<const std::size_t> numbers,
                                       std::span<double> residuals) const {
   std::vector<Seen<double>> seen;
-  if (!see<double>(design, camera, numbers, seen)) return false;
+  if (!see<double>(design, camera, numbers, coarse, seen)) return false;
   const auto is_free = [&](double Camera::*number) { return std::ranges::find(free, number) != free.end(); };
   double angle = 0.0;
   std::size_t angles = 0;

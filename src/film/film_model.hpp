@@ -53,8 +53,8 @@ class FilmModel {
   bool residuals(const Design& design, const Camera& camera, const Question& asked,
                  std::span<double> residuals, std::span<double> jacobian) const;
 
-  /// Residuals as above, after those of the linear numbers that are free have been fitted to the motion:
-  /// their values are put into the camera.
+  /// Residuals as above but for a coarse search, to six digits, after those of the linear numbers that are
+  /// free have been fitted to the motion: their values are put into the camera.
   bool residuals_with_camera(const Design& design, Camera& camera, std::span<double Camera::*const> free,
                              std::span<const std::size_t> numbers, std::span<double> residuals) const;
 
@@ -62,7 +62,7 @@ class FilmModel {
   template <class S>
   struct Seen;
   template <class S>
-  bool see(const Design& design, const Camera& camera, std::span<const std::size_t> numbers,
+  bool see(const Design& design, const Camera& camera, std::span<const std::size_t> numbers, double accuracy,
            std::vector<Seen<S>>& seen) const;
   template <class S>
   bool compare(std::span<const Seen<S>> seen, const Design& design, const Camera& camera,

@@ -11,12 +11,11 @@
 #include "physics/landing.hpp"
 #include "physics/sliding.hpp"
 #include "physics/stick.hpp"
+#include "trajectory/gradient.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {
-
-constexpr std::size_t by_mu_static = 7, by_mu_kinetic = 8, by_restitution = 9;
 
 template <class S>
 S parameter(const Design& design, double value, std::size_t number) {
@@ -55,9 +54,10 @@ Moving<S> midpoint_steps(const Moving<S>& from, double span, int count, const Ra
 
 /// Over a span of time by extrapolation, in halves where that does not agree with itself.
 template <class S, class Rate>
-Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, long& budget, int depth = 0) {
+Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, double allowed, long& budget,
+                     int depth = 0) {
   constexpr std::array counts{2, 4, 6, 8, 10};
-  constexpr double longest = 0.3, allowed = 1e-11;
+  constexpr double longest = 0.3;
   constexpr int most_halvings = 30;
   if (--budget < 0) {  // nothing to be followed: it is not told
     Moving<S> lost;
@@ -65,8 +65,8 @@ Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, long&
     return lost;
   }
   const auto halved = [&] {
-    return integrated(integrated(from, 0.5 * span, rate, budget, depth + 1), 0.5 * span, rate, budget,
-                      depth + 1);
+    return integrated(integrated(from, 0.5 * span, rate, allowed, budget, depth + 1), 0.5 * span, rate,
+                      allowed, budget, depth + 1);
   };
   if (span > longest && depth < most_halvings) return halved();
   std::array<Moving<S>, counts.size()> before, row;
@@ -91,13 +91,9 @@ Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, long&
 template <class S>
 class Walk {
  public:
-  Walk(const Design& design, const Scene& scene)
-      : hoop_(in_flight(
-            reduce(parameter<S>(design, design.slope, 0), parameter<S>(design, design.mass_ratio, 1),
-                   parameter<S>(design, design.offset_ratio, 2),
-                   parameter<S>(design, design.inertia_factor, 3),
-                   parameter<S>(design, design.drive_torque, 6)),
-            scene)),
+  Walk(const Design& design, const Scene& scene, double accuracy)
+      : accuracy_(accuracy),
+        hoop_(in_flight(hoop_of_design(design), scene)),
         contact_{parameter<S>(design, design.mu_static, by_mu_static),
                  parameter<S>(design, kinetic_follows(design) ? design.mu_static : design.mu_kinetic,
                               by_mu_kinetic),
@@ -113,11 +109,11 @@ class Walk {
     const auto rate = rate_of(phase, direction);
     double time = from;
     for (const double sample : times) {
-      at_ = integrated(at_, sample - time, rate, budget_), time = sample;
+      at_ = integrated(at_, sample - time, rate, accuracy_, budget_), time = sample;
       const Moving<S> rates = rate(at_);
       taken.push_back({at_[0], at_[2], S(0.0), at_[1], value_of(rates[2]), 0.0, value_of(rates[1])});
     }
-    if (std::isfinite(to)) at_ = integrated(at_, to - time, rate, budget_);
+    if (std::isfinite(to)) at_ = integrated(at_, to - time, rate, accuracy_, budget_);
   }
   /// Ends a phase of contact where the next one begins.
   void end_contact(Phase phase, int direction, Phase next) {
@@ -160,6 +156,15 @@ class Walk {
   }
 
  private:
+  static Hoop<S> hoop_of_design(const Design& design) {
+    const Hoop<S> hoop =
+        reduce(parameter<S>(design, design.slope, 0), parameter<S>(design, design.mass_ratio, 1),
+               parameter<S>(design, design.offset_ratio, 2), parameter<S>(design, design.inertia_factor, 3),
+               parameter<S>(design, design.drive_torque, 6));
+    const double way = resisted_way(mapped<double>(hoop, [](const S& number) { return value_of(number); }),
+                                    design.resisting_torque, design.release_angle, design.release_spin);
+    return resisted(hoop, S(parameter<S>(design, design.resisting_torque, by_resisting_torque) * way));
+  }
   auto rate_of(Phase phase, int direction) const {
     return
         [this, rolls = phase == Phase::rolling,
@@ -206,6 +211,7 @@ class Walk {
     }
   }
 
+  double accuracy_;
   Hoop<S> hoop_;
   Contact<S> contact_;
   Moving<S> at_;
@@ -217,8 +223,9 @@ class Walk {
 }  // namespace
 
 template <class S>
-std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std::span<const double> times) {
-  constexpr double tolerance = 1e-12;
+std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std::span<const double> times,
+                                   double accuracy) {
+  const double tolerance = 0.1 * accuracy;
   const Motion motion =
       need(model_of(scene), &Model::tell_exactly, "semi-analytic motion")(design, scene, tolerance, 0.0);
   std::vector<MotionAt<S>> taken;
@@ -228,7 +235,7 @@ std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std
   std::vector<double> scaled;
   for (const double time : times) scaled.push_back(time / second);
   const std::span<const double> all = scaled;
-  Walk<S> walk(design, scene);
+  Walk<S> walk(design, scene, accuracy);
   std::size_t next = 0, flight = 0;
   // Lift-offs that were flown: without slip a spurious one is rolled over.
   const std::size_t flights =
@@ -262,7 +269,9 @@ std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std
   return taken;
 }
 
-template std::vector<MotionAt<double>> motion_at(const Design&, const Scene&, std::span<const double>);
-template std::vector<MotionAt<DesignDual>> motion_at(const Design&, const Scene&, std::span<const double>);
+template std::vector<MotionAt<double>> motion_at(const Design&, const Scene&, std::span<const double>,
+                                                 double);
+template std::vector<MotionAt<DesignDual>> motion_at(const Design&, const Scene&, std::span<const double>,
+                                                     double);
 
 }  // namespace leapmap

@@ -24,10 +24,11 @@ struct MotionAt {
 /// plane.
 ///
 /// Phases and their ends are the exact solver's. Between them, where the state is no closed form of the time,
-/// the equations are integrated by extrapolation of midpoint steps, to 1e-11; a phase's end gets its
+/// the equations are integrated by extrapolation of midpoint steps, to the accuracy; a phase's end gets its
 /// derivatives by one Newton step of what is zero there. Derivatives by mu_kinetic are added to those by
 /// mu_static where it follows that.
 template <class S>
-std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std::span<const double> times);
+std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std::span<const double> times,
+                                   double accuracy = 1e-11);
 
 }  // namespace leapmap

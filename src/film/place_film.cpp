@@ -14,7 +14,9 @@
 #include "film/film_angles.hpp"
 #include "film/film_model.hpp"
 #include "film/observations.hpp"
+#include "model/variable.hpp"
 #include "spec/spacing.hpp"
+#include "support/closest.hpp"
 #include "trajectory/units.hpp"
 
 namespace leapmap {
@@ -209,6 +211,9 @@ void find_unit(Film& film, const std::string& stated, const Spec& spec, double s
       break;
     }
   }
+  if (!(shown > 0.0))
+    throw InputError(
+        fmt::format("{}: '{}' does not move; allowed: a film of a hoop that rolls", origin, mark->name));
   const bool fits = shown < allowed * length.high && shown > length.low / allowed;
   if (fits || length.high == 0.0) return;
   const double metres = 0.5 * (length.low + length.high) / shown;
@@ -258,7 +263,8 @@ void find_axes(Film& film, const Spec& spec, std::vector<std::string>& notes) {
 void refuse_unknown_free(const std::vector<std::string>& names, const Film& film) {
   for (const std::string& name : names) {
     const CameraNumber* number = find_camera_number(name);
-    if (!number) continue;  // a parameter of the hoop
+    if (!number && !find_variable(name, nullptr)) refuse_free_name(name);
+    if (!number) continue;
     const bool of_points = name == "scale" || name == "tilt" || number->unit.empty();
     if (of_points == film.tracks.empty() && name != "time_offset")
       throw InputError(
@@ -269,6 +275,16 @@ void refuse_unknown_free(const std::vector<std::string>& names, const Film& film
 }
 
 }  // namespace
+
+void refuse_free_name(const std::string& name) {
+  std::vector<std::string_view> all;
+  for (const CameraNumber& number : camera_numbers)
+    if (!number.unit.empty()) all.push_back(number.name);
+  for (const Parameter& parameter : parameters())
+    if (std::holds_alternative<double Design::*>(parameter.member)) all.push_back(parameter.name);
+  throw InputError(fmt::format("--free {}: is no parameter of a fit{}; allowed: {}", name,
+                               did_you_mean(name, all), fmt::join(all, ", ")));
+}
 
 std::optional<double> leaves_at(const Film& film, double slope, double second) {
   constexpr std::size_t first = 5;

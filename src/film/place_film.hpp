@@ -17,6 +17,9 @@ namespace leapmap {
 Film place_film(const Recording& recording, const Spec& spec, const MeasurementOptions& options,
                 std::vector<std::string>& notes);
 
+/// Throws InputError: the name of what is to be free is neither a parameter nor a number of the camera.
+[[noreturn]] void refuse_free_name(const std::string& name);
+
 /// How long a film shows the hoop held before the release: the time at which it leaves its place for good, or
 /// nothing: it moves from the first frames on.
 std::optional<double> leaves_at(const Film& film, double slope, double second);

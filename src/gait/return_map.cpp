@@ -137,7 +137,7 @@ bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const De
     if (outcome.status != Status::jumped) return false;
     orbit.jumps.push_back(jump_of(outcome, at.spin));
     orbit.landings.push_back(reduced(at));
-    work += hoop.drive * ((at.angle - from.angle) - at.turned_in_flight);
+    work += hoop.motor() * ((at.angle - from.angle) - at.turned_in_flight);
     orbit.height += outcome.jump_height / period;
     time += at.time * second, travel += at.travel;
     const bool is_back = between(start, orbit.landings.back()).lpNorm<Eigen::Infinity>() < 1e-8;

@@ -19,6 +19,8 @@ struct Design {
   double release_spin = 0.0;                ///< w at t = 0 [sqrt(g/R)], in [-1e4, 1e4], positive downhill
   double drive_torque = 0.0;                ///< tau, of a motor [(m + m_p) g R], in [-1e3, 1e3],
                                             ///< positive downhill; see Scene::motor_in_flight
+  double resisting_torque = 0.0;            ///< against the rotation while the hoop touches the plane
+                                            ///< [(m + m_p) g R], in [0, 1e3]: of a bearing, of rolling
   // Contact; no effect with Friction::sticking.
   double mu_static = 0.5;  ///< static friction coefficient, in [0, 1e6]
   double mu_kinetic =

@@ -26,9 +26,8 @@ struct MeasuredEvent {
   double error = 0.0;   ///< standard error in the same unit, > 0
 };
 
-/// Where a film's numbers lie against the hoop's: a point that is X downhill along the plane and Y above it
-/// [m] has the positions
-///   x + (X cos a + Y sin a) / scale,  y + (Y cos a - X sin a) / scale.
+/// How a film's numbers follow from the hoop's motion. A point is X downhill along the plane and Y above it
+/// [m]. Its positions in the film are x + (X cos a + Y sin a) / scale and y + (Y cos a - X sin a) / scale.
 /// The angle a by which the plane descends in the film is tilt, or slope + tilt if the film is level.
 struct Camera {
   double time_offset = 0.0;   ///< time of the release in the film [s]; before it the hoop is held
@@ -178,7 +177,7 @@ struct FitOptions {
   std::vector<std::string> free{};  ///< parameters that are free beside the spec's axes, within usual bounds
   Loss loss = Loss::squares;        ///< of a film's residuals
   std::uint64_t seed = 1;           ///< of the initial sample; equal seeds give equal fits
-  std::size_t coarse = 0;  ///< size of the initial sample, a multiple of 16; 0: 4,096 for a film, else 65,536
+  std::size_t coarse = 0;  ///< size of the initial sample, a multiple of 16; 0: 2,048 for a film, else 65,536
   std::size_t starts = 0;  ///< its best points that are followed; 0: 8 for a film, 24 for events
   int threads = 0;         ///< number of threads; 0: all that OpenMP offers
   /// Polled from any thread; if it returns true, fit throws Stopped.

@@ -68,7 +68,12 @@ const std::array table{
               &Design::drive_torque,
               "(m + m_p) g R",
               "motor torque on the hoop, positive downhill; see motor_in_flight",
-              {-1e3, 1e3}}};
+              {-1e3, 1e3}},
+    Parameter{"resisting_torque",
+              &Design::resisting_torque,
+              "(m + m_p) g R",
+              "torque against the rotation while the hoop touches the plane: of rolling, or of a bearing",
+              {0.0, 1e3}}};
 
 }  // namespace
 

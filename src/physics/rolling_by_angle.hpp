@@ -39,6 +39,14 @@ T torque(const Hoop<T>& hoop, const Trig<T>& phi) {
   return hoop.thrust - hoop.rho * sin_from_vertical(hoop, phi);
 }
 
+/// Whether a hoop that has come to rest against a resisting torque stays there: slope and motor push less
+/// than it.
+template <class T>
+bool is_held(const Hoop<T>& hoop, const Trig<T>& phi) {
+  using std::abs;
+  return abs(torque(hoop, phi) + hoop.resistance) <= abs(hoop.resistance);
+}
+
 /// Which way a hoop sets out: above zero downhill, below zero uphill, by its spin or, at rest, by its torque;
 /// zero: it rests in an equilibrium. A spin whose square is lost counts as none. A design's numbers are
 /// doubles, whatever T is: torque and spin within their rounding count as none too, or it would be the
@@ -102,7 +110,7 @@ Roll<T> gathered_roll(const F& roll_of) {
   const auto lanes = [&](const auto& number_of) {
     return gathered<T>([&](std::size_t i) { return number_of(roll_of(i)); });
   };
-  std::array<T, 8> hoop;
+  std::array<T, 9> hoop;
   for (std::size_t k = 0; k < hoop.size(); ++k)
     hoop[k] = lanes([&](const Roll<S>& roll) { return numbers_of(roll.hoop)[k]; });
   return {.hoop = hoop_of(hoop),

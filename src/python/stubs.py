@@ -115,9 +115,11 @@ class FittedParameter:
 {attributes(leapmap.FittedParameter)}
 class Fit:
 {attributes(leapmap.Fit)}
-def fit(data: Union[Path, Mapping[str, Any]], spec: Asked = ..., *, model: str = ...,
-        error: Optional[float] = ..., allow_gaps: bool = ..., seed: int = ..., threads: int = ...,
-        **overrides: Any) -> list[Fit]: ...
+def fit(data: Union[Path, Sequence[Path], Mapping[str, Any]], spec: Asked = ..., *, model: str = ...,
+        free: Sequence[str] = ..., markers: Optional[Mapping[str, Any]] = ..., error: Optional[float] = ...,
+        scale: Optional[float] = ..., fps: Optional[float] = ..., loss: str = ..., allow_gaps: bool = ...,
+        seed: int = ..., threads: int = ..., **overrides: Any) -> list[Fit]: ...
+def read_film(data: Union[Path, Sequence[Path]], *, fps: Optional[float] = ...) -> dict[str, Any]: ...
 class Estimate(NamedTuple):
     value: float
     error: float

@@ -2,6 +2,7 @@
 #include "referee/motion.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +13,7 @@ using Vector = Eigen::Matrix<double, 5, 1>;  // (x'', y'', phi'', lambda_f, lamb
 using Matrix = Eigen::Matrix<double, 5, 5>;
 
 Matrix equations(const Body& body, const Mode& mode, double phi) {
-  const auto& [m, m_p, R, L, I, g, slope, motor, turn] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
   const double s = std::sin(phi), c = std::cos(phi);
   Matrix A;
   A << m + m_p, 0, -m_p * L * c, -1, 0,                  // (7)
@@ -22,8 +23,9 @@ Matrix equations(const Body& body, const Mode& mode, double phi) {
       0, 0, 0, 0, 0;
   if (mode.kind == Mode::rolls) A.row(3) << 1, 0, -R, 0, 0;  // (1), twice differentiated
   if (mode.kind == Mode::slides) A.row(3) << 0, 0, 0, 1, -mode.drag;
-  if (mode.kind == Mode::flies) A.row(3) << 0, 0, 0, 1, 0;
-  if (mode.kind == Mode::flies)
+  const bool is_free = mode.kind == Mode::flies || mode.kind == Mode::unheld;
+  if (is_free) A.row(3) << 0, 0, 0, 1, 0;
+  if (is_free)
     A.row(4) << 0, 0, 0, 0, 1;
   else
     A.row(4) << 0, 1, 0, 0, 0;  // (2), twice differentiated
@@ -42,26 +44,40 @@ Body body_of(const Design& design, const Scene& scene) {
   body.g = scene.gravity;
   body.slope = design.slope;
   body.motor = design.drive_torque * body.mass() * body.g * body.R;
+  body.resisting = design.resisting_torque * body.mass() * body.g * body.R;
   if (scene.motor_in_flight && body.motor != 0.0) body.turn = forces_of(body, {Mode::flies}, {}).phi;
   return body;
 }
 
+/// What gravity and the motor turn a hoop at rest with, about the contact [N m].
+double moment(const Body& body, double phi) {
+  return body.motor + body.mass() * body.g * body.R * std::sin(body.slope) -
+         body.m_p * body.g * body.L * std::sin(body.slope + phi);
+}
+
+/// The torque of the bearing: against the rotation, at rest against the moment, and no larger than that.
+double resistance(const Body& body, const Mode& mode, const Motion& at) {
+  if (mode.kind == Mode::flies || body.resisting == 0.0) return 0.0;
+  if (at.spin != 0.0) return std::copysign(body.resisting, at.spin);
+  return std::clamp(moment(body, at.phi), -body.resisting, body.resisting);
+}
+
 Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor, turn] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
   const double s = std::sin(at.phi), c = std::cos(at.phi), w2 = at.spin * at.spin;
   const Vector loads{(m + m_p) * g * std::sin(slope) - m_p * w2 * L * s,
                      -(m + m_p) * g * std::cos(slope) - m_p * w2 * L * c,
-                     motor - m_p * g * L * std::sin(slope + at.phi), 0.0, 0.0};
+                     motor - resistance(body, mode, at) - m_p * g * L * std::sin(slope + at.phi), 0.0, 0.0};
   const Vector z = equations(body, mode, at.phi).partialPivLu().solve(loads);
   return {z[0], z[1], z[2], z[3], z[4]};
 }
 
 bool rests(const Body& body, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor, turn] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
   const double of_weight = (m + m_p) * g * R * std::sin(slope), of_mass = m_p * g * L;
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + std::abs(at.phi));
   return std::abs(motor + of_weight - of_mass * std::sin(slope + at.phi)) <=
-             rounding * (std::abs(motor) + std::abs(of_weight) + of_mass) &&
+             resisting + rounding * (std::abs(motor) + std::abs(of_weight) + of_mass) &&
          std::abs(at.spin) <= rounding * std::sqrt(g / R);
 }
 
@@ -71,7 +87,7 @@ double sliding_determinant(const Body& body, const Mode& mode, const Motion& at)
 }
 
 double energy(const Body& body, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor, turn] = body;
+  const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
   const double w = at.spin, speed2 = at.x_rate * at.x_rate + at.y_rate * at.y_rate;
   const double kinetic = 0.5 * m_p *
                              (speed2 + L * L * w * w +

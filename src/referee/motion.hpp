@@ -20,7 +20,8 @@ struct Body {
   double g;             ///< [m/s^2]
   double slope;         ///< [rad]
   double motor;         ///< torque on the hoop [N m]
-  double turn;          ///< what it makes of phi'' in flight [rad/s^2]; 0: it idles there
+  double resisting;     ///< torque against the rotation in contact [N m]
+  double turn;          ///< what the motor makes of phi'' in flight [rad/s^2]; 0: it idles there
 
   double mass() const { return m + m_p; }
   /// From the hoop's centre to the centre of mass [m].
@@ -35,9 +36,10 @@ struct Motion {
 };
 
 /// What holds for the two multipliers. Rolling: both constraints, (1) and (2). Sliding: (2), and friction
-/// lambda_f = drag lambda_n. Flying: neither, both are zero (13).
+/// lambda_f = drag lambda_n. Flying: neither, both are zero (13). Unheld: as flying,
+/// but with the resisting torque of the contact that it is about to leave.
 struct Mode {
-  enum Kind { rolls, slides, flies } kind = rolls;
+  enum Kind { rolls, slides, flies, unheld } kind = rolls;
   double drag = 0.0;  ///< -mu_kinetic sign(v)
 };
 

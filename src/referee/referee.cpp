@@ -236,6 +236,7 @@ Outcome Referee::solve_sticking() {
   const double runway = 2.0 * std::numbers::pi * scene_.runway * scene_.radius;
   double side = 0.0;  // where it turned first
   for (int turns = 0;; ++turns) {
+    if (turns > 0 && body.resisting > 0.0 && rests(body, at_)) return ended(Status::stalled);
     const double sets_out = at_.spin != 0.0 ? at_.spin : forces_of(body, rolls, at_).phi;
     const double way = std::copysign(1.0, sets_out);
     std::vector<Guard> guards{[&](const Motion& at) { return forces_of(body, rolls, at).normal; },

@@ -16,8 +16,9 @@ constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
 
 enum class Next { rolls, slides_forwards, slides_backwards, flies };
 
-/// Upwards acceleration of the hoop's centre if the plane were not there [m/s^2].
-double free_rise(const Body& body, const Motion& at) { return forces_of(body, {Mode::flies}, at).y; }
+/// Upwards acceleration of the hoop's centre if the plane did not hold it, but still resisted its rotation
+/// [m/s^2].
+double free_rise(const Body& body, const Motion& at) { return forces_of(body, {Mode::unheld}, at).y; }
 
 /// What static friction has left to hold with, one way (sign 1: against sliding backwards) or the other [N].
 double hold(const Body& body, const Motion& at, double mu, double sign) {
@@ -144,7 +145,8 @@ class Referee::Slipping {
     if (flown.failed) return ended(Status::failed);
     Body idle = body_;
     idle.motor = 0.0;  // as it may be in flight
-    const bool sinks = body_.turn == 0.0 && !(at_.y_rate > 0.0) && free_rise(idle, at_) < -1e-9 * body_.g;
+    const bool sinks = body_.motor != 0.0 && body_.turn == 0.0 && !(at_.y_rate > 0.0) &&
+                       forces_of(idle, {Mode::flies}, at_).y < -1e-9 * body_.g;
     if (sinks) return ended(Status::indeterminate);  // it would fly through the plane
     begin(Phase::flight);
     const bool jumps = referee_.count_lift_off(flown);

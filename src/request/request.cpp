@@ -37,10 +37,23 @@ bool is_of_later_jumps(const Field* column) {
   return column->of_sequence && !is_statistic(column);
 }
 
+/// Whether some design of the spec may have a resisting torque.
+bool is_resisted(const Spec& spec) {
+  constexpr std::string_view name = "resisting_torque";
+  const auto is_it = [&](const Axis& axis) { return axis.key == name; };
+  return spec.design.resisting_torque != 0.0 || std::ranges::any_of(spec.axes, is_it) ||
+         std::ranges::any_of(spec.list.columns, is_it) ||
+         std::ranges::find(spec.scatter.spreads, name, &Spread::parameter) != spec.scatter.spreads.end();
+}
+
 /// The derivatives by what the spec gives: its parameters, and in place of the ratios the numbers of [hoop].
 std::vector<const Field*> given_columns(const Spec& spec, const std::vector<OutcomeNumber>& of) {
   const std::vector<std::string>& by = spec.output.gradients_by;
   std::vector<const Field*> columns = derivative_columns(spec.scene, of, by);
+  if (by.empty() && !is_resisted(spec))
+    std::erase_if(columns, [](const Field* column) {
+      return std::get<Derivative>(column->source).by == &Design::resisting_torque;
+    });
   if (spec.hoop && by.empty())
     std::erase_if(columns, [](const Field* column) {
       return follows_from_body(std::get<Derivative>(column->source).by);

@@ -165,6 +165,30 @@ GradientSolver gradient_solver_at_unit_size(const Request& request) {
   };
 }
 
+/// Without a resisting torque the derivative by it is that of a small one, against which the hoop must not
+/// reverse.
+GradientSolver with_small_resistance(GradientSolver solver, Request request) {
+  const GradientWanted asked = derivatives_of(request);
+  if (std::ranges::find(asked.by, by_resisting_torque) == asked.by.end()) return solver;
+  request.columns = {find_field("status")};
+  return [solver = std::move(solver), resisted = solver_at_unit_size(request),
+          places = std::vector<std::size_t>(), some = std::vector<Design>(), found = std::vector<Outcome>()](
+             std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) mutable {
+    solver(designs, outcomes, gradients);
+    places.clear(), some.clear();
+    constexpr double small = 1e-9;
+    for (std::size_t i = 0; i < designs.size(); ++i)
+      if (designs[i].resisting_torque == 0.0 && outcomes[i].status == Status::jumped) {
+        places.push_back(i), some.push_back(designs[i]);
+        some.back().resisting_torque = small;
+      }
+    found.assign(some.size(), {});
+    resisted(some, found);
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (found[k].status != Status::jumped) gradients.forget(by_resisting_torque, places[k]);
+  };
+}
+
 }  // namespace
 
 Solver make_solver(const Request& request) {
@@ -176,8 +200,8 @@ Solver make_solver(const Request& request) {
 }
 
 GradientSolver make_gradient_solver(const Request& request) {
-  return [solver = gradient_solver_at_unit_size(request)](std::span<const Design> designs,
-                                                          std::span<Outcome> outcomes, Gradients& gradients) {
+  return [solver = with_small_resistance(gradient_solver_at_unit_size(request), request)](
+             std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
     solver(designs, outcomes, gradients);
     resize(designs, outcomes);
     for (std::size_t i = 0; i < designs.size(); ++i)

@@ -76,7 +76,7 @@ struct Block {
   template <class U>
   void store(const Roll<U>& roll, const Quiet<U>& quiet, const std::uint32_t* index, std::size_t count) {
     const Trig<U>& phi = roll.release_trig;
-    std::array<U, 8> path = numbers_of(roll.hoop);
+    std::array<U, 9> path = numbers_of(roll.hoop);
     path[drive] = roll.level;
     paths_.template store<U>(path, index, count);
     releases_.template store<U>({roll.release, phi.sin, phi.cos, phi.versine, roll.released, roll.push,
@@ -121,7 +121,8 @@ struct Block {
   static constexpr std::size_t drive =
       6;  // of a hoop's numbers; it follows from others, and makes way for the level
 
-  PackedRows<S, 8> paths_{most_designs}, releases_{most_designs};
+  PackedRows<S, 9> paths_{most_designs};
+  PackedRows<S, 8> releases_{most_designs};
   PackedRows<S, 6> lift_offs_{most_designs};
 };
 

@@ -106,6 +106,15 @@ void ExactSolver<T>::end_leg(std::uint32_t design, Outcome& outcome) {
     outcome.status = found.returns() ? Status::stalled : Status::no_jump;
     return;
   }
+  if (const auto path = block_.template load_path<ScalarOf<T>>(&design);
+      path.hoop.resistance != ScalarOf<T>(0)) {
+    // Its energy is another function of the angle on the way back.
+    if (is_held(path.hoop, trig(found.turn)))
+      outcome.status = Status::stalled;
+    else
+      outcome = failed_outcome(reverses_against_resistance);
+    return;
+  }
   if (outcome.candidates > 0 && found.first_on_leg) {
     if (wanted_.first_jump_time) found.first_time = clock_.time(block_, design, found.first_angle);
     found.first_on_leg = false;

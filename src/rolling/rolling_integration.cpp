@@ -196,6 +196,13 @@ double Integration<Model>::end_of_way(Rolling& rolling) {
   };
   for (const Fall<D>& turn : turns_.falls) {
     if (const double end = part(turn.tau, model.angle(turn.state) - release); end < HUGE_VAL) return end;
+    if (const Hoop<double>& hoop = model.hoop; hoop.resistance != 0.0) {
+      if (is_held(hoop, trig(model.angle(turn.state))))
+        rolling.outcome.status = Status::stalled;
+      else
+        rolling.outcome = failed_outcome(reverses_against_resistance);
+      return turn.tau;
+    }
     ++rolling.turns;
     if (rolling.turns == 1) rolling.side = travelled;
     // From rest, or nearly, the second or third turn is at the release, or short of it by the method's error.
@@ -240,6 +247,7 @@ bool Integration<Model>::settle(Rolling& rolling) {
   }
   const double end = end_of_way(rolling);
   const Status ended_as = rolling.outcome.status;
+  if (ended_as == Status::failed) return true;
   rolling.outcome.status = Status::not_computed;
   if (take_lift_offs(rolling, end)) return true;
   if (!is_believable(step.y1, rolling.energy)) {

@@ -17,15 +17,16 @@
 
 namespace leapmap {
 
-/// The parameters, in the order in which duals hold their derivatives. Without slip only the first seven
+/// The parameters, in the order in which duals hold their derivatives. Without slip only the first eight
 /// matter.
-inline constexpr std::array<double Design::*, 10> differentiable{
+inline constexpr std::array<double Design::*, 11> differentiable{
     &Design::slope,         &Design::mass_ratio,   &Design::offset_ratio, &Design::inertia_factor,
-    &Design::release_angle, &Design::release_spin, &Design::drive_torque, &Design::mu_static,
-    &Design::mu_kinetic,    &Design::restitution};
-inline constexpr std::size_t without_slip = 7;
-inline constexpr std::size_t by_release_angle = 4, by_release_spin = 5, by_mu_static = 7, by_mu_kinetic = 8,
-                             by_restitution = 9;  ///< places among them
+    &Design::release_angle, &Design::release_spin, &Design::drive_torque, &Design::resisting_torque,
+    &Design::mu_static,     &Design::mu_kinetic,   &Design::restitution};
+inline constexpr std::size_t without_slip = 8;
+inline constexpr std::size_t by_slope = 0, by_offset_ratio = 2, by_release_angle = 4, by_release_spin = 5,
+                             by_resisting_torque = 7, by_mu_static = 8, by_mu_kinetic = 9,
+                             by_restitution = 10;  ///< places among them
 
 /// A number with its derivatives by every parameter of one design.
 using DesignDual = Dual<double, differentiable.size()>;
@@ -45,7 +46,12 @@ std::array<D, without_slip> dual_parameters(const Design& design) {
 /// The hoop of those parameters, with its motor in flight as the scene has it.
 template <class D>
 Hoop<D> reduce(const std::array<D, without_slip>& p, const Scene& scene) {
-  return in_flight(reduce(p[0], p[1], p[2], p[3], p[6]), scene);
+  Hoop<D> hoop = reduce(p[0], p[1], p[2], p[3], p[6]);
+  const auto plain = [](const D& number) { return number.value; };
+  using T = decltype(hoop.rho.value);
+  const T way = resisted_way(mapped<T>(hoop, plain), p[by_resisting_torque].value, p[by_release_angle].value,
+                             p[by_release_spin].value);
+  return in_flight(resisted(hoop, p[by_resisting_torque] * D(way)), scene);
 }
 
 /// Whether mu_kinetic is what mu_static is, and goes where that goes.
@@ -95,6 +101,14 @@ class Gradients {
     return column(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
   }
   const GradientWanted& wanted() const { return wanted_; }
+
+  /// Of one design: there are no derivatives by a parameter, of whatever quantity.
+  void forget(std::size_t by, std::size_t design) {
+    for (std::size_t j = 0; j < wanted_.by.size(); ++j)
+      if (wanted_.by[j] == by)
+        for (std::size_t i = 0; i < wanted_.of.size(); ++i)
+          columns_[i * wanted_.by.size() + j][design] = std::numeric_limits<double>::quiet_NaN();
+  }
 
   /// The derivatives of one quantity of one design, in `unit` of the solver's own. Does nothing if they are
   /// not asked for.

@@ -117,7 +117,7 @@ WayMeter<S>::WayMeter(const Hoop<S>& hoop, const S& spin) : hoop_(hoop), turns_o
 template <class S>
 void WayMeter<S>::meet_spin(const S& spin) {
   take_larger(way_.spin, S(abs(spin)));
-  take_larger(way_.power, hoop_.drive == S(0.0) ? kink_at_zero_of(hoop_.drive) : hoop_.drive * spin);
+  take_larger(way_.power, hoop_.motor() == S(0.0) ? kink_at_zero_of(hoop_.motor()) : hoop_.motor() * spin);
 }
 
 template <class S>
@@ -152,7 +152,7 @@ void WayMeter<S>::roll_on(const Roll<S>& roll, const S& from, const S& spin, con
   };
   take_larger(way_.normal_force, force_at(roll, angle_at(place_of(1.0, force_at<Rated>))));
   meet_spin(spin_at(place_of(1.0, spin_squared_at<Rated>)));
-  if (hoop_.drive * way < S(0.0))  // it brakes, the least where the hoop is slowest
+  if (hoop_.motor() * way < S(0.0))  // it brakes, the least where the hoop is slowest
     meet_spin(spin_at(place_of(-1.0, spin_squared_at<Rated>)));
   turn(to - from);
 }

@@ -72,7 +72,7 @@ class WayMeter {
   /// A flight, in which a motor that is on turns the hoop steadily.
   void fly(const S& spin, const S& time);
   /// The motor turned the hoop so far.
-  void turn(const S& angle) { way_.energy += hoop_.drive * angle; }
+  void turn(const S& angle) { way_.energy += hoop_.motor() * angle; }
 
   const Way<S>& way() const { return way_; }
 

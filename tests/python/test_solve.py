@@ -258,8 +258,10 @@ def test_gradient_agrees_with_the_45_digit_table():
     compared = 0
     for of in ("jump_height", "jump_time", "apex_time", "flight_time", "jump_angle", "jump_spin"):
         g = leapmap.gradient(of=of, **given, **UNIT)
-        assert list(g) == [name for name in (*INPUTS, "drive_torque")]
+        assert list(g) == [*INPUTS, "drive_torque", "resisting_torque"]
         for name, found in g.items():
+            if name == "resisting_torque":
+                continue
             truth = numbers(t[f"{of}_by_{name}"])
             known = np.isfinite(truth)
             np.testing.assert_allclose(found[known], truth[known], rtol=1e-9)
