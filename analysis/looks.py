@@ -172,8 +172,8 @@ def use_units(m, text, units_in_own):
 
 
 def in_drawing(m, name, units_in_own):
-    """The unit in which a drawing has a quantity, and how many of it are one of the map's; None: the map is not
-    of a hoop from a drawing, its hoops differ in size, or no unit is better than the map's."""
+    """The unit in which a drawing has a quantity, and how many of it are one of the map's; None: the map is
+    not of a hoop from a drawing, its hoops differ in size, or no unit is better than the map's."""
     numbers = m.numbers()
     if "hoop" not in m.spec() or np.ndim(m.radii()) > 0:
         return None

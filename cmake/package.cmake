@@ -42,5 +42,6 @@ python3-matplotlib, python3-xarray")
 endif()
 # to link the library
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-  "libgsl-dev, libhdf5-dev, libfmt-dev, libdeflate-dev, zlib1g-dev, libudunits2-dev, libpugixml-dev, libzip-dev, libnlopt-dev")
+  "libgsl-dev, libhdf5-dev, libfmt-dev, libdeflate-dev, zlib1g-dev, libudunits2-dev, libpugixml-dev, \
+libzip-dev, libnlopt-dev")
 include(CPack)

@@ -347,7 +347,8 @@ def test_markers_in_pixels_that_count_downwards_are_read_with_their_scale(fricti
                                                  for row in zip(t, *pixels)))
     name, truth = ("mu_static", 0.45) if friction == "coulomb" else ("release_angle", np.radians(192))
     for flags in (["--scale", "0.0002", "--y-down"], []):
-        told = json.loads(leapmap("fit", tmp_path / "pixels.csv", *flags, "--model", friction, "--json").stdout)
+        told = json.loads(
+            leapmap("fit", tmp_path / "pixels.csv", *flags, "--model", friction, "--json").stdout)
         found = told["models"][0]["parameters"]
         assert found[name]["value"] == pytest.approx(truth, abs=1e-6)
         assert ("scale" in found) == (not flags)

@@ -107,7 +107,8 @@ constexpr const char* project = R"(<?xml version="1.0"?>
   <property name="delta_t" type="double">10.0</property></object></property>
  <property name="coords" type="object"><object class="x.ImageCoordSystem">
   <property name="framedata" type="array"><property name="[0]" type="object"><object class="x.FrameData">
-   <property name="xorigin" type="double">100.0</property><property name="yorigin" type="double">200.0</property>
+   <property name="xorigin" type="double">100.0</property>
+   <property name="yorigin" type="double">200.0</property>
    <property name="angle" type="double">90.0</property>
    <property name="xscale" type="double">50.0</property><property name="yscale" type="double">50.0</property>
   </object></property></property></object></property>
@@ -115,11 +116,14 @@ constexpr const char* project = R"(<?xml version="1.0"?>
   <property name="name" type="string">slug</property>
   <property name="framedata" type="array">
    <property name="[2]" type="object"><object class="x.FrameData">
-    <property name="x" type="double">150.0</property><property name="y" type="double">100.0</property></object></property>
+    <property name="x" type="double">150.0</property>
+    <property name="y" type="double">100.0</property></object></property>
    <property name="[3]" type="object"><object class="x.FrameData">
-    <property name="x" type="double">100.0</property><property name="y" type="double">200.0</property></object></property>
+    <property name="x" type="double">100.0</property>
+    <property name="y" type="double">200.0</property></object></property>
    <property name="[5]" type="object"><object class="x.FrameData">
-    <property name="x" type="double">100.0</property><property name="y" type="double">150.0</property></object></property>
+    <property name="x" type="double">100.0</property>
+    <property name="y" type="double">150.0</property></object></property>
   </property></object></property></property>
 </object>)";
 
@@ -239,7 +243,7 @@ INSTANTIATE_TEST_SUITE_P(Models, Cameras, ::testing::Values(Friction::sticking, 
                            return model.param == Friction::sticking ? "sticking" : "coulomb";
                          });
 
-TEST(Fits, OfAFilmWithBadPointsAreRobustWithHubersLoss) {
+TEST(FilmFits, WithBadPointsAreRobustWithHubersLoss) {
   const Scene scene{.friction = Friction::coulomb};
   const Design truth{.release_angle = 3.4, .mu_static = 0.5};
   std::mt19937_64 random(5);

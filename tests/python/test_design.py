@@ -118,7 +118,7 @@ def test_a_fit_to_events_has_their_chi_square():
 def test_bad_measurements_raise_value_errors():
     for data, word in (({"t": [0, 1], "phi": [3, 3]}, "three"), ({
             "t": [0, 2, 1], "phi": [3, 3, 3]
-    }, "ascend"), ({"t": [0, 1, 2]}, "angle"), ({"jump": (1, 0.1)}, "jump"), ({
+    }, "ascend"), ({"t": [0, 1, 2]}, "three"), ({"jump": (1, 0.1)}, "jump"), ({
             "jump_time": (0.3, 0.01), "jump_height": 1.0
     }, "jump_height = 1.0 is not an event"), ({"jump_time": (0.3, 0.01, 1.0)}, "not an event"), ({
             "jump_time": "12"

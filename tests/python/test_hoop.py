@@ -59,8 +59,8 @@ def test_derivatives_are_by_the_numbers_of_the_drawing(of):
     assert "mass_ratio" not in by and by["slope"].shape == (2,)
     for name, value in numbers.items():
         def at(change):
-            return getattr(leapmap.solve(hoop=hoop(numbers | {name: value + change}), tolerance=1e-13, **asked),
-                           of)
+            changed = hoop(numbers | {name: value + change})
+            return getattr(leapmap.solve(hoop=changed, tolerance=1e-13, **asked), of)
         step = 1e-4 * value
         differences = (8 * (at(step) - at(-step)) - (at(2 * step) - at(-2 * step))) / (12 * step)
         # Differences of the fourth order lose digits where a number hardly matters.

@@ -36,7 +36,8 @@ from leapmap._solve import gaits, gradient, solve, trace
 from leapmap._sweep import load, sweep
 
 __all__ = [
-    "solve", "gradient", "trace", "gaits", "scatter", "design", "fit", "read_film", "sweep", "load", "Hoop", "Weight",
+    "solve", "gradient", "trace", "gaits", "scatter", "design", "fit", "read_film", "sweep", "load", "Hoop",
+    "Weight",
     "DesignProblem", "Found", "Fit", "FittedParameter", "Outcomes", "Motion", "Estimate", "Status",
     "phase_letters", "instruction_set", "instruction_sets", "use_instruction_set"
 ]

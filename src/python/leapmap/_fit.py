@@ -104,20 +104,22 @@ def fit(data, spec=None, *, model="both", free=(), markers=None, error=None, sca
     Parameters
     ----------
     data : path, sequence of paths, or mapping
-        Files of one motion, as read_film reads; a CSV file with columns event, value, error; arrays {"t", "phi"}
-        or {"t", "x_NAME", "y_NAME", ...} in s, rad and m; or events {field: (value, standard error)}. The angle
-        phi is 0 if the mass touches the plane. x is downhill, y upwards.
+        Files of one motion, as read_film reads; a CSV file with columns event, value, error; arrays
+        {"t", "phi"} or {"t", "x_NAME", "y_NAME", ...} in s, rad and m; or events
+        {field: (value, standard error)}. The angle phi is 0 if the mass touches the plane. x is downhill, y
+        upwards.
     spec : path or mapping, optional
         The hoop, and free parameters {"from", "to"}. Without any these are release_angle, release_spin and,
         with friction, mu_static.
     model : str, default "both"
         "sticking", "coulomb" or "both".
     free : sequence of str
-        What is free beside the spec's axes: parameters, and of the film time_offset, angle_offset, scale, tilt.
-        Pixels free scale, a film with horizontal axes tilt, and one that shows the hoop held time_offset.
+        What is free beside the spec's axes: parameters, and of the film time_offset, angle_offset, scale and
+        tilt. Pixels free scale, a film with horizontal axes tilt, and one that shows the hoop held
+        time_offset.
     markers : mapping, optional
-        {track: distance from the axis [m]}, or {track: (distance, direction [rad])}; default: from the names of
-        tracks and weights.
+        {track: distance from the axis [m]}, or {track: (distance, direction [rad])}; default: from the names
+        of tracks and weights.
     error : float, optional
         Standard error of a film's angles [rad] or positions [m]; default: from the residuals.
     scale : float, optional
@@ -184,7 +186,9 @@ def fit(data, spec=None, *, model="both", free=(), markers=None, error=None, sca
 
 
 def read_film(data, *, fps=None):
-    """Read the files of one motion: Tracker's projects and text, DLTdv, DeepLabCut, Kinovea, encoders' logs, CSV.
+    """Read the files of one motion.
+
+    They are Tracker's projects and text, and those of DLTdv, DeepLabCut, Kinovea, encoders, or CSV.
 
     Parameters
     ----------
@@ -196,8 +200,8 @@ def read_film(data, *, fps=None):
     Returns
     -------
     dict
-        tracks: {name: {"t" [s], "x", "y"}}; unit of positions, "" if it is not stated; or t [s], phi [rad] and
-        spin [rad/s] of an encoder. notes: how each file's columns were read.
+        tracks: {name: {"t" [s], "x", "y"}}; unit of positions, "" if it is not stated; or t [s], phi [rad]
+        and spin [rad/s] of an encoder. notes: how each file's columns were read.
 
     Raises
     ------

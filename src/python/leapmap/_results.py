@@ -119,9 +119,10 @@ class Outcomes:
                 fields[name] = fields[name] * factors[fits[0]]
         for unit in wanted:
             if unit not in fitting:
-                raise ValueError(f"units: no field can be given in {unit}" + (
-                    "" if "mass" in given or mass is not None else " (newtons and joules need the parameter mass)") +
-                                 "; allowed: units such as mm, deg, ms, rpm, N.s")
+                knows_mass = "mass" in given or mass is not None
+                hint = "" if knows_mass else " (newtons and joules need the parameter mass)"
+                raise ValueError(f"units: no field can be given in {unit}{hint}; allowed: units such as mm, "
+                                 "deg, ms, rpm, N.s")
         return Outcomes(fields, self._given, self._original, chosen, self._mass)
 
     @staticmethod
