@@ -149,6 +149,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
   const double second = time_unit(spec.scene);
   for (const Option* parameter : design_parameters(spec)) {
     double value = effective_value(*parameter, spec.design);
+    if (parameter->key == "resisting_torque" && value == 0.0) continue;  // few hoops have one
     const bool is_set = parameter->key == "mu_static" && spec.design.mu_kinetic > value;
     if (is_set) value = spec.design.mu_kinetic;
     say("{:<15} {:<12.8g} {}\n", parameter->key, value,
