@@ -48,7 +48,7 @@ Spec spec_of(const ModelFit& fit) {
 }
 
 /// With two digits of its error.
-std::string told(const FittedParameter& parameter) {
+std::string told(const FittedParameter& parameter, ShownUnits& units) {
   const CameraNumber* camera = find_camera_number(parameter.name);
   const std::string_view own = camera ? camera->unit : find_option("", parameter.name)->unit;
   const bool angle = own == "rad";
@@ -61,7 +61,8 @@ std::string told(const FittedParameter& parameter) {
   if (error > 0.0 && error < 1e-12)
     return fmt::format("{:>12.6g} +- {:.2g}{}", parameter.value * unit, error, name);
   const int digits = error > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
-  return fmt::format("{:>12.{}f} +- {:.{}f}{}{}", parameter.value * unit, digits, error, digits, name,
+  return fmt::format("{:>12.{}f} +- {:.{}f}{}{}{}", parameter.value * unit, digits, error, digits, name,
+                     angle ? "" : units.beside(parameter.value, parameter.name),
                      parameter.at_bound ? "; at its bound: wider bounds may fit better" : "");
 }
 
@@ -184,7 +185,7 @@ void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& un
   say("{} numbers, {} free parameters, {} starts, {} evaluations\n", fit.residuals.size(),
       fit.parameters.size(), fit.starts, grouped(fit.evaluations));
   for (const FittedParameter& parameter : fit.parameters)
-    say("  {:<16} {}\n", parameter.name, told(parameter));
+    say("  {:<16} {}\n", parameter.name, told(parameter, units));
   print_held(fit);
   print_correlations(fit);
   const bool film = measured.events.empty();

@@ -95,6 +95,12 @@ std::string ShownUnits::beside(double value, const Field& field) {
   return drawn.empty() || choose(own, false).unit != own ? "" : " (" + drawn + ")";
 }
 
+std::string ShownUnits::beside(double value, std::string_view parameter) {
+  const Option* option = find_option("", parameter);
+  const std::string drawn = option ? in_drawing(value, option->unit, true) : "";
+  return drawn.empty() ? "" : " (" + drawn + ")";
+}
+
 std::string ShownUnits::with_unit(double value, const Field& field) {
   const ShownUnit shown = of(field);
   return fmt::format("{:.6g}{}{}{}", value * shown.factor, shown.unit.empty() ? "" : " ", shown.unit,

@@ -37,6 +37,7 @@ class ShownUnits {
   /// The value in the unit of a drawing, where the scale is known and no unit asked for fits: " (60 mm)";
   /// else empty.
   std::string beside(double value, const Field& field);
+  std::string beside(double value, std::string_view parameter);
   /// A value in the unit asked for, or in leapmap's own and that of a drawing: "0.5 hoop diameters (60 mm)".
   std::string with_unit(double value, const Field& field);
   /// A line for each number of an outcome, in the units asked for.
