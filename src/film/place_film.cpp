@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
 #include "film/film_angles.hpp"
 #include "film/film_model.hpp"
+#include "film/marks.hpp"
 #include "film/observations.hpp"
 #include "model/variable.hpp"
 #include "spec/spacing.hpp"
@@ -22,32 +22,10 @@
 namespace leapmap {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
-bool names_centre(std::string_view name) {
-  const std::string small = lower(name);
-  for (const std::string_view word : {"centre", "center", "axis", "axle", "hub", "middle", "mitte"})
-    if (small.find(word) != small.npos) return true;
-  return small == "o" || small == "c";
-}
-
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
-}
-
-/// The length of a track's way, coarsely enough that noise hardly counts.
-double way_of(const Track& track) {
-  const std::size_t step = std::max<std::size_t>(1, track.t.size() / 50);
-  double way = 0.0;
-  for (std::size_t i = step; i < track.t.size(); i += step)
-    way += std::hypot(track.x[i] - track.x[i - step], track.y[i] - track.y[i - step]);
-  return way;
 }
 
 /// Distances L of the mass from the axis [m], from the least to the most that it may be.
@@ -58,86 +36,11 @@ Side length_of(const Spec& spec) {
   return {std::ranges::min(axis->values) * R, std::ranges::max(axis->values) * R};
 }
 
-/// A direction on the hoop, counted from that of the mass: of [hoop] that is the weights' common centre.
-double from_mass(const Spec& spec, double angle) {
-  return spec.hoop ? angle - reduce_body(*spec.hoop).direction : angle;
-}
-
 std::string place_words(const Track& track) {
   if (track.at == 0.0) return "the hoop's centre";
   if (std::isnan(track.at)) return "the mass, at L";
   return fmt::format("{:.4g} mm from the axis", 1000.0 * track.at);
 }
-
-/// Where tracks are on the hoop: by --marker, by the names of weights, by names of the centre; of two tracks
-/// the one with the shorter way is the centre.
-class Places {
- public:
-  Places(Film& film, const Spec& spec, const std::vector<Marker>& markers) : film_(film), spec_(spec) {
-    known_.resize(film.tracks.size(), false);
-    for (std::size_t k = 0; k < film.tracks.size(); ++k)
-      if (names_centre(film.tracks[k].name)) put(k, 0.0, 0.0);
-    for (std::size_t k = 0; k < film.tracks.size() && spec.hoop; ++k)
-      for (const Weight& weight : spec.hoop->weights)
-        if (lower(weight.name) == lower(film.tracks[k].name))
-          put(k, weight.at, from_mass(spec, weight.angle));
-    for (const Marker& marker : markers)
-      if (!marker.track.empty()) put(find(marker), marker.at, from_mass(spec, marker.angle));
-    find_centre();
-    for (const Marker& marker : markers)
-      if (marker.track.empty()) put(the_unknown(), marker.at, from_mass(spec, marker.angle));
-    take_the_rest_as_the_mass();
-  }
-
- private:
-  void put(std::size_t track, double at, double angle) {
-    if (!(at >= 0.0 && at <= spec_.scene.radius))
-      throw InputError(fmt::format("--marker at={} m is out of range; allowed: from 0 to the radius, {} m",
-                                   at, spec_.scene.radius));
-    film_.tracks[track].at = at, film_.tracks[track].angle = angle, known_[track] = true;
-  }
-  std::size_t find(const Marker& marker) const {
-    const auto track = std::ranges::find(film_.tracks, marker.track, &Track::name);
-    if (track != film_.tracks.end()) return static_cast<std::size_t>(track - film_.tracks.begin());
-    std::vector<std::string> names;
-    for (const Track& one : film_.tracks) names.push_back(one.name);
-    throw InputError(fmt::format("--marker {}: no track has that name; allowed: {}", marker.track,
-                                 fmt::join(names, ", ")));
-  }
-  std::size_t the_unknown() const {
-    if (std::ranges::count(known_, false) != 1)
-      throw InputError(
-          "--marker without a track's name: several tracks have no known place; allowed: \"NAME: at=..., "
-          "angle=...\"");
-    return static_cast<std::size_t>(std::ranges::find(known_, false) - known_.begin());
-  }
-  void find_centre() {
-    if (film_.tracks.size() != 2 || known_[0] || known_[1]) return;
-    put(way_of(film_.tracks[0]) < way_of(film_.tracks[1]) ? 0 : 1, 0.0, 0.0);
-  }
-  void take_the_rest_as_the_mass() {
-    if (std::ranges::count(known_, false) > 1) {
-      std::vector<std::string> names;
-      for (std::size_t k = 0; k < known_.size(); ++k)
-        if (!known_[k]) names.push_back(film_.tracks[k].name);
-      throw InputError(
-          fmt::format("tracks {} have no known place on the hoop; allowed: --marker \"NAME: at=47 mm, "
-                      "angle=0 deg\" for each",
-                      fmt::join(names, ", ")));
-    }
-    if (spec_.hoop && spec_.hoop->weights.size() > 1 && std::ranges::count(known_, false) == 1)
-      throw InputError(
-          fmt::format("the track '{}' has the name of no weight, and [hoop] has {}; allowed: --marker "
-                      "\"at=47 mm, angle=0 deg\"",
-                      film_.tracks[the_unknown()].name, spec_.hoop->weights.size()));
-    if (spec_.hoop && spec_.hoop->weights.size() == 1 && std::ranges::count(known_, false) == 1)
-      put(the_unknown(), spec_.hoop->weights[0].at, 0.0);
-  }
-
-  Film& film_;
-  const Spec& spec_;
-  std::vector<bool> known_;
-};
 
 void multiply(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
@@ -337,7 +240,7 @@ Film place_film(const Recording& recording, const Spec& spec, const MeasurementO
                        ": holds angles; --scale, --y-down and --marker have no effect; allowed: with "
                        "positions");
   } else {
-    Places(film, spec, options.markers);
+    place_marks(film, spec, options.markers);
     for (const Track& track : film.tracks)
       notes.push_back(fmt::format("'{}' is {}", track.name, place_words(track)));
     orient(film, options.y_down, notes);

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "design/fit_errors.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "design/correlated.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The least sum of squares with one parameter held, the others refitted from a place.
+LeastSquaresFit with_one_held(const LeastSquares& problem, std::vector<double> at, std::size_t held,
+                              double value) {
+  LeastSquares rest{.bounds = problem.bounds, .residuals = problem.residuals, .evaluate = {}};
+  rest.bounds.erase(rest.bounds.begin() + static_cast<std::ptrdiff_t>(held));
+  const std::size_t columns = problem.bounds.size();
+  rest.evaluate = [&](std::span<const double> others, std::span<double> residuals,
+                      std::span<double> jacobian) {
+    std::vector<double> all(others.begin(), others.end());
+    all.insert(all.begin() + static_cast<std::ptrdiff_t>(held), value);
+    std::vector<double> whole(jacobian.empty() ? 0 : residuals.size() * columns);
+    if (!problem.evaluate(all, residuals, whole)) return false;
+    for (std::size_t i = 0, to = 0; i < whole.size(); ++i)
+      if (i % columns != held) jacobian[to++] = whole[i];
+    return true;
+  };
+  at.erase(at.begin() + static_cast<std::ptrdiff_t>(held));
+  if (!at.empty()) return minimize(rest, at);
+  LeastSquaresFit alone{.at = {}, .residuals = std::vector<double>(problem.residuals), .jacobian = {}};
+  if (rest.evaluate({}, alone.residuals, {})) alone.sum = sum_of_squares(alone.residuals);
+  return alone;
+}
+
+/// The ends of where the sum of squares stays within `allowed` of its least: by steps from the best outwards,
+/// and bisection where that ends.
+std::pair<double, double> profile(const LeastSquares& problem, const LeastSquaresFit& best, std::size_t k,
+                                  double allowed) {
+  constexpr int steps = 8, halvings = 6;
+  const Side& side = problem.bounds[k];
+  std::array<double, 2> ends{best.at[k], best.at[k]};
+  for (const int way : {-1, 1}) {
+    std::vector<double> at = best.at;
+    const double bound = way < 0 ? side.low : side.high;
+    double& end = ends[way < 0 ? 0 : 1];
+    const auto holds = [&](double value) {
+      const LeastSquaresFit fit = with_one_held(problem, at, k, value);
+      if (!(fit.sum <= best.sum + allowed)) return false;
+      end = value, at = fit.at;
+      at.insert(at.begin() + static_cast<std::ptrdiff_t>(k), value);
+      return true;
+    };
+    double beyond = bound;
+    int step = 1;
+    while (step <= steps && holds(beyond = best.at[k] + (bound - best.at[k]) * step / steps)) ++step;
+    for (int halving = 0; step <= steps && halving < halvings; ++halving)
+      if (const double middle = 0.5 * (end + beyond); !holds(middle)) beyond = middle;
+  }
+  return {ends[0], ends[1]};
+}
+
+/// Residuals line by line, of the times at which all was measured that ever was.
+struct Lines {
+  std::vector<double> residuals{};
+  std::size_t columns = 0;
+
+  double count() const { return static_cast<double>(residuals.size() / columns); }
+};
+
+Lines lines_of(std::span<const Observation> observations, std::span<const double> residuals) {
+  Lines lines;
+  const auto end_of_time = [&](std::size_t i) {
+    std::size_t end = i;
+    while (end < observations.size() && observations[end].t == observations[i].t) ++end;
+    return end;
+  };
+  for (std::size_t i = 0; i < observations.size(); i = end_of_time(i))
+    lines.columns = std::max(lines.columns, end_of_time(i) - i);
+  for (std::size_t i = 0; i < observations.size(); i = end_of_time(i))
+    if (end_of_time(i) - i == lines.columns)
+      lines.residuals.insert(lines.residuals.end(), residuals.begin() + static_cast<std::ptrdiff_t>(i),
+                             residuals.begin() + static_cast<std::ptrdiff_t>(end_of_time(i)));
+  return lines;
+}
+
+/// The residuals, the large ones cut to what counts of them.
+std::vector<double> limited(std::span<const double> residuals, double deviation) {
+  std::vector<double> limited;
+  for (const double residual : residuals)
+    limited.push_back(std::clamp(residual, -huber_limit * deviation, huber_limit * deviation));
+  return limited;
+}
+
+}  // namespace
+
+double sum_of_squares(std::span<const double> residuals) {
+  return std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), 0.0);
+}
+
+double robust_deviation(std::span<const double> residuals) {
+  std::vector<double> sizes;
+  for (const double residual : residuals) sizes.push_back(std::abs(residual));
+  std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
+  constexpr double of_normal = 0.6745;
+  return std::max(sizes[sizes.size() / 2] / of_normal, 1e-12);
+}
+
+Spreading spreading_of(std::span<const double> residuals, std::size_t degrees, bool errors_known, Loss loss) {
+  // Of numbers without any error the residuals are those of rounding.
+  constexpr double rounding = 1e-20;
+  const double numbers = static_cast<double>(residuals.size());
+  Spreading spreading{.sum = sum_of_squares(residuals)};
+  double inside = 1.0;
+  if (loss == Loss::huber) {
+    const std::vector<double> cut = limited(residuals, robust_deviation(residuals));
+    spreading.sum = sum_of_squares(cut);
+    std::size_t whole = 0;
+    for (std::size_t i = 0; i < cut.size(); ++i) whole += cut[i] == residuals[i];
+    inside = static_cast<double>(whole) / numbers;
+  }
+  if (!errors_known) spreading.sum = std::max(spreading.sum, rounding * numbers);
+  if (!errors_known || loss == Loss::huber)
+    spreading.variance = spreading.sum / static_cast<double>(degrees) / (inside * inside);
+  spreading.uncertainty = spreading.variance;
+  return spreading;
+}
+
+void judge_film(const Explained& explained, std::span<const double> residuals, Spreading& spreading,
+                ModelFit& told) {
+  const std::vector<Observation>& observations = explained.observations();
+  const Lines lines = lines_of(observations, residuals);
+  const Correlation correlation =
+      correlation_of(lines.residuals, lines.columns, explained.problem().bounds.size());
+  told.correlation = correlation.lines;
+  told.independent = std::min(lines.count() / correlation.lines, correlation.carrying);
+  if (correlation.lines > 1.0) spreading.uncertainty = std::max(spreading.variance, correlation.variance);
+  const Measured first = observations.front().kind;
+  double squares = 0.0, over_scatter = 0.0;
+  std::size_t alike = 0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!are_alike(observations[i].kind, first)) continue;
+    const double residual = residuals[i] * explained.error_of(i);
+    squares += residual * residual, ++alike;
+  }
+  told.error = std::sqrt(squares / static_cast<double>(alike));
+  told.judged = explained.errors_known();
+  if (told.judged) return;
+  constexpr double least_scatter = 1e-6;  // of numbers without noise no more is asked than six digits
+  for (const Measured kind : {Measured::angle, Measured::spin, Measured::x}) {
+    const double scatter = scatter_of(observations, kind);
+    if (std::isnan(scatter)) continue;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+      if (are_alike(observations[i].kind, kind)) {
+        const double residual = residuals[i] * explained.error_of(i);
+        sum += residual * residual, ++count;
+      }
+    if (count == 0) continue;
+    told.judged = true;
+    const double least = is_position(kind) ? least_scatter * explained.units_per_metre() : least_scatter;
+    over_scatter =
+        std::max(over_scatter, std::sqrt(sum / static_cast<double>(count)) / std::max(scatter, least));
+  }
+  if (told.judged) told.misfit = over_scatter;
+}
+
+void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance,
+                      ModelFit& told) {
+  const auto rows = static_cast<Eigen::Index>(problem.residuals),
+             columns = static_cast<Eigen::Index>(problem.bounds.size());
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  RowMajor J = Eigen::Map<const RowMajor>(best.jacobian.data(), rows, columns);
+  Eigen::VectorXd width(columns);
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const Side& side = problem.bounds[static_cast<std::size_t>(k)];
+    width[k] = side.high - side.low;
+    J.col(k) *= width[k];
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  // A direction that the data say nothing of counts as known to a thousand boxes.
+  const double least = std::sqrt(variance) * 1e-3;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(columns, columns);
+  for (Eigen::Index i = 0; i < svd.matrixV().cols(); ++i) {
+    const double known = std::max(svd.singularValues()[i], least);
+    covariance += svd.matrixV().col(i) * svd.matrixV().col(i).transpose() * (variance / (known * known));
+  }
+  for (std::size_t k = 0; k < told.parameters.size(); ++k) {
+    FittedParameter& parameter = told.parameters[k];
+    const Side& side = problem.bounds[k];
+    const auto i = static_cast<Eigen::Index>(k);
+    const double share = std::sqrt(covariance(i, i));
+    constexpr double as_good_as_known =
+        0.29;  // of a box: the deviation of a number that may be anywhere in it
+    constexpr double on = 1e-5;
+    parameter.identified = share < as_good_as_known;
+    parameter.error = parameter.identified ? share * width[i] : nan;
+    const double at = (parameter.value - side.low) / (side.high - side.low);
+    parameter.at_bound = at < on || at > 1.0 - on;
+    parameter.low = parameter.value - parameter.error, parameter.high = parameter.value + parameter.error;
+    if (!parameter.identified || parameter.at_bound)
+      std::tie(parameter.low, parameter.high) = profile(problem, best, k, variance);
+    for (std::size_t j = 0; j < told.parameters.size(); ++j) {
+      const auto l = static_cast<Eigen::Index>(j);
+      told.correlations.push_back(covariance(i, l) / std::sqrt(covariance(i, i) * covariance(l, l)));
+    }
+  }
+}
+
+}  // namespace leapmap
