@@ -20,6 +20,7 @@
 #include "spec/map_spec.hpp"
 #include "spec/spec_hoop.hpp"
 #include "support/closest.hpp"
+#include "support/csv.hpp"
 #include "support/output_file.hpp"
 
 namespace leapmap::cli {
@@ -146,13 +147,6 @@ void for_each_block(const std::vector<std::size_t>& shape, std::size_t rows, con
   }
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == text.npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 std::string table_of(const MapReader& map, const Spec& spec, const std::vector<Column>& columns,
                      ShownUnits& units) {
   const DesignSpace space(spec);
@@ -170,7 +164,7 @@ std::string table_of(const MapReader& map, const Spec& spec, const std::vector<C
     const auto hoops = differ ? scales_of(space, spec.scene, block) : std::vector<Scales>{};
     for (const Column& column : columns) cells.push_back(texts_of(map, column, block, units, hoops));
     for (std::size_t i = 0; i < block.count; ++i) {
-      if (!labels.empty()) text += quoted(labels[block.start[0] + i]) + ",";
+      if (!labels.empty()) text += csv_quoted(labels[block.start[0] + i]) + ",";
       for (std::size_t k = 0; k < cells.size(); ++k) (text += k > 0 ? "," : "") += cells[k][i];
       text += '\n';
     }

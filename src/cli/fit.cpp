@@ -35,14 +35,19 @@ struct FitArguments {
 };
 
 /// Says which of the spec's own values are fitted anew, as it has no free parameters of its own.
-void tell_fitted_anew(const Spec& spec) {
+void tell_fitted_anew(const Spec& spec, const FitReport& report, const std::vector<std::string>& asked) {
   if (!spec.axes.empty()) return;
-  for (const char* name : {"release_angle", "release_spin", "mu_static"})
-    if (const double given = spec.design.*member_of(name); given != Design{}.*member_of(name))
-      tell(
-          fmt::format("{0} is fitted, so its value {1} is ignored; to fix it, choose the free parameters, "
-                      "each {{ from, to }}",
-                      name, given));
+  for (const char* name : {"release_angle", "release_spin", "mu_static"}) {
+    const bool fitted = std::ranges::any_of(report.models, [&](const ModelFit& fit) {
+      return std::ranges::find(fit.parameters, name, &FittedParameter::name) != fit.parameters.end();
+    });
+    const double given = spec.design.*member_of(name);
+    if (fitted && given != Design{}.*member_of(name) && std::ranges::find(asked, name) == asked.end())
+      tell(fmt::format(
+          "{0} is fitted, so its value {1} is ignored; to fix it, choose the free parameters by --free, or "
+          "each {{ from, to }}",
+          name, given));
+  }
 }
 
 /// "rim: at=47 mm, angle=0 deg", with or without the track's name.
@@ -119,7 +124,6 @@ int run(const FitArguments& arguments) {
   units.refuse_unusable(spec.scene);
   if (arguments.json && !arguments.units.empty())
     throw InputError("--units has no effect with --json; allowed: one of them");
-  tell_fitted_anew(spec);
   std::vector<NamedPath> inputs{{"SPEC", spec_path}};
   for (const std::string& film : films) inputs.push_back({"FILM", film});
   const std::array outputs{NamedPath{"--csv", arguments.csv}};
@@ -136,6 +140,8 @@ int run(const FitArguments& arguments) {
   note_signals();
   TextOutput csv("--csv", arguments.csv, fit_csv_head, arguments.overwrite);
   options.stop_requested = [] { return noted_signal() != 0; };
+  if (!arguments.json)
+    for (const std::string& note : measured.notes) say("{}\n", note);
   FitReport report;
   try {
     report = fit(measured, spec, options);
@@ -143,12 +149,12 @@ int run(const FitArguments& arguments) {
     tell("interrupted; nothing was written");
     return 128 + noted_signal();
   }
+  tell_fitted_anew(spec, report, arguments.free);
   if (arguments.json) {
     Json json{{"seconds", report.seconds}, {"notes", measured.notes}, {"models", Json::array()}};
     for (const ModelFit& one : report.models) json["models"].push_back(json_of(one));
     say_json(json);
   } else {
-    for (const std::string& note : measured.notes) say("{}\n", note);
     say("{} in {}\n", measured.origin, spoken_duration(report.seconds));
     for (const ModelFit& one : report.models) print_fit(measured, one, units);
     print_preference(report);
@@ -184,16 +190,22 @@ void add_fit(CommandLine& line, int& status) {
   command.value("--seed", arguments->options.seed, "seed of the initial sample; default: 1")
       .check(whole_number(0, most_seed));
   add_threads(command, arguments->options.threads);
-  command
-      .value("--free", arguments->free,
-             "what is free, separated by commas: parameters within usual bounds, and of a film time_offset, "
-             "angle_offset, scale, tilt")
-      .with_commas();
-  command.group("Film");
   command.value(
-      "--marker", arguments->markers,
-      "place of a track on the hoop: \"at=47 mm, angle=0 deg\", before it the track's name and a colon if "
-      "several have no known place; may be given again");
+      "--free",
+      [arguments](const std::string& text) {
+        for (std::size_t from = 0; from <= text.size();) {
+          const std::size_t end = std::min(text.find(',', from), text.size());
+          if (end > from) arguments->free.push_back(text.substr(from, end - from));
+          from = end + 1;
+        }
+      },
+      "what is free, separated by commas: parameters within usual bounds, and of a film time_offset, "
+      "angle_offset, scale, tilt");
+  command.group("Film");
+  command.value("--marker", arguments->markers,
+                "place of a track on the hoop: \"at=47 mm, angle=0 deg\", or \"NAME: at=47 mm\" for one of "
+                "several; may be "
+                "given again");
   command.value("--fps", arguments->reading.recording.fps, "frames per second, for tables without times")
       .check(number({0.0, 1e300, false}));
   command.value("--loss", arguments->loss, "squares, or huber for films with bad points, which are listed")
@@ -201,7 +213,9 @@ void add_fit(CommandLine& line, int& status) {
   command.flag("--dry-run", arguments->dry_run, "print how the film was read, with its first rows, and stop");
   command
       .value("--error", arguments->reading.error,
-             "standard error of angles [rad] or of positions in the film's unit; default: from the residuals")
+             "standard error of angles [rad], or of positions in the unit of the report, m or px; default: "
+             "from the "
+             "residuals")
       .check(number({0.0, 1e300, false}));
   command
       .value("--scale", arguments->reading.scale,

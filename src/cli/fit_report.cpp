@@ -19,6 +19,7 @@
 #include "model/parameters.hpp"
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
+#include "support/csv.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -274,6 +275,11 @@ Json json_of(const ModelFit& fit) {
           {"independent", fit.independent},
           {"model", fit.model},
           {"residuals", fit.residuals},
+          {"outliers", fit.outliers},
+          {"probability", fit.probability},
+          {"misfit", fit.misfit},
+          {"after_landing", fit.after_landing},
+          {"why", fit.why},
           {"hop", fit.found ? hop_command(spec_of(fit), fit.design) : ""}};
 }
 
@@ -289,8 +295,9 @@ std::string csv_of(const Measurements& measured, const FitReport& report) {
       text += fmt::format(",{},{},{}", measured.events[i].field, find_field(measured.events[i].field)->unit,
                           measured.events[i].value);
     else
-      text += fmt::format("{},{},{},{}", observations[i].t, name_of(observations[i], measured.film),
-                          unit_of(observations[i].kind, measured.film), observations[i].value);
+      text +=
+          fmt::format("{},{},{},{}", observations[i].t, csv_quoted(name_of(observations[i], measured.film)),
+                      unit_of(observations[i].kind, measured.film), observations[i].value);
     for (const ModelFit& fit : report.models)
       if (fit.found) text += fmt::format(",{},{}", fit.model[i], fit.residuals[i]);
     text += "\n";

@@ -47,7 +47,7 @@ constexpr double check_tolerance = 1e-12;  // of the method that checks
 
 constexpr double in_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-std::string verdict(const Motion& motion, const Scene& scene) {
+std::string verdict(const Motion& motion, const Scene& scene, bool resists) {
   switch (motion.outcome.status) {
     case Status::jumped:
       return motion.outcome.spurious_first_jump == 1
@@ -57,15 +57,19 @@ std::string verdict(const Motion& motion, const Scene& scene) {
     case Status::no_jump:
       return fmt::format("No jump within {} revolutions.", scene.runway);
     case Status::stalled:
-      return "It is trapped: it rocks between two turning points indefinitely, or rests in an equilibrium.";
+      return motion.outcome.status == Status::stalled && resists
+                 ? "It is at rest: slope and motor push less than its resisting torque."
+                 : "It is trapped: it rocks between two turning points indefinitely, or rests in an "
+                   "equilibrium.";
     case Status::airborne_at_release:
       return "The normal force at the release is not positive: it is airborne from the start.";
     case Status::indeterminate:
       return "The rigid-body equations have no solution or two: Painleve's paradox while sliding, or a motor "
              "that alone would lift the hoop and idles in flight.";
     default:
-      if (motion.outcome.failure && std::string_view(motion.outcome.failure) == endless_rebounds)
-        return fmt::format("The method failed: {}.", endless_rebounds);
+      if (const std::string_view why = motion.outcome.failure ? motion.outcome.failure : "";
+          why == endless_rebounds || why == reverses_against_resistance)
+        return fmt::format("The method failed: {}.", why);
       return fmt::format(
           "The method failed: {}. Try another tolerance, more max_steps, a shorter fixed_step or another "
           "method.",
@@ -152,11 +156,13 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
     if (parameter->key == "resisting_torque" && value == 0.0) continue;  // few hoops have one
     const bool is_set = parameter->key == "mu_static" && spec.design.mu_kinetic > value;
     if (is_set) value = spec.design.mu_kinetic;
+    const bool is_torque = parameter->key.ends_with("_torque") && value != 0.0;
+    const std::string torque = is_torque ? units.beside(value, parameter->key) : "";
     say("{:<15} {:<12.8g} {}\n", parameter->key, value,
-        is_set                     ? "set to mu_kinetic, which is larger"
+        is_set                     ? std::string("set to mu_kinetic, which is larger")
         : parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", in_degrees(value))
-        : parameter->unit == "1"   ? ""
-                                   : parameter->unit);
+        : parameter->unit == "1"   ? std::string()
+                                   : std::string(parameter->unit) + torque);
   }
   say("{:<15} {:<12.8g} m, gravity {:g} m/s^2, sqrt(R/g) = {:.6g} s\n", "radius", spec.scene.radius,
       spec.scene.gravity, second);
@@ -171,7 +177,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
       "height [2R]", "landing [s]");
   print_phases(motion);
   if (motion.outcome.phase_sequence != 0) say("\n{}", phase_letters(motion.outcome.phase_sequence));
-  say("\n{}\n", verdict(motion, spec.scene));
+  say("\n{}\n", verdict(motion, spec.scene, spec.design.resisting_torque > 0.0));
   print_jump(spec, motion.outcome);
   if (spec.scene.settle > 0) say("{}\n", settled_line(motion.outcome, spec.scene.settle, units));
   say("{}\n", check_line(spec, motion, checked));

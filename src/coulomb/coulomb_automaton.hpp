@@ -75,6 +75,9 @@ class PhaseMachine {
         runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
         at_(from) {
     released_ = contact_energy(hoop_, at_);
+    const S c(design.resisting_torque), rounding(1e-14);
+    held_ = c > S(0) && at_.spin * at_.spin == S(0) &&
+            std::abs(torque(hoop_, trig(at_.angle)) + hoop_.resistance) <= c * (S(1) + rounding);
   }
 
   std::optional<NextPhase> begin(Start start) {
@@ -102,7 +105,8 @@ class PhaseMachine {
       case PhaseEnd::lifts_off:
         return go_on(ContactPhase::leaves);
       case PhaseEnd::stalls:
-        if (hoop_.resistance == S(0) || is_held(hoop_, trig(at_.angle))) return ended_as(Status::stalled);
+        if (hoop_.resistance == S(0) || held_ || is_held(hoop_, trig(at_.angle)))
+          return ended_as(Status::stalled);
         [[fallthrough]];
       case PhaseEnd::reverses:
         return ended_as(Status::failed, reverses_against_resistance);
@@ -165,9 +169,7 @@ class PhaseMachine {
                                           : "more phases than a design may go through");
     if (next == ContactPhase::leaves) return NextPhase{Phase::flight, 0};
     // At rest the resistance is as large as it has to be for a hoop that does not slide.
-    if (hoop_.resistance != S(0) && next != ContactPhase::rolls && at_.spin == S(0) &&
-        is_held(hoop_, trig(at_.angle)))
-      return ended_as(Status::failed, reverses_against_resistance);
+    if (held_ && next != ContactPhase::rolls) return ended_as(Status::failed, reverses_against_resistance);
     slides_ = next != ContactPhase::rolls;
     const NextPhase phase{slides_ ? Phase::sliding : Phase::rolling, !slides_ ? 0
                                                                      : next == ContactPhase::slides_forwards
@@ -233,6 +235,7 @@ class PhaseMachine {
   S driven_{0};          // work of the motor
   ContactState<S> at_;   // where the last phase began, or where all ended
   bool slides_ = false;  // in the phase told last
+  bool held_ = false;    // it begins at rest, and the resisting torque is the larger one
   PhaseSequence sequence_;
   Rocking rocking_;
   Outcome outcome_;

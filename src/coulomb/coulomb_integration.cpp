@@ -179,6 +179,10 @@ PhaseEnd CoulombIntegration::slide(const Hoop<double>& hoop, const Contact<doubl
                                   return Sample<double>{way * y[1], way * rates(y)[1]};
                                 },
                                 PhaseEnd::reverses}};
+  if (hoop.resistance != 0.0) {
+    const Y begin{at.angle, at.spin, at.slip, at.travel};
+    if (way * at.spin < 0.0 || (at.spin == 0.0 && way * rates(begin)[1] < 0.0)) return PhaseEnd::reverses;
+  }
   const std::size_t asked = guards.size() - (hoop.resistance == 0.0 ? 1 : 0);
   const PhaseEnd end = follow(Phase::sliding, direction, at, std::span(guards).first(asked), step_told);
   if (end == PhaseEnd::slip_ends) at.slip = 0.0;

@@ -71,6 +71,11 @@ Explained::Explained(const Measurements& measured, const Spec& spec, Friction fr
     if (has(friction, parameter.variable.only_of)) free_.push_back(parameter);
   if (spec.axes.empty() && free.empty()) free_by_default();
   free_by_name(free);
+  // An angle counted from a zero of its own is not known at the release either.
+  const bool counts = std::ranges::find(measured.film.free, "angle_offset") != measured.film.free.end();
+  if (spec.axes.empty() && counts &&
+      std::ranges::find(free_, "release_angle", &FreeParameter::name) == free_.end())
+    free_.insert(free_.begin(), release_angle_of_film());
   for (const FreeParameter& parameter : free_)
     if (parameter.variable.of_body())
       throw InputError(
@@ -181,8 +186,14 @@ void Explained::free_by_name(std::span<const std::string> names) {
       free_.push_back(free_parameter(name, 0.5 * pi, 1.95 * pi));
     else if (name == "release_spin")
       free_.push_back(free_parameter(name, -1.0, 3.0));
-    else
-      free_.push_back({name, *variable, usual_bounds(*variable, spec_.design.*variable->parameter())});
+    else {
+      const Side side = usual_bounds(*variable, spec_.design.*variable->parameter());
+      if (!(side.low < side.high))
+        throw InputError(
+            fmt::format("--free {}: has no usual bounds about {}; allowed: --set '{}={{from=...,to=...}}'",
+                        name, spec_.design.*variable->parameter(), name));
+      free_.push_back({name, *variable, side});
+    }
   }
   std::ranges::sort(free_.begin() + static_cast<std::ptrdiff_t>(first), free_.end(), {},
                     [](const FreeParameter& one) { return one.variable.order; });

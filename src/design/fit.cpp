@@ -105,7 +105,7 @@ Fitted fit_model(const Measurements& measured, const Spec& spec, Friction fricti
   told.chi_square = known ? spreading.sum : static_cast<double>(told.degrees);
   if (explained.is_film()) {
     told.after_landing = times_after_landing(explained.observations(), told.outcome, told.camera.time_offset);
-    judge_film(explained, best.residuals, spreading, told);
+    judge_film(explained, best.residuals, options.loss, spreading, told);
   }
   name_parameters(explained, best, told);
   tell_uncertainty(problem, best, spreading.uncertainty, told);

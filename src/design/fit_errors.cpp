@@ -131,8 +131,12 @@ Spreading spreading_of(std::span<const double> residuals, std::size_t degrees, b
   return spreading;
 }
 
-void judge_film(const Explained& explained, std::span<const double> residuals, Spreading& spreading,
+void judge_film(const Explained& explained, std::span<const double> all, Loss loss, Spreading& spreading,
                 ModelFit& told) {
+  // Bad points say nothing of the others.
+  const std::vector<double> cut =
+      loss == Loss::huber ? limited(all, robust_deviation(all)) : std::vector<double>(all.begin(), all.end());
+  const std::span<const double> residuals = cut;
   const std::vector<Observation>& observations = explained.observations();
   const Lines lines = lines_of(observations, residuals);
   const Correlation correlation =

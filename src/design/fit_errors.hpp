@@ -34,8 +34,8 @@ Spreading spreading_of(std::span<const double> residuals, std::size_t degrees, b
 
 /// What a film's residuals say of the fit: how many of its lines are independent, and whether the residuals
 /// are larger than its noise.
-void judge_film(const Explained& explained, std::span<const double> residuals, Spreading& spreading,
-                ModelFit& told);
+void judge_film(const Explained& explained, std::span<const double> residuals, Loss loss,
+                Spreading& spreading, ModelFit& told);
 
 /// Standard errors, correlations, and which parameters the data do not determine.
 void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance,

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "film/film_angles.hpp"
+#include "film/film_model.hpp"
 #include "film/observations.hpp"
 #include "film/place_film.hpp"
 #include "film/tracker_project.hpp"
@@ -257,11 +258,12 @@ Measurements read_measurements(const std::vector<std::string>& paths, const Spec
   Measurements measured{.origin = fmt::format("{}", fmt::join(paths, ", "))};
   if (paths.size() == 1 && is_of_events(paths[0])) {
     if (options.allow_gaps || !std::isnan(options.error) || !std::isnan(options.scale) || options.y_down ||
-        !options.markers.empty())
+        !options.markers.empty() || !std::isnan(options.recording.fps) ||
+        std::ranges::any_of(options.free, find_camera_number))
       throw InputError(
           paths[0] +
-          ": holds events; --error, --allow-gaps, --scale, --y-down and --marker have no effect; "
-          "allowed: with a film");
+          ": holds events; --error, --allow-gaps, --scale, --y-down, --marker, --fps and numbers of a "
+          "camera in --free have no effect; allowed: with a film");
     measured.events = read_events(paths[0], measured.lines);
     return measured;
   }

@@ -56,7 +56,17 @@ std::pair<double, double> release_of(const FilmAngles& angles, double second) {
     for (Eigen::Index k = 0; k < columns; ++k) powers(i, k) = std::pow(t, static_cast<double>(k));
     measured[i] = angles.phi[static_cast<std::size_t>(i)];
   }
-  const Eigen::VectorXd cubic = powers.colPivHouseholderQr().solve(measured);
+  // By Huber's weights: a bad mark in the first frames must not lead astray.
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(rows), cubic(columns);
+  for (int round = 0; round < 5; ++round) {
+    cubic = (weights.asDiagonal() * powers).colPivHouseholderQr().solve(weights.cwiseProduct(measured));
+    const Eigen::VectorXd off = (powers * cubic - measured).cwiseAbs();
+    std::vector<double> sizes(off.begin(), off.end());
+    std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
+    const double limit = std::max(2.0 * sizes[sizes.size() / 2], 1e-12);
+    for (Eigen::Index i = 0; i < rows; ++i)
+      weights[i] = std::sqrt(std::min(1.0, limit / std::max(off[i], 1e-300)));
+  }
   return {cubic[0], cubic[1] / second};
 }
 

@@ -115,6 +115,9 @@ std::vector<Column> columns_of(const FilmTable& table) {
   std::vector<Column> columns(table.columns());
   if (table.headers.empty()) return columns;
   const std::vector<std::string>& names = table.headers.back();
+  if (names.size() < columns.size())
+    throw InputError(fmt::format("{}: {} names above {} columns; allowed: a name for each", table.path,
+                                 names.size(), columns.size()));
   for (std::size_t k = 0; k < columns.size() && k < names.size(); ++k) columns[k] = column_of(names[k]);
   if (table.headers.size() < 2) return columns;
   const std::vector<std::string>& groups = table.headers[table.headers.size() - 2];
@@ -244,7 +247,8 @@ void add_points(const FilmTable& table, const std::vector<Column>& columns, cons
     const Times times = times_of(table, columns, std::min(*point.x, *point.y), options);
     const double in_x = take_unit(table, columns[*point.x], recording),
                  in_y = take_unit(table, columns[*point.y], recording);
-    Track track{.name = point.group.empty() ? stem_of(table.path) : point.group};
+    Track track{.name = point.group.empty() ? stem_of(table.path) : point.group,
+                .file = points.size() == 1 ? stem_of(table.path) : std::string()};
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
       const auto& row = table.rows[i];
       const bool unlikely =
@@ -317,8 +321,14 @@ void add_table(const FilmTable& table, const RecordingOptions& options, Recordin
   else
     add_points(table, columns, points, options, recording);
   std::vector<std::string> unused;
-  for (const Column& column : columns)
-    if (column.role == Role::unused && !column.name.empty()) unused.push_back(column.name);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const Column& column = columns[k];
+    const bool again = (column.role == Role::angle || column.role == Role::spin) &&
+                       std::find_if(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(k),
+                                    [&](const Column& before) { return before.role == column.role; }) !=
+                           columns.begin() + static_cast<std::ptrdiff_t>(k);
+    if ((column.role == Role::unused && !column.name.empty()) || again) unused.push_back(column.name);
+  }
   if (!unused.empty()) recording.notes.back() += fmt::format("; not used: {}", fmt::join(unused, ", "));
 }
 

@@ -49,7 +49,7 @@ class Places {
   Places(Film& film, const Spec& spec, const std::vector<Marker>& markers) : film_(film), spec_(spec) {
     known_.resize(film.tracks.size(), false);
     for (std::size_t k = 0; k < film.tracks.size(); ++k)
-      if (names_centre(film.tracks[k].name)) put(k, 0.0, 0.0);
+      if (names_centre(film.tracks[k].name) || names_centre(film.tracks[k].file)) put(k, 0.0, 0.0);
     for (std::size_t k = 0; k < film.tracks.size() && spec.hoop; ++k)
       for (const Weight& weight : spec.hoop->weights)
         if (lower(weight.name) == lower(film.tracks[k].name))

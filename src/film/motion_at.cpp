@@ -93,6 +93,7 @@ class Walk {
  public:
   Walk(const Design& design, const Scene& scene, double accuracy)
       : accuracy_(accuracy),
+        budget_(accuracy < 1e-9 ? 20'000 : 3'000),
         hoop_(in_flight(hoop_of_design(design), scene)),
         contact_{parameter<S>(design, design.mu_static, by_mu_static),
                  parameter<S>(design, kinetic_follows(design) ? design.mu_static : design.mu_kinetic,
@@ -109,7 +110,16 @@ class Walk {
     const auto rate = rate_of(phase, direction);
     double time = from;
     for (const double sample : times) {
-      at_ = integrated(at_, sample - time, rate, accuracy_, budget_), time = sample;
+      if (!rests_) {
+        const Moving<S> next = integrated(at_, sample - time, rate, accuracy_, budget_);
+        rests_ = value_of(next[1]) * value_of(hoop_.resistance) < 0.0;
+        at_ = rests_ ? at_rest(at_, sample - time, rate) : next;
+      }
+      time = sample;
+      if (rests_) {
+        taken.push_back({at_[0], at_[2], S(0.0), S(0.0), 0.0, 0.0, 0.0});
+        continue;
+      }
       const Moving<S> rates = rate(at_);
       taken.push_back({at_[0], at_[2], S(0.0), at_[1], value_of(rates[2]), 0.0, value_of(rates[1])});
     }
@@ -175,6 +185,20 @@ class Walk {
           return {at[1], motion.angular, at[3] + at[1], motion.slip};
         };
   }
+  /// Where within a span of time the spin is used up: against a resistance the hoop stays there. Its angle
+  /// has no derivative by the time of that.
+  template <class Rate>
+  Moving<S> at_rest(const Moving<S>& from, double span, const Rate& rate) {
+    constexpr int halvings = 50;
+    double low = 0.0, high = span;
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      const bool past =
+          value_of(integrated(from, middle, rate, accuracy_, budget_)[1]) * value_of(hoop_.resistance) < 0.0;
+      (past ? high : low) = middle;
+    }
+    return integrated(from, low, rate, accuracy_, budget_);
+  }
   static Moving<S> moved(const Moving<S>& from, const Moving<S>& rate, const S& by) {
     Moving<S> to;
     for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i] + rate[i] * by;
@@ -217,7 +241,8 @@ class Walk {
   Moving<S> at_;
   S normal_{0.0};
   S late_{0.0};
-  long budget_ = 1'000'000;  // of steps, halves of steps among them
+  bool rests_ = false;  // against a resistance, for good
+  long budget_;         // of steps, halves of steps among them
 };
 
 }  // namespace

@@ -77,6 +77,14 @@ void orient(Film& film, bool y_down, std::vector<std::string>& notes) {
 void find_unit(Film& film, const std::string& stated, const Spec& spec, double scale,
                std::vector<std::string>& notes, const std::string& origin) {
   const auto [centre, mark] = centre_and_mark(film);
+  if (stated == "m" && !std::isnan(scale))
+    throw InputError(
+        fmt::format("--scale has no effect on {}, whose positions have a unit; allowed: without it", origin));
+  if (!mark && stated != "m" && std::isnan(scale))
+    throw InputError(
+        fmt::format("{}: the centre alone does not show the unit of its positions; allowed: --scale, the "
+                    "metres in one, or a header such as x [mm]",
+                    origin));
   if (!mark) {
     if (!std::isnan(scale))
       for (Track& track : film.tracks) multiply(track.x, scale), multiply(track.y, scale);
@@ -107,6 +115,7 @@ void find_unit(Film& film, const std::string& stated, const Spec& spec, double s
     constexpr double close = 1.25;
     for (const auto& [unit, metres] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}}) {
       const double size = shown * metres, off = centre ? close : 2.5;
+      if (length.high > 10.0) break;  // a radius of more is in another unit
       if (!(size < off * length.high && size > length.low / off)) continue;
       for (Track& track : film.tracks) multiply(track.x, metres), multiply(track.y, metres);
       shown *= metres;
@@ -120,7 +129,8 @@ void find_unit(Film& film, const std::string& stated, const Spec& spec, double s
   const bool fits = shown < allowed * length.high && shown > length.low / allowed;
   if (fits || length.high == 0.0) return;
   const double metres = 0.5 * (length.low + length.high) / shown;
-  const bool pixels = shown > 20.0 && stated != "m" && std::isnan(scale);
+  const bool plausible = length.high < 10.0;  // a radius of more is in another unit
+  const bool pixels = plausible && std::isnan(scale) && (stated == "px" || (stated.empty() && shown > 20.0));
   if (!pixels)
     throw InputError(fmt::format(
         "{}: the markers are {:.4g} apart, and L of the hoop is {:.4g} m: another unit? allowed: metres, or "

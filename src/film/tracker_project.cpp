@@ -79,7 +79,8 @@ std::optional<std::size_t> frame_of(pugi::xml_node item) {
   std::size_t frame = 0;
   if (!name.starts_with('[') || !name.ends_with(']')) return {};
   const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size() - 1, frame);
-  if (error != std::errc() || end != name.data() + name.size() - 1) return {};
+  constexpr std::size_t most_frames = 1'000'000'000;
+  if (error != std::errc() || end != name.data() + name.size() - 1 || frame > most_frames) return {};
   return frame;
 }
 
@@ -120,7 +121,7 @@ Clock clock_of(pugi::xml_node panel, const std::string& path) {
     throw InputError(fmt::format("{}: delta_t = {} ms from frame to frame; allowed: above 0", path,
                                  property(control, "delta_t").text().as_string("none")));
   return {1e-3 * number_of(clip, "starttime", 0.0), 1e-3 * milliseconds,
-          static_cast<std::size_t>(std::max(0.0, number_of(clip, "startframe", 0.0)))};
+          static_cast<std::size_t>(std::clamp(number_of(clip, "startframe", 0.0), 0.0, 1e9))};
 }
 
 Track track_of(pugi::xml_node mass, const std::vector<Axes>& axes, const Clock& clock) {
@@ -157,6 +158,10 @@ void add_tracker_project(const std::string& path, Recording& recording) {
                                  parsed ? "is no project of Tracker" : parsed.description(), allowed));
   const std::vector<Axes> axes = axes_of(panel);
   const Clock clock = clock_of(panel, path);
+  for (const Axes& one : axes)
+    if (!(one.x_scale > 0.0 && one.y_scale > 0.0))
+      throw InputError(fmt::format("{}: xscale = {}, yscale = {} pixels per unit; allowed: above 0", path,
+                                   one.x_scale, one.y_scale));
   const bool calibrated = axes.front().x_scale != 1.0;
   std::vector<std::string> words;
   for (const pugi::xml_node item : property(panel, "tracks").children("property")) {

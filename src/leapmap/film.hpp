@@ -14,6 +14,7 @@ namespace leapmap {
 /// A point of the hoop that was followed through a film.
 struct Track {
   std::string name{};  ///< of the film's own
+  std::string file{};  ///< name of the file without folder and ending, if it holds no other track
   /// Distance of the point from the hoop's axis [m]; NaN: the distance L of the mass.
   double at = std::numeric_limits<double>::quiet_NaN();
   double angle = 0.0;       ///< direction of the point, counted from that of the mass [rad]
@@ -29,7 +30,6 @@ struct Recording {
   std::vector<double> phi{};         ///< angles [rad], from a zero of their own; NaN: none in that row
   std::vector<double> spin{};        ///< angular velocities [rad/s]; empty: none; NaN: none in that row
   std::string unit{};                ///< of positions: "m", "px", or empty: not stated
-  bool y_is_down = false;            ///< whether the form counts y downwards
   std::vector<std::string> notes{};  ///< how each file's columns were read, a line each
 };
 

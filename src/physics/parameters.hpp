@@ -73,7 +73,7 @@ bool any_aloft(const Hoop<T>& hoop) {
 
 /// What becomes of a hoop that a resisting torque acts on and that would reverse.
 inline constexpr const char* reverses_against_resistance =
-    "it reverses against its resisting torque, which is not followed";
+    "its rotation reverses, or is held while it slides, by the resisting torque, which is not followed";
 
 /// Derives the groups from slope, mass_ratio, offset_ratio, inertia_factor and drive_torque, with alpha =
 /// beta / (1 + beta) and J0 = kappa / (1 + beta) + alpha lambda^2. Clearance, Ic and J_min are written as
@@ -114,7 +114,7 @@ T resisted_way(const Hoop<T>& hoop, const T& c, const T& angle, const T& spin) {
     return select(value > T(0), T(1), select(value < T(0), T(-1), T(0)));
   };
   const T at_rest = select(abs(push) > c, sign(push), push / select(c > T(0), c, T(1)));
-  return select(spin != T(0), sign(spin), at_rest);
+  return select(spin * spin != T(0), sign(spin), at_rest);
 }
 
 /// Of one design; 0 without a resisting torque.

@@ -54,8 +54,10 @@ py::dict reduce_hoops(const Rows& hoops, const std::vector<std::string>& weights
 py::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>& weights, const Rows& by,
                                const Rows& values) {
   const py::ssize_t count = hoops.shape(0);
-  if (count == 0) return {};
-  const std::vector<Variable> variables = variables_of(body_of(row_of(hoops, 0), weights));
+  const std::vector<double> none(static_cast<std::size_t>(hoops.shape(1)),
+                                 1.0);  // an empty batch has names, too
+  const std::vector<Variable> variables =
+      variables_of(body_of(count > 0 ? row_of(hoops, 0) : std::span<const double>(none), weights));
   std::vector<Numbers> columns;
   for (std::size_t k = 0; k < variables.size(); ++k) columns.emplace_back(count);
   for (py::ssize_t i = 0; i < count; ++i) {

@@ -109,6 +109,8 @@ void ExactSolver<T>::end_leg(std::uint32_t design, Outcome& outcome) {
   if (const auto path = block_.template load_path<ScalarOf<T>>(&design);
       path.hoop.resistance != ScalarOf<T>(0)) {
     // Its energy is another function of the angle on the way back.
+    if (take_off_.told)
+      take_off_.told->turns.push_back(static_cast<double>(found.way * found.turn + found.turned_back));
     if (is_held(path.hoop, trig(found.turn)))
       outcome.status = Status::stalled;
     else

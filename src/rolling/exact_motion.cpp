@@ -118,6 +118,7 @@ class Teller {
       sampled_.roll(from, turn, true);
       from = {.time = sampled_.end(), .travel = begin.travel + (turn - begin.angle), .angle = turn};
     }
+    if (hoop_.resistance != 0.0 && outcome.status == Status::stalled) return;  // it stays there
     const double end = outcome.status == Status::jumped ? outcome.jump_angle
                        : outcome.status == Status::stalled
                            ? begin.angle

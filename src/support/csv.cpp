@@ -84,6 +84,13 @@ void refuse_other_form(const std::string& path, std::string_view head, std::stri
                                  1 + std::ranges::count(head.substr(0, zero), '\n')));
 }
 
+std::string csv_quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == text.npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
 CsvFile::CsvFile(const std::string& path, const std::string& allowed)
     : path_(path), file_(path, allowed, most_bytes) {
   refuse_other_form(path, file_.peek(4096), allowed);

@@ -14,6 +14,9 @@ namespace leapmap {
 /// spreadsheet, UTF-16 and the like.
 void refuse_other_form(const std::string& path, std::string_view head, std::string_view allowed);
 
+/// A cell of such a table, in quotes if it has to be.
+std::string csv_quoted(const std::string& text);
+
 /// Reads a table with a header line by line, after RFC 4180: a quoted cell may hold commas, and quotes
 /// written twice. Empty lines, a byte order mark and a '#' before the header count for nothing.
 class CsvFile {

@@ -43,10 +43,11 @@ def test_every_parameter_has_a_flag_that_beats_the_spec():
     hop = json.loads(
         leapmap("hop", TOP / "sweeps/paper.toml", "--json", "--slope", "30deg", "--mass-ratio", "3",
                 "--offset-ratio", "0.9", "--inertia-factor", "0.8", "--release-angle", "170 deg",
-                "--release-spin", "0.1", "--drive-torque", "0.2").stdout)
+                "--release-spin", "0.1", "--drive-torque", "0.2", "--resisting-torque", "0.01").stdout)
     assert hop["design"] == pytest.approx({
         "slope": math.radians(30), "mass_ratio": 3, "offset_ratio": 0.9, "inertia_factor": 0.8,
-        "release_angle": math.radians(170), "release_spin": 0.1, "drive_torque": 0.2
+        "release_angle": math.radians(170), "release_spin": 0.1, "drive_torque": 0.2,
+        "resisting_torque": 0.01
     })
 
 

@@ -29,6 +29,7 @@ Design random_design(std::mt19937_64& random, Friction friction) {
   Design design = testing::either_way(random, friction);
   design.resisting_torque = uniform(random, 0.0, 0.15);
   if (random() % 2 == 0) design.drive_torque = uniform(random, -0.3, 0.3);
+  if (random() % 3 == 0) design.release_spin = 0.0;
   return design;
 }
 
@@ -95,6 +96,34 @@ TEST_P(Resistance, HoldsAHoopThatSlopeAndMotorPushLess) {
   EXPECT_EQ(solve(design, scene).status, Status::stalled);
   design.resisting_torque = 0.0;
   EXPECT_NE(solve(design, scene).status, Status::stalled);
+}
+
+/// What is held at rest but slides is not given a torque of its own.
+TEST(ResistanceAtRest, IsNotKnownWhereAHeldHoopSlides) {
+  Design held{.slope = -0.22249184677905087,
+              .mass_ratio = 1.4319773973024237,
+              .offset_ratio = 0.5393832943930835,
+              .inertia_factor = 0.743500073154723,
+              .release_angle = 3.5981771270771548,
+              .drive_torque = 0.22565008353774724,
+              .resisting_torque = 0.15098836585453088,
+              .mu_static = 0.1396679420375566,
+              .mu_kinetic = 0.09145620295860407};
+  const Scene scene = testing::unit_scene(Friction::coulomb);
+  for (const char* method : {"exact", "gsl-rk8pd"})
+    EXPECT_EQ(solve(held, scene, {.method = method}).status, Status::failed) << method;
+  // Slides at once, and turns against the way in which it would roll: an integrator must see that, too.
+  const Design reverses{.slope = 0.4240544443945584,
+                        .mass_ratio = 1.7446677767316139,
+                        .offset_ratio = 0.694511459120131,
+                        .inertia_factor = 0.6251886850453716,
+                        .release_angle = 2.383035199450249,
+                        .drive_torque = -0.1265877748685478,
+                        .resisting_torque = 0.19089243269739714,
+                        .mu_static = 0.27536068390854096,
+                        .mu_kinetic = 0.0391451697887068};
+  for (const char* method : {"exact", "gsl-rk8pd"})
+    EXPECT_EQ(solve(reverses, scene, {.method = method}).status, Status::failed) << method;
 }
 
 TEST_P(Resistance, HasAStatusWhereItWouldReverse) {

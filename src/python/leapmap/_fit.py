@@ -9,6 +9,8 @@ from leapmap import _core
 from leapmap._arguments import array, mapping, names, path, real, shown, text, whole
 from leapmap._design import _question
 
+_CAMERA = ("time_offset", "angle_offset", "scale", "tilt")
+
 
 @dataclass(frozen=True)
 class FittedParameter:
@@ -159,9 +161,16 @@ def fit(data, spec=None, *, model="both", free=(), markers=None, error=None, sca
         for name in data:
             text("a name in data", name)
     if isinstance(data, Mapping) and "t" in data:
+        if fps is not None:
+            raise ValueError("fps: has no effect with arrays, which have times; allowed: with files")
         data = {key: array(key, value, 1) for key, value in data.items()}
     elif isinstance(data, Mapping):
-        for name, given in (("error", error is not None), ("allow_gaps", allow_gaps)):
+        camera = [name for name in names("free", free) if name in _CAMERA]
+        refused = {
+            "error": error is not None, "allow_gaps": allow_gaps, "scale": scale is not None,
+            "fps": fps is not None, "markers": bool(markers), "free": bool(camera)
+        }
+        for name, given in refused.items():
             if given:
                 raise ValueError(
                     f"{name}: has no effect with events, which have errors of their own; allowed: with a film"
