@@ -179,6 +179,7 @@ void add_fit(CommandLine& line, int& status) {
              "CSV table with columns event, value, error; and a spec, SPEC.toml, with the hoop and free "
              "parameters "
              "{ from, to }; default: the paper's hoop")
+      .check(named_file())
       .several()
       .required();
   std::vector<std::string> names{"both"};

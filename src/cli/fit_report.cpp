@@ -179,6 +179,8 @@ void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& un
     say("  chi-square {:.4g} for {} degrees of freedom{}\n", fit.chi_square, fit.degrees,
         fit.degrees == 0
             ? ": each free parameter uses up one number, so a true model passes within their errors"
+        : fit.probability > 0.9995
+            ? std::string("; a true model nearly always exceeds it: the errors may be too large")
             : fmt::format("; a true model exceeds it in {:.2g} of 100 cases", 100.0 * fit.probability));
   if (film)
     say("  residuals {:.3g} {} rms{}\n", fit.error,
@@ -194,7 +196,8 @@ void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& un
     say("  This model does not explain the measurements{}. Check slope, radius, masses, L/R{}; or free "
         "them.\n",
         !film || !std::isnan(fit.probability) ? ""
-        : runs(fit) ? fmt::format(": the residuals are systematic, only {:.3g} lines are independent",
+        : runs(fit) ? fmt::format(": neighbouring residuals are alike, as if there were {:.3g} independent "
+                                  "lines; another motion would fit better",
                                   fit.independent)
                     : fmt::format(": residuals are {:.3g} times their scatter from line to line", fit.misfit),
         !film ? ""
@@ -216,7 +219,7 @@ void print_fit(const Measurements& measured, const ModelFit& fit, ShownUnits& un
     say("  jumps {:.4g} diameters ({:.4g} mm) high, at {:.4g} s\n", fit.outcome.jump_height,
         2000.0 * fit.scene.radius * fit.outcome.jump_height, fit.outcome.jump_time);
   else
-    say("  status: {}\n", name_of(fit.outcome.status));
+    say("  the fitted hoop does not jump: {}\n", name_of(fit.outcome.status));
   if (units.are_asked_for()) say("{}", units.lines_of(fit.outcome, fit.scene));
   say("  {}\n", hop_command(spec_of(fit), fit.design));
 }

@@ -135,7 +135,7 @@ void Explained::free_by_default() {
     const FilmAngles angles = angles_of(film, spec_.design.slope);
     const double second = time_unit(spec_.scene);
     constexpr double late = 0.3;  // sqrt(R/g): from farther off the release is not known
-    const double first = observations().front().t;
+    const double first = observations().front().t - film.camera.time_offset;
     if (first > late * second)
       throw InputError(fmt::format(
           "{}: the film begins at t = {} s, too late to estimate the release; allowed: times counted "
@@ -144,7 +144,7 @@ void Explained::free_by_default() {
           measured_.origin, first));
     free_ = {release_angle_of_film()};
     if (angles.t.size() >= 3) {
-      const double spin = release_of(angles, second).second * second;
+      const double spin = release_of(angles, film.camera.time_offset, second).second * second;
       free_.push_back(free_parameter("release_spin", spin - 0.5, spin + 0.5));
     } else {
       free_.push_back(free_parameter("release_spin", -0.5, 1.0));
@@ -162,7 +162,7 @@ FreeParameter Explained::release_angle_of_film() const {
   constexpr double about = 0.3;
   if (angles.t.size() < 3 || is_free("angle_offset"))
     return free_parameter("release_angle", 0.5 * pi, 1.95 * pi);
-  double at = release_of(angles, time_unit(spec_.scene)).first;
+  double at = release_of(angles, film.camera.time_offset, time_unit(spec_.scene)).first;
   if (is_free("time_offset")) {
     std::vector<double> held;
     for (std::size_t i = 0; i < angles.t.size() && (i < 3 || angles.t[i] < film.camera.time_offset); ++i)

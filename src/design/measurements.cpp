@@ -108,8 +108,10 @@ void check_event(const Measurements& measured, std::size_t row, const Spec& spec
 /// The span of a film, against that of a hoop's motion.
 void check_span(const Measurements& measured, const Spec& spec) {
   const std::vector<Observation> observations = observations_of(measured.film);
-  const double second = time_unit(spec.scene), first = observations.front().t, last = observations.back().t;
+  const double second = time_unit(spec.scene);
   const bool free = std::ranges::find(measured.film.free, "time_offset") != measured.film.free.end();
+  const double release = free ? 0.0 : measured.film.camera.time_offset;
+  const double first = observations.front().t - release, last = observations.back().t - release;
   if (first < 0.0 && !free)
     throw InputError(
         fmt::format("{}: t = {}; allowed: times since release, at least 0; or --free time_offset",

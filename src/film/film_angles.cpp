@@ -42,7 +42,7 @@ FilmAngles angles_of(const Film& film, double slope) {
   return angles;
 }
 
-std::pair<double, double> release_of(const FilmAngles& angles, double second) {
+std::pair<double, double> release_of(const FilmAngles& angles, double release, double second) {
   constexpr double long_enough = 1.5;  // in sqrt(R/g)
   std::size_t some = 0;
   while (some < angles.t.size() && angles.t[some] <= angles.t[0] + long_enough * second) ++some;
@@ -52,7 +52,7 @@ std::pair<double, double> release_of(const FilmAngles& angles, double second) {
   Eigen::MatrixXd powers(rows, columns);
   Eigen::VectorXd measured(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const double t = angles.t[static_cast<std::size_t>(i)] / second;
+    const double t = (angles.t[static_cast<std::size_t>(i)] - release) / second;
     for (Eigen::Index k = 0; k < columns; ++k) powers(i, k) = std::pow(t, static_cast<double>(k));
     measured[i] = angles.phi[static_cast<std::size_t>(i)];
   }

@@ -21,8 +21,8 @@ FilmAngles angles_of(const Film& film, double slope);
 /// The centre's track, and the one farthest from it; nullptr: there is none.
 std::pair<const Track*, const Track*> centre_and_mark(const Film& film);
 
-/// Angle and spin [rad/s] at the release at t = 0, by the cubic that fits the beginning best: so long that
+/// Angle and spin [rad/s] at the time of the release, by the cubic that fits the beginning best: so long that
 /// noise of a frame hardly counts, so short that the cubic holds. second: sqrt(R/g) [s].
-std::pair<double, double> release_of(const FilmAngles& angles, double second);
+std::pair<double, double> release_of(const FilmAngles& angles, double release, double second);
 
 }  // namespace leapmap

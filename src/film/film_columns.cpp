@@ -301,6 +301,14 @@ void add_angles(const FilmTable& table, const std::vector<Column>& columns, cons
       recording.t.size()));
 }
 
+/// The first of many names, and not all of long ones.
+std::string first_names(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 12, longest = 40;
+  std::vector<std::string> some;
+  for (std::size_t k = 0; k < std::min(most, names.size()); ++k) some.push_back(names[k].substr(0, longest));
+  return fmt::format("{}{}", fmt::join(some, ", "), names.size() > most ? ", ..." : "");
+}
+
 }  // namespace
 
 void add_table(const FilmTable& table, const RecordingOptions& options, Recording& recording) {
@@ -313,7 +321,7 @@ void add_table(const FilmTable& table, const RecordingOptions& options, Recordin
         "y, "
         "or t, phi",
         table.path,
-        table.headers.empty() ? "without names" : fmt::format("{}", fmt::join(table.headers.back(), ", "))));
+        table.headers.empty() ? std::string("without names") : first_names(table.headers.back())));
   if (has_angle && !points.empty())
     throw InputError(fmt::format("{}: has both an angle and points; allowed: one of the two", table.path));
   if (has_angle)

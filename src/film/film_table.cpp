@@ -61,13 +61,16 @@ char delimiter_of(const std::vector<Line>& lines) {
   return ' ';
 }
 
+constexpr std::size_t most_cells = 256;  // more than any film has columns
+
+/// At most one cell more than there may be.
 std::vector<std::string> split(std::string_view text, char delimiter) {
   std::vector<std::string> cells;
   if (delimiter == ' ') text = trimmed(text);
   for (;;) {
     const std::size_t end = std::min(text.find(delimiter), text.size());
     cells.emplace_back(trimmed(text.substr(0, end)));
-    if (end == text.size()) return cells;
+    if (end == text.size() || cells.size() > most_cells) return cells;
     text.remove_prefix(end + 1);
     if (delimiter == ' ') text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
   }
@@ -108,6 +111,10 @@ FilmTable read_film_table(const std::string& path) {
   std::vector<Line> lines = read_lines(path);
   if (lines.empty()) throw InputError(fmt::format("{}: is empty; allowed: {}", path, allowed));
   FilmTable table{.path = path, .delimiter = delimiter_of(lines)};
+  for (const Line& line : lines)
+    if (split(line.text, table.delimiter).size() > most_cells)
+      throw InputError(fmt::format("{}:{}: more than {} cells; allowed: at most that number", path,
+                                   line.number, most_cells));
   const auto first = std::ranges::find_if(lines, [&](const Line& line) {
     return !line.is_comment && has_numbers(split(line.text, table.delimiter));
   });

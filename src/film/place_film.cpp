@@ -15,6 +15,8 @@
 #include "film/marks.hpp"
 #include "film/observations.hpp"
 #include "model/variable.hpp"
+#include "physics/rolling.hpp"
+#include "physics/sliding.hpp"
 #include "spec/spacing.hpp"
 #include "support/closest.hpp"
 #include "trajectory/units.hpp"
@@ -73,7 +75,7 @@ void orient(Film& film, bool y_down, std::vector<std::string>& notes) {
 }
 
 /// The unit of positions. Where none is stated it is that of m, cm and mm in which the hoop has its size, or
-/// else pixels. low, high: what the film shows, if nothing is known but that, from the least to the most [m].
+/// else pixels.
 void find_unit(Film& film, const std::string& stated, const Spec& spec, double scale,
                std::vector<std::string>& notes, const std::string& origin) {
   const auto [centre, mark] = centre_and_mark(film);
@@ -187,6 +189,34 @@ void refuse_unknown_free(const std::vector<std::string>& names, const Film& film
   }
 }
 
+/// By how much a free hoop would rotate from rest in that time at least: by rolling, or by sliding with
+/// little friction or much, where it may hardly rotate [rad].
+double least_rotation(const Design& design, double angle, double time) {
+  const Hoop<double> hoop = reduce<double>(design);
+  const Trig<double> phi = trig(angle);
+  const double rolling = angular_acceleration(hoop, phi, 0.0), way = hoop.sin_slope < 0.0 ? -1.0 : 1.0;
+  double least = std::abs(rolling);
+  for (double mu = 0.05; mu < 1.6 && least > 0.0; mu *= 1.1) {
+    const double sliding = sliding_motion(hoop, phi, 0.0, way * mu).angular;
+    least = sliding * rolling > 0.0 ? std::min(least, std::abs(sliding)) : 0.0;
+  }
+  return 0.5 * least * time * time;
+}
+
+/// Whether the hoop is held until it leaves its place: a free one would have rotated by much more than the
+/// noise. With one track alone, or free masses, that is not known.
+bool is_held(const Film& film, const Spec& spec, double leaves) {
+  const FilmAngles angles = angles_of(film, spec.design.slope);
+  if (angles.t.empty() || !spec.axes.empty()) return true;
+  const double scatter = film.tracks.empty()
+                             ? scatter_of(observations_of(film), Measured::angle)
+                             : scatter_of(observations_of(film), Measured::x) * film.camera.scale /
+                                   (spec.design.offset_ratio * spec.scene.radius + 1e-9);
+  const double time = (leaves - angles.t.front()) / time_unit(spec.scene);
+  constexpr double times_noise = 20.0, rounding = 1e-3;
+  return least_rotation(spec.design, angles.phi.front(), time) > times_noise * scatter + rounding;
+}
+
 }  // namespace
 
 void refuse_free_name(const std::string& name) {
@@ -263,13 +293,17 @@ Film place_film(const Recording& recording, const Spec& spec, const MeasurementO
   const double first = observations_of(film).front().t;
   if (has(film.free, "time_offset")) {
     film.camera.time_offset = leaves.value_or(first);
-  } else if (leaves) {
+  } else if (leaves && is_held(film, spec, *leaves)) {
     film.free.push_back("time_offset"), film.camera.time_offset = *leaves;
     notes.push_back(
         fmt::format("the hoop is held at first: it has left its place at t = {:.4g} s; time_offset, the time "
                     "of the release, is "
                     "free",
                     *leaves));
+  } else if (constexpr double late = 0.3; !film.tracks.empty() && std::abs(first) > late * second) {
+    film.camera.time_offset = first;
+    notes.push_back(fmt::format(
+        "the release is taken to be the first frame, t = {:.4g} s; --free time_offset if it is not", first));
   }
   return film;
 }

@@ -109,13 +109,13 @@ def test_hdf5_outputs_keep_the_mode_of_what_they_replace(command, folder):
 def test_standard_output_takes_a_table_wherever_it_is_turned_to(folder):
     shell = f"{PROGRAM} fit events.csv --model sticking --csv /dev/stdout"
     assert (
-        "t,quantity,measured"
+        "t,quantity,unit,measured"
         in subprocess.run(f"{shell} | cat", shell=True, capture_output=True, text=True).stdout
     )
     subprocess.run(f"{shell} > out.txt", shell=True, check=True)
     told = (folder / "out.txt").read_text()
     assert told.index("friction") < told.index(
-        "t,quantity,measured"
+        "t,quantity,unit,measured"
     ), "the report and then the table, in one file"
 
 

@@ -81,7 +81,7 @@ COMMANDS = {
             "--most 2 --overwrite",
             {"question.toml": QUESTION, "best.csv": "slope\n0.1\n"}, output="best.csv", keeps=("best.csv", )),
         Command("fit", "fit {0}/events.csv --model sticking --csv {0}/fit.csv --json --threads 1",
-                {"events.csv": EVENTS, "fit.csv": "t,quantity,measured\n"}, output="fit.csv", keeps=(
+                {"events.csv": EVENTS, "fit.csv": "t,quantity,unit,measured\n"}, output="fit.csv", keeps=(
                     "fit.csv", "events.csv")),
         Command("gait", "gait {0}/hoop.toml --most-period 1", {
             "hoop.toml": "[scene]\nrunway = 2\n[design]\nslope = 0.2\nmass_ratio = 3\noffset_ratio = 0.5\n"

@@ -101,7 +101,8 @@ class Hoop:
     """
 
     def __repr__(self):
-        return (f"<hoop of {self.total_mass[()]} kg, eccentricity {self.eccentricity[()]}, "
+        return (f"<hoop of {self.total_mass[()]} kg, radius {self.parameters['radius']} m, "
+                f"eccentricity {self.eccentricity[()]}, "
                 f"inertia ratio {self.inertia_ratio[()]}>")
 
     def __init__(self, diameter, mass, inertia=None, weights=()):
