@@ -21,6 +21,7 @@ PUBLIC = (
     "scatter",
     "design",
     "fit",
+    "read_film",
     "phase_letters",
     "instruction_set",
     "instruction_sets",
@@ -34,7 +35,7 @@ HEADERS = (
     ("Sweeps and maps", ("spec", "sweep", "audit", "join", "map")),
     (
         "Discontinuities, tolerances, searches, fits",
-        ("boundaries", "estimate", "scatter", "find_designs", "fit"),
+        ("boundaries", "estimate", "scatter", "find_designs", "film", "fit"),
     ),
     ("Errors and versions", ("errors", "version")),
 )
