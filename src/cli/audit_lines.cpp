@@ -60,15 +60,15 @@ std::string settled_line(const Outcome& outcome, long settle, ShownUnits& units)
   if (outcome.gait_period == Outcome::no_gait)
     return fmt::format("After this release no period was found within {} jumps, or errors grow too much.",
                        settle);
-  const auto told = [&](const char* field, double value) {
+  const auto shown = [&](const char* field, double value) {
     return units.with_unit(value, *find_field(field));
   };
   return fmt::format(
       "After this release its jumps converge to a gait of period {}: {}, {} down the plane, {} and {} lost "
       "per "
       "jump; Floquet multiplier {:.6f}.",
-      outcome.gait_period, told("gait_height", outcome.gait_height), told("gait_speed", outcome.gait_speed),
-      told("gait_jump_time", outcome.gait_jump_time), told("gait_energy_lost", outcome.gait_energy_lost),
+      outcome.gait_period, shown("gait_height", outcome.gait_height), shown("gait_speed", outcome.gait_speed),
+      shown("gait_jump_time", outcome.gait_jump_time), shown("gait_energy_lost", outcome.gait_energy_lost),
       outcome.gait_multiplier);
 }
 

@@ -34,8 +34,8 @@ struct FitArguments {
   bool json = false, overwrite = false, dry_run = false;
 };
 
-/// Says which of the spec's own values are fitted anew, as it has no free parameters of its own.
-void tell_fitted_anew(const Spec& spec, const FitReport& report, const std::vector<std::string>& asked) {
+/// Warns of values of the spec that are ignored, because their parameters are fitted by default.
+void warn_of_fitted_values(const Spec& spec, const FitReport& report, const std::vector<std::string>& asked) {
   if (!spec.axes.empty()) return;
   for (const char* name : {"release_angle", "release_spin", "mu_static"}) {
     const bool fitted = std::ranges::any_of(report.models, [&](const ModelFit& fit) {
@@ -149,7 +149,7 @@ int run(const FitArguments& arguments) {
     tell("interrupted; nothing was written");
     return 128 + noted_signal();
   }
-  tell_fitted_anew(spec, report, arguments.free);
+  warn_of_fitted_values(spec, report, arguments.free);
   if (arguments.json) {
     Json json{{"seconds", report.seconds}, {"notes", measured.notes}, {"models", Json::array()}};
     for (const ModelFit& one : report.models) json["models"].push_back(json_of(one));

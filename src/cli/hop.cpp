@@ -57,10 +57,9 @@ std::string verdict(const Motion& motion, const Scene& scene, bool resists) {
     case Status::no_jump:
       return fmt::format("No jump within {} revolutions.", scene.runway);
     case Status::stalled:
-      return motion.outcome.status == Status::stalled && resists
-                 ? "It is at rest: slope and motor push less than its resisting torque."
-                 : "It is trapped: it rocks between two turning points indefinitely, or rests in an "
-                   "equilibrium.";
+      return resists ? "It is at rest: slope and motor push less than its resisting torque."
+                     : "It is trapped: it rocks between two turning points indefinitely, or rests in an "
+                       "equilibrium.";
     case Status::airborne_at_release:
       return "The normal force at the release is not positive: it is airborne from the start.";
     case Status::indeterminate:

@@ -172,7 +172,7 @@ auto SlidingLanes<T>::look_ahead(const InLanes& slides) const -> Ahead {
   const T way = select((from.spin < zero) | (at_rest & (start.angular < zero)), -one, one);
   Ahead ahead;
   // What reverses against a resisting torque ends by itself.
-  ahead.turns = !(at_rest & (start.angular == zero)) & !(way * slide.hoop.resistance < zero);
+  ahead.turns = !((at_rest & (start.angular == zero)) | (way * slide.hoop.resistance < zero));
   ahead.rise = way * start.angular;
   auto usual = Panels::stretch_of(from.spin, ahead.rise, slides.longest);
   ahead.shift = usual.shift;

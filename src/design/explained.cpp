@@ -13,6 +13,7 @@
 #include "film/place_film.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "numerics/median.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
 #include "trajectory/units.hpp"
@@ -72,8 +73,7 @@ Explained::Explained(const Measurements& measured, const Spec& spec, Friction fr
   if (spec.axes.empty() && free.empty()) free_by_default();
   free_by_name(free);
   // An angle counted from a zero of its own is not known at the release either.
-  const bool counts = std::ranges::find(measured.film.free, "angle_offset") != measured.film.free.end();
-  if (spec.axes.empty() && counts &&
+  if (spec.axes.empty() && is_free(measured.film, "angle_offset") &&
       std::ranges::find(free_, "release_angle", &FreeParameter::name) == free_.end())
     free_.insert(free_.begin(), release_angle_of_film());
   for (const FreeParameter& parameter : free_)
@@ -124,12 +124,9 @@ Explained::Explained(const Measurements& measured, const Spec& spec, Friction fr
 void Explained::free_by_default() {
   const bool slips = model_of(spec_.scene).slips;
   const Film& film = measured_.film;
-  const auto is_free = [&](std::string_view name) {
-    return std::ranges::find(film.free, name) != film.free.end();
-  };
   if (!is_film()) {
     free_ = {free_parameter("release_angle", 0.5 * pi, 1.95 * pi), free_parameter("release_spin", -1.0, 3.0)};
-  } else if (is_free("time_offset")) {
+  } else if (is_free(film, "time_offset")) {
     free_ = {release_angle_of_film()};
   } else {
     const FilmAngles angles = angles_of(film, spec_.design.slope);
@@ -155,20 +152,16 @@ void Explained::free_by_default() {
 
 FreeParameter Explained::release_angle_of_film() const {
   const Film& film = measured_.film;
-  const auto is_free = [&](std::string_view name) {
-    return std::ranges::find(film.free, name) != film.free.end();
-  };
   const FilmAngles angles = angles_of(film, spec_.design.slope);
   constexpr double about = 0.3;
-  if (angles.t.size() < 3 || is_free("angle_offset"))
+  if (angles.t.size() < 3 || is_free(film, "angle_offset"))
     return free_parameter("release_angle", 0.5 * pi, 1.95 * pi);
   double at = release_of(angles, film.camera.time_offset, time_unit(spec_.scene)).first;
-  if (is_free("time_offset")) {
+  if (is_free(film, "time_offset")) {
     std::vector<double> held;
     for (std::size_t i = 0; i < angles.t.size() && (i < 3 || angles.t[i] < film.camera.time_offset); ++i)
       held.push_back(angles.phi[i]);
-    std::ranges::nth_element(held, held.begin() + static_cast<std::ptrdiff_t>(held.size() / 2));
-    at = held[held.size() / 2];
+    at = median(std::move(held));
   }
   return free_parameter("release_angle", at - about, at + about);
 }
@@ -220,8 +213,7 @@ void Explained::free_camera() {
   for (const bool linear : {false, true}) {
     for (const CameraNumber& number : camera_numbers) {
       const bool is_origin = number.unit.empty();
-      const bool free =
-          is_origin ? !film.tracks.empty() : std::ranges::find(film.free, number.name) != film.free.end();
+      const bool free = is_origin ? !film.tracks.empty() : is_free(film, number.name);
       if (free && number.is_linear == linear) camera_.push_back({&number, bounds_of(number)});
     }
     if (!linear) searched_ = free_.size() + camera_.size();

@@ -7,8 +7,10 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "design/correlated.hpp"
+#include "numerics/median.hpp"
 
 namespace leapmap {
 namespace {
@@ -106,9 +108,8 @@ double sum_of_squares(std::span<const double> residuals) {
 double robust_deviation(std::span<const double> residuals) {
   std::vector<double> sizes;
   for (const double residual : residuals) sizes.push_back(std::abs(residual));
-  std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
   constexpr double of_normal = 0.6745;
-  return std::max(sizes[sizes.size() / 2] / of_normal, 1e-12);
+  return std::max(median(std::move(sizes)) / of_normal, 1e-12);
 }
 
 Spreading spreading_of(std::span<const double> residuals, std::size_t degrees, bool errors_known, Loss loss) {

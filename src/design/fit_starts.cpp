@@ -139,13 +139,15 @@ LeastSquaresFit robust_fit(const LeastSquares& problem, LeastSquaresFit best, st
     };
     const LeastSquaresFit next = minimize(weighted, best.at);
     evaluations += next.evaluations;
-    if (next.residuals.empty()) return best;
+    if (next.residuals.empty()) break;
     double moved = 0.0;
     for (std::size_t k = 0; k < next.at.size(); ++k)
       moved = std::max(moved,
                        std::abs(next.at[k] - best.at[k]) / (problem.bounds[k].high - problem.bounds[k].low));
-    best.at = next.at;
-    if (!problem.evaluate(best.at, best.residuals, best.jacobian)) return best;
+    LeastSquaresFit here = best;
+    here.at = next.at;
+    if (!problem.evaluate(here.at, here.residuals, here.jacobian)) break;
+    best = std::move(here);
     constexpr double still = 1e-9;
     if (moved < still) break;
   }

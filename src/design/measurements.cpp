@@ -15,6 +15,7 @@
 #include "film/tracker_project.hpp"
 #include "leapmap/fit.hpp"
 #include "model/fields.hpp"
+#include "numerics/median.hpp"
 #include "support/closest.hpp"
 #include "support/csv.hpp"
 #include "support/number.hpp"
@@ -109,7 +110,7 @@ void check_event(const Measurements& measured, std::size_t row, const Spec& spec
 void check_span(const Measurements& measured, const Spec& spec) {
   const std::vector<Observation> observations = observations_of(measured.film);
   const double second = time_unit(spec.scene);
-  const bool free = std::ranges::find(measured.film.free, "time_offset") != measured.film.free.end();
+  const bool free = is_free(measured.film, "time_offset");
   const double release = free ? 0.0 : measured.film.camera.time_offset;
   const double first = observations.front().t - release, last = observations.back().t - release;
   if (first < 0.0 && !free)
@@ -128,9 +129,7 @@ void check_gaps(const Measurements& measured, const std::vector<double>& t) {
   if (measured.film.allow_gaps || t.size() < 3) return;
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
-  std::vector<double> sorted = steps;
-  std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-  const double usual = sorted[sorted.size() / 2];
+  const double usual = median(steps);
   constexpr double gap = 5.0;
   for (std::size_t i = 0; i < steps.size(); ++i)
     if (steps[i] > gap * usual)
@@ -177,34 +176,9 @@ void check_film(const Measurements& measured, const Spec& spec) {
     throw InputError(fmt::format("{}: has {}; allowed: {}", measured.origin,
                                  film.t.empty() ? "neither angles nor points" : "both angles and points",
                                  forms));
-  const auto check_column = [&](const std::vector<double>& column, std::size_t size, bool gaps) {
-    if (column.size() != size)
-      throw InputError(fmt::format("{}: a column of {} numbers beside {} times; allowed: equal numbers",
-                                   measured.origin, column.size(), size));
-    for (std::size_t i = 0; i < column.size(); ++i)
-      if (!std::isfinite(column[i]) && !(gaps && std::isnan(column[i])))
-        throw InputError(fmt::format("{}: row {}: {} is not a number; allowed: finite numbers",
-                                     measured.origin, i + 1, column[i]));
-  };
-  check_column(film.t, film.t.size(), false);
-  if (!film.phi.empty()) check_column(film.phi, film.t.size(), true);
-  if (!film.spin.empty()) check_column(film.spin, film.t.size(), true);
-  const auto check_times = [&](const std::vector<double>& t) {
-    if (t.size() < 3)
-      throw InputError(fmt::format("{}: {} lines; allowed: three or more", measured.origin, t.size()));
-    for (std::size_t i = 1; i < t.size(); ++i)
-      if (!(t[i] > t[i - 1]))
-        throw InputError(
-            fmt::format("{}: t = {} after {}; allowed: ascending times", measured.origin, t[i], t[i - 1]));
-    check_gaps(measured, t);
-  };
-  if (!film.t.empty()) check_times(film.t);
-  for (const Track& track : film.tracks) {
-    check_column(track.t, track.t.size(), false);
-    check_column(track.x, track.t.size(), false);
-    check_column(track.y, track.t.size(), false);
-    check_times(track.t);
-  }
+  check_recording({.tracks = film.tracks, .t = film.t, .phi = film.phi, .spin = film.spin}, measured.origin);
+  check_gaps(measured, film.t);
+  for (const Track& track : film.tracks) check_gaps(measured, track.t);
   if (!std::isnan(film.error) && !(film.error > 0.0 && std::isfinite(film.error)))
     throw InputError(
         fmt::format("{}: error = {}; allowed: a standard error above 0", measured.origin, film.error));

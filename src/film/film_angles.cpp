@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numerics/median.hpp"
+
 namespace leapmap {
 
 std::pair<const Track*, const Track*> centre_and_mark(const Film& film) {
@@ -31,14 +33,12 @@ FilmAngles angles_of(const Film& film, double slope) {
   const auto [centre, mark] = centre_and_mark(film);
   if (!centre || !mark) return angles;
   const double turned = film.camera.tilt + (film.is_level ? slope : 0.0) + mark->angle;
-  for (std::size_t i = 0, k = 0; i < mark->t.size(); ++i) {
-    while (k < centre->t.size() && centre->t[k] < mark->t[i]) ++k;
-    if (k == centre->t.size() || centre->t[k] != mark->t[i]) continue;
+  for_common_times(*mark, *centre, [&, mark = mark, centre = centre](std::size_t i, std::size_t k) {
     const double angle = std::atan2(centre->x[k] - mark->x[i], centre->y[k] - mark->y[i]) - turned;
     angles.t.push_back(mark->t[i]);
     angles.phi.push_back(angles.phi.empty() ? angle - turn * std::floor(angle / turn)
                                             : angle + turn * std::round((angles.phi.back() - angle) / turn));
-  }
+  });
   return angles;
 }
 
@@ -56,14 +56,12 @@ std::pair<double, double> release_of(const FilmAngles& angles, double release, d
     for (Eigen::Index k = 0; k < columns; ++k) powers(i, k) = std::pow(t, static_cast<double>(k));
     measured[i] = angles.phi[static_cast<std::size_t>(i)];
   }
-  // By Huber's weights: a bad mark in the first frames must not lead astray.
+  // By Huber's weights, so that a bad mark in the first frames hardly counts.
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(rows), cubic(columns);
   for (int round = 0; round < 5; ++round) {
     cubic = (weights.asDiagonal() * powers).colPivHouseholderQr().solve(weights.cwiseProduct(measured));
     const Eigen::VectorXd off = (powers * cubic - measured).cwiseAbs();
-    std::vector<double> sizes(off.begin(), off.end());
-    std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
-    const double limit = std::max(2.0 * sizes[sizes.size() / 2], 1e-12);
+    const double limit = std::max(2.0 * median({off.begin(), off.end()}), 1e-12);
     for (Eigen::Index i = 0; i < rows; ++i)
       weights[i] = std::sqrt(std::min(1.0, limit / std::max(off[i], 1e-300)));
   }

@@ -2,6 +2,7 @@
 /// The hoop's angle in a film: measured, or by two tracks.
 #pragma once
 
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,15 @@ struct FilmAngles {
 
 /// Empty: one track alone does not show the angle.
 FilmAngles angles_of(const Film& film, double slope);
+
+/// Calls f(i, k) with the places of each time that two tracks have in common.
+template <class F>
+void for_common_times(const Track& one, const Track& other, const F& f) {
+  for (std::size_t i = 0, k = 0; i < one.t.size(); ++i) {
+    while (k < other.t.size() && other.t[k] < one.t[i]) ++k;
+    if (k < other.t.size() && other.t[k] == one.t[i]) f(i, k);
+  }
+}
 
 /// The centre's track, and the one farthest from it; nullptr: there is none.
 std::pair<const Track*, const Track*> centre_and_mark(const Film& film);

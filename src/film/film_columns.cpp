@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <map>
+#include <span>
 #include <string_view>
 
 #include "spec/quantity.hpp"
+#include "support/printable.hpp"
 
 namespace leapmap {
 namespace {
@@ -60,12 +60,6 @@ struct Column {
   std::string unit{};   ///< in brackets after the name; empty: not stated
 };
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" _/.");
   return first == text.npos ? std::string_view{}
@@ -73,7 +67,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 Role role_of(std::string_view name) {
-  const std::string small = lower(name);
+  const std::string small = lower_case(name);
   for (const RoleName& row : role_names)
     if (row.name == small) return row.role;
   return Role::unused;
@@ -331,10 +325,9 @@ void add_table(const FilmTable& table, const RecordingOptions& options, Recordin
   std::vector<std::string> unused;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const Column& column = columns[k];
+    const auto before = std::span(columns).first(k);
     const bool again = (column.role == Role::angle || column.role == Role::spin) &&
-                       std::find_if(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(k),
-                                    [&](const Column& before) { return before.role == column.role; }) !=
-                           columns.begin() + static_cast<std::ptrdiff_t>(k);
+                       std::ranges::find(before, column.role, &Column::role) != before.end();
     if ((column.role == Role::unused && !column.name.empty()) || again) unused.push_back(column.name);
   }
   if (!unused.empty()) recording.notes.back() += fmt::format("; not used: {}", fmt::join(unused, ", "));

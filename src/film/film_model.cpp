@@ -32,6 +32,10 @@ const CameraNumber* find_camera_number(std::string_view name) {
   return found == camera_numbers.end() ? nullptr : &*found;
 }
 
+bool is_free(const Film& film, std::string_view number) {
+  return std::ranges::find(film.free, number) != film.free.end();
+}
+
 /// What a number is of: an angle or a spin, or a point in the plane's own axes.
 template <class S>
 struct FilmModel::Seen {
@@ -137,20 +141,19 @@ bool FilmModel::residuals_with_camera(const Design& design, Camera& camera,
                                       std::span<double> residuals) const {
   std::vector<Seen<double>> seen;
   if (!see<double>(design, camera, numbers, coarse, seen)) return false;
-  const auto is_free = [&](double Camera::*number) { return std::ranges::find(free, number) != free.end(); };
+  const auto fits = [&](double Camera::*number) { return std::ranges::find(free, number) != free.end(); };
   double angle = 0.0;
   std::size_t angles = 0;
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (const Observation& one = observations_[numbers[i]]; one.kind == Measured::angle)
       angle += seen[i].a - one.value, ++angles;
-  if (angles > 0 && is_free(&Camera::angle_offset)) camera.angle_offset = angle / static_cast<double>(angles);
+  if (angles > 0 && fits(&Camera::angle_offset)) camera.angle_offset = angle / static_cast<double>(angles);
   const auto mean = [&](Measured kind) {
-    Positions mean;
+    Positions sum;
     for (std::size_t i = 0; i < seen.size(); ++i)
       if (const Observation& one = observations_[numbers[i]]; one.kind == kind)
-        mean.X += seen[i].a, mean.Y += seen[i].b, mean.value += one.value, mean.count += 1.0;
-    mean.X /= mean.count, mean.Y /= mean.count, mean.value /= mean.count;
-    return mean;
+        sum.X += seen[i].a, sum.Y += seen[i].b, sum.value += one.value, sum.count += 1.0;
+    return Positions{sum.X / sum.count, sum.Y / sum.count, sum.value / sum.count, sum.count};
   };
   const Positions of_x = mean(Measured::x), of_y = mean(Measured::y);
   if (of_x.count > 0.0 && of_y.count > 0.0) {
@@ -165,12 +168,12 @@ bool FilmModel::residuals_with_camera(const Design& design, Camera& camera,
       pp += by_p * by_p, pq += by_p * by_q, qq += by_q * by_q, p += by_p * value, q += by_q * value;
     }
     double a = descent(design, camera);
-    if (const double determinant = pp * qq - pq * pq; is_free(&Camera::tilt) && determinant > 0.0) {
+    if (const double determinant = pp * qq - pq * pq; fits(&Camera::tilt) && determinant > 0.0) {
       const double turned = std::atan2(pp * q - pq * p, qq * p - pq * q);
       camera.tilt += turned - a, a = turned;
     }
     const double c = std::cos(a), s = std::sin(a), along = p * c + q * s;
-    if (is_free(&Camera::scale) && along > 0.0)
+    if (fits(&Camera::scale) && along > 0.0)
       camera.scale = (pp * c * c + 2.0 * pq * c * s + qq * s * s) / along;
     camera.x = of_x.value - (c * of_x.X + s * of_x.Y) / camera.scale;
     camera.y = of_y.value - (c * of_y.Y - s * of_y.X) / camera.scale;

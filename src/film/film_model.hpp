@@ -34,6 +34,9 @@ inline constexpr std::array camera_numbers{
 /// nullptr: no such number.
 const CameraNumber* find_camera_number(std::string_view name);
 
+/// Whether a number of the film's camera is free. The origin always is.
+bool is_free(const Film& film, std::string_view number);
+
 class FilmModel {
  public:
   /// Keeps a reference to the film.

@@ -5,24 +5,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 #include <string_view>
 
 #include "leapmap/body.hpp"
+#include "support/printable.hpp"
 
 namespace leapmap {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
 bool names_centre(std::string_view name) {
-  const std::string small = lower(name);
+  const std::string small = lower_case(name);
   for (const std::string_view word : {"centre", "center", "axis", "axle", "hub", "middle", "mitte"})
     if (small.find(word) != small.npos) return true;
   return small == "o" || small == "c";
@@ -52,7 +46,7 @@ class Places {
       if (names_centre(film.tracks[k].name) || names_centre(film.tracks[k].file)) put(k, 0.0, 0.0);
     for (std::size_t k = 0; k < film.tracks.size() && spec.hoop; ++k)
       for (const Weight& weight : spec.hoop->weights)
-        if (lower(weight.name) == lower(film.tracks[k].name))
+        if (lower_case(weight.name) == lower_case(film.tracks[k].name))
           put(k, weight.at, from_mass(spec, weight.angle));
     for (const Marker& marker : markers)
       if (!marker.track.empty()) put(find(marker), marker.at, from_mass(spec, marker.angle));

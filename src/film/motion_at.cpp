@@ -93,15 +93,15 @@ class Walk {
  public:
   Walk(const Design& design, const Scene& scene, double accuracy)
       : accuracy_(accuracy),
-        budget_(accuracy < 1e-9 ? 20'000 : 3'000),
-        hoop_(in_flight(hoop_of_design(design), scene)),
+        hoop_(hoop_of_design(design, scene)),
         contact_{parameter<S>(design, design.mu_static, by_mu_static),
                  parameter<S>(design, kinetic_follows(design) ? design.mu_static : design.mu_kinetic,
                               by_mu_kinetic),
-                 parameter<S>(design, design.restitution, by_restitution), S(scene.rest_speed)} {
+                 parameter<S>(design, design.restitution, by_restitution), S(scene.rest_speed)},
+        budget_(accuracy < 1e-9 ? 20'000 : 3'000) {
     if (contact_.mu_static < contact_.mu_kinetic) contact_.mu_static = contact_.mu_kinetic;
-    at_ = {parameter<S>(design, design.release_angle, 4), parameter<S>(design, design.release_spin, 5),
-           S(0.0), S(0.0)};
+    at_ = {parameter<S>(design, design.release_angle, by_release_angle),
+           parameter<S>(design, design.release_spin, by_release_spin), S(0.0), S(0.0)};
   }
 
   /// Goes through a phase from one time to another; take(time) is called at those between.
@@ -166,14 +166,11 @@ class Walk {
   }
 
  private:
-  static Hoop<S> hoop_of_design(const Design& design) {
-    const Hoop<S> hoop =
-        reduce(parameter<S>(design, design.slope, 0), parameter<S>(design, design.mass_ratio, 1),
-               parameter<S>(design, design.offset_ratio, 2), parameter<S>(design, design.inertia_factor, 3),
-               parameter<S>(design, design.drive_torque, 6));
-    const double way = resisted_way(mapped<double>(hoop, [](const S& number) { return value_of(number); }),
-                                    design.resisting_torque, design.release_angle, design.release_spin);
-    return resisted(hoop, S(parameter<S>(design, design.resisting_torque, by_resisting_torque) * way));
+  static Hoop<S> hoop_of_design(const Design& design, const Scene& scene) {
+    if constexpr (has_derivatives<S>)
+      return reduce(dual_parameters<S>(design), scene);
+    else
+      return reduce<S>(design, scene);
   }
   auto rate_of(Phase phase, int direction) const {
     return

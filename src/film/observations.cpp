@@ -7,6 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
+
+#include "numerics/median.hpp"
 
 namespace leapmap {
 
@@ -52,10 +55,8 @@ double scatter_of(std::span<const Observation> observations, Measured kind) {
     for (std::size_t i = 3; i < values.size(); ++i)
       differences.push_back(std::abs(values[i] - 3.0 * values[i - 1] + 3.0 * values[i - 2] - values[i - 3]));
   if (differences.size() < 2) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
   const double of_normal = 0.6745 * std::sqrt(20.0);  // 1 + 9 + 9 + 1
-  return *middle / of_normal;
+  return median(std::move(differences)) / of_normal;
 }
 
 }  // namespace leapmap

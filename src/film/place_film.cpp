@@ -15,6 +15,7 @@
 #include "film/marks.hpp"
 #include "film/observations.hpp"
 #include "model/variable.hpp"
+#include "numerics/median.hpp"
 #include "physics/rolling.hpp"
 #include "physics/sliding.hpp"
 #include "spec/spacing.hpp"
@@ -23,12 +24,6 @@
 
 namespace leapmap {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// Distances L of the mass from the axis [m], from the least to the most that it may be.
 Side length_of(const Spec& spec) {
@@ -56,14 +51,13 @@ void orient(Film& film, bool y_down, std::vector<std::string>& notes) {
   const double moved = moving.x.back() - moving.x.front();
   bool flip = y_down;
   if (!y_down && centre && mark) {
-    double turned = 0.0, last = 0.0;
-    for (std::size_t i = 0, k = 0, seen = 0; i < mark->t.size(); ++i) {
-      while (k < centre->t.size() && centre->t[k] < mark->t[i]) ++k;
-      if (k == centre->t.size() || centre->t[k] != mark->t[i]) continue;
+    double turned = 0.0;
+    std::optional<double> last;
+    for_common_times(*mark, *centre, [&, mark = mark, centre = centre](std::size_t i, std::size_t k) {
       const double angle = std::atan2(mark->y[i] - centre->y[k], mark->x[i] - centre->x[k]);
-      if (seen++ > 0) turned += std::remainder(angle - last, 2.0 * std::numbers::pi);
+      if (last) turned += std::remainder(angle - *last, 2.0 * std::numbers::pi);
       last = angle;
-    }
+    });
     flip = turned * moved > 0.0;
     if (flip) notes.push_back("y is downwards in the film: the hoop would roll the wrong way otherwise");
   }
@@ -96,11 +90,9 @@ void find_unit(Film& film, const std::string& stated, const Spec& spec, double s
   double shown = 0.0, allowed = 1.5;  // in the film's unit: the distance of the mark from the axis
   if (centre) {
     std::vector<double> apart;
-    for (std::size_t i = 0, k = 0; i < mark->t.size(); ++i) {
-      while (k < centre->t.size() && centre->t[k] < mark->t[i]) ++k;
-      if (k < centre->t.size() && centre->t[k] == mark->t[i])
-        apart.push_back(std::hypot(mark->x[i] - centre->x[k], mark->y[i] - centre->y[k]));
-    }
+    for_common_times(*mark, *centre, [&, mark = mark, centre = centre](std::size_t i, std::size_t k) {
+      apart.push_back(std::hypot(mark->x[i] - centre->x[k], mark->y[i] - centre->y[k]));
+    });
     if (apart.size() < 3)
       throw InputError(
           fmt::format("{}: '{}' and '{}' have {} times in common; allowed: tracks of the same frames", origin,
@@ -158,17 +150,13 @@ double descent_of(const Film& film) {
   return spread > 0.0 ? -std::atan((xy - x * y / n) / spread) : 0.0;
 }
 
-bool has(const std::vector<std::string>& names, std::string_view name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
 void find_axes(Film& film, const Spec& spec, std::vector<std::string>& notes) {
   const double descent = descent_of(film), slope = spec.design.slope;
   film.is_level = std::abs(descent) > 0.5 * std::abs(slope) && std::abs(slope) > 0.02;
   film.camera.tilt = 0.0;
-  if (!film.is_level && !has(film.free, "tilt")) return;
+  if (!film.is_level && !is_free(film, "tilt")) return;
   film.camera.tilt = descent - (film.is_level ? slope : 0.0);
-  if (film.is_level && !has(film.free, "tilt")) film.free.push_back("tilt");
+  if (film.is_level && !is_free(film, "tilt")) film.free.push_back("tilt");
   notes.push_back(fmt::format(
       "axes: {}; the hoop descends by {:.3g} deg, so that tilt, which is free, is about {:.2g} deg",
       film.is_level ? "horizontal" : "along the plane", descent * 180.0 / std::numbers::pi,
@@ -285,13 +273,13 @@ Film place_film(const Recording& recording, const Spec& spec, const MeasurementO
       notes.push_back(fmt::format("'{}' is {}", track.name, place_words(track)));
     orient(film, options.y_down, notes);
     find_unit(film, recording.unit, spec, options.scale, notes, origin);
-    if (film.unit == "px" && !has(film.free, "scale")) film.free.push_back("scale");
+    if (film.unit == "px" && !is_free(film, "scale")) film.free.push_back("scale");
     find_axes(film, spec, notes);
   }
   const double second = time_unit(spec.scene);
   const auto leaves = leaves_at(film, spec.design.slope, second);
   const double first = observations_of(film).front().t;
-  if (has(film.free, "time_offset")) {
+  if (is_free(film, "time_offset")) {
     film.camera.time_offset = leaves.value_or(first);
   } else if (leaves && is_held(film, spec, *leaves)) {
     film.free.push_back("time_offset"), film.camera.time_offset = *leaves;

@@ -69,9 +69,7 @@ Recording read_film(const std::vector<std::string>& paths, const RecordingOption
       add_table(read_film_table(path), options, recording);
     }
     if (!recording.tracks.empty() && !recording.t.empty())
-      throw InputError(fmt::format("{}: holds {}, other files {}; allowed: points or angles", path,
-                                   recording.tracks.size() > 0 && first ? "points" : "angles",
-                                   first ? "angles" : "points"));
+      throw InputError(path + ": the files hold both points and angles; allowed: one of the two");
   }
   check_recording(recording, paths.back());
   return recording;

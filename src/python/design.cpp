@@ -222,10 +222,11 @@ Measurements measurements_from(const py::dict& given, const Spec& spec, const Me
           fmt::format("'{}' is no column of a film; allowed: t, phi, spin, x_NAME, y_NAME", name));
     }
   }
-  for (const Track& track : recording.tracks)
+  for (Track& track : recording.tracks) {
     if (track.x.empty() || track.y.empty())
-      throw InputError(
-          fmt::format("'{}' has one coordinate; allowed: x_{} and y_{}", track.name, track.name, track.name));
+      throw InputError(fmt::format("'{0}' has one coordinate; allowed: x_{0} and y_{0}", track.name));
+    drop_missing(track);
+  }
   return measurements_of(recording, spec, options);
 }
 

@@ -11,6 +11,9 @@ namespace leapmap {
 /// can give a terminal orders. `kept`: control characters that stay, for example "\n\t".
 std::string printable(std::string_view text, std::string_view kept = "");
 
+/// The text with the letters A to Z small; every other byte as it is.
+std::string lower_case(std::string_view text);
+
 /// A word as a shell takes it, in quotes where it needs them.
 std::string shell_quoted(const std::string& word);
 
