@@ -7,6 +7,7 @@
 
 function(leapmap_kernel_objects target march entry)
   add_library(${target} OBJECT ${LEAPMAP_KERNEL_SOURCES})
+  set_target_properties(${target} PROPERTIES LEAPMAP_LANES ON)
   target_compile_definitions(${target} PRIVATE LEAPMAP_KERNELS=${entry})
   target_compile_options(${target} PRIVATE $<$<NOT:$<STREQUAL:${march},>>:-march=${march}> -fno-gnu-unique
     -fno-lto

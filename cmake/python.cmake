@@ -4,7 +4,7 @@ set(package ${PROJECT_BINARY_DIR}/python/leapmap)
 pybind11_add_module(leapmap-python MODULE NO_EXTRAS src/python/arguments.cpp src/python/design.cpp
   src/python/hoops.cpp src/python/module.cpp src/python/results.cpp)
 set_target_properties(leapmap-python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${package}
-                                                CXX_VISIBILITY_PRESET hidden)
+                                                CXX_VISIBILITY_PRESET hidden UNITY_BUILD OFF)
 target_link_libraries(leapmap-python PRIVATE leapmap leapmap-options)
 target_compile_options(leapmap-python PRIVATE $<$<CONFIG:Release>:-O1>)
 target_precompile_headers(leapmap-python PRIVATE <pybind11/numpy.h> <pybind11/stl.h> <fmt/format.h>)

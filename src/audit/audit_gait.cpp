@@ -17,8 +17,8 @@ namespace leapmap {
 namespace {
 
 /// Of a multiplier by differences, and how far those of other steps may be from them.
-constexpr double multiplier_allowed = 1e-6, settled = 1e-5;
-constexpr double step = 1e-5;  // [rad, sqrt(g/R)]
+constexpr double multiplier_allowed = 1e-6, multiplier_settled = 1e-5;
+constexpr double map_step = 1e-5;  // [rad, sqrt(g/R)]
 
 /// The return map's derivative at a landing by differences. False: it does not jump on from beside it.
 bool differences(const JumpSolver<double>& jumps, const Design& design, const Landed& at, double by,
@@ -98,12 +98,12 @@ auto GaitAuditor::verdict_on(const Design& design, const Outcome& ours, AuditRep
 
   if (std::isnan(ours.gait_multiplier)) return Verdict::right;  // it is not stored
   // Of fourth order, by steps of one and two and by steps of two and four.
-  const double near = work_->multiplier(design, orbit, step),
-               far = work_->multiplier(design, orbit, 2.0 * step),
-               farthest = work_->multiplier(design, orbit, 4.0 * step), right = (4.0 * near - far) / 3.0,
+  const double near = work_->multiplier(design, orbit, map_step),
+               far = work_->multiplier(design, orbit, 2.0 * map_step),
+               farthest = work_->multiplier(design, orbit, 4.0 * map_step), right = (4.0 * near - far) / 3.0,
                coarser = (4.0 * far - farthest) / 3.0, size = 1.0 + std::abs(right),
                doubt = std::abs(right - coarser) / size;
-  if (!(doubt <= settled)) return Verdict::undecided;
+  if (!(doubt <= multiplier_settled)) return Verdict::undecided;
   const double off = std::abs(ours.gait_multiplier - right) / size;
   report.multiplier_max_error = std::max(report.multiplier_max_error, off);
   return off <= multiplier_allowed + allowed_ + doubt ? Verdict::right : Verdict::wrong;

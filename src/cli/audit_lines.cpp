@@ -52,7 +52,7 @@ void say_audit(const AuditReport& report) {
 
 std::string settled_line(const Outcome& outcome, long settle, ShownUnits& units) {
   if (outcome.status != Status::jumped)
-    return fmt::format("After this release it does not jump: {}.", told(discrete(outcome, false)));
+    return fmt::format("After this release it does not jump: {}.", outcome_text(discrete(outcome, false)));
   if (outcome.gait_period == 0)
     return fmt::format(
         "After this release it makes fewer than {} jumps: it is trapped, or reaches the rolling limit.",

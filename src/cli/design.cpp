@@ -151,7 +151,7 @@ void print_design(Report& report, const FoundDesign& found, std::size_t number) 
   if (!binds.empty()) say("     active constraints: {}\n", binds);
   if (!found.cliff.empty())
     say("     nearest discontinuity: at {:.2g} of the bounds' range, {}; beyond: {}\n",
-        found.cliff[0].distance, name_of(found.cliff[0].kind), told(found.cliff[0].beyond));
+        found.cliff[0].distance, name_of(found.cliff[0].kind), outcome_text(found.cliff[0].beyond));
   print_gradients(report, found);
   say("     {}\n", command_of(question, found));
 }

@@ -152,7 +152,7 @@ int run(const FitArguments& arguments) {
   warn_of_fitted_values(spec, report, arguments.free);
   if (arguments.json) {
     Json json{{"seconds", report.seconds}, {"notes", measured.notes}, {"models", Json::array()}};
-    for (const ModelFit& one : report.models) json["models"].push_back(json_of(one));
+    for (const ModelFit& one : report.models) json["models"].push_back(fit_json(one));
     say_json(json);
   } else {
     say("{} in {}\n", measured.origin, spoken_duration(report.seconds));
@@ -160,7 +160,7 @@ int run(const FitArguments& arguments) {
     print_preference(report);
   }
   if (!report.models[0].found) return 1;
-  if (!arguments.csv.empty()) csv.commit(csv_of(measured, report));
+  if (!arguments.csv.empty()) csv.commit(fit_csv(measured, report));
   return 0;
 }
 

@@ -258,7 +258,7 @@ void print_as_read(const Measurements& measured) {
         measured.events[i].error);
 }
 
-Json json_of(const ModelFit& fit) {
+Json fit_json(const ModelFit& fit) {
   Json parameters = Json::object();
   for (const FittedParameter& parameter : fit.parameters)
     parameters[parameter.name] = {
@@ -286,7 +286,7 @@ Json json_of(const ModelFit& fit) {
           {"hop", fit.found ? hop_command(spec_of(fit), fit.design) : ""}};
 }
 
-std::string csv_of(const Measurements& measured, const FitReport& report) {
+std::string fit_csv(const Measurements& measured, const FitReport& report) {
   std::string text(fit_csv_head);
   for (const ModelFit& fit : report.models)
     if (fit.found) text += fmt::format(",model_{0},residual_{0}", model_of(fit.scene).name);

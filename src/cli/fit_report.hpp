@@ -18,10 +18,10 @@ void print_preference(const FitReport& report);
 /// How a film was read: notes, and the first rows of each series.
 void print_as_read(const Measurements& measured);
 
-Json json_of(const ModelFit& fit);
+Json fit_json(const ModelFit& fit);
 
 inline constexpr std::string_view fit_csv_head = "t,quantity,unit,measured";
 /// A line for each number measured: what it is, and what each model has in its place.
-std::string csv_of(const Measurements& measured, const FitReport& report);
+std::string fit_csv(const Measurements& measured, const FitReport& report);
 
 }  // namespace leapmap::cli

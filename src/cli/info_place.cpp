@@ -52,7 +52,7 @@ std::vector<double> values_at(const Spec& spec, const std::string& at) {
 }
 
 void print_outcome(const Outcome& outcome, const Scene& scene) {
-  say("{}\n", told(discrete(outcome, false)));
+  say("{}\n", outcome_text(discrete(outcome, false)));
   for (const Field* field : fields_of(scene)) {
     const std::optional<OutcomeNumber> number = number_of(*field);
     if (!number || std::isnan(number->of(outcome))) continue;
@@ -92,7 +92,7 @@ std::string heights_beside(const Spec& spec, const std::vector<double>& here, co
 
 }  // namespace
 
-std::string told(const Discrete& outcome) {
+std::string outcome_text(const Discrete& outcome) {
   std::string text(name_of(outcome.status));
   if (outcome.jumps_on > 0) text += fmt::format(" at lift-off {}", outcome.jumps_on);
   if (outcome.status != Status::jumped && outcome.spurious_first_jump == 1)
@@ -134,7 +134,7 @@ void print_place(const Spec& original, const std::string& at) {
     for (const NearCliff& cliff : cliffs.along[k]) {
       none = false;
       say("  {:<46} {:<10} height {}, beyond: {}\n", place(k, cliff.at[k]), name_of(cliff.kind),
-          heights_beside(original, here, cliff, k), told(cliff.beyond));
+          heights_beside(original, here, cliff, k), outcome_text(cliff.beyond));
     }
   if (none) say("  none along any axis\n");
   if (cliffs.nearest.empty()) return;

@@ -14,6 +14,6 @@ namespace leapmap::cli {
 void print_place(const Spec& spec, const std::string& at);
 
 /// "jumped at lift-off 2", "no_jump" and the like.
-std::string told(const Discrete& outcome);
+std::string outcome_text(const Discrete& outcome);
 
 }  // namespace leapmap::cli

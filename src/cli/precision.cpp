@@ -26,7 +26,7 @@
 namespace leapmap::cli {
 namespace {
 
-constexpr const char* filetype = "leapmap precision";
+constexpr const char* precision_filetype = "leapmap precision";
 
 struct PrecisionArguments {
   std::string table = "maps/precision.h5", points;
@@ -119,7 +119,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
     if (std::ranges::find(contestants, method, &Contestant::method) == contestants.end())
       throw InputError(fmt::format(
           "--methods {}: lacks friction; allowed with --friction coulomb: exact, gsl-...", method));
-  refuse_taken(arguments.table, filetype, arguments.locking);  // not after minutes of work
+  refuse_taken(arguments.table, precision_filetype, arguments.locking);  // not after minutes of work
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
   print_head();
@@ -130,7 +130,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
     return 128 + noted_signal();
   }
   std::vector<hdf5::Attribute> attributes =
-      file_provenance(filetype, "Speed against accuracy of methods for passive hoops");
+      file_provenance(precision_filetype, "Speed against accuracy of methods for passive hoops");
   attributes.emplace_back("random_designs",
                           static_cast<std::int64_t>(options.points.empty() ? options.designs : 0));
   attributes.emplace_back("friction", std::string(model_of(scene).name));
@@ -139,7 +139,7 @@ int run(PrecisionArguments arguments, bool designs_given) {
   attributes.emplace_back("wall_time",
                           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   const std::array tables{table_of(rows)};
-  if (!write_tables(behind_links(arguments.table), filetype, tables, attributes, arguments.locking))
+  if (!write_tables(behind_links(arguments.table), precision_filetype, tables, attributes, arguments.locking))
     tell_of_folder(arguments.table);
   say("table    {} rows in {}\nchart    /usr/bin/python3 -m leapmap.charts precision {}\n", rows.size(),
       arguments.table, shell_quoted(arguments.table));

@@ -21,7 +21,7 @@
 namespace leapmap::cli {
 namespace {
 
-constexpr const char* filetype = "leapmap stability";
+constexpr const char* stability_filetype = "leapmap stability";
 constexpr std::string_view landing_case = "landing";
 
 struct StabilityArguments {
@@ -117,7 +117,7 @@ Table table_of(std::span<const StabilityRow> rows) {
 }
 
 int run(const StabilityArguments& arguments) {
-  refuse_taken(arguments.table, filetype, arguments.locking);  // not after minutes of work
+  refuse_taken(arguments.table, stability_filetype, arguments.locking);  // not after minutes of work
   note_signals();
   const auto begin = std::chrono::steady_clock::now();
   say("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", "case", "method",
@@ -142,12 +142,12 @@ int run(const StabilityArguments& arguments) {
     print_verdicts(landings);
     rows.insert(rows.end(), landings.begin(), landings.end());
   }
-  std::vector<hdf5::Attribute> attributes = file_provenance(filetype, "Where methods for passive hoops fail");
+  std::vector<hdf5::Attribute> attributes = file_provenance(stability_filetype, "Where methods for passive hoops fail");
   attributes.emplace_back("quick", std::int64_t{arguments.options.quick});
   attributes.emplace_back("wall_time",
                           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   const std::array tables{table_of(rows)};
-  if (!write_tables(behind_links(arguments.table), filetype, tables, attributes, arguments.locking))
+  if (!write_tables(behind_links(arguments.table), stability_filetype, tables, attributes, arguments.locking))
     tell_of_folder(arguments.table);
   say("table    {} rows in {}\ncharts   /usr/bin/python3 -m leapmap.charts stability {}\n", rows.size(),
       arguments.table, shell_quoted(arguments.table));

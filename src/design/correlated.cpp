@@ -5,18 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 namespace leapmap {
 namespace {
 
 constexpr std::size_t most_lags = 2000, most_coefficients = 500;
-
-double sum_of_squares(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return sum;
-}
 
 /// Of neighbours so many lines apart, relative to those of none.
 double autocorrelation(std::span<const double> residuals, std::size_t columns, std::size_t lag, double sum) {
@@ -44,6 +39,10 @@ std::vector<double> slow_squares(std::span<const double> residuals, std::size_t 
 }
 
 }  // namespace
+
+double sum_of_squares(std::span<const double> values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
 
 Correlation correlation_of(std::span<const double> residuals, std::size_t columns, std::size_t parameters) {
   const auto numbers = static_cast<double>(residuals.size()), free = static_cast<double>(parameters);

@@ -62,9 +62,9 @@ Effort effort_of(const Judge& judge, const FindOptions& options) {
 }
 
 /// Tells steps as they are done.
-class Steps {
+class StepCounter {
  public:
-  Steps(const FindOptions& options, std::size_t total) : options_(options), total_(total) {}
+  StepCounter(const FindOptions& options, std::size_t total) : options_(options), total_(total) {}
   void done(std::size_t steps = 1) {
     done_ = std::min(done_ + steps, total_);
     if (options_.progress) options_.progress(done_, total_);
@@ -79,7 +79,7 @@ constexpr std::size_t sample_steps = 32;
 
 /// The best of a dense sample, best first: so many at most. fronts: take those that nothing of the same
 /// outcome dominates.
-std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps,
+std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions& options, StepCounter& steps,
                            Fronts* fronts = nullptr) {
   const std::size_t dimensions = judge.dimensions();
   const std::size_t most = fronts ? 1 : std::size_t{1} << 15;
@@ -144,7 +144,7 @@ void leave_one_a_basin(Judge& judge, std::vector<Place>& places, std::size_t mos
   places = std::move(left);
 }
 
-std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps) {
+std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOptions& options, StepCounter& steps) {
   std::vector<Place> places = starts_of(sampled(judge, effort, options, steps), effort.starts);
   // Each start on a thread of its own.
   parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {
@@ -177,7 +177,7 @@ std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOpt
 }
 
 /// The front; or, if no design is feasible, the nearest miss.
-std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOptions& options, Steps& steps,
+std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOptions& options, StepCounter& steps,
                                 double& hypervolume) {
   Fronts fronts;
   std::vector<Place> best = sampled(judge, effort, options, steps, &fronts);
@@ -331,7 +331,7 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
   const StopScope scope(options.stop_requested);
   Judge judge(question, options.threads, options.stop_requested);
   const Effort effort = effort_of(judge, options);
-  Steps steps(options, sample_steps + effort.starts + effort.improved);
+  StepCounter steps(options, sample_steps + effort.starts + effort.improved);
   FoundDesigns found;
   const std::vector<Place> places = question.objectives.size() == 2
                                         ? front_places(judge, effort, options, steps, found.hypervolume)

@@ -4,18 +4,17 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "design/correlated.hpp"
 #include "numerics/median.hpp"
+#include "numerics/nan.hpp"
 
 namespace leapmap {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The least sum of squares with one parameter held, the others refitted from a place.
 LeastSquaresFit with_one_held(const LeastSquares& problem, std::vector<double> at, std::size_t held,
@@ -100,10 +99,6 @@ std::vector<double> limited(std::span<const double> residuals, double deviation)
 }
 
 }  // namespace
-
-double sum_of_squares(std::span<const double> residuals) {
-  return std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), 0.0);
-}
 
 double robust_deviation(std::span<const double> residuals) {
   std::vector<double> sizes;

@@ -13,8 +13,6 @@
 
 namespace leapmap {
 
-double sum_of_squares(std::span<const double> residuals);
-
 /// Huber's loss: residuals up to so many standard errors count by their squares, larger ones by their size.
 inline constexpr double huber_limit = 1.345;
 

@@ -11,10 +11,10 @@
 namespace leapmap {
 namespace {
 
-/// Steps by chance: a shape that is learnt, and a length that is good.
-class Steps {
+/// RandomSteps by chance: a shape that is learnt, and a length that is good.
+class RandomSteps {
  public:
-  Steps(std::size_t dimensions, const ImproveOptions& options)
+  RandomSteps(std::size_t dimensions, const ImproveOptions& options)
       : dimensions_(static_cast<Eigen::Index>(dimensions)),
         random_(options.seed),
         widest_(options.widest),
@@ -65,7 +65,7 @@ bool is_gain(const Verdict& before, const Verdict& after) {
 }  // namespace
 
 void improve(Judge& judge, Place& place, const ImproveOptions& options) {
-  Steps steps(judge.dimensions(), options);
+  RandomSteps steps(judge.dimensions(), options);
   Cloud cloud(judge, options.a_round);
   constexpr int patience = 12;
   constexpr std::size_t most_learnt = 8, leaps = 8;
@@ -126,7 +126,7 @@ void move_off_boundary(Judge& judge, Place& place, std::uint64_t seed) {
   const std::size_t count = judge.makes_hoops() ? 64 : 2048, tried = count / 16;
   Cloud cloud(judge, count);
   for (double widest = 1e-10; widest < 1e-6; widest *= 10.0) {
-    Steps steps(judge.dimensions(), {.seed = seed, .widest = widest});
+    RandomSteps steps(judge.dimensions(), {.seed = seed, .widest = widest});
     for (std::size_t i = 0; i < count; ++i) cloud.put(i, place.at, steps.next(i));
     cloud.judge();
     std::vector<Place> best;

@@ -41,13 +41,13 @@ std::span<const double> Solved::column(const Field& field) const {
   return derivative ? gradients.column(derivative->of, derivative->by) : made.column(field);
 }
 
-BlockSolver::BlockSolver(const Request& request, std::size_t most_designs,
+BlockSolver::BlockSolver(const Request& request, std::size_t most_in_block,
                          const std::shared_ptr<const SobolPoints>& points)
     : solver_(make_gradient_solver(request)),
       gradients_(derivatives_of(request)),
       made_(statistics_of(request)),
       nominal_(request.hoop.value_or(Body{})),
-      outcomes_(most_designs) {
+      outcomes_(most_in_block) {
   for (const Field* column : request.columns)
     if (const auto* derivative = std::get_if<Derivative>(&column->source); derivative && !derivative->by)
       by_body_.push_back({column, *find_variable(derivative->hoop, &nominal_), {}});

@@ -60,7 +60,7 @@ struct Solved {
 class BlockSolver {
  public:
   /// points: of hoops as made, shared by all threads.
-  BlockSolver(const Request& request, std::size_t most_designs,
+  BlockSolver(const Request& request, std::size_t most_in_block,
               const std::shared_ptr<const SobolPoints>& points);
   /// What it returns holds until the next call. bodies: of the designs where [hoop] varies, else none.
   Solved solve(std::span<const Design> designs, std::span<const Body> bodies = {});

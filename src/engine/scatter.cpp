@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/scatter.hpp"
+#include "numerics/nan.hpp"
 #include "numerics/sobol_indices.hpp"
 #include "request/solver.hpp"
 #include "spec/spec.hpp"
@@ -18,7 +18,6 @@
 namespace leapmap {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double wanted_yield = 0.99;
 
 /// Makes hoops after one design and solves them, on all threads.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "engine/parallel.hpp"
 #include "engine/solve_blocks.hpp"
@@ -13,6 +12,7 @@
 #include "leapmap/trace.hpp"
 #include "model/fields.hpp"
 #include "model/parameters.hpp"
+#include "numerics/nan.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
 
@@ -116,7 +116,6 @@ Design gradient(const Design& design, const OutcomeNumber& of, const Scene& scen
 
 std::vector<Design> gradient(std::span<const Design> designs, const OutcomeNumber& of, const Scene& scene,
                              const SolveOptions& options) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Spec spec = spec_of(scene, options);
   for (const Field* field : fields_of(scene))
     if (can_be_differentiated(*field) && number_of(*field) == of)

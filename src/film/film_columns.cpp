@@ -60,11 +60,7 @@ struct Column {
   std::string unit{};   ///< in brackets after the name; empty: not stated
 };
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" _/.");
-  return first == text.npos ? std::string_view{}
-                            : text.substr(first, text.find_last_not_of(" _/.") + 1 - first);
-}
+constexpr std::string_view separators = " _/.";
 
 Role role_of(std::string_view name) {
   const std::string small = lower_case(name);
@@ -81,7 +77,7 @@ void split_point(Column& column) {
   const auto coordinate = [](char c) { return std::string_view("xXyY").find(c) != std::string_view::npos; };
   const auto take = [&](char c, std::string_view rest) {
     column.role = c == 'x' || c == 'X' ? Role::x : Role::y;
-    column.group = trimmed(rest);
+    column.group = trimmed(rest, separators);
   };
   const bool numbered = std::ranges::all_of(name.substr(1), [](char c) { return c >= '0' && c <= '9'; });
   if (coordinate(name.back()) && is_mark(name[name.size() - 2]))
@@ -95,10 +91,10 @@ Column column_of(std::string_view cell) {
   Column column;
   for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}})
     if (const std::size_t at = cell.find(open); at != cell.npos && cell.ends_with(close)) {
-      column.unit = trimmed(cell.substr(at + 1, cell.size() - at - 2));
+      column.unit = trimmed(cell.substr(at + 1, cell.size() - at - 2), separators);
       cell = cell.substr(0, at);
     }
-  column.name = trimmed(cell);
+  column.name = trimmed(cell, separators);
   column.role = role_of(column.name);
   if (column.role == Role::unused) split_point(column);
   return column;

@@ -11,12 +11,13 @@
 #include "support/csv.hpp"
 #include "support/number.hpp"
 #include "support/posix.hpp"
+#include "support/printable.hpp"
 
 namespace leapmap {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{1} << 30;
-constexpr std::string_view allowed =
+constexpr std::string_view a_table =
     "a table of tracked points over time: Tracker, DLTdv, DeepLabCut, Kinovea, an encoder's log, or CSV";
 
 struct Line {
@@ -25,24 +26,19 @@ struct Line {
   bool is_comment;
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \r\t\"";
-  const std::size_t first = text.find_first_not_of(blanks);
-  return first == text.npos ? std::string_view{}
-                            : text.substr(first, text.find_last_not_of(blanks) + 1 - first);
-}
+constexpr std::string_view blanks = " \r\t\"";
 
 /// Lines that are not blank; of comments the text after their mark.
 std::vector<Line> read_lines(const std::string& path) {
-  TextFile file(path, allowed, most_bytes);
-  refuse_other_form(path, file.peek(4096), allowed);
+  TextFile file(path, a_table, most_bytes);
+  refuse_other_form(path, file.peek(4096), a_table);
   std::vector<Line> lines;
   std::string line;
   for (long number = 1; file.next_line(line); ++number) {
     std::string_view text = line;
     if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.ends_with('\r')) text.remove_suffix(1);
-    if (trimmed(text).empty()) continue;
+    if (trimmed(text, blanks).empty()) continue;
     const std::size_t mark = text.find_first_not_of(" \t");
     const bool is_comment = text[mark] == '#' || text[mark] == '%';
     if (is_comment) text.remove_prefix(mark + 1);
@@ -66,10 +62,10 @@ constexpr std::size_t most_cells = 256;  // more than any film has columns
 /// At most one cell more than there may be.
 std::vector<std::string> split(std::string_view text, char delimiter) {
   std::vector<std::string> cells;
-  if (delimiter == ' ') text = trimmed(text);
+  if (delimiter == ' ') text = trimmed(text, blanks);
   for (;;) {
     const std::size_t end = std::min(text.find(delimiter), text.size());
-    cells.emplace_back(trimmed(text.substr(0, end)));
+    cells.emplace_back(trimmed(text.substr(0, end), blanks));
     if (end == text.size() || cells.size() > most_cells) return cells;
     text.remove_prefix(end + 1);
     if (delimiter == ' ') text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
@@ -109,7 +105,7 @@ bool may_name(const std::vector<std::string>& names, const std::vector<std::stri
 
 FilmTable read_film_table(const std::string& path) {
   std::vector<Line> lines = read_lines(path);
-  if (lines.empty()) throw InputError(fmt::format("{}: is empty; allowed: {}", path, allowed));
+  if (lines.empty()) throw InputError(fmt::format("{}: is empty; allowed: {}", path, a_table));
   FilmTable table{.path = path, .delimiter = delimiter_of(lines)};
   for (const Line& line : lines)
     if (split(line.text, table.delimiter).size() > most_cells)
@@ -119,7 +115,7 @@ FilmTable read_film_table(const std::string& path) {
     return !line.is_comment && has_numbers(split(line.text, table.delimiter));
   });
   if (first == lines.end())
-    throw InputError(fmt::format("{}: no line of numbers; allowed: {}", path, allowed));
+    throw InputError(fmt::format("{}: no line of numbers; allowed: {}", path, a_table));
   const std::vector<std::string> numbers = split(first->text, table.delimiter);
   for (auto line = lines.begin(); line != first; ++line)
     if (std::vector<std::string> names = split(line->text, table.delimiter);

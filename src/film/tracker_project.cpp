@@ -20,7 +20,7 @@
 namespace leapmap {
 namespace {
 
-constexpr std::string_view allowed = "a project of Tracker, .trk or .trz";
+constexpr std::string_view a_project = "a project of Tracker, .trk or .trz";
 constexpr std::size_t most_bytes = std::size_t{1} << 28;
 
 /// The text of the .trk in an archive.
@@ -29,7 +29,7 @@ std::string unzipped(const std::string& path) {
   const std::unique_ptr<zip_t, decltype(&zip_discard)> archive(zip_open(path.c_str(), ZIP_RDONLY, &error),
                                                                &zip_discard);
   if (!archive)
-    throw InputError(fmt::format("{}: is not a zip archive that can be read; allowed: {}", path, allowed));
+    throw InputError(fmt::format("{}: is not a zip archive that can be read; allowed: {}", path, a_project));
   const zip_int64_t files = zip_get_num_entries(archive.get(), 0);
   for (zip_int64_t i = 0; i < files; ++i) {
     zip_stat_t entry;
@@ -43,18 +43,18 @@ std::string unzipped(const std::string& path) {
         zip_fopen_index(archive.get(), static_cast<zip_uint64_t>(i), 0), &zip_fclose);
     std::string text(entry.size, '\0');
     if (!file || zip_fread(file.get(), text.data(), entry.size) != static_cast<zip_int64_t>(entry.size))
-      throw InputError(fmt::format("{}: {} cannot be unpacked; allowed: {}", path, entry.name, allowed));
+      throw InputError(fmt::format("{}: {} cannot be unpacked; allowed: {}", path, entry.name, a_project));
     return text;
   }
-  throw InputError(fmt::format("{}: holds no .trk; allowed: {}", path, allowed));
+  throw InputError(fmt::format("{}: holds no .trk; allowed: {}", path, a_project));
 }
 
 std::string text_of(const std::string& path) {
   if (path.ends_with(".trz")) {
-    const TextFile readable(path, allowed, most_bytes);  // says in its own words what is wrong with a file
+    const TextFile readable(path, a_project, most_bytes);  // says in its own words what is wrong with a file
     return unzipped(path);
   }
-  return TextFile(path, allowed, most_bytes).rest();
+  return TextFile(path, a_project, most_bytes).rest();
 }
 
 /// The property of that name of an object; empty: it has none.
@@ -155,7 +155,7 @@ void add_tracker_project(const std::string& path, Recording& recording) {
   const pugi::xml_node panel = document.child("object");
   if (!parsed || !std::string_view(panel.attribute("class").as_string()).ends_with("TrackerPanel"))
     throw InputError(fmt::format("{}: {}; allowed: {}", path,
-                                 parsed ? "is no project of Tracker" : parsed.description(), allowed));
+                                 parsed ? "is no project of Tracker" : parsed.description(), a_project));
   const std::vector<Axes> axes = axes_of(panel);
   const Clock clock = clock_of(panel, path);
   for (const Axes& one : axes)

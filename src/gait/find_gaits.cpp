@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "gait/return_map.hpp"
 #include "leapmap/gait.hpp"
 #include "model/parameters.hpp"
+#include "numerics/nan.hpp"
 #include "numerics/root.hpp"
 #include "physics/flight_search.hpp"
 #include "physics/landing.hpp"
@@ -20,7 +20,7 @@
 namespace leapmap {
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi, nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double finest = 1e-7;  // of the scan [rad]
 constexpr double agrees = 1e-3;  // of the cubic with what is between [rad]
 constexpr int first_angles = 5760;

@@ -12,8 +12,6 @@
 namespace leapmap {
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
-
 StateVector vector_of(const Landed& at) { return {at.angle, at.spin, at.slip, at.normal}; }
 
 /// Moved along what is not held at zero: slip where it sticks, and a rebound where there is none.
@@ -62,7 +60,7 @@ StateMatrix slope_of(const ContactState<DesignDual>& at) {
 
 StateVector between(const Landed& a, const Landed& b) {
   StateVector difference = vector_of(b) - vector_of(a);
-  difference[0] = std::remainder(difference[0], two_pi);
+  difference[0] = std::remainder(difference[0], 2.0 * std::numbers::pi);
   return difference;
 }
 

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "leapmap/errors.hpp"
+#include "numerics/nan.hpp"
 
 namespace leapmap {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 using hdf5::check;
 using hdf5::Handle;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t no_word = 0;
 constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
 constexpr const char* label_long_name = "name of the design in its list";

@@ -26,7 +26,7 @@ constinit const std::array list{
           coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving,
           coulomb::effort, coulomb::ways}};
 
-constinit const Kernels of_this_set{list, static_cast<int>(Lanes<Batch>::count)};
+constinit const Kernels of_this_set{list, static_cast<int>(batch_width)};
 
 }  // namespace
 }  // namespace leapmap

@@ -14,11 +14,10 @@
 namespace leapmap {
 namespace {
 
-constexpr double right_angle = std::numbers::pi / 2.0;
 
 std::string shown(double value, std::string_view unit) {
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  const bool upright = unit == "rad" && std::abs(value) == right_angle;
+  const bool upright = unit == "rad" && std::abs(value) == std::numbers::pi / 2.0;
   return upright ? (value > 0 ? "90 deg" : "-90 deg") : fmt::format("{}", value);
 }
 

@@ -17,7 +17,7 @@ constexpr Range ratio{0.0, 1e12};
 constexpr Range coefficient{0.0, 1e6};  // of friction: more than any pair of materials has
 constexpr Range fraction{0.0, 1.0};
 
-const std::array table{
+const std::array parameter_table{
     Parameter{"mu_static", &Design::mu_static, "1", "coulomb only: static friction coefficient", coefficient,
               Friction::coulomb, true},
     Parameter{"mu_kinetic", &Design::mu_kinetic, "1",
@@ -82,6 +82,6 @@ bool Range::holds(double value) const {
          (most_allowed ? value <= most : value < most);
 }
 
-std::span<const Parameter> parameters() { return table; }
+std::span<const Parameter> parameters() { return parameter_table; }
 
 }  // namespace leapmap

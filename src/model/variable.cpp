@@ -13,29 +13,29 @@
 namespace leapmap {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi, largest = 1e6;
+constexpr double turn = 2.0 * std::numbers::pi, most = 1e6;
 
-const std::array table{
-    BodyNumber{"diameter", &Body::diameter, "m", true, "outer diameter of the hoop", {2e-9, largest}},
+const std::array body_table{
+    BodyNumber{"diameter", &Body::diameter, "m", true, "outer diameter of the hoop", {2e-9, most}},
     BodyNumber{"mass",
                &Body::mass,
                "kg",
                true,
                "mass of the ring and everything on it except the weights",
-               {1e-9, largest}},
+               {1e-9, most}},
     BodyNumber{"inertia",
                &Body::inertia,
                "kg m2",
                false,
                "moment of inertia of that ring about the axis; default: of a thin ring",
-               {0.0, largest}},
-    BodyNumber{"mass", &Weight::mass, "kg", true, "mass of {}", {0.0, largest}},
+               {0.0, most}},
+    BodyNumber{"mass", &Weight::mass, "kg", true, "mass of {}", {0.0, most}},
     BodyNumber{"at",
                &Weight::at,
                "m",
                true,
                "distance of the centre of {} from the axis, up to the radius",
-               {0.0, 0.5 * largest}},
+               {0.0, 0.5 * most}},
     BodyNumber{
         "angle", &Weight::angle, "rad", false, "direction of the centre of {}; default: 0", {-turn, turn}},
     BodyNumber{"inertia",
@@ -43,7 +43,7 @@ const std::array table{
                "kg m2",
                false,
                "moment of inertia of {} about its own centre; default: 0",
-               {0.0, largest}}};
+               {0.0, most}}};
 
 constexpr std::string_view section = "hoop.";
 
@@ -63,13 +63,13 @@ std::string BodyNumber::meaning_of(std::string_view weight) const {
   return text;
 }
 
-std::span<const BodyNumber> body_numbers() { return table; }
+std::span<const BodyNumber> body_numbers() { return body_table; }
 
 const BodyNumber* find_body_number(std::string_view key) {
   if (!key.starts_with(section)) return nullptr;
   const auto [weight, name] = split(key);
   const bool of_weight = key.find('.', section.size()) != key.npos;
-  for (const BodyNumber& row : table)
+  for (const BodyNumber& row : body_table)
     if (row.name == name && row.of_weight() == of_weight) return &row;
   return nullptr;
 }
@@ -111,7 +111,7 @@ std::vector<Variable> variables_of(const Body& body) {
     if (const auto variable = find_variable(key, &body); variable && !std::isnan(variable->of({}, body)))
       given.push_back(*variable);
   };
-  for (const BodyNumber& row : table) {
+  for (const BodyNumber& row : body_table) {
     if (!row.of_weight()) add(std::string(section) + std::string(row.name));
     for (const Weight& weight : body.weights)
       if (row.of_weight()) add(std::string(section) + weight.name + "." + std::string(row.name));
@@ -150,7 +150,7 @@ std::optional<Variable> find_variable(std::string_view key, const Body* body) {
   const BodyNumber* row = body ? find_body_number(key) : nullptr;
   if (!row) return {};
   variable.unit = row->unit, variable.range = row->range;
-  variable.order = all.size() + static_cast<std::size_t>(row - table.data());
+  variable.order = all.size() + static_cast<std::size_t>(row - body_table.data());
   if (!row->of_weight()) {
     variable.ring_ = std::get<double Body::*>(row->member);
     return variable;
@@ -160,7 +160,7 @@ std::optional<Variable> find_variable(std::string_view key, const Body* body) {
   if (weight == body->weights.end()) return {};
   variable.weight_ = static_cast<std::size_t>(weight - body->weights.begin());
   variable.of_weight_ = std::get<double Weight::*>(row->member);
-  variable.order += (variable.weight_ + 1) * table.size();
+  variable.order += (variable.weight_ + 1) * body_table.size();
   if (variable.of_weight_ == &Weight::at) variable.range.most = 0.5 * body->diameter;
   return variable;
 }

@@ -72,6 +72,8 @@ struct Lanes<xsimd::batch<S, A>> {
   }
 };
 
+inline constexpr std::size_t batch_width = Lanes<Batch>::count;
+
 template <class T>
 using MaskOf = typename Lanes<T>::Mask;
 template <class T>

@@ -66,7 +66,7 @@ std::vector<std::string_view> design_parameter_names() {
 }
 
 /// The keys that are no parameters, in order.
-const std::array keys{
+const std::array other_keys{
     Option{"scene",
            "friction",
            FrictionSlot{},
@@ -277,7 +277,7 @@ std::vector<Option> all_options() {
   std::vector<Option> all;
   for (const std::string_view section : spec_sections) {
     const auto add_keys = [&](bool pick_model) {
-      std::ranges::copy_if(keys, std::back_inserter(all), [&](const Option& key) {
+      std::ranges::copy_if(other_keys, std::back_inserter(all), [&](const Option& key) {
         return key.section == section && std::holds_alternative<FrictionSlot>(key.slot) == pick_model;
       });
     };

@@ -14,6 +14,7 @@
 #include "leapmap/errors.hpp"
 #include "leapmap/units.hpp"
 #include "support/number.hpp"
+#include "support/printable.hpp"
 
 namespace leapmap {
 namespace {
@@ -82,11 +83,6 @@ std::optional<double> in_si(std::string_view unit, const char* si) {
   if (!converter) return {};
   const double size = cv_convert_double(converter.get(), 1.0);
   return std::isfinite(size) && size > 0.0 ? std::optional(size) : std::nullopt;
-}
-
-std::string_view trimmed(std::string_view s) {
-  const auto first = s.find_first_not_of(" \t\r"), last = s.find_last_not_of(" \t\r");
-  return first == s.npos ? std::string_view{} : s.substr(first, last - first + 1);
 }
 
 /// How many characters of the text are a number: sign, digits, point, digits, exponent.

@@ -10,12 +10,12 @@
 #include "model/model.hpp"
 #include "numerics/game_steppers.hpp"
 #include "numerics/gsl_integrator.hpp"
+#include "numerics/nan.hpp"
 #include "study/truth.hpp"
 
 namespace leapmap {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr long max_steps = 200'000;
 
 struct Spread {

@@ -8,13 +8,13 @@
 #include <limits>
 
 #include "model/model.hpp"
+#include "numerics/nan.hpp"
 #include "physics/rolling.hpp"
 #include "study/truth.hpp"
 
 namespace leapmap {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double most_error = 0.05;
 

@@ -2,9 +2,9 @@
 /// Flights whose landing event fires too early: y = 0 at lift-off itself, and again wherever the flight dips.
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 
+#include "numerics/nan.hpp"
 #include "physics/flight_search.hpp"
 #include "rolling/exact.hpp"
 #include "study/precision.hpp"
@@ -13,7 +13,6 @@
 namespace leapmap {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double sample = 1e-3;  // of the simulated flights [sqrt(R/g)]
 
 struct Subject {

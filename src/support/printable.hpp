@@ -14,6 +14,9 @@ std::string printable(std::string_view text, std::string_view kept = "");
 /// The text with the letters A to Z small; every other byte as it is.
 std::string lower_case(std::string_view text);
 
+/// The text without such characters at its ends.
+std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r");
+
 /// A word as a shell takes it, in quotes where it needs them.
 std::string shell_quoted(const std::string& word);
 

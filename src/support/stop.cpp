@@ -9,14 +9,14 @@
 namespace leapmap {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 constexpr std::chrono::seconds grace{2};
 constexpr unsigned between = 64;  // calls
 
 // A thread's own, as solvers are.
 thread_local const std::function<bool()>* asked_here = nullptr;
 thread_local unsigned calls = 0;
-thread_local std::optional<Clock::time_point> since;
+thread_local std::optional<SteadyClock::time_point> since;
 
 }  // namespace
 
@@ -30,8 +30,8 @@ StopScope::~StopScope() { asked_here = before_; }
 void throw_if_stopped() {
   if (!asked_here || ++calls % between != 0) return;
   if (!(*asked_here)()) return;
-  if (!since) since = Clock::now();
-  if (Clock::now() - *since > grace) throw Stopped("the work was stopped");
+  if (!since) since = SteadyClock::now();
+  if (SteadyClock::now() - *since > grace) throw Stopped("the work was stopped");
 }
 
 }  // namespace leapmap

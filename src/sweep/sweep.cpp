@@ -25,9 +25,9 @@
 namespace leapmap {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
+using SteadyClock = std::chrono::steady_clock;
+double seconds_since(SteadyClock::time_point begin) {
+  return std::chrono::duration<double>(SteadyClock::now() - begin).count();
 }
 
 /// What a tile adds to the map and to what is known of it.
@@ -98,7 +98,7 @@ class Sweeping {
   /// A tile's share of the audit. False: a stop was requested meanwhile.
   bool look_at(const Auditor& auditor, const std::vector<AuditSample>& samples,
                FinishedTile& finished) const {
-    const auto begin = Clock::now();
+    const auto begin = SteadyClock::now();
     finished.audit = begin_audit(spec_);
     for (const AuditSample& sample : samples) {
       if (stop_requested()) return false;
@@ -120,7 +120,7 @@ class Sweeping {
     seconds_ = seconds_since(begin_);
     writer_.set_seconds(seconds_before_ + seconds_);
     writer_.commit(audit_ ? audit_attributes(*audit_) : std::vector<hdf5::Attribute>{});
-    last_commit_ = Clock::now();
+    last_commit_ = SteadyClock::now();
   }
 
   const Spec& spec_;
@@ -130,7 +130,7 @@ class Sweeping {
   MapWriter& writer_;
   std::optional<AuditReport> audit_;
   double seconds_before_, seconds_ = 0.0, audit_seconds_ = 0.0;  // the last one summed over threads
-  Clock::time_point begin_ = Clock::now(), last_commit_ = begin_;
+  SteadyClock::time_point begin_ = SteadyClock::now(), last_commit_ = begin_;
 };
 
 /// The report on a map that is whole already.

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "numerics/nan.hpp"
 
 namespace leapmap {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Between the two values on either side, of values in any order, which it rearranges.
 double quantile(std::vector<double>& values, double share) {

@@ -14,9 +14,8 @@
 namespace leapmap {
 namespace {
 
-using testing::how_many, testing::nudged, testing::uniform;
+using testing::coulomb, testing::how_many, testing::nudged, testing::uniform;
 
-const Scene coulomb = testing::unit_scene(Friction::coulomb);
 constexpr double tolerance = 1e-10;
 
 Outcome solved(const Design& design, const Scene& scene = coulomb, double asked = tolerance) {

@@ -11,7 +11,7 @@
 namespace leapmap {
 namespace {
 
-const Scene coulomb = testing::unit_scene(Friction::coulomb);
+using testing::coulomb;
 
 /// Down ordinary slopes, down slight ones, where hoops rock to rest, and released and driven either way.
 std::vector<Design> designs_of_three_kinds(std::size_t count) {

@@ -19,7 +19,7 @@
 namespace leapmap {
 namespace {
 
-const Scene coulomb = testing::unit_scene(Friction::coulomb);
+using testing::coulomb;
 
 Design with_friction(Design design, double mu, double restitution = 0.0) {
   design.mu_static = mu;

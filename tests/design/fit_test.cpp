@@ -33,7 +33,7 @@ int films() {
 Scene scene_of(Friction friction) { return {.friction = friction}; }
 
 /// Designs that jump after hops, slips and turns, by chance.
-Design random_design(std::mt19937_64& random, Friction friction) {
+Design jumping_design(std::mt19937_64& random, Friction friction) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution(low, high)(random);
   };
@@ -62,7 +62,7 @@ TEST_P(Motions, AtGivenTimesAreThoseOfATrace) {
   std::mt19937_64 random(3);
   int compared = 0;
   for (int i = 0; i < random_designs; ++i) {
-    const Design design = random_design(random, GetParam());
+    const Design design = jumping_design(random, GetParam());
     const Motion traced = trace(design, scene_of(GetParam()), {.interval = 5e-3, .tolerance = 1e-12});
     if (traced.outcome.status != Status::jumped) continue;
     std::vector<double> times;
@@ -89,7 +89,7 @@ TEST_P(Motions, HaveTheDerivativesThatDifferencesShow) {
   const Scene scene = scene_of(GetParam());
   const std::size_t parameters = GetParam() == Friction::coulomb ? 9 : 8;
   for (int i = 0; i < random_designs; ++i) {
-    const Design design = random_design(random, GetParam());
+    const Design design = jumping_design(random, GetParam());
     const Motion traced = trace(design, scene, {.interval = 0.0});
     if (traced.outcome.status != Status::jumped) continue;
     const auto times = even_times(traced.outcome.jump_time + 0.9 * traced.outcome.flight_time, 23);
@@ -158,7 +158,7 @@ TEST(LeastSquaresFits, StayWithinTheirBounds) {
 }
 
 /// A film at a thousand frames a second, its markers 0.3 mm off.
-Measurements film_of(const Design& truth, const Scene& scene, double error, int seed) {
+Measurements filmed(const Design& truth, const Scene& scene, double error, int seed) {
   std::mt19937_64 random(static_cast<std::uint64_t>(seed));
   std::normal_distribution<double> off(0.0, error);
   Measurements measured{.origin = "film"};
@@ -183,7 +183,7 @@ TEST(Fits, FindTheTruthOfAFilmWithinThreeErrorsIn95PercentOfSeeds) {
   int within = 0;
   double squares = 0.0;
   for (int seed = 0; seed < seeds; ++seed) {
-    const FitReport report = fit(film_of(truth, scene, 3e-4, seed), {},
+    const FitReport report = fit(filmed(truth, scene, 3e-4, seed), {},
                                  {.models = {Friction::coulomb}, .coarse = 128, .starts = 2});
     const ModelFit& found = report.models[0];
     ASSERT_EQ(found.parameters.size(), 3u);
@@ -212,7 +212,7 @@ TEST(Fits, TellWhichModelTheDataPrefer) {
     Design made = truth;
     if (friction == Friction::sticking) made.mu_static = Design{}.mu_static;
     const FitReport report =
-        fit(film_of(made, scene_of(friction), 3e-4, 1), {}, {.coarse = 128, .starts = 2});
+        fit(filmed(made, scene_of(friction), 3e-4, 1), {}, {.coarse = 128, .starts = 2});
     ASSERT_EQ(report.models.size(), 2u);
     EXPECT_EQ(report.models[0].scene.friction, friction);
     EXPECT_GT(report.models[1].information - report.models[0].information, 100.0)

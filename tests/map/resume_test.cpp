@@ -62,7 +62,7 @@ std::size_t resume(const std::string& path) {
   return tiles;
 }
 
-std::string bytes_of(const std::string& path) {
+std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -104,7 +104,7 @@ TEST(Resume, APartCutAtAnyByteIsGoneOnWithOrRefused) {
     for (std::size_t t = 0; t < 5; ++t) writer.write(testing::numbered_tile(layout, tiling, t));
     writer.keep();
   }
-  const std::string whole = bytes_of(part);
+  const std::string whole = text_of(part);
   std::size_t refused = 0, cuts = 0;
   for (std::size_t cut = 0; cut < whole.size(); cut += cut < 200 || cut + 200 > whole.size() ? 1 : 97) {
     std::ofstream(part, std::ios::binary) << whole.substr(0, cut);
@@ -144,7 +144,7 @@ TEST(Resume, ATileThatIsNotWhatWasWrittenIsRefused) {
     const hdf5::Handle space(H5Dget_space(dataset), H5Sclose, "");
     ASSERT_GE(H5Dget_chunk_info(dataset, space, 0, place, &mask, &where, &size), 0);
   }
-  std::string bytes = bytes_of(part);
+  std::string bytes = text_of(part);
   bytes[where + 3] = static_cast<char>(bytes[where + 3] ^ 1);
   std::ofstream(part, std::ios::binary) << bytes;
   MapWriter writer = MapWriter::resume(path, layout, tiling, false);

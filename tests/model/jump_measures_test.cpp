@@ -22,7 +22,7 @@ INSTANTIATE_TEST_SUITE_P(BothModels, Measures, ::testing::Values(Friction::stick
                          });
 
 /// The largest difference of two outcomes' measures, relative to one more than their size.
-double difference(const Outcome& a, const Outcome& b) {
+double measure_difference(const Outcome& a, const Outcome& b) {
   double most = 0.0;
   for (const auto& row : measure_rows<double>)
     most = std::max(most, std::abs(a.*row.kept - b.*row.kept) / (1.0 + std::abs(b.*row.kept)));
@@ -43,9 +43,9 @@ TEST_P(Measures, AreThoseOfTheRefereeAndOfIntegration) {
     if (ours.status != Status::jumped) continue;
     ++jumps;
     if (const Outcome theirs = referee.solve(design); same_flags(ours, theirs))
-      of_referee.push_back(difference(ours, theirs));
+      of_referee.push_back(measure_difference(ours, theirs));
     const Outcome stepped = solve(design, scene, {.method = "gsl-rk8pd", .tolerance = 1e-12});
-    if (same_flags(ours, stepped)) of_integration.push_back(difference(ours, stepped));
+    if (same_flags(ours, stepped)) of_integration.push_back(measure_difference(ours, stepped));
   }
   // A few lie so near a cliff that the methods differ by what they amplify; the bulk shows the formulas.
   for (std::vector<double>* errors : {&of_referee, &of_integration}) {

@@ -25,7 +25,7 @@ class Resistance : public ::testing::TestWithParam<Friction> {};
 INSTANTIATE_TEST_SUITE_P(BothModels, Resistance, ::testing::Values(Friction::sticking, Friction::coulomb),
                          [](const auto& model) { return std::string(model_of(model.param).name); });
 
-Design random_design(std::mt19937_64& random, Friction friction) {
+Design resisted_design(std::mt19937_64& random, Friction friction) {
   Design design = testing::either_way(random, friction);
   design.resisting_torque = uniform(random, 0.0, 0.15);
   if (random() % 2 == 0) design.drive_torque = uniform(random, -0.3, 0.3);
@@ -41,7 +41,7 @@ TEST_P(Resistance, IsWhatTheRefereeFinds) {
   const std::size_t count = testing::how_many(60);
   std::size_t jumps = 0, stalls = 0, reverses = 0, wrong = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Design design = random_design(random, GetParam());
+    const Design design = resisted_design(random, GetParam());
     const Outcome o = solve(design, scene);
     if (o.status == Status::failed) {
       reverses += o.failure && std::string(o.failure).find("reverses") != std::string::npos;
@@ -143,7 +143,7 @@ TEST_P(Resistance, IsTheSameInLanesByOneByIntegrationAndInTraces) {
   std::mt19937_64 random(73);
   const Scene scene = testing::unit_scene(GetParam());
   std::vector<Design> designs;
-  for (int i = 0; i < 64; ++i) designs.push_back(random_design(random, GetParam()));
+  for (int i = 0; i < 64; ++i) designs.push_back(resisted_design(random, GetParam()));
   const std::vector<Outcome> lanes = solve(designs, scene, {.threads = 1});
   int jumps = 0;
   for (std::size_t i = 0; i < designs.size(); ++i) {
@@ -168,7 +168,7 @@ TEST_P(Resistance, HasTheDerivativesThatDifferencesShow) {
   const Scene scene = testing::unit_scene(GetParam());
   int compared = 0;
   for (int i = 0; i < 40; ++i) {
-    const Design design = random_design(random, GetParam());
+    const Design design = resisted_design(random, GetParam());
     const double step = 1e-6;
     Design more = design, less = design;
     more.resisting_torque += step, less.resisting_torque -= step;

@@ -28,7 +28,7 @@ class Ways : public ::testing::TestWithParam<Friction> {};
 INSTANTIATE_TEST_SUITE_P(BothModels, Ways, ::testing::Values(Friction::sticking, Friction::coulomb),
                          [](const auto& model) { return std::string(model_of(model.param).name); });
 
-Design random_design(std::mt19937_64& random, Friction friction) {
+Design driven_design(std::mt19937_64& random, Friction friction) {
   Design design = testing::either_way(random, friction);
   if (random() % 2 == 0) design.drive_torque = uniform(random, -0.8, 0.8);
   if (random() % 3 == 0) design.release_spin = 0.0;
@@ -41,7 +41,7 @@ TEST_P(Ways, HaveTheMaximaThatAFineTraceComesNearTo) {
   const Scene scene = testing::unit_scene(GetParam());
   int jumps = 0;
   for (int i = 0; i < 14; ++i) {
-    const Design design = random_design(random, GetParam());
+    const Design design = driven_design(random, GetParam());
     const Outcome o = solve(design, scene);
     if (o.status != Status::jumped || o.jump_time > 60.0) continue;
     ++jumps;
@@ -105,7 +105,7 @@ TEST_P(Ways, OfLaterJumpsBeginAtTheLandingBefore) {
   const Solver solver = make_solver(request_of(spec));
   int later = 0;
   for (int i = 0; i < 200 && later < 20; ++i) {
-    const Design design = random_design(random, GetParam());
+    const Design design = driven_design(random, GetParam());
     Outcome o;
     solver({&design, 1}, {&o, 1});
     if (o.later_jumps.empty() || o.later_jumps.back().time > 80.0) continue;
@@ -149,7 +149,7 @@ TEST_P(Ways, AreTheRefereesToo) {
   const std::size_t count = testing::how_many(16);
   std::size_t jumps = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Design design = random_design(random, GetParam());
+    const Design design = driven_design(random, GetParam());
     const Outcome o = solve(design, scene), judged = referee.solve(design);
     if (o.status != Status::jumped || !same_flags(o, judged)) continue;
     ++jumps;
@@ -177,7 +177,7 @@ TEST_P(Ways, HaveTheDerivativesThatDifferencesShow) {
   scene.clear_height = 0.03;
   const std::size_t count = testing::how_many(60);
   std::vector<Design> designs;
-  for (std::size_t i = 0; i < count; ++i) designs.push_back(random_design(random, GetParam()));
+  for (std::size_t i = 0; i < count; ++i) designs.push_back(driven_design(random, GetParam()));
   std::vector<const Field*> fields;
   std::vector<std::vector<Design>> found;
   for (const Field& field : map_fields())

@@ -12,10 +12,9 @@
 namespace leapmap {
 namespace {
 
-constexpr std::size_t width = Lanes<Batch>::count;
 
 TEST(Lanes, BitsTellEachLaneOfAMask) {
-  for (std::size_t lane = 0; lane < width; ++lane) {
+  for (std::size_t lane = 0; lane < batch_width; ++lane) {
     LaneArray<Batch> values{};
     values[lane] = 1.0;
     EXPECT_EQ(Lanes<Batch>::bits(Lanes<Batch>::load(values.data()) > Batch(0.5)), 1u << lane);
@@ -46,9 +45,9 @@ TEST(Lanes, ARootSearchedInALaneDoesNotDependOnItsNeighbours) {
   };
   LaneArray<Batch> same, mixed;
   same.fill(0.3);
-  for (std::size_t i = 0; i < width; ++i) mixed[i] = 0.3 + 1e-3 * static_cast<double>(i * i);
+  for (std::size_t i = 0; i < batch_width; ++i) mixed[i] = 0.3 + 1e-3 * static_cast<double>(i * i);
   EXPECT_EQ(solve(same)[0], solve(mixed)[0]);
-  for (std::size_t i = 0; i < width; ++i) {
+  for (std::size_t i = 0; i < batch_width; ++i) {
     const double x = solve(mixed)[i];
     EXPECT_NEAR(x - 0.9 * std::sin(x), mixed[i], 3e-16);
   }

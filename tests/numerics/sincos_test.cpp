@@ -12,7 +12,6 @@
 namespace leapmap {
 namespace {
 
-constexpr std::size_t width = Lanes<Batch>::count;
 
 TEST(SinCos, OfABatchAndOfANumberAreGoodToTheLastPlaceOrNearZeroToRoundingsOfTheAngle) {
   std::mt19937_64 random(21);
@@ -25,7 +24,7 @@ TEST(SinCos, OfABatchAndOfANumberAreGoodToTheLastPlaceOrNearZeroToRoundingsOfThe
     }
     const SinCos<Batch> found = sincos_of(Lanes<Batch>::load(angles.data()));
     const auto sines = lanes_of(found.sin), cosines = lanes_of(found.cos);
-    for (std::size_t k = 0; k < width; ++k) {
+    for (std::size_t k = 0; k < batch_width; ++k) {
       const long double x = angles[k];
       // 1.6 units in the last place, as is promised; 2e-19 of the angle is for that of long double
       const auto slack = [&](long double truth) {
@@ -44,7 +43,7 @@ TEST(SinCos, OfABatchAndOfANumberKnowHugeAnglesAndWhatIsNoNumber) {
   for (const double angle : {1e7, -3e15, 1e300}) {
     const SinCos<Batch> found = sincos_of(Batch(angle));
     EXPECT_NEAR(lanes_of(found.sin)[0], std::sin(angle), 1e-15);  // a few roundings
-    EXPECT_NEAR(lanes_of(found.cos)[width - 1], std::cos(angle), 1e-15);
+    EXPECT_NEAR(lanes_of(found.cos)[batch_width - 1], std::cos(angle), 1e-15);
     EXPECT_EQ(sincos_of(angle).sin, std::sin(angle));
   }
   for (const double angle :
@@ -61,10 +60,10 @@ TEST(Wide, DoesWhatItsHalvesDo) {
     for (double& x : b) x = testing::uniform(random, -1.0, 1.0);
     const auto same = [&](const auto& f) {
       const auto wide = lanes_of(f(Lanes<W>::load(a.data()), Lanes<W>::load(b.data())));
-      for (std::size_t first = 0; first < wide.size(); first += width) {
+      for (std::size_t first = 0; first < wide.size(); first += batch_width) {
         const auto half =
             lanes_of(f(Lanes<Batch>::load(a.data() + first), Lanes<Batch>::load(b.data() + first)));
-        for (std::size_t k = 0; k < width; ++k) EXPECT_EQ(wide[first + k], half[k]);
+        for (std::size_t k = 0; k < batch_width; ++k) EXPECT_EQ(wide[first + k], half[k]);
       }
     };
     same([](const auto& x, const auto& y) { return x * y; });
@@ -82,7 +81,7 @@ TEST(Wide, DoesWhatItsHalvesDo) {
   for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] = static_cast<double>(k);
   const W ramp = Lanes<W>::load(numbers.data());
   EXPECT_EQ(Lanes<W>::bits(ramp < W(3.0)), 7u);
-  EXPECT_TRUE(any(ramp > W(2.0 * width - 1.5)) && !all(ramp > W(0.0)) && all(ramp >= W(0.0)));
+  EXPECT_TRUE(any(ramp > W(2.0 * batch_width - 1.5)) && !all(ramp > W(0.0)) && all(ramp >= W(0.0)));
 }
 
 }  // namespace

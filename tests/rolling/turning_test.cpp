@@ -15,19 +15,19 @@ namespace {
 
 using testing::either_way, testing::unit_scene;
 
-std::size_t how_many(std::size_t otherwise) {
+std::size_t designs_to_compare(std::size_t otherwise) {
   const char* asked = std::getenv("LEAPMAP_RANDOM_DESIGNS");
   return asked ? std::strtoull(asked, nullptr, 10) : otherwise;
 }
 
 #ifdef NDEBUG
-constexpr std::size_t usual = 4'000;
+constexpr std::size_t usual_designs = 4'000;
 #else
-constexpr std::size_t usual = 400;
+constexpr std::size_t usual_designs = 400;
 #endif
 
 /// The largest difference of what a jump is, relative to one more than its size.
-double difference(const Outcome& a, const Outcome& b) {
+double jump_difference(const Outcome& a, const Outcome& b) {
   double most = 0.0;
   for (double Outcome::*field :
        {&Outcome::jump_height, &Outcome::jump_time, &Outcome::jump_angle, &Outcome::jump_spin,
@@ -38,7 +38,7 @@ double difference(const Outcome& a, const Outcome& b) {
 }
 
 TEST(Turning, ExactAndIntegrationAgreeOnRandomDesignsThatGoEitherWay) {
-  const std::size_t count = how_many(usual);
+  const std::size_t count = designs_to_compare(usual_designs);
   std::mt19937_64 random(171);
   std::vector<Design> designs(count);
   for (Design& design : designs) design = either_way(random);
@@ -56,7 +56,7 @@ TEST(Turning, ExactAndIntegrationAgreeOnRandomDesignsThatGoEitherWay) {
       const bool same = same_flags(exact[i], by_time);
       const Outcome truth = same ? exact[i] : testing::reference({designs[i]}, unit_scene())[0];
       const bool ours = same_flags(exact[i], truth);
-      const double off = same ? difference(exact[i], by_time) : 0.0;
+      const double off = same ? jump_difference(exact[i], by_time) : 0.0;
 #pragma omp critical
       {
         ++statuses[static_cast<std::size_t>(exact[i].status)];
@@ -67,7 +67,7 @@ TEST(Turning, ExactAndIntegrationAgreeOnRandomDesignsThatGoEitherWay) {
         // more, long double decides.
         if (off > 1e-9) {
           ++ill;
-          worst = std::max(worst, difference(exact[i], testing::reference({designs[i]}, unit_scene())[0]));
+          worst = std::max(worst, jump_difference(exact[i], testing::reference({designs[i]}, unit_scene())[0]));
         }
       }
     }
@@ -83,7 +83,7 @@ TEST(Turning, ExactAndIntegrationAgreeOnRandomDesignsThatGoEitherWay) {
 }
 
 TEST(Turning, WithFrictionQuadraturesAndIntegrationAgreeOnRandomDesignsThatGoEitherWay) {
-  const std::size_t count = how_many(usual) / 10;
+  const std::size_t count = designs_to_compare(usual_designs) / 10;
   const Scene scene = unit_scene(Friction::coulomb);
   std::mt19937_64 random(172);
   std::vector<Design> designs(count);
@@ -112,7 +112,7 @@ TEST(Turning, WithFrictionQuadraturesAndIntegrationAgreeOnRandomDesignsThatGoEit
         turned += a.status == Status::jumped && a.jump_spin * designs[i].release_spin < 0.0;
         if (!ours) ++against_us, first = testing::told(designs[i]);
         // Each phase may amplify the integration's error of 1e-12.
-        if (!failed && same && a.status == Status::jumped && difference(a, b) > 1e-7) ++ill;
+        if (!failed && same && a.status == Status::jumped && jump_difference(a, b) > 1e-7) ++ill;
       }
     }
   }

@@ -18,6 +18,8 @@ inline Scene unit_scene(Friction friction = Friction::sticking) {
   return {.friction = friction, .radius = 1.0, .gravity = 1.0};
 }
 
+inline const Scene coulomb = unit_scene(Friction::coulomb);
+
 /// The same with a motor that idles in flight, as the reference tables have it.
 inline Scene idle_scene(Friction friction = Friction::sticking) {
   Scene scene = unit_scene(friction);

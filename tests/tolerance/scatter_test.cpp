@@ -26,9 +26,9 @@ namespace {
 using testing::columns_of, testing::scattered;
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr std::size_t smaller = 10;  // with sanitizers hoops take so much longer
+constexpr std::size_t fewer = 10;  // with sanitizers hoops take so much longer
 #else
-constexpr std::size_t smaller = 1;
+constexpr std::size_t fewer = 1;
 #endif
 constexpr double of_95 = 1.96;  // errors in the interval that holds in 95 of 100 cases
 
@@ -92,7 +92,7 @@ Estimate plain_quantile(const std::vector<double>& sorted, double share) {
 /// LEAPMAP_RANDOM_HOOPS=10000000 makes it the full test, of minutes.
 TEST(Scatter, YieldAndQuantilesAreThoseOfBruteForceWithinFourErrors) {
   const char* asked = std::getenv("LEAPMAP_RANDOM_HOOPS");
-  const auto hoops = asked ? static_cast<std::size_t>(std::atoll(asked)) : std::size_t{40'000} / smaller;
+  const auto hoops = asked ? static_cast<std::size_t>(std::atoll(asked)) : std::size_t{40'000} / fewer;
   Spec spec = scattered();
   std::mt19937_64 random(17);
   std::size_t in_between = 0, quantiles = 0;
@@ -149,7 +149,7 @@ TEST(Scatter, ErrorsHoldAsOftenAsTheySay) {
   std::vector<Design> designs{{.slope = 0.40, .mass_ratio = 2.0}, {.slope = 0.45, .mass_ratio = 2.0},
                               {.slope = 0.45, .mass_ratio = 2.6}, {.slope = 0.35, .mass_ratio = 6.0},
                               {.slope = 0.40, .mass_ratio = 3.5}, {.slope = 0.35, .mass_ratio = 2.6}};
-  if (smaller > 1) designs.resize(1);
+  if (fewer > 1) designs.resize(1);
   const auto held = seeds_held(designs);
   EXPECT_EQ(held.size(), 5 * designs.size());
   for (const auto& [name, count] : held) {
@@ -280,7 +280,7 @@ TEST(Scatter, ErrorsOfIndicesHoldWhereFewHoopsMissTheGoal) {
   spec.scatter.spreads = {{"slope", Spread::Law::normal, degrees(1.0)},
                           {"mass_ratio", Spread::Law::normal, 2.0, true},
                           {"release_angle", Spread::Law::uniform, degrees(3.0)}};
-  if (smaller > 1) GTEST_SKIP() << "hoops take too long with sanitizers, which other tests of them have";
+  if (fewer > 1) GTEST_SKIP() << "hoops take too long with sanitizers, which other tests of them have";
   spec.scatter.samples = 1 << 17, spec.scatter.seed = 999;
   const ScatterReport truth = scatter(spec);
   spec.scatter.samples = 2048;
