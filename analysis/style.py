@@ -110,10 +110,14 @@ def replace_file(path, content):
         raise
 
 
+# What every chart is written as, with what would differ from one day to the next.
+FORMATS = {"png": None, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+
+
 def save(figure, output):
     """Writes PNG, SVG and PDF, the same bytes for the same map, and says where they are."""
     output = stem(output)
-    for ending, metadata in (("png", None), ("svg", {"Date": None}), ("pdf", {"CreationDate": None})):
+    for ending, metadata in FORMATS.items():
         drawn = io.BytesIO()
         figure.savefig(drawn, format=ending, metadata=metadata)
         figure.set_layout_engine("none")  # laid out once: that takes as long as to draw

@@ -151,7 +151,8 @@ std::string csv_of(const Boundaries& found) {
     const Cliff& cliff = found.cliffs[i];
     on_curve[i] = true;
     text += fmt::format("{},{},{},{},\"{}\",\"{}\"\n", curve, name_of(cliff.kind), found.axes[cliff.axis].key,
-                        fmt::join(place_of(found, cliff), ","), outcome_text(cliff.below), outcome_text(cliff.above));
+                        fmt::join(place_of(found, cliff), ","), outcome_text(cliff.below),
+                        outcome_text(cliff.above));
   };
   for (std::size_t k = 0; k < found.curves.size(); ++k)
     for (const std::size_t cliff : found.curves[k].cliffs) line(fmt::format("{}", k), cliff);

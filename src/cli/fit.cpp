@@ -164,6 +164,33 @@ int run(const FitArguments& arguments) {
   return 0;
 }
 
+/// How films are read.
+void add_film(Command& command, FitArguments& arguments) {
+  command.group("Film");
+  command.value("--marker", arguments.markers,
+                "place of a track on the hoop: \"at=47 mm, angle=0 deg\", or \"NAME: at=47 mm\" for one of "
+                "several; may be "
+                "given again");
+  command.value("--fps", arguments.reading.recording.fps, "frames per second, for tables without times")
+      .check(number({0.0, 1e300, false}));
+  command.value("--loss", arguments.loss, "squares, or huber for films with bad points, which are listed")
+      .check(one_of({"squares", "huber"}));
+  command.flag("--dry-run", arguments.dry_run, "print how the film was read, with its first rows, and stop");
+  command
+      .value("--error", arguments.reading.error,
+             "standard error of angles [rad], or of positions in the unit of the report, m or px; default: "
+             "from the "
+             "residuals")
+      .check(number({0.0, 1e300, false}));
+  command
+      .value("--scale", arguments.reading.scale,
+             "metres per unit of positions; default: found from the size of the hoop")
+      .check(number({0.0, 1e300, false}));
+  command.flag("--y-down", arguments.reading.y_down,
+               "y is downwards, as rows of a picture are; default: found from two tracks");
+  command.flag("--allow-gaps", arguments.reading.allow_gaps, "accept films with missing lines");
+}
+
 }  // namespace
 
 void add_fit(CommandLine& line, int& status) {
@@ -202,29 +229,7 @@ void add_fit(CommandLine& line, int& status) {
       },
       "what is free, separated by commas: parameters within usual bounds, and of a film time_offset, "
       "angle_offset, scale, tilt");
-  command.group("Film");
-  command.value("--marker", arguments->markers,
-                "place of a track on the hoop: \"at=47 mm, angle=0 deg\", or \"NAME: at=47 mm\" for one of "
-                "several; may be "
-                "given again");
-  command.value("--fps", arguments->reading.recording.fps, "frames per second, for tables without times")
-      .check(number({0.0, 1e300, false}));
-  command.value("--loss", arguments->loss, "squares, or huber for films with bad points, which are listed")
-      .check(one_of({"squares", "huber"}));
-  command.flag("--dry-run", arguments->dry_run, "print how the film was read, with its first rows, and stop");
-  command
-      .value("--error", arguments->reading.error,
-             "standard error of angles [rad], or of positions in the unit of the report, m or px; default: "
-             "from the "
-             "residuals")
-      .check(number({0.0, 1e300, false}));
-  command
-      .value("--scale", arguments->reading.scale,
-             "metres per unit of positions; default: found from the size of the hoop")
-      .check(number({0.0, 1e300, false}));
-  command.flag("--y-down", arguments->reading.y_down,
-               "y is downwards, as rows of a picture are; default: found from two tracks");
-  command.flag("--allow-gaps", arguments->reading.allow_gaps, "accept films with missing lines");
+  add_film(command, *arguments);
   command.group("Output");
   command
       .value("--csv", arguments->csv,

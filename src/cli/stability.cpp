@@ -142,7 +142,8 @@ int run(const StabilityArguments& arguments) {
     print_verdicts(landings);
     rows.insert(rows.end(), landings.begin(), landings.end());
   }
-  std::vector<hdf5::Attribute> attributes = file_provenance(stability_filetype, "Where methods for passive hoops fail");
+  std::vector<hdf5::Attribute> attributes =
+      file_provenance(stability_filetype, "Where methods for passive hoops fail");
   attributes.emplace_back("quick", std::int64_t{arguments.options.quick});
   attributes.emplace_back("wall_time",
                           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());

@@ -144,7 +144,8 @@ void leave_one_a_basin(Judge& judge, std::vector<Place>& places, std::size_t mos
   places = std::move(left);
 }
 
-std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOptions& options, StepCounter& steps) {
+std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOptions& options,
+                               StepCounter& steps) {
   std::vector<Place> places = starts_of(sampled(judge, effort, options, steps), effort.starts);
   // Each start on a thread of its own.
   parallel_for_each(places.size(), judge.threads(), options.stop_requested, [&] {
@@ -177,8 +178,8 @@ std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOpt
 }
 
 /// The front; or, if no design is feasible, the nearest miss.
-std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOptions& options, StepCounter& steps,
-                                double& hypervolume) {
+std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOptions& options,
+                                StepCounter& steps, double& hypervolume) {
   Fronts fronts;
   std::vector<Place> best = sampled(judge, effort, options, steps, &fronts);
   if (!best.front().verdict.feasible()) {

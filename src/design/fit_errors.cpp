@@ -15,7 +15,6 @@
 namespace leapmap {
 namespace {
 
-
 /// The least sum of squares with one parameter held, the others refitted from a place.
 LeastSquaresFit with_one_held(const LeastSquares& problem, std::vector<double> at, std::size_t held,
                               double value) {
@@ -39,27 +38,27 @@ LeastSquaresFit with_one_held(const LeastSquares& problem, std::vector<double> a
   return alone;
 }
 
-/// The ends of where the sum of squares stays within `allowed` of its least: by steps from the best outwards,
-/// and bisection where that ends.
-std::pair<double, double> profile(const LeastSquares& problem, const LeastSquaresFit& best, std::size_t k,
-                                  double allowed) {
+/// The ends of where the sum of squares stays below `most`: by steps from the best outwards, and bisection
+/// where that ends.
+std::pair<double, double> profile(const LeastSquares& problem, std::span<const double> best, std::size_t k,
+                                  double most) {
   constexpr int steps = 8, halvings = 6;
   const Side& side = problem.bounds[k];
-  std::array<double, 2> ends{best.at[k], best.at[k]};
+  std::array<double, 2> ends{best[k], best[k]};
   for (const int way : {-1, 1}) {
-    std::vector<double> at = best.at;
+    std::vector<double> at(best.begin(), best.end());
     const double bound = way < 0 ? side.low : side.high;
     double& end = ends[way < 0 ? 0 : 1];
     const auto holds = [&](double value) {
       const LeastSquaresFit fit = with_one_held(problem, at, k, value);
-      if (!(fit.sum <= best.sum + allowed)) return false;
+      if (!(fit.sum <= most)) return false;
       end = value, at = fit.at;
       at.insert(at.begin() + static_cast<std::ptrdiff_t>(k), value);
       return true;
     };
     double beyond = bound;
     int step = 1;
-    while (step <= steps && holds(beyond = best.at[k] + (bound - best.at[k]) * step / steps)) ++step;
+    while (step <= steps && holds(beyond = best[k] + (bound - best[k]) * step / steps)) ++step;
     for (int halving = 0; step <= steps && halving < halvings; ++halving)
       if (const double middle = 0.5 * (end + beyond); !holds(middle)) beyond = middle;
   }
@@ -105,6 +104,23 @@ double robust_deviation(std::span<const double> residuals) {
   for (const double residual : residuals) sizes.push_back(std::abs(residual));
   constexpr double of_normal = 0.6745;
   return std::max(median(std::move(sizes)) / of_normal, 1e-12);
+}
+
+LeastSquares weighed(const LeastSquares& problem, std::span<const double> residuals) {
+  const double limit = huber_limit * robust_deviation(residuals);
+  std::vector<double> weights;
+  for (const double residual : residuals)
+    weights.push_back(std::sqrt(std::min(1.0, limit / std::max(std::abs(residual), 1e-300))));
+  LeastSquares weighed{.bounds = problem.bounds, .residuals = problem.residuals, .evaluate = {}};
+  weighed.evaluate = [evaluate = problem.evaluate, columns = problem.bounds.size(),
+                      weights = std::move(weights)](std::span<const double> at, std::span<double> there,
+                                                    std::span<double> jacobian) {
+    if (!evaluate(at, there, jacobian)) return false;
+    for (std::size_t i = 0; i < there.size(); ++i) there[i] *= weights[i];
+    for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= weights[i / columns];
+    return true;
+  };
+  return weighed;
 }
 
 Spreading spreading_of(std::span<const double> residuals, std::size_t degrees, bool errors_known, Loss loss) {
@@ -171,7 +187,7 @@ void judge_film(const Explained& explained, std::span<const double> all, Loss lo
   if (told.judged) told.misfit = over_scatter;
 }
 
-void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance,
+void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance, Loss loss,
                       ModelFit& told) {
   const auto rows = static_cast<Eigen::Index>(problem.residuals),
              columns = static_cast<Eigen::Index>(problem.bounds.size());
@@ -191,6 +207,10 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
     const double known = std::max(svd.singularValues()[i], least);
     covariance += svd.matrixV().col(i) * svd.matrixV().col(i).transpose() * (variance / (known * known));
   }
+  // Bad points move no end of a profile.
+  const LeastSquares counted = loss == Loss::huber ? weighed(problem, best.residuals) : problem;
+  std::vector<double> residuals(problem.residuals);
+  const double sum = counted.evaluate(best.at, residuals, {}) ? sum_of_squares(residuals) : best.sum;
   for (std::size_t k = 0; k < told.parameters.size(); ++k) {
     FittedParameter& parameter = told.parameters[k];
     const Side& side = problem.bounds[k];
@@ -205,7 +225,7 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
     parameter.at_bound = at < on || at > 1.0 - on;
     parameter.low = parameter.value - parameter.error, parameter.high = parameter.value + parameter.error;
     if (!parameter.identified || parameter.at_bound)
-      std::tie(parameter.low, parameter.high) = profile(problem, best, k, variance);
+      std::tie(parameter.low, parameter.high) = profile(counted, best.at, k, sum + variance);
     for (std::size_t j = 0; j < told.parameters.size(); ++j) {
       const auto l = static_cast<Eigen::Index>(j);
       told.correlations.push_back(covariance(i, l) / std::sqrt(covariance(i, i) * covariance(l, l)));

@@ -19,6 +19,9 @@ inline constexpr double huber_limit = 1.345;
 /// The standard deviation of residuals most of which are normal.
 double robust_deviation(std::span<const double> residuals);
 
+/// The problem with each residual weighed as Huber's loss has it about these ones.
+LeastSquares weighed(const LeastSquares& problem, std::span<const double> residuals);
+
 /// How much of the residuals counts, and what that makes of the errors of parameters.
 struct Spreading {
   double sum = 0.0;          ///< of squares that count
@@ -36,7 +39,7 @@ void judge_film(const Explained& explained, std::span<const double> residuals, L
                 Spreading& spreading, ModelFit& told);
 
 /// Standard errors, correlations, and which parameters the data do not determine.
-void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance,
+void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance, Loss loss,
                       ModelFit& told);
 
 }  // namespace leapmap

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "design/correlated.hpp"
 #include "design/fit_errors.hpp"
 #include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
@@ -124,20 +125,7 @@ LeastSquaresFit best_fit(const Explained& explained, const LeastSquares& problem
 LeastSquaresFit robust_fit(const LeastSquares& problem, LeastSquaresFit best, std::size_t& evaluations) {
   constexpr int most_rounds = 30;
   for (int round = 0; round < most_rounds; ++round) {
-    const double deviation = robust_deviation(best.residuals);
-    std::vector<double> weights;
-    for (const double residual : best.residuals)
-      weights.push_back(
-          std::sqrt(std::min(1.0, huber_limit * deviation / std::max(std::abs(residual), 1e-300))));
-    LeastSquares weighted{.bounds = problem.bounds, .residuals = problem.residuals, .evaluate = {}};
-    weighted.evaluate = [&](std::span<const double> at, std::span<double> residuals,
-                            std::span<double> jacobian) {
-      if (!problem.evaluate(at, residuals, jacobian)) return false;
-      for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] *= weights[i];
-      for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= weights[i / problem.bounds.size()];
-      return true;
-    };
-    const LeastSquaresFit next = minimize(weighted, best.at);
+    const LeastSquaresFit next = minimize(weighed(problem, best.residuals), best.at);
     evaluations += next.evaluations;
     if (next.residuals.empty()) break;
     double moved = 0.0;

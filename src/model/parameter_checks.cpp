@@ -14,7 +14,6 @@
 namespace leapmap {
 namespace {
 
-
 std::string shown(double value, std::string_view unit) {
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   const bool upright = unit == "rad" && std::abs(value) == std::numbers::pi / 2.0;

@@ -40,7 +40,7 @@ LEAPMAP_EXPORT const double* reduce_body() {
     body.weights.push_back({"", numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]});
   const ReducedBody found = reduce_checked(body);
   numbers_reduced = {found.total_mass,   found.eccentricity,   found.inertia,  found.mass_ratio,
-             found.offset_ratio, found.inertia_factor, found.direction};
+                     found.offset_ratio, found.inertia_factor, found.direction};
   return numbers_reduced.data();
 }
 

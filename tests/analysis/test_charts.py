@@ -24,7 +24,8 @@ tolerance = 1e-6
 """
 
 
-draw = scripted
+def draw(script, *arguments):
+    return scripted(script, *arguments, formats=["svg"])
 
 
 def texts(svg):
@@ -34,7 +35,7 @@ def texts(svg):
 @pytest.fixture(scope="module")
 def charts(tmp_path_factory):
     folder = tmp_path_factory.mktemp("charts")
-    done = draw("design_chart.py", sweep(folder, CHART), "-o", folder / "chart")
+    done = scripted("design_chart.py", sweep(folder, CHART), "-o", folder / "chart")
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == [
         f"{folder}/chart_{f}.{e}" for f in ("jump_height", "jump_time", "agility")
@@ -87,7 +88,7 @@ def test_the_agility_chart_marks_published_jumpers_with_their_source(charts):
 
 
 def test_charts_are_the_same_bytes_for_the_same_map(charts, tmp_path):
-    assert draw("design_chart.py", charts / "map.h5", "-o", tmp_path / "chart").returncode == 0
+    assert scripted("design_chart.py", charts / "map.h5", "-o", tmp_path / "chart").returncode == 0
     for field in ("jump_height", "agility"):
         for ending in ("png", "svg", "pdf"):
             assert (tmp_path / f"chart_{field}.{ending}").read_bytes() == (
@@ -159,7 +160,7 @@ def test_a_coarse_logarithmic_axis_fills_its_panel_row_by_row(tmp_path):
         "[numerics]\naudit = 0\n"
     )
     for script, output in (("status_chart.py", "chart.png"), ("design_chart.py", "chart_jump_height.png")):
-        done = draw(script, path, "-o", tmp_path / "chart")
+        done = scripted(script, path, "-o", tmp_path / "chart")
         assert done.returncode == 0 and done.stderr == "", done.stderr
         assert "100" in texts(tmp_path / output.replace("png", "svg"))
     # Each design is a twelfth of the panel, which is some 60 % of the picture.

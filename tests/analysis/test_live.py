@@ -367,7 +367,8 @@ def same_as_made(cells, told):
     return int(np.sum((told["yield"] > 0.02) & (told["yield"] < 0.98)))
 
 
-@pytest.mark.parametrize("friction, samples", [("sticking", 256), ("coulomb", 32)])
+@pytest.mark.parametrize("friction, samples", [("sticking", 256),
+                                               pytest.param("coulomb", 32, marks=pytest.mark.slow)])
 def test_the_yield_of_hoops_as_made_is_a_field_by_the_tolerances_and_goals_that_are_set(
         friction, samples, live, tmp_path):
     assert not live.execute_script(
@@ -483,6 +484,7 @@ def gait_of_a_hoop_of_ones_own(browser):
         told["gait_height"], rel=1e-9)
 
 
+@pytest.mark.slow  # its twin is of a map as made
 def test_a_file_s_map_tells_gaits_of_a_hoop_of_one_s_own_too_and_goes_live_as_it_settled(browser, tmp_path):
     path = sweep(
         tmp_path,
@@ -499,7 +501,8 @@ mass_ratio = { from = 2, to = 4, count = 5 }\noffset_ratio = 0.5
     assert browser.execute_script("return window.explorer.map.settle") == 60
 
 
-@pytest.mark.parametrize("jumps", [6, *(pytest.param(n, marks=pytest.mark.slow) for n in (24, 60))])
+@pytest.mark.slow  # its twin is of the gait that each hoop settles on
+@pytest.mark.parametrize("jumps", [6, 24, 60])
 def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps, live, tmp_path):
     asked = "return window.explorer.map.asked.settle"
     live.get("about:blank")

@@ -298,7 +298,7 @@ def test_every_flipped_bit_of_a_finished_map_is_found_and_told(original, tmp_pat
         chunk = m["jump_height"].id.get_chunk_info(1)
     told_where = 0
     for flip in [(chunk.byte_offset + 17, 3), (chunk.byte_offset + chunk.size - 1, 0),
-                 *((bits.randrange(len(whole) - 32), bits.randrange(8)) for _ in range(40))]:
+                 *((bits.randrange(len(whole) - 32), bits.randrange(8)) for _ in range(16))]:
         damaged = bytearray(whole)
         damaged[flip[0]] ^= 1 << flip[1]
         path.write_bytes(damaged)
@@ -333,7 +333,7 @@ def test_check_finds_wrong_numbers_whose_checksums_are_right(original, tmp_path)
 def test_memory_stays_within_what_the_dry_run_promises(tmp_path):
     spec = tmp_path / "spec.toml"
     spec.write_text(
-        SMALL.replace("count = 12", "count = 300").replace("count = 11", "count = 300").replace(
+        SMALL.replace("count = 12", "count = 150").replace("count = 11", "count = 300").replace(
             "audit = 0.05", "audit = 0.5"))
     plan = leapmap("sweep", spec, "-o", tmp_path / "map.h5", "--dry-run").stdout
     promised = {}

@@ -74,7 +74,7 @@ def test_the_man_page_and_completion_know_every_command(prefix, tmp_path):
     assert run("bash", "-c", typed, cwd=tmp_path) == "my map.h5|"
 
 
-@pytest.mark.parametrize("flags", ["", "-O0"])
+@pytest.mark.parametrize("flags", ["", pytest.param("-O0", marks=pytest.mark.slow)])
 def test_another_project_builds_on_the_library(prefix, tmp_path, flags):
     run("cmake", "-G", "Ninja", "-S", CONSUMER, "-B", tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}",
         f"-DCMAKE_CXX_FLAGS={flags} -Wall -Wextra -Werror")

@@ -110,7 +110,7 @@ def test_killed_at_random_moments_it_is_gone_on_with_to_the_same_bits(uninterrup
     expected = values(whole)
     moments = random.Random(4)
     resumed_in_the_middle = 0
-    kills = int(os.environ.get("LEAPMAP_KILLS", 4))  # slow.kills: 40
+    kills = int(os.environ.get("LEAPMAP_KILLS", 2))  # slow.kills: 40
     for run in range(kills):
         folder = tmp_path / str(run)
         folder.mkdir()

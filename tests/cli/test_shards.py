@@ -200,7 +200,7 @@ def test_a_shard_is_no_map_to_anything_else(tmp_path):
 
 
 def test_a_shard_that_was_killed_is_gone_on_with(tmp_path):
-    spec = COULOMB.replace("count = 30", "count = 300").replace("count = 20", "count = 60").replace(
+    spec = COULOMB.replace("count = 30", "count = 300").replace("count = 20", "count = 30").replace(
         "audit = 0.01", "audit = 0.02")
     (tmp_path / "shards.toml").write_text(spec)
     command = [
@@ -212,7 +212,7 @@ def test_a_shard_that_was_killed_is_gone_on_with(tmp_path):
         process = subprocess.Popen([str(word) for word in [*command, "--shard", f"{i}/3"]],
                                    stderr=subprocess.PIPE, text=True)
         end = time.monotonic() + 60
-        while time.monotonic() < end and not (part.exists() and part.stat().st_size > 300_000):
+        while time.monotonic() < end and not (part.exists() and part.stat().st_size > 200_000):
             time.sleep(0.02)
         process.send_signal(sign)
         said = process.communicate(timeout=60)[1]

@@ -69,6 +69,7 @@ def test_charts_of_the_cases_show_the_verdicts(table, tmp_path):
         assert case in drawn and ("closed form" in drawn if case == "landing" else "gsl-rk8pd" in drawn), case
 
 
+@pytest.mark.slow
 def test_scipy_and_boost_solve_the_same_designs_and_stand_on_the_same_chart(tmp_path):
     done = scripted("rivals.py", "--quick", "--designs", 4, "-o", tmp_path / "rivals")
     assert done.returncode == 0, done.stderr

@@ -22,10 +22,10 @@ constexpr std::size_t sample = 1 << 11, brute = 30,
                       most = 1;  // with sanitizers a hoop takes twenty times as long
 #else
 constexpr std::size_t most = 8;
-/// Hoops of a sample: 32768 unless LEAPMAP_SEARCHED says how many.
+/// Hoops of a sample: 16384 unless LEAPMAP_SEARCHED says how many.
 const std::size_t sample =
-    std::getenv("LEAPMAP_SEARCHED") ? std::strtoul(std::getenv("LEAPMAP_SEARCHED"), nullptr, 10) : 1 << 15;
-/// Hoops of a grid along each of three parameters: 60 beside 32768.
+    std::getenv("LEAPMAP_SEARCHED") ? std::strtoul(std::getenv("LEAPMAP_SEARCHED"), nullptr, 10) : 1 << 14;
+/// Hoops of a grid along each of three parameters: 48 beside 16384.
 const auto brute = static_cast<std::size_t>(std::cbrt(7.0 * static_cast<double>(sample)));
 #endif
 

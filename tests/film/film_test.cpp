@@ -307,5 +307,34 @@ TEST(FilmFits, WithBadPointsAreRobustWithHubersLoss) {
   EXPECT_LT(robust_fit.parameters[0].error, 0.3 * plain_fit.parameters[0].error);
 }
 
+/// A bare hoop rolls on a level plane and nothing resists: the torque is at its bound, and has a profile.
+TEST(FilmFits, BadPointsWidenNoProfileWithHubersLoss) {
+  const Scene scene{.runway = 1000.0};
+  const auto high_of = [&](bool has_bad, Loss loss) {
+    std::mt19937_64 random(6);
+    std::normal_distribution<double> off(0.0, 1e-3);
+    Measurements measured{.origin = "film"};
+    const double second = std::sqrt(scene.radius / scene.gravity);
+    for (int i = 0; i < 200; ++i) {
+      const double t = 0.1 * i;
+      measured.film.t.push_back(t * second);
+      measured.film.phi.push_back(1.0 + 0.5 * t + off(random) +
+                                  (has_bad && i % 20 == 10 ? (i % 40 == 10 ? 0.1 : -0.1) : 0.0));
+    }
+    Spec spec;
+    spec.scene = scene;
+    spec.design = {.slope = 0.0, .mass_ratio = 0.0, .release_angle = 1.0, .release_spin = 0.5};
+    const FitOptions options{
+        .models = {Friction::sticking}, .free = {"resisting_torque"}, .loss = loss, .coarse = 64};
+    const ModelFit fitted = fit(measured, spec, options).models[0];
+    EXPECT_TRUE(fitted.found);
+    if (!has_bad || loss == Loss::huber) EXPECT_TRUE(fitted.parameters[0].at_bound);
+    return fitted.parameters[0].high;
+  };
+  const double clean = high_of(false, Loss::squares);
+  EXPECT_LT(high_of(true, Loss::huber), 2.0 * clean) << "a tenth of the points lost, and others cut";
+  EXPECT_GT(high_of(true, Loss::squares), 4.0 * clean);
+}
+
 }  // namespace
 }  // namespace leapmap

@@ -71,7 +71,7 @@ TEST(Resume, AMapKilledAtAnyMomentIsGoneOnWithFromItsLastCommit) {
   const testing::TemporaryFolder folder;
   const std::string path = folder / "map.h5";
   std::size_t most = 0, blank = 0;
-  const long stride = std::getenv("LEAPMAP_EVERY_CALL") ? 1 : 5;
+  const long stride = std::getenv("LEAPMAP_EVERY_CALL") ? 1 : 11;
   for (long call = 0; testing::dies_at_call(call, [&] { sweep(path); }); call += stride) {
     if (fs::exists(path)) {  // killed after it was whole
       fs::remove(path);

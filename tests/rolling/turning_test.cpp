@@ -67,7 +67,8 @@ TEST(Turning, ExactAndIntegrationAgreeOnRandomDesignsThatGoEitherWay) {
         // more, long double decides.
         if (off > 1e-9) {
           ++ill;
-          worst = std::max(worst, jump_difference(exact[i], testing::reference({designs[i]}, unit_scene())[0]));
+          worst =
+              std::max(worst, jump_difference(exact[i], testing::reference({designs[i]}, unit_scene())[0]));
         }
       }
     }

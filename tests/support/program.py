@@ -27,9 +27,9 @@ def finished(*command):
     return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
 
 
-def scripted(script, *arguments):
+def scripted(script, *arguments, formats=None):
     """A script of analysis as finished() runs it, in a fork of this process: to import matplotlib anew takes
-    a second."""
+    a second. formats: those of a chart that are drawn, where a test reads no others."""
     import h5py, matplotlib.pyplot  # noqa: E401, F401  once for all forks
     words = [str(word) for word in (TOP / "analysis" / script, *arguments)]
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
@@ -46,6 +46,9 @@ def scripted(script, *arguments):
                     str(TOP / "analysis"), *filter(None,
                                                    os.environ.get("PYTHONPATH", "").split(":"))
                 ]
+                if formats:
+                    import style
+                    style.FORMATS = {name: style.FORMATS[name] for name in formats}
                 runpy.run_path(words[0], run_name="__main__")
                 status = 0
             except SystemExit as end:
