@@ -211,8 +211,7 @@ TEST(Fits, TellWhichModelTheDataPrefer) {
     const Design truth{.release_angle = degrees(195), .release_spin = 0.1, .mu_static = 0.5};
     Design made = truth;
     if (friction == Friction::sticking) made.mu_static = Design{}.mu_static;
-    const FitReport report =
-        fit(filmed(made, scene_of(friction), 3e-4, 1), {}, {.coarse = 128, .starts = 2});
+    const FitReport report = fit(filmed(made, scene_of(friction), 3e-4, 1), {}, {.coarse = 128, .starts = 2});
     ASSERT_EQ(report.models.size(), 2u);
     EXPECT_EQ(report.models[0].scene.friction, friction);
     EXPECT_GT(report.models[1].information - report.models[0].information, 100.0)
