@@ -12,7 +12,6 @@
 namespace leapmap {
 namespace {
 
-
 TEST(Lanes, BitsTellEachLaneOfAMask) {
   for (std::size_t lane = 0; lane < batch_width; ++lane) {
     LaneArray<Batch> values{};

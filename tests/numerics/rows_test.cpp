@@ -6,7 +6,6 @@
 namespace leapmap {
 namespace {
 
-
 TEST(Rows, ComeBackAsColumnsWhateverTheirOrder) {
   std::array<Row<double>, 20> rows;
   for (std::size_t i = 0; i < rows.size(); ++i)

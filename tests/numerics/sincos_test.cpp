@@ -12,7 +12,6 @@
 namespace leapmap {
 namespace {
 
-
 TEST(SinCos, OfABatchAndOfANumberAreGoodToTheLastPlaceOrNearZeroToRoundingsOfTheAngle) {
   std::mt19937_64 random(21);
   for (int i = 0; i < 100'000; ++i) {
