@@ -1,0 +1,42 @@
+# The program.
+find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)  # the Debian package has no usable CMake file of its own
+add_executable(leapmap-program
+  src/cli/audit_lines.cpp
+  src/cli/boundaries.cpp
+  src/cli/check.cpp
+  src/cli/command_line.cpp
+  src/cli/design.cpp
+  src/cli/export.cpp
+  src/cli/shown_units.cpp
+  src/cli/fit.cpp
+  src/cli/fit_report.cpp
+  src/cli/gait.cpp
+  src/cli/hop.cpp
+  src/cli/hop_gradient.cpp
+  src/cli/hop_jump.cpp
+  src/cli/hop_scatter.cpp
+  src/cli/info.cpp
+  src/cli/info_place.cpp
+  src/cli/join.cpp
+  src/cli/json.cpp
+  src/cli/main.cpp
+  src/cli/motor.cpp
+  src/cli/out_of_memory.cpp
+  src/cli/output.cpp
+  src/cli/precision.cpp
+  src/cli/progress.cpp
+  src/cli/spec_flags.cpp
+  src/cli/spoken.cpp
+  src/cli/stability.cpp
+  src/cli/sweep.cpp
+  src/cli/sweep_plan.cpp
+  src/cli/sweep_retry.cpp)
+set_target_properties(leapmap-program PROPERTIES OUTPUT_NAME leapmap)
+target_include_directories(leapmap-program SYSTEM PRIVATE ${CLI11_INCLUDE_DIR})
+set_target_properties(leapmap-program PROPERTIES LEAPMAP_STATIC_HDF5 ${LEAPMAP_STATIC_HDF5})
+target_link_libraries(leapmap-program PRIVATE leapmap leapmap-options nlohmann_json::nlohmann_json
+  ${CMAKE_DL_LIBS})
+target_compile_options(leapmap-program PRIVATE $<$<CONFIG:Release>:-O1>)
+target_precompile_headers(leapmap-program PRIVATE <algorithm> <cmath> <filesystem> <functional> <map> <memory>
+  <numeric> <optional>
+                                                  <span> <string> <vector> <fmt/format.h>)

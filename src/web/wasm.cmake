@@ -1,0 +1,58 @@
+# The explorer's page runs the exact solver in the browser, from the same sources. Debian's emcc needs
+# NODE_PATH to find its JavaScript packages, and xsimd and Boost beside, not among, this machine's headers.
+find_program(LEAPMAP_EMCC emcc)
+find_path(XSIMD_INCLUDE_DIR xsimd/xsimd.hpp REQUIRED)
+find_path(BOOST_INCLUDE_DIR boost/math/special_functions/erf.hpp)
+if(LEAPMAP_EMCC AND BOOST_INCLUDE_DIR)
+  set(wasm ${PROJECT_BINARY_DIR}/wasm)
+  file(MAKE_DIRECTORY ${wasm}/include)
+  file(CREATE_LINK ${XSIMD_INCLUDE_DIR}/xsimd ${wasm}/include/xsimd SYMBOLIC)
+  file(CREATE_LINK ${BOOST_INCLUDE_DIR}/boost ${wasm}/include/boost SYMBOLIC)
+  add_executable(sobol-directions src/web/sobol_directions.cpp src/numerics/sobol_sequence.cpp)
+  target_include_directories(sobol-directions PRIVATE src)
+  target_link_libraries(sobol-directions PRIVATE GSL::gsl GSL::gslcblas leapmap-options)
+  add_custom_command(OUTPUT ${wasm}/include/sobol_directions.hpp VERBATIM
+    COMMAND sobol-directions > ${wasm}/include/sobol_directions.hpp
+    COMMENT "Reading off the directions of GSL's Sobol' sequence")
+  set(emcc ${CMAKE_COMMAND} -E env NODE_PATH=/usr/share/nodejs ${LEAPMAP_EMCC} -O2 -msimd128 -DLEAPMAP_KERNELS
+    -DLEAPMAP_SCALARS)
+  set(parts
+    web/body web/hoop web/hoops web/made web/page web/without_gsl web/without_stop model/fields
+    model/parameters model/variable coulomb/coulomb coulomb/exact_motion coulomb/gradient
+    coulomb/recorded_way coulomb/way rolling/way trajectory/way coulomb/rolling_leg coulomb/sliding_leg
+    coulomb/sliding_panel rolling/clock rolling/dual_time rolling/exact rolling/exact_motion
+    rolling/dual_jump rolling/find rolling/gradient rolling/halved_time rolling/leg rolling/prepare
+    rolling/rolling_motion rolling/rolling_time rolling/take_off leapmap/outcome gait/error_growth
+    gait/return_map gait/settle numerics/sobol_points tolerance/made_hoops tolerance/made_sample
+    tolerance/scatter_solver)
+  # All in four units, as most of the time goes into reading headers.
+  foreach(part ${parts})
+    list(FIND parts ${part} number)
+    math(EXPR unit "${number} % 4")
+    string(APPEND includes_${unit} "#include \"${part}.cpp\"\n")
+    list(APPEND sources_${unit} src/${part}.cpp)
+  endforeach()
+  set(objects "")
+  foreach(unit 0 1 2 3)
+    set(object ${wasm}/unit_${unit}.o)
+    file(GENERATE OUTPUT ${wasm}/unit_${unit}.cpp CONTENT "${includes_${unit}}")
+    add_custom_command(OUTPUT ${object} DEPFILE ${object}.d VERBATIM COMMAND_EXPAND_LISTS
+      DEPENDS ${wasm}/unit_${unit}.cpp ${sources_${unit}} ${wasm}/include/sobol_directions.hpp
+      COMMAND ${emcc} -std=c++20 -msse2 -DNDEBUG -Wall -Wextra -Wno-bitwise-instead-of-logical
+      -fno-slp-vectorize $<$<BOOL:${LEAPMAP_STRICT}>:-Werror> -I${PROJECT_SOURCE_DIR}/src -isystem
+      ${wasm}/include
+              -DEIGEN_DONT_VECTORIZE -isystem $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>
+              -MD -MF ${object}.d -c ${wasm}/unit_${unit}.cpp -o ${object}
+      COMMENT "Compiling to WebAssembly: unit ${unit} of 4")
+    list(APPEND objects ${object})
+  endforeach()
+  add_custom_command(OUTPUT leapmap.wasm DEPENDS ${objects} VERBATIM
+    COMMAND ${emcc} -sSTANDALONE_WASM -sALLOW_MEMORY_GROWTH=1 --no-entry ${objects} -o
+    ${PROJECT_BINARY_DIR}/leapmap.wasm
+    COMMENT "Linking leapmap.wasm")
+  add_custom_target(leapmap-wasm ALL DEPENDS leapmap.wasm)
+else()
+  message(STATUS
+    "emcc (Debian's emscripten) or Boost's headers (libboost-dev) are not there: the explorer's page cannot \
+be made")
+endif()
