@@ -21,8 +21,8 @@ TWINS = {
 }
 # What the second tier has beside ctest's tests: what the first tier has of it.
 STAGES = {
-    "all C++ tests with ASan and UBSan (`tests/sanitized.sh`)": "`.ci/run` does so for map, support and "
-    "referee",
+    "all C++ tests with ASan and UBSan (`tests/sanitized.sh`)": "before a change to files, films or lanes: "
+    "`sh tests/sanitized.sh map film`",
     "every instruction set, each solving the reference tables; old processors by qemu": "this machine's "
                                                                                         "best set",
     "libFuzzer on specs and maps, ten minutes (`tests/fuzz/run.sh`)": "`cli.test_hostile_files`: flipped "

@@ -65,8 +65,7 @@ std::string settled_line(const Outcome& outcome, long settle, ShownUnits& units)
   };
   return fmt::format(
       "After this release its jumps converge to a gait of period {}: {}, {} down the plane, {} and {} lost "
-      "per "
-      "jump; Floquet multiplier {:.6f}.",
+      "per jump; Floquet multiplier {:.6f}.",
       outcome.gait_period, shown("gait_height", outcome.gait_height), shown("gait_speed", outcome.gait_speed),
       shown("gait_jump_time", outcome.gait_jump_time), shown("gait_energy_lost", outcome.gait_energy_lost),
       outcome.gait_multiplier);

@@ -169,8 +169,7 @@ void add_film(Command& command, FitArguments& arguments) {
   command.group("Film");
   command.value("--marker", arguments.markers,
                 "place of a track on the hoop: \"at=47 mm, angle=0 deg\", or \"NAME: at=47 mm\" for one of "
-                "several; may be "
-                "given again");
+                "several; may be given again");
   command.value("--fps", arguments.reading.recording.fps, "frames per second, for tables without times")
       .check(number({0.0, 1e300, false}));
   command.value("--loss", arguments.loss, "squares, or huber for films with bad points, which are listed")
@@ -179,8 +178,7 @@ void add_film(Command& command, FitArguments& arguments) {
   command
       .value("--error", arguments.reading.error,
              "standard error of angles [rad], or of positions in the unit of the report, m or px; default: "
-             "from the "
-             "residuals")
+             "from the residuals")
       .check(number({0.0, 1e300, false}));
   command
       .value("--scale", arguments.reading.scale,
@@ -202,10 +200,8 @@ void add_fit(CommandLine& line, int& status) {
   command
       .value("FILM", arguments->inputs,
              "films of one motion: Tracker .trk, .trz and text, DLTdv, DeepLabCut, Kinovea, an encoder's "
-             "log, CSV; or a "
-             "CSV table with columns event, value, error; and a spec, SPEC.toml, with the hoop and free "
-             "parameters "
-             "{ from, to }; default: the paper's hoop")
+             "log, CSV; or a CSV table with columns event, value, error; and a spec, SPEC.toml, with the "
+             "hoop and free parameters { from, to }; default: the paper's hoop")
       .check(named_file())
       .several()
       .required();

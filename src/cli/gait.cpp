@@ -181,8 +181,7 @@ void add_gait(CommandLine& line, int& status) {
   command
       .value("--units", arguments->units,
              "units of the report, with blanks between them, for example \"mm ms J\"; default: leapmap's "
-             "own, and "
-             "beside them those of a drawing")
+             "own, and beside them those of a drawing")
       .excludes("--json");
   command.footer(
       "A gait is stable if its Floquet multiplier, the growth of a small deviation over one period, is below "

@@ -52,8 +52,7 @@ void print_later(const Scene& scene, const Jump& later, std::size_t number) {
   Outcome jump;
   for (const JumpRow& row : jump_rows) jump.*row.first = later.*row.later;
   say("Jump {}: {:.6f} diameters ({:.4g} m), flies {:.4g} m along the plane, lands with {:.4g} m/s towards "
-      "it, "
-      "impulse {}, {} lost.\n",
+      "it, impulse {}, {} lost.\n",
       number, jump.jump_height, 2.0 * scene.radius * jump.jump_height, jump.jump_range * scene.radius,
       jump.landing_normal_speed * std::sqrt(scene.gravity * scene.radius),
       with_mass(jump.landing_impulse, 4, "(m + m_p) sqrt(g R)", "N s", scene),

@@ -323,8 +323,7 @@ void add_info(CommandLine& line, int& status) {
   command
       .value("--units", arguments->units,
              "units of axes and fields, with blanks between them, for example \"mm deg ms\"; default: the "
-             "map's, "
-             "and beside them those of a drawing")
+             "map's, and beside them those of a drawing")
       .excludes("--spec")
       .excludes("--failed")
       .excludes("--at");

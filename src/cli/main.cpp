@@ -52,8 +52,7 @@ int run(int argc, char** argv) {
       .value(
           "--instruction-set", [](const std::string& name) { use_instruction_set(name); },
           fmt::format("use a lower instruction set than this machine's best, so that results agree with "
-                      "another machine's "
-                      "bit for bit; one of {}",
+                      "another machine's bit for bit; one of {}",
                       fmt::join(instruction_sets(), ", ")))
       .at_once()
       .shown_as("NAME");

@@ -148,10 +148,8 @@ void check_angles(const Measurements& measured, double second) {
         std::abs(turned) > std::max(fastest / second * passed, 0.5))
       throw InputError(
           fmt::format("{}: phi changes by {:.4g} in {:.4g} s at t = {}, which is faster than any hoop; it "
-                      "may be in degrees, or "
-                      "an angle cut off at a turn; allowed: radians that continue over revolutions, or a "
-                      "header with a unit, "
-                      "phi [deg]",
+                      "may be in degrees, or an angle cut off at a turn; allowed: radians that continue over "
+                      "revolutions, or a header with a unit, phi [deg]",
                       measured.origin, turned, passed, angles.t[i]));
   constexpr double turns = 2.0 * std::numbers::pi;
   if (std::abs(angles.phi.front()) > 2.0 * turns)
@@ -165,8 +163,7 @@ void check_angles(const Measurements& measured, double second) {
   if (high - low > turns * 4.0 * (1.0 + passed / second / 8.0))
     throw InputError(
         fmt::format("{}: phi goes from {:.4g} to {:.4g} in {:.4g} s: it looks like degrees; allowed: "
-                    "radians, or a header with "
-                    "a unit, phi [deg]",
+                    "radians, or a header with a unit, phi [deg]",
                     measured.origin, low, high, passed));
 }
 

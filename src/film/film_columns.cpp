@@ -308,8 +308,7 @@ void add_table(const FilmTable& table, const RecordingOptions& options, Recordin
   if (points.empty() && !has_angle)
     throw InputError(fmt::format(
         "{}: columns {}: none is a point's x and y, or an angle; allowed: a header with names such as t, x, "
-        "y, "
-        "or t, phi",
+        "y, or t, phi",
         table.path,
         table.headers.empty() ? std::string("without names") : first_names(table.headers.back())));
   if (has_angle && !points.empty())

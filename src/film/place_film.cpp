@@ -285,8 +285,7 @@ Film place_film(const Recording& recording, const Spec& spec, const MeasurementO
     film.free.push_back("time_offset"), film.camera.time_offset = *leaves;
     notes.push_back(
         fmt::format("the hoop is held at first: it has left its place at t = {:.4g} s; time_offset, the time "
-                    "of the release, is "
-                    "free",
+                    "of the release, is free",
                     *leaves));
   } else if (constexpr double late = 0.3; !film.tracks.empty() && std::abs(first) > late * second) {
     film.camera.time_offset = first;

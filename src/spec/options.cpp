@@ -131,8 +131,7 @@ const std::array other_keys{
            IntegerSlot{[](Spec& s) -> long& { return s.scene.settle; }},
            "1",
            "transient: jumps to skip before a gait is searched for; 0: no search; 500 if another key of this "
-           "section "
-           "is given",
+           "section is given",
            {0, 1'000'000}},
     Option{"gait",
            "most_period",
@@ -176,8 +175,7 @@ const std::array other_keys{
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients_by; }},
            "",
            "parameters of these derivatives; by default all of the model, with [hoop] its numbers in place "
-           "of the "
-           "ratios",
+           "of the ratios",
            {},
            design_parameter_names,
            {},

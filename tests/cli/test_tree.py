@@ -50,7 +50,8 @@ def test_includes_point_to_rooms_above_their_own():
 
 def test_lines_have_at_most_110_columns():
     ours = [TOP / folder for folder in ("analysis", "docs", "src", "sweeps", "tests")]
-    files = [*TOP.glob("CMakeLists.txt"), *TOP.glob("cmake/*.cmake"), *TOP.glob("tests/**/CMakeLists.txt"),
+    files = [*TOP.glob("CMakeLists.txt"), *TOP.glob("cmake/*.cmake"), *TOP.glob("src/**/*.cmake"),
+             *TOP.glob("tests/**/CMakeLists.txt"),
              TOP / "analysis/explorer"]
     for kind in ("[ch]pp", "py", "js"):
         files += [path for folder in ours for path in folder.rglob(f"*.{kind}")]
