@@ -569,6 +569,7 @@ def test_a_list_of_designs_is_a_dot_each_that_can_be_pointed_at_and_clicked(brow
     assert readout(browser)["index"] == "0"
 
 
+@pytest.mark.slow  # its twin is of a list
 def test_a_front_stands_as_it_was_asked_for_and_each_of_its_designs_jumps(browser, tmp_path):
     (tmp_path / "q.toml").write_text(
         '[design]\nslope = { from = "5 deg", to = "20 deg" }\nmass_ratio = { from = 0.5, to = 10, scale = '
@@ -611,6 +612,7 @@ def test_driven_hoops_and_those_that_turn_round_move_as_leapmap_tells(browser, t
     assert backwards == 3
 
 
+@pytest.mark.slow  # its twin is of a list
 def test_a_grid_over_one_axis_is_dots_too(browser, tmp_path):
     path = sweep(tmp_path, "[design]\nslope = { from = 0.2, to = 0.8, count = 25 }\n")
     opened(browser, made(path))

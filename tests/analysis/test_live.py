@@ -540,6 +540,7 @@ def test_what_takes_many_jumps_is_asked_for_while_one_looks_and_no_longer(jumps,
     assert live.execute_script(asked) == 0
 
 
+@pytest.mark.slow  # its twin is of how many jumps hoops make
 def test_how_errors_grow_is_a_field_of_sequences(live):
     live.execute_script(
         "document.getElementById('map').dataset.whole = 'false'; const j = document.getElementById('jumps'); "

@@ -68,7 +68,8 @@ def pixels(browser, canvas):
 HOOPS_TYPED = int(os.environ.get("LEAPMAP_HOOPS_TYPED", 4))
 
 
-@pytest.mark.parametrize(("friction", "count"), [(False, HOOPS_TYPED * 3 // 5), (True, HOOPS_TYPED * 2 // 5)])
+@pytest.mark.parametrize(("friction", "count"), [(False, HOOPS_TYPED * 3 // 5), pytest.param(
+    True, HOOPS_TYPED * 2 // 5, marks=pytest.mark.slow)])
 def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, count, page):
     if friction:
         page.execute_script("document.getElementById('map').dataset.whole = 'false'")
@@ -249,6 +250,7 @@ def test_what_was_done_is_undone_and_done_again(page):
     waited(page, lambda b: b.execute_script(state) == second)
 
 
+@pytest.mark.slow  # its twin is of an address in test_live.py
 def test_a_link_is_all_that_was_found(page, html):
     """Field, goals, pins, a hoop typed in, its jumps, its mass and the units, as the address has them."""
     Select(page.find_element(

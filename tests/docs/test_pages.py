@@ -106,6 +106,7 @@ def test_the_readme_has_at_most_six_hundred_words():
     assert len((TOP / "README.md").read_text(encoding="utf-8").split()) <= 600
 
 
+@pytest.mark.slow  # in CI docs/build.sh checks them
 def test_words_follow_the_rules():
     done = subprocess.run(
         [sys.executable, TOP / "docs/lint_words.py"], capture_output=True, text=True, check=False
