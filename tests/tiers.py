@@ -17,6 +17,7 @@ BEGIN, END = "<!-- tiers: made by sh tests/run.sh --all -->\n", "<!-- end of tie
 TWINS = {
     "cli.test_slurm": "`cli.test_shards`: by GNU parallel",
     "analysis.test_firefox": "`analysis.test_live`: in chromium",
+    "cli.test_stability": "`cli.test_stability`: without programs of others",
     "mutation": "`mutation.none`: the solvers as they are"
 }
 # What the second tier has beside ctest's tests: what the first tier has of it.

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <vector>
+
+#include "design/least_squares.hpp"
 
 namespace leapmap {
 namespace {
@@ -39,10 +40,6 @@ std::vector<double> slow_squares(std::span<const double> residuals, std::size_t 
 }
 
 }  // namespace
-
-double sum_of_squares(std::span<const double> values) {
-  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
-}
 
 Correlation correlation_of(std::span<const double> residuals, std::size_t columns, std::size_t parameters) {
   const auto numbers = static_cast<double>(residuals.size()), free = static_cast<double>(parameters);

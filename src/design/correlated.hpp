@@ -8,8 +8,6 @@
 
 namespace leapmap {
 
-double sum_of_squares(std::span<const double> values);
-
 struct Correlation {
   double lines =
       1.0;  ///< that count as one: 1 + 2 sum of the autocorrelation up to where it is lost in noise

@@ -106,18 +106,24 @@ double robust_deviation(std::span<const double> residuals) {
   return std::max(median(std::move(sizes)) / of_normal, 1e-12);
 }
 
-LeastSquares weighed(const LeastSquares& problem, std::span<const double> residuals) {
+std::vector<double> huber_weights(std::span<const double> residuals) {
   const double limit = huber_limit * robust_deviation(residuals);
   std::vector<double> weights;
   for (const double residual : residuals)
-    weights.push_back(std::sqrt(std::min(1.0, limit / std::max(std::abs(residual), 1e-300))));
+    weights.push_back(std::min(1.0, limit / std::max(std::abs(residual), 1e-300)));
+  return weights;
+}
+
+LeastSquares weighed(const LeastSquares& problem, std::span<const double> weights) {
+  std::vector<double> factors;
+  for (const double weight : weights) factors.push_back(std::sqrt(weight));
   LeastSquares weighed{.bounds = problem.bounds, .residuals = problem.residuals, .evaluate = {}};
   weighed.evaluate = [evaluate = problem.evaluate, columns = problem.bounds.size(),
-                      weights = std::move(weights)](std::span<const double> at, std::span<double> there,
+                      factors = std::move(factors)](std::span<const double> at, std::span<double> there,
                                                     std::span<double> jacobian) {
     if (!evaluate(at, there, jacobian)) return false;
-    for (std::size_t i = 0; i < there.size(); ++i) there[i] *= weights[i];
-    for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= weights[i / columns];
+    for (std::size_t i = 0; i < there.size(); ++i) there[i] *= factors[i];
+    for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= factors[i / columns];
     return true;
   };
   return weighed;
@@ -207,10 +213,14 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
     const double known = std::max(svd.singularValues()[i], least);
     covariance += svd.matrixV().col(i) * svd.matrixV().col(i).transpose() * (variance / (known * known));
   }
-  // Bad points move no end of a profile.
-  const LeastSquares counted = loss == Loss::huber ? weighed(problem, best.residuals) : problem;
-  std::vector<double> residuals(problem.residuals);
-  const double sum = counted.evaluate(best.at, residuals, {}) ? sum_of_squares(residuals) : best.sum;
+  // Bad points move no end of a profile. Weights flatten the sum by their mean, as they do its curvature.
+  const std::vector<double> weights =
+      loss == Loss::huber ? huber_weights(best.residuals) : std::vector<double>(problem.residuals, 1.0);
+  const LeastSquares counted = weighed(problem, weights);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * best.residuals[i] * best.residuals[i];
+  const double mean =
+      std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
   for (std::size_t k = 0; k < told.parameters.size(); ++k) {
     FittedParameter& parameter = told.parameters[k];
     const Side& side = problem.bounds[k];
@@ -225,7 +235,7 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
     parameter.at_bound = at < on || at > 1.0 - on;
     parameter.low = parameter.value - parameter.error, parameter.high = parameter.value + parameter.error;
     if (!parameter.identified || parameter.at_bound)
-      std::tie(parameter.low, parameter.high) = profile(counted, best.at, k, sum + variance);
+      std::tie(parameter.low, parameter.high) = profile(counted, best.at, k, sum + mean * variance);
     for (std::size_t j = 0; j < told.parameters.size(); ++j) {
       const auto l = static_cast<Eigen::Index>(j);
       told.correlations.push_back(covariance(i, l) / std::sqrt(covariance(i, i) * covariance(l, l)));

@@ -19,8 +19,10 @@ inline constexpr double huber_limit = 1.345;
 /// The standard deviation of residuals most of which are normal.
 double robust_deviation(std::span<const double> residuals);
 
-/// The problem with each residual weighed as Huber's loss has it about these ones.
-LeastSquares weighed(const LeastSquares& problem, std::span<const double> residuals);
+/// By Huber's loss: what the square of each residual counts, 1 at most.
+std::vector<double> huber_weights(std::span<const double> residuals);
+/// The problem with the square of each residual multiplied by a weight.
+LeastSquares weighed(const LeastSquares& problem, std::span<const double> weights);
 
 /// How much of the residuals counts, and what that makes of the errors of parameters.
 struct Spreading {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "design/correlated.hpp"
 #include "design/fit_errors.hpp"
 #include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
@@ -125,7 +124,7 @@ LeastSquaresFit best_fit(const Explained& explained, const LeastSquares& problem
 LeastSquaresFit robust_fit(const LeastSquares& problem, LeastSquaresFit best, std::size_t& evaluations) {
   constexpr int most_rounds = 30;
   for (int round = 0; round < most_rounds; ++round) {
-    const LeastSquaresFit next = minimize(weighed(problem, best.residuals), best.at);
+    const LeastSquaresFit next = minimize(weighed(problem, huber_weights(best.residuals)), best.at);
     evaluations += next.evaluations;
     if (next.residuals.empty()) break;
     double moved = 0.0;

@@ -11,7 +11,7 @@
 namespace leapmap {
 namespace {
 
-/// RandomSteps by chance: a shape that is learnt, and a length that is good.
+/// Steps by chance: a shape that is learnt, and a length that is good.
 class RandomSteps {
  public:
   RandomSteps(std::size_t dimensions, const ImproveOptions& options)

@@ -72,6 +72,10 @@ int jacobian_at(const gsl_vector* arcs, void* data, gsl_matrix* J) {
 
 }  // namespace
 
+double sum_of_squares(std::span<const double> residuals) {
+  return std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), 0.0);
+}
+
 LeastSquaresFit minimize(const LeastSquares& problem, std::span<const double> start, int most_iterations) {
   static const bool silenced = (gsl_set_error_handler_off(), true);
   static_cast<void>(silenced);
@@ -103,7 +107,7 @@ LeastSquaresFit minimize(const LeastSquares& problem, std::span<const double> st
                       .jacobian = std::vector<double>(rows * columns),
                       .evaluations = followed.evaluations + 1};
   if (problem.evaluate(fit.at, fit.residuals, fit.jacobian))
-    fit.sum = std::inner_product(fit.residuals.begin(), fit.residuals.end(), fit.residuals.begin(), 0.0);
+    fit.sum = sum_of_squares(fit.residuals);
   else
     fit.residuals.clear(), fit.jacobian.clear();
   return fit;

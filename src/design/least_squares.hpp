@@ -21,6 +21,8 @@ struct LeastSquares {
       evaluate;
 };
 
+double sum_of_squares(std::span<const double> residuals);
+
 struct LeastSquaresFit {
   std::vector<double> at;
   std::vector<double> residuals, jacobian;  ///< there; empty: there are none

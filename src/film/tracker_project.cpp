@@ -21,7 +21,7 @@ namespace leapmap {
 namespace {
 
 constexpr std::string_view a_project = "a project of Tracker, .trk or .trz";
-constexpr std::size_t most_bytes = std::size_t{1} << 28;
+constexpr std::size_t most_project_bytes = std::size_t{1} << 28;
 
 /// The text of the .trk in an archive.
 std::string unzipped(const std::string& path) {
@@ -36,9 +36,9 @@ std::string unzipped(const std::string& path) {
     zip_stat_init(&entry);
     if (zip_stat_index(archive.get(), static_cast<zip_uint64_t>(i), 0, &entry) != 0) continue;
     if (!std::string_view(entry.name).ends_with(".trk")) continue;
-    if (entry.size > most_bytes)
-      throw InputError(
-          fmt::format("{}: {} has {} bytes; allowed: at most {}", path, entry.name, entry.size, most_bytes));
+    if (entry.size > most_project_bytes)
+      throw InputError(fmt::format("{}: {} has {} bytes; allowed: at most {}", path, entry.name, entry.size,
+                                   most_project_bytes));
     const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> file(
         zip_fopen_index(archive.get(), static_cast<zip_uint64_t>(i), 0), &zip_fclose);
     std::string text(entry.size, '\0');
@@ -51,10 +51,11 @@ std::string unzipped(const std::string& path) {
 
 std::string text_of(const std::string& path) {
   if (path.ends_with(".trz")) {
-    const TextFile readable(path, a_project, most_bytes);  // says in its own words what is wrong with a file
+    const TextFile readable(path, a_project,
+                            most_project_bytes);  // says in its own words what is wrong with a file
     return unzipped(path);
   }
-  return TextFile(path, a_project, most_bytes).rest();
+  return TextFile(path, a_project, most_project_bytes).rest();
 }
 
 /// The property of that name of an object; empty: it has none.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One set of kernels, under a name of its own: LEAPMAP_KERNELS, which CMakeLists.txt gives.
+/// One set of kernels, under a name of its own: LEAPMAP_KERNELS, which cmake/kernels.cmake gives.
 #include "model/kernels.hpp"
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The kernels: all that is compiled once for each instruction set, and what the rest of the library sees of
-/// it. CMakeLists.txt lists their sources, and makes everything in them invisible to each other and to the
-/// rest: not even an inline function compiled for a newer machine can become the one that an older one runs.
+/// it. cmake/kernels.cmake makes everything in them invisible to each other and to the rest: not even an
+/// inline function compiled for a newer machine can become the one that an older one runs.
 #pragma once
 
 #include <span>

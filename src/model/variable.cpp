@@ -13,29 +13,29 @@
 namespace leapmap {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi, most = 1e6;
+constexpr double turn = 2.0 * std::numbers::pi, most_of_body = 1e6;
 
 const std::array body_table{
-    BodyNumber{"diameter", &Body::diameter, "m", true, "outer diameter of the hoop", {2e-9, most}},
+    BodyNumber{"diameter", &Body::diameter, "m", true, "outer diameter of the hoop", {2e-9, most_of_body}},
     BodyNumber{"mass",
                &Body::mass,
                "kg",
                true,
                "mass of the ring and everything on it except the weights",
-               {1e-9, most}},
+               {1e-9, most_of_body}},
     BodyNumber{"inertia",
                &Body::inertia,
                "kg m2",
                false,
                "moment of inertia of that ring about the axis; default: of a thin ring",
-               {0.0, most}},
-    BodyNumber{"mass", &Weight::mass, "kg", true, "mass of {}", {0.0, most}},
+               {0.0, most_of_body}},
+    BodyNumber{"mass", &Weight::mass, "kg", true, "mass of {}", {0.0, most_of_body}},
     BodyNumber{"at",
                &Weight::at,
                "m",
                true,
                "distance of the centre of {} from the axis, up to the radius",
-               {0.0, 0.5 * most}},
+               {0.0, 0.5 * most_of_body}},
     BodyNumber{
         "angle", &Weight::angle, "rad", false, "direction of the centre of {}; default: 0", {-turn, turn}},
     BodyNumber{"inertia",
@@ -43,7 +43,7 @@ const std::array body_table{
                "kg m2",
                false,
                "moment of inertia of {} about its own centre; default: 0",
-               {0.0, most}}};
+               {0.0, most_of_body}}};
 
 constexpr std::string_view section = "hoop.";
 

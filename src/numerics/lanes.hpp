@@ -72,7 +72,7 @@ struct Lanes<xsimd::batch<S, A>> {
   }
 };
 
-inline constexpr std::size_t batch_width = Lanes<Batch>::count;
+constexpr std::size_t batch_width = Lanes<Batch>::count;
 
 template <class T>
 using MaskOf = typename Lanes<T>::Mask;

@@ -14,16 +14,16 @@ namespace {
 constexpr std::size_t of_ring = 3, of_weight = 4;
 std::vector<double> numbers(of_ring);
 /// What it comes to, in this order.
-constexpr std::array names_reduced{"total_mass",   "eccentricity",   "inertia",  "mass_ratio",
+constexpr std::array reduced_names{"total_mass",   "eccentricity",   "inertia",  "mass_ratio",
                                    "offset_ratio", "inertia_factor", "direction"};
-std::array<double, names_reduced.size()> numbers_reduced;
+std::array<double, reduced_names.size()> reduced_numbers;
 
 }  // namespace
 
 /// Names by number, null after the last.
 LEAPMAP_EXPORT const char* reduced_name(int i) {
-  return i >= 0 && static_cast<std::size_t>(i) < names_reduced.size()
-             ? names_reduced[static_cast<std::size_t>(i)]
+  return i >= 0 && static_cast<std::size_t>(i) < reduced_names.size()
+             ? reduced_names[static_cast<std::size_t>(i)]
              : nullptr;
 }
 
@@ -39,9 +39,9 @@ LEAPMAP_EXPORT const double* reduce_body() {
   for (std::size_t at = of_ring; at < numbers.size(); at += of_weight)
     body.weights.push_back({"", numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]});
   const ReducedBody found = reduce_checked(body);
-  numbers_reduced = {found.total_mass,   found.eccentricity,   found.inertia,  found.mass_ratio,
+  reduced_numbers = {found.total_mass,   found.eccentricity,   found.inertia,  found.mass_ratio,
                      found.offset_ratio, found.inertia_factor, found.direction};
-  return numbers_reduced.data();
+  return reduced_numbers.data();
 }
 
 }  // namespace leapmap::web

@@ -517,7 +517,7 @@ def test_the_scatter_chart_shows_goals_quantiles_and_importance(friction, tmp_pa
     (tmp_path / "one.toml").write_text(MADE[MADE.index("[scatter]"):])
     told = leapmap("hop", tmp_path / "one.toml", "--scatter", "--json", "--friction", friction)
     (tmp_path / "one.json").write_text(told.stdout)
-    done = draw("scatter_chart.py", tmp_path / "one.json")
+    done = scripted("scatter_chart.py", tmp_path / "one.json")  # in every format
     assert done.returncode == 0, done.stderr
     words = texts(tmp_path / "one_scatter.svg")
     made = json.loads(told.stdout)["scatter"]

@@ -169,10 +169,9 @@ def test_the_motion_shown_is_that_of_leapmap_s_trace(page, tmp_path):
             assert np.allclose(motion[name], file[name][()], rtol=1e-8, atol=1e-9), name
 
 
-def test_one_animation_runs_however_many_designs_were_clicked(page):
+def test_one_animation_runs_however_many_designs_were_clicked(motion_wanted, page):
     for i in range(6):
         point(page, [20, 25 + i, 1], click=True)
-    page.find_element("id", "play").click()
     drawn = page.execute_async_script("""const done = arguments[0],
           context = CanvasRenderingContext2D.prototype, arc = context.arc;
         let arcs = 0, frames = 0;
@@ -266,7 +265,7 @@ def test_what_is_no_radius_is_said_so_and_changes_nothing(page):
     assert page.find_element("id", "message").text == ""
 
 
-def test_an_address_opens_a_design_at_a_moment_and_says_if_there_is_none(page, map_file):
+def test_an_address_opens_a_design_at_a_moment_and_says_if_there_is_none(motion_wanted, page, map_file):
     address = map_file.with_suffix(".html").as_uri()
     for place, index, text in (("#design=7,8,0&time=0.1", "7,8,0", ""), ("#design=999,8,0", None,
                                                                          "not on this map")):

@@ -68,8 +68,7 @@ def pixels(browser, canvas):
 HOOPS_TYPED = int(os.environ.get("LEAPMAP_HOOPS_TYPED", 4))
 
 
-@pytest.mark.parametrize(("friction", "count"), [(False, HOOPS_TYPED * 3 // 5), pytest.param(
-    True, HOOPS_TYPED * 2 // 5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("friction", "count"), [(False, HOOPS_TYPED * 3 // 5), (True, HOOPS_TYPED * 2 // 5)])
 def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, count, page):
     if friction:
         page.execute_script("document.getElementById('map').dataset.whole = 'false'")

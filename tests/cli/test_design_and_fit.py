@@ -216,7 +216,6 @@ def film(path, error=0.0, **design):
     return path
 
 
-@pytest.mark.slow
 def test_a_film_of_angles_tells_its_release_and_its_friction(tmp_path):
     path = film(tmp_path / "film.csv", 1e-3, friction="coulomb", mu_static=0.45, release_angle="192deg",
                 release_spin=0.1)

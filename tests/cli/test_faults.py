@@ -12,12 +12,12 @@ sys.path.insert(0, str(TOP / "tests" / "faults"))
 import walk  # noqa: E402
 
 
-@pytest.mark.parametrize("command,every", [("sweep", 97), ("overwrite", 199), ("resume", 127), ("retry", 199),
-                                           ("trace", 47), ("info", 59), ("check", 431), ("list", 149),
-                                           ("explorer", 263)])
+@pytest.mark.parametrize("command,every", [("sweep", 47), ("overwrite", 97), ("resume", 61), ("retry", 97),
+                                           ("trace", 23), ("info", 29), ("check", 211), ("list", 71),
+                                           ("explorer", 131)])
 def test_whatever_call_fails_nothing_is_lost(command, every):
     runs, findings = walk.walk([command], ["EIO", "ENOSPC"], (False, True), every)
-    assert runs >= 4 and findings == []
+    assert runs > 4 and findings == []
 
 
 def test_interrupted_short_and_empty_transfers_are_made_again_or_told():
@@ -25,10 +25,10 @@ def test_interrupted_short_and_empty_transfers_are_made_again_or_told():
     assert runs > 12 and findings == []
 
 
-@pytest.mark.parametrize("memory, every", [("new", 1499), ("malloc", 4001)])
+@pytest.mark.parametrize("memory, every", [("new", 797), ("malloc", 1999)])
 def test_a_lack_of_memory_is_a_line_and_loses_nothing(memory, every):
     runs, findings = walk.walk(["sweep", "trace"], ["ENOMEM"], (False, True), every, memory)
-    assert runs > 3 and findings == []
+    assert runs > 7 and findings == []
 
 
 def run_with(fault, *arguments):
@@ -106,7 +106,8 @@ def test_more_threads_than_any_machine_has_are_no_crash(tmp_path):
 def test_a_retry_killed_at_any_call_is_simply_made_again(tmp_path):
     command = walk.COMMANDS["retry"]
     each = walk.begin(command, tmp_path)
-    for number in range(0, each.calls, 97):  # the call before it is its last: as if killed there
+    assert each.calls > 61
+    for number in range(0, each.calls, 61):  # the call before it is its last: as if killed there
         folder = tmp_path / f"killed{number}" / "retry"
         folder.parent.mkdir()
         subprocess.run(["cp", "-r", each.before, folder], check=True)

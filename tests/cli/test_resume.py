@@ -130,7 +130,7 @@ def test_killed_at_random_moments_it_is_gone_on_with_to_the_same_bits(uninterrup
         assert values(folder / "map.h5") == expected
         assert not (folder / "map.h5.part").exists()
         shutil.rmtree(folder)
-    assert resumed_in_the_middle >= kills // 4, "kills were to fall into the work"
+    assert resumed_in_the_middle >= max(1, kills // 4), "kills were to fall into the work"
 
 
 def test_a_part_cut_anywhere_is_refused_with_a_line_or_gone_on_with(uninterrupted, tmp_path):

@@ -173,7 +173,7 @@ TEST(DrivenFlights, WithFrictionNeverBeginBySinking) {
       flights += point.phase == Phase::flight;
     }
   }
-  EXPECT_GT(flights, 200);
+  EXPECT_GT(flights, 500);
 }
 
 }  // namespace
