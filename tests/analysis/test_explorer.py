@@ -699,6 +699,7 @@ def test_bifurcations_are_of_the_jumps_that_leapmap_hop_tells(page):
     assert compared >= 20
 
 
+@pytest.mark.slow  # its twin is of the jumps, above
 def test_the_bifurcation_picture_is_drawn_once_it_is_opened(page):
     picture = page.find_element("id", "gaits-picture")
     assert picture.get_attribute("data-hoops") is None, "nothing is computed before anybody asks"

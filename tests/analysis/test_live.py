@@ -215,6 +215,7 @@ def test_cuts_go_through_the_design_pointed_at(live):
     assert live.execute_script("return document.getElementById('cut-x').toDataURL()") != before
 
 
+@pytest.mark.slow  # its twin is of one hoop, in test_page_parts.py
 def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(live, tmp_path):
     pin = live.find_element("id", "pin")
     for place in ([92, 29], [120, 60], [60, 90], [150, 100], [10, 10]):

@@ -225,6 +225,7 @@ release_angle = 3.0\nrelease_spin = 0.1\ndrive_torque = 0.01
             assert float(shown[name]) == pytest.approx(value, rel=1e-9, abs=1e-9), name
 
 
+@pytest.mark.slow  # its twin is of goals, in test_live.py
 def test_what_was_done_is_undone_and_done_again(page):
     undo, redo, state = page.find_element("id", "undo"), page.find_element(
         "id", "redo"), "return [location.hash, window.explorer.map.fixed.offset_ratio]"

@@ -37,6 +37,7 @@ def test_what_the_study_is_for_holds_in_it(table):
         assert (exact.seconds > 0).all() and (others.seconds > 0).all()
 
 
+@pytest.mark.slow  # its twin reads the table
 def test_charts_show_every_method(table, tmp_path):
     done = scripted("precision_chart.py", table[0], "-o", tmp_path / "chart")
     assert done.returncode == 0, done.stderr
