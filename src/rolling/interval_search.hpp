@@ -130,7 +130,7 @@ void IntervalSearch<S>::look_at(std::size_t k) {
 /// interval from there on is looked at.
 template <class S>
 void IntervalSearch<S>::hand_on_signs(int turns) {
-  if (turns < 1) return;  // never; g++ warns of an index -1 if it cannot tell
+  if (turns < 1) return;  // there always is one; without this g++ warns of an index of -1
   constexpr std::size_t nodes = nodes_a_turn;
   const auto scanned = static_cast<std::size_t>(turns) * nodes;  // of all turns, the last node not counted
   const auto above_at = [&](std::size_t k) -> bool {

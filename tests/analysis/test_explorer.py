@@ -66,7 +66,7 @@ def readout(browser):
     return browser.execute_script("return {...document.getElementById('readout').dataset}")
 
 
-@pytest.mark.parametrize("index", [[20, 30, 1], [3, 2, 1]])
+@pytest.mark.parametrize("index", [[20, 30, 1], [3, 2, 1], pytest.param([40, 10, 0], marks=pytest.mark.slow)])
 def test_pointing_at_a_design_reads_the_map_s_own_number(index, page, map_file):
     select_layer(page, index[2])
     point(page, index)
@@ -108,7 +108,7 @@ def test_every_field_of_every_design_on_the_page_is_the_map_s_rounded(page, map_
                 np.abs(truth)) or field["name"] == "candidates", field["name"]
 
 
-@pytest.mark.parametrize("index", [[20, 30, 1], [0, 0, 0]])
+@pytest.mark.parametrize("index", [[20, 30, 1], [0, 0, 0], pytest.param([44, 5, 1], marks=pytest.mark.slow)])
 def test_a_click_shows_the_hoop_and_its_numbers_are_those_of_leapmap_hop(index, page):
     select_layer(page, index[2])
     point(page, index, click=True)

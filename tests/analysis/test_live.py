@@ -485,7 +485,7 @@ def gait_of_a_hoop_of_ones_own(browser):
         told["gait_height"], rel=1e-9)
 
 
-@pytest.mark.slow  # its twin is of a map as made
+@pytest.mark.slow  # a map with tolerances goes live in the first tier
 def test_a_file_s_map_tells_gaits_of_a_hoop_of_one_s_own_too_and_goes_live_as_it_settled(browser, tmp_path):
     path = sweep(
         tmp_path,

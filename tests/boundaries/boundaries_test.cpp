@@ -51,7 +51,7 @@ TEST(Boundaries, AreWhereLongDoublesSeeThem) {
   std::mt19937_64 random(19);
   std::size_t compared = 0, hoops = 0;
   double worst = 0.0;
-  while (compared < 60 && ++hoops < 400) {
+  while (compared < 150 && ++hoops < 400) {
     Spec spec = over({spaced("slope", 0.05, 0.85, 9)});
     spec.design = testing::random_design(random);
     for (const Cliff& cliff : find_boundaries(spec).cliffs) {
@@ -70,7 +70,7 @@ TEST(Boundaries, AreWhereLongDoublesSeeThem) {
       EXPECT_NEAR(cliff.value, low, 1e-12);
     }
   }
-  EXPECT_GE(compared, 60u);
+  EXPECT_GE(compared, 150u);
   RecordProperty("worst", std::to_string(worst));
 }
 

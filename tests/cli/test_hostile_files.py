@@ -298,7 +298,7 @@ def test_every_flipped_bit_of_a_finished_map_is_found_and_told(original, tmp_pat
         chunk = m["jump_height"].id.get_chunk_info(1)
     told_where = 0
     for flip in [(chunk.byte_offset + 17, 3), (chunk.byte_offset + chunk.size - 1, 0),
-                 *((bits.randrange(len(whole) - 32), bits.randrange(8)) for _ in range(16))]:
+                 *((bits.randrange(len(whole) - 32), bits.randrange(8)) for _ in range(40))]:
         damaged = bytearray(whole)
         damaged[flip[0]] ^= 1 << flip[1]
         path.write_bytes(damaged)
