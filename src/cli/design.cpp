@@ -26,9 +26,9 @@
 #include "map/hdf5_driver.hpp"
 #include "map/reader.hpp"
 #include "model/model.hpp"
-#include "physics/body.hpp"
 #include "spec/designs.hpp"
 #include "spec/map_spec.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/output_file.hpp"
 
 namespace leapmap::cli {
@@ -41,16 +41,6 @@ struct DesignArguments {
   bool json = false, quiet = false, overwrite = false;
   Locking locking = Locking::required;
 };
-
-/// The scales of the hoop that these values of the free parameters make.
-Scales scales_at(const Question& question, std::span<const double> free) {
-  Scales scales = scales_of(question.one.scene);
-  if (!question.designs.varies_body()) return scales;
-  Body body;
-  scales.radius *= question.designs.at(free, &body).size;
-  scales.mass = reduce_checked(body).total_mass;
-  return scales;
-}
 
 /// The units of a report, for the hoop that each design is.
 struct Report {
@@ -65,7 +55,9 @@ struct Report {
     units.refuse_unusable(question.one.scene, names);
   }
   /// free: the values of the free parameters.
-  void scale_to(std::span<const double> free) { units.scale(scales_at(question, free)); }
+  void scale_to(std::span<const double> free) {
+    units.scale(scales_of(question.one, question.designs.at(free)));
+  }
 };
 
 std::string told_parameters(Report& report, const FoundDesign& found) {
@@ -122,9 +114,7 @@ void print_gradients(Report& report, const FoundDesign& found) {
 
 /// What tells it again, as made too where hoops are.
 std::string command_of(const Question& question, const FoundDesign& found) {
-  Spec one = question.one;
-  one.scene.mass = scales_at(question, found.free).mass;
-  std::string command = hop_command(one, found.design);
+  std::string command = hop_command(question.one, found.design);
   const Scatter scatter = fresh_samples(question.one.scatter);
   const auto is_of_body = [](const Spread& spread) { return find_body_number(spread.parameter) != nullptr; };
   // Tolerances of [hoop] need the spec's file; the nominal hoop follows from its ratios.

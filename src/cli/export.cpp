@@ -15,7 +15,6 @@
 #include "leapmap/errors.hpp"
 #include "map/layout.hpp"
 #include "map/reader.hpp"
-#include "physics/body.hpp"
 #include "spec/designs.hpp"
 #include "spec/map_spec.hpp"
 #include "spec/spec_hoop.hpp"
@@ -89,13 +88,11 @@ void choose_units(std::vector<Column>& columns, ShownUnits& units, Scales scales
 }
 
 /// The sizes and total masses of a block's designs.
-std::vector<Scales> scales_of(const DesignSpace& space, const Scene& scene, const Tile& block) {
+std::vector<Scales> scales_of(const DesignSpace& space, const Spec& spec, const Tile& block) {
   std::vector<Design> designs(block.count);
-  std::vector<Body> bodies(block.count);
-  space.fill(block, 0, designs, bodies);
+  space.fill(block, 0, designs);
   std::vector<Scales> scales;
-  for (std::size_t i = 0; i < block.count; ++i)
-    scales.push_back({scene.radius * designs[i].size, scene.gravity, reduce_checked(bodies[i]).total_mass});
+  for (const Design& design : designs) scales.push_back(leapmap::scales_of(spec, design));
   return scales;
 }
 
@@ -161,7 +158,7 @@ std::string table_of(const MapReader& map, const Spec& spec, const std::vector<C
   const std::size_t rows = map.blocks(map.fields()[0]).tile_shape()[0];
   for_each_block(map.shape(), rows, [&](const Tile& block) {
     std::vector<std::vector<std::string>> cells;
-    const auto hoops = differ ? scales_of(space, spec.scene, block) : std::vector<Scales>{};
+    const auto hoops = differ ? scales_of(space, spec, block) : std::vector<Scales>{};
     for (const Column& column : columns) cells.push_back(texts_of(map, column, block, units, hoops));
     for (std::size_t i = 0; i < block.count; ++i) {
       if (!labels.empty()) text += csv_quoted(labels[block.start[0] + i]) + ",";

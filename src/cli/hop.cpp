@@ -204,7 +204,7 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
              {{"friction", model_of(scene).name},
               {"runway", scene.runway},
               {"hop_height", scene.hop_height},
-              {"clear_height", scene.clear_height},
+              {"clear_height", 0.5 * wall_in_radii(scene, 1.0)},
               {"radius", scene.radius},
               {"gravity", scene.gravity},
               {"mass", scene.mass > 0.0 ? Json(scene.mass) : Json()},

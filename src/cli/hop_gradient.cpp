@@ -45,7 +45,7 @@ Table table_of(const Spec& original) {
   Spec spec = original;
   spec.output = {};
   for (const Field* field : fields_of(spec.scene))
-    if (can_be_differentiated(*field)) spec.output.gradients.emplace_back(field->name);
+    if (can_be_differentiated(*field, spec.scene)) spec.output.gradients.emplace_back(field->name);
   check_spec(spec);
   const Request request = request_of(spec);
   const GradientWanted wanted = derivatives_of(request);

@@ -39,7 +39,7 @@ std::string with_mass(double value, int digits, std::string_view own, std::strin
 }
 
 void print_wall(const Scene& scene, const Outcome& jump, const std::string& which) {
-  const double wall = 2.0 * scene.radius * scene.clear_height;
+  const double wall = scene.radius * wall_in_radii(scene, 1.0);
   if (std::isnan(jump.clears_from))
     say("{} clears no wall of {:.4g} m.\n", which, wall);
   else

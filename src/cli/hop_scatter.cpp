@@ -113,13 +113,15 @@ void print_histogram(const Spec& spec, const ScatterReport& report) {
   const Histogram histogram = histogram_of(report, &Outcome::jump_height, bins);
   if (histogram.counts.empty()) return;
   const auto goal = std::ranges::find(spec.goals, "jump_height", &Goal::field);
+  const double unit = goal != spec.goals.end() && goal->unit_of_nominal > 0.0 ? goal->unit_of_nominal : 1.0;
   const double most = static_cast<double>(std::ranges::max(histogram.counts));
   const double width = (histogram.to - histogram.from) / static_cast<double>(bins);
   say("\njump_height\n");
   for (std::size_t i = 0; i < bins; ++i) {
     const double from = histogram.from + width * static_cast<double>(i), to = from + width;
     const auto within = [&](double bound) { return bound >= from && bound < to; };
-    const bool marked = goal != spec.goals.end() && (within(goal->at_least) || within(goal->at_most));
+    const bool marked =
+        goal != spec.goals.end() && (within(goal->at_least / unit) || within(goal->at_most / unit));
     say("{:>9.4f} {}{}\n", from, marked ? '>' : '|',
         std::string(
             static_cast<std::size_t>(std::ceil(widest * static_cast<double>(histogram.counts[i]) / most)),
@@ -211,6 +213,8 @@ Json scatter_json(const Spec& spec, const ScatterReport& report) {
     const Goal& goal = spec.goals[k];
     json["goals"][goal.field] = {
         {"at_least", goal.at_least}, {"at_most", goal.at_most}, {"missed", json_of(report.missed[k])}};
+    if (goal.unit_of_nominal > 0.0)
+      json["goals"][goal.field]["unit"] = find_own_unit(own_unit(*find_field(goal.field)))->si;
   }
   for (const MadeQuantity& of : report.quantities) {
     const auto member = std::get<Quantity>(find_field(of.field)->source).member;

@@ -285,7 +285,7 @@ int run(const InfoArguments& arguments) {
   }
   if (arguments.failed) return list_failed(map, arguments);
   if (!arguments.at.empty()) {
-    print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at);
+    print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at, arguments.units);
     return 0;
   }
   ShownUnits units(arguments.units, scales_of(map, arguments));
@@ -325,8 +325,7 @@ void add_info(CommandLine& line, int& status) {
              "units of axes and fields, with blanks between them, for example \"mm deg ms\"; default: the "
              "map's, and beside them those of a drawing")
       .excludes("--spec")
-      .excludes("--failed")
-      .excludes("--at");
+      .excludes("--failed");
   command.value("--limit", arguments->limit, "longest list of failed designs; default: 20")
       .needs("--failed")
       .check(whole_number(0, 1e15));

@@ -10,6 +10,7 @@
 #include "boundaries/cliff.hpp"
 #include "cli/hop_gradient.hpp"
 #include "cli/output.hpp"
+#include "cli/shown_units.hpp"
 #include "leapmap/errors.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
@@ -17,6 +18,7 @@
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
 #include "spec/scatter_check.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -51,25 +53,29 @@ std::vector<double> values_at(const Spec& spec, const std::string& at) {
   return values;
 }
 
-void print_outcome(const Outcome& outcome, const Scene& scene) {
+void print_number(const Field& field, double value, ShownUnits& units) {
+  const ShownUnit shown = units.of(field);
+  const std::string text = fmt::format("  {:<24} {:<14.8g} {}{}", field.name, value * shown.factor,
+                                       shown.unit, units.beside(value, field));
+  say("{}\n", text.substr(0, text.find_last_not_of(' ') + 1));
+}
+
+void print_outcome(const Outcome& outcome, const Scene& scene, ShownUnits& units) {
   say("{}\n", outcome_text(discrete(outcome, false)));
   for (const Field* field : fields_of(scene)) {
     const std::optional<OutcomeNumber> number = number_of(*field);
-    if (!number || std::isnan(number->of(outcome))) continue;
-    say("  {:<20} {:<14.8g} {}\n", field->name, number->of(outcome), field->unit == "1" ? "" : field->unit);
+    if (number && !std::isnan(number->of(outcome))) print_number(*field, number->of(outcome), units);
   }
-  if (outcome.phase_sequence != 0) say("  {:<20} {}\n", "phases", phase_letters(outcome.phase_sequence));
+  if (outcome.phase_sequence != 0) say("  {:<24} {}\n", "phases", phase_letters(outcome.phase_sequence));
 }
 
 /// As the map has it at its designs.
-void print_made(const Spec& spec) {
+void print_made(const Spec& spec, ShownUnits& units) {
   const Request request = request_of(spec);
   MadeColumns columns(statistics_of(request));
   scatter_solver_of(request, points_of(spec.scatter)).solve({&spec.design, 1}, columns);
   say("manufactured, {} hoops\n", spec.scatter.samples);
-  for (const Field* field : columns.fields())
-    say("  {:<20} {:<14.8g} {}\n", field->name, columns.column(*field)[0],
-        field->unit == "1" ? "" : field->unit);
+  for (const Field* field : columns.fields()) print_number(*field, columns.column(*field)[0], units);
 }
 
 /// The jump's height on this side of a cliff and beyond it: not every cliff costs any.
@@ -101,7 +107,7 @@ std::string outcome_text(const Discrete& outcome) {
   return text;
 }
 
-void print_place(const Spec& original, const std::string& at) {
+void print_place(const Spec& original, const std::string& at, const std::string& unit_words) {
   if (original.axes.empty())
     throw InputError(origin_of(original) + ": is a list of designs; allowed: --at with a map over axes");
   Spec one = original;
@@ -115,8 +121,10 @@ void print_place(const Spec& original, const std::string& at) {
   check_scatter(one);  // a percentage may be one of nothing just here
   Outcome outcome;
   make_solver(request_of_outcomes(one))({&one.design, 1}, {&outcome, 1});
-  print_outcome(outcome, one.scene);
-  if (!original.scatter.spreads.empty()) print_made(one);
+  ShownUnits units(unit_words, scales_of(original, one.design));
+  units.refuse_unusable(one.scene);
+  print_outcome(outcome, one.scene, units);
+  if (!original.scatter.spreads.empty()) print_made(one, units);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);
 
   say("\nNearest discontinuities within the map (a band narrower than a thousandth of an axis may be "

@@ -119,11 +119,13 @@ struct OneBound {
 void descend(Judge& judge, Place& place) {
   const Question& question = judge.question();
   const Field* field = question.objectives[0].field;
-  const auto has_slope = [](const Goal& goal) {
+  const Scene& scene = question.one.scene;
+  const auto has_slope = [&](const Goal& goal) {
     const Field& of = *find_field(goal.field);
-    return !std::holds_alternative<Quantity>(of.source) || can_be_differentiated(of);
+    return !std::holds_alternative<Quantity>(of.source) ||
+           (can_be_differentiated(of, scene) && goal.unit_of_nominal == 0.0);
   };
-  const bool smooth = (!field || can_be_differentiated(*field)) && !judge.makes_hoops() &&
+  const bool smooth = (!field || can_be_differentiated(*field, scene)) && !judge.makes_hoops() &&
                       std::ranges::all_of(question.one.goals, has_slope);
   if (!smooth || !place.verdict.feasible() || resolved_method(question.one.numerics) != "exact") return;
   Slope slope(judge);

@@ -214,12 +214,17 @@ std::vector<std::string> binding(const Question& question, const Place& place, c
   for (const Goal& goal : question.one.goals) {
     const Field& field = *find_field(goal.field);
     if (!std::holds_alternative<Quantity>(field.source)) continue;
-    const double value = stored_number(field, found.outcome);
+    const GoalCheck check = goal_check(goal);
+    const double value = check.value(found.design, found.outcome);
+    const double unit = check.unit ? goal.unit_of_nominal : 1.0;
+    const std::string si = check.unit ? fmt::format(" {}", check.unit->si) : "";
     const auto is_on = [&](double bound) {
-      return std::isfinite(bound) && std::abs(value - bound) <= on * (1.0 + std::abs(bound));
+      return std::isfinite(bound) && std::abs(value - bound) <= on * (unit + std::abs(bound));
     };
-    if (is_on(goal.at_least)) binds.push_back(fmt::format("{} at least {:.6g}", goal.field, goal.at_least));
-    if (is_on(goal.at_most)) binds.push_back(fmt::format("{} at most {:.6g}", goal.field, goal.at_most));
+    if (is_on(goal.at_least))
+      binds.push_back(fmt::format("{} at least {:.6g}{}", goal.field, goal.at_least, si));
+    if (is_on(goal.at_most))
+      binds.push_back(fmt::format("{} at most {:.6g}{}", goal.field, goal.at_most, si));
   }
   for (const Goal& goal : question.made_goals)  // a hoop more or less is nothing
     if (std::abs(found.yield.value - goal.at_least) <= 3.0 * found.yield.error)
@@ -286,7 +291,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
       if (!front) one.cliff = near_cliffs(grid, one.free).nearest;
       if (!front && differentiable_method)
         for (const Field* field : quantities_of(question)) {
-          if (!can_be_differentiated(*field)) continue;
+          if (!can_be_differentiated(*field, question.one.scene)) continue;
           const SolveOptions how{.tolerance = question.one.numerics.tolerance, .threads = 1};
           FieldGradient& slope = one.gradients.emplace_back();
           slope.of = field->name;
@@ -298,8 +303,9 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
         }
       if (judge.makes_hoops()) put_statistics(question, body, one);
       one.binds = binding(question, places[i], one);
-      stays[i] = !found.reached ||
-                 std::ranges::all_of(goals, [&](const GoalCheck& goal) { return goal.reached(one.outcome); });
+      stays[i] = !found.reached || std::ranges::all_of(goals, [&](const GoalCheck& goal) {
+        return goal.reached(one.design, one.outcome);
+      });
       return true;
     };
   });

@@ -81,12 +81,12 @@ void Bench::weigh(std::size_t objective, double value, Verdict& verdict) const {
   verdict.cost[objective] = question_.objectives[objective].maximize ? -value : value;
 }
 
-Verdict Bench::verdict_of(const Outcome& outcome) const {
+Verdict Bench::verdict_of(const Design& design, const Outcome& outcome) const {
   Verdict verdict{.violation = 0.0, .outcome = number_of(discrete(outcome, true))};
   for (const GoalCheck& goal : goals_) {
-    if (goal.reached(outcome)) continue;
+    if (goal.reached(design, outcome)) continue;
     verdict.violation += std::holds_alternative<Quantity>(goal.field->source)
-                             ? missed_by(stored_number(*goal.field, outcome), goal.at_least, goal.at_most)
+                             ? missed_by(goal.value(design, outcome), goal.at_least, goal.at_most)
                              : 1.0;
   }
   for (std::size_t k = 0; k < question_.objectives.size(); ++k)
@@ -114,7 +114,7 @@ void Bench::judge(std::span<const double> values, std::span<Verdict> verdicts) {
     designs_[i] = question_.designs.at(row(i), bodies_.empty() ? nullptr : &bodies_[i]);
   solver_(designs_, outcomes_);
   for (std::size_t i = 0; i < designs_.size(); ++i) {
-    verdicts[i] = verdict_of(outcomes_[i]);
+    verdicts[i] = verdict_of(designs_[i], outcomes_[i]);
     for (std::size_t k = 0; k < question_.objectives.size(); ++k)
       if (const Objective& objective = question_.objectives[k]; !objective.field)
         weigh(k, row(i)[objective.parameter], verdicts[i]);

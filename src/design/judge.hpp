@@ -45,7 +45,7 @@ class Bench {
   void judge(std::span<const double> values, std::span<Verdict> verdicts);
 
  private:
-  Verdict verdict_of(const Outcome& outcome) const;
+  Verdict verdict_of(const Design& design, const Outcome& outcome) const;
   void judge_made(std::size_t design, Verdict& verdict);
   /// Adds what an objective costs.
   void weigh(std::size_t objective, double value, Verdict& verdict) const;

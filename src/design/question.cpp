@@ -78,7 +78,9 @@ void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objec
     if (!(goal.at_least <= goal.at_most))
       refuse(spec, fmt::format("goal.{} {} contradicts itself", goal.field, text_of(goal)),
              "at_least not above at_most");
-    const Range range = possible(*find_field(goal.field), spec.scene);
+    Scene scene = spec.scene;
+    if (goal.unit_of_nominal > 0.0) scene.hop_height = 0.0;  // in SI, each hoop has its own
+    const Range range = possible(*find_field(goal.field), scene);
     if (goal.at_least > range.most || goal.at_most < range.least)
       refuse(spec, fmt::format("goal.{} {} is impossible", goal.field, text_of(goal)),
              fmt::format("a range that overlaps {} to {}", range.least, range.most));

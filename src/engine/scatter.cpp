@@ -70,7 +70,7 @@ class Workshop {
 /// What importance is told of, by what it is of a hoop; NaN: it is not known, or does not apply.
 struct HoopValue {
   std::string of;
-  std::function<double(const Outcome&)> value;
+  std::function<double(const Design&, const Outcome&)> value;
 };
 
 /// The yield where spread k, or all, have a share of their width.
@@ -80,9 +80,8 @@ double yield_at(const Workshop& workshop, const MadeTally& goals, const Scatter&
   for (std::size_t i = 0; i < smaller.spreads.size(); ++i)
     if (!k || i == *k) smaller.spreads[i].width *= share;
   std::atomic<std::size_t> reached{0};
-  workshop.make(smaller, {}, [&](std::size_t, std::span<const Design>, std::span<const Outcome> some) {
-    reached += static_cast<std::size_t>(
-        std::ranges::count_if(some, [&](const Outcome& outcome) { return goals.reaches_all(outcome); }));
+  workshop.make(smaller, {}, [&](std::size_t, std::span<const Design> made, std::span<const Outcome> some) {
+    for (std::size_t i = 0; i < some.size(); ++i) reached += goals.reaches_all(made[i], some[i]);
   });
   return static_cast<double>(reached) / static_cast<double>(workshop.samples());
 }
@@ -115,16 +114,21 @@ Importance importance(std::string of, std::span<const std::vector<double>> outpu
 std::vector<HoopValue> hoop_values(const Spec& spec, const std::vector<const Field*>& quantities,
                                    const MadeTally& tally) {
   const auto of_solved = [](const auto& holds) {
-    return [holds](const Outcome& o) { return o.status == Status::failed ? nan : holds(o) ? 1.0 : 0.0; };
+    return [holds](const Design& d, const Outcome& o) {
+      return o.status == Status::failed ? nan : holds(d, o) ? 1.0 : 0.0;
+    };
   };
-  const auto jumps = [](const Outcome& o) { return o.status == Status::jumped; };
+  const auto jumps = [](const Design&, const Outcome& o) { return o.status == Status::jumped; };
   std::vector<HoopValue> values;
   if (!spec.goals.empty())
-    values.push_back({"yield", of_solved([&tally](const Outcome& o) { return tally.reaches_all(o); })});
+    values.push_back({"yield", of_solved([&tally](const Design& d, const Outcome& o) {
+                        return tally.reaches_all(d, o);
+                      })});
   values.push_back({"jumps", of_solved(jumps)});
   for (const Field* field : quantities)
-    values.push_back({std::string(field->name), [jumps, of = std::get<Quantity>(field->source).member](
-                                                    const Outcome& o) { return jumps(o) ? o.*of : nan; }});
+    values.push_back({std::string(field->name),
+                      [jumps, of = std::get<Quantity>(field->source).member](
+                          const Design& d, const Outcome& o) { return jumps(d, o) ? o.*of : nan; }});
   return values;
 }
 
@@ -140,7 +144,7 @@ void sample(const Workshop& workshop, const Spec& spec, const std::vector<HoopVa
                   [&](std::size_t first, std::span<const Design> made, std::span<const Outcome> outcomes) {
                     const auto place = static_cast<std::ptrdiff_t>(first);
                     for (std::size_t k = 0; k < of.size(); ++k)
-                      std::ranges::transform(outcomes, values[k][s].begin() + place, of[k].value);
+                      std::ranges::transform(made, outcomes, values[k][s].begin() + place, of[k].value);
                     if (s != 0) return;
                     std::ranges::copy(made, report.made.begin() + place);
                     std::ranges::copy(outcomes, report.outcomes.begin() + place);
@@ -169,7 +173,7 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
 
   sample(workshop, spec, hoop_values(spec, quantities, tally), report);
   for (std::size_t i = 0; i < report.outcomes.size(); ++i)
-    tally.add(report.outcomes[i], workshop.replicate(i));
+    tally.add(report.made[i], report.outcomes[i], workshop.replicate(i));
   report.jumps = tally.jumps();
   report.unsolved = tally.failed();
   for (std::size_t k = 0; k < spec.goals.size(); ++k) report.missed.push_back(tally.missed(k));
@@ -196,7 +200,7 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
     report.without.push_back(yield_at(workshop, tally, spec.scatter, k, 0.0));
     report.shrink.push_back(shrunk(k, report.without.back()));
   }
-  report.shrink_all = shrunk(std::nullopt, tally.reaches_all(workshop.drawn()) ? 1.0 : 0.0);
+  report.shrink_all = shrunk(std::nullopt, tally.reaches_all(spec.design, workshop.drawn()) ? 1.0 : 0.0);
   return report;
 }
 

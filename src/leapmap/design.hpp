@@ -28,6 +28,7 @@ struct Design {
                                                  ///< mu_static; larger: mu_static is set to it
   double restitution = 0.0;                      ///< Poisson's, in [0, 1]
   double size = 1.0;  ///< radius over Scene::radius, > 0; scales times and speeds only
+  double mass = 1.0;  ///< total mass over that of the nominal hoop, > 0; scales forces and energies only
 };
 
 }  // namespace leapmap

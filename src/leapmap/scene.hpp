@@ -19,8 +19,9 @@ struct Scene {
   double runway = 5.0;  ///< rolling limit, at which the search for a jump ends [revolutions], in (0, 1e6]
   double hop_height =
       0.05;  ///< jump threshold: the first lift-off this high is the jump [hoop diameters], >= 0
-  double clear_height = 0.0;    ///< height of a thin wall to clear [hoop diameters], >= 0; 0: none
-  long jumps = 1;               ///< number of jumps to follow, in [1, 250]
+  double clear_height = 0.0;            ///< height of a thin wall to clear [hoop diameters], >= 0; 0: none
+  bool clear_height_in_metres = false;  ///< then clear_height is in m, the same for hoops of every size
+  long jumps = 1;                       ///< number of jumps to follow, in [1, 250]
   bool motor_in_flight = true;  ///< whether a motor drives the hoop in flight too; else it idles there
   // Gaits; the rolling limit then counts from each landing.
   long settle = 0;               ///< jumps to skip before a gait is searched for, in [0, 10^6]; 0: no search
@@ -34,5 +35,10 @@ struct Scene {
 
 /// The unit of time of the dimensionless equations, sqrt(R/g) [s].
 inline double time_unit(const Scene& scene) { return std::sqrt(scene.radius / scene.gravity); }
+
+/// The height of the wall to clear [R], for a hoop of this size (Design::size).
+inline double wall_in_radii(const Scene& scene, double size) {
+  return scene.clear_height_in_metres ? scene.clear_height / (scene.radius * size) : 2.0 * scene.clear_height;
+}
 
 }  // namespace leapmap

@@ -72,11 +72,14 @@ struct Scatter {
   long seed = 1;                  ///< equal seeds give equal hoops
 };
 
-/// A goal: the range in which a field of the outcome must lie, in the map's unit or by its code.
+/// A goal: the range in which a field of the outcome must lie, in the map's unit, in SI or by its code.
 struct Goal {
   std::string field{};                                         ///< name of the field
   double at_least = -std::numeric_limits<double>::infinity();  ///< lower limit
   double at_most = std::numeric_limits<double>::infinity();    ///< upper limit
+  /// 0: the limits are in the map's unit. Else they are in SI, the same for hoops of every size and mass, and
+  /// this is the map's unit in SI for the nominal hoop.
+  double unit_of_nominal = 0.0;
 };
 
 /// A whole specification.

@@ -270,6 +270,10 @@ bool can_be_differentiated(const Field& field) {
          (field.by_default != ByDefault::left_out || field.of_way);
 }
 
+bool can_be_differentiated(const Field& field, const Scene& scene) {
+  return can_be_differentiated(field) && !(field.of_wall && scene.clear_height_in_metres);
+}
+
 namespace {
 
 std::string unit_of_derivative(std::string_view of, std::string_view by) {

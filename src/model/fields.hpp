@@ -108,6 +108,8 @@ std::optional<OutcomeNumber> number_of(const Field& field);
 
 /// Whether that number's derivatives can be told: not of gaits, nor of how errors grow.
 bool can_be_differentiated(const Field& field);
+/// Likewise, in that scene: what a wall in metres decides has none by the hoop's size.
+bool can_be_differentiated(const Field& field, const Scene& scene);
 
 /// The derivatives that a map may hold besides, jump_height_by_slope and so on: of each quantity, in the
 /// order of map_fields, by each parameter of a design, in the order of parameters.

@@ -140,6 +140,8 @@ Outcome Referee::solve(const Design& design) {
   const double w = design.release_spin / second_;
   at_ = {0.0, scene_.radius, design.release_angle, scene_.radius * w, 0.0, w};
   time_ = 0.0;
+  wall_ = scene_.clear_height_in_metres ? scene_.clear_height / design.size
+                                        : 2.0 * scene_.radius * scene_.clear_height;
   steps_ = 0;
   force_ = spin_ = 0.0, power_ = system_.body.motor * at_.spin;
   outcome_ = {};
@@ -182,21 +184,21 @@ void Referee::measure(const Motion& lift_off, const Motion& before, const Landed
   outcome_.landing_tangential_speed = (before.x_rate - R * before.spin) / speed;
   outcome_.landing_impulse = landed.impulse / (body.mass() * speed);
   outcome_.landing_energy_lost = (energy(body, before) - energy(body, landed.after)) / (weight * R);
-  if (scene_.clear_height > 0.0) clear(lift_off);
+  if (wall_ > 0.0) clear(lift_off);
 }
 
 /// Looks along the flight in small steps, and between the best one's neighbours by thirds.
 void Referee::clear(const Motion& lift_off) {
   constexpr int looks = 4'000;
-  const double R = scene_.radius, wall = 2.0 * R * scene_.clear_height;
+  const double R = scene_.radius;
   const double way = outcome_.jump_range < 0.0 ? -1.0 : 1.0;
-  if (!(outcome_.jump_height > scene_.clear_height)) return;
+  if (!(2.0 * R * outcome_.jump_height > wall_)) return;
   // side 1: how far the circle reaches ahead on its way up; -1: how far behind, with the other sign, down
   const auto farthest = [&](double side, double from, double to) {
     const auto reach = [&](double time) {
       const Motion at = flying(system_.body, lift_off, time);
-      if (!(at.y - R < wall)) return -HUGE_VAL;
-      const double above = std::max(0.0, at.y - wall);
+      if (!(at.y - R < wall_)) return -HUGE_VAL;
+      const double above = std::max(0.0, at.y - wall_);
       return side * way * (at.x - lift_off.x) + std::sqrt(R * R - above * above);
     };
     const double step = (to - from) / looks;

@@ -62,6 +62,7 @@ class Referee {
   double time_ = 0.0;  ///< since release [s]
   Outcome outcome_;
   double force_ = 0.0, spin_ = 0.0, power_ = 0.0;  ///< the largest so far, of solve
+  double wall_ = 0.0;                              ///< height of the wall to clear [m]
 };
 
 }  // namespace leapmap::referee

@@ -10,6 +10,7 @@
 #include "model/model.hpp"
 #include "physics/body.hpp"
 #include "spec/options.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/printable.hpp"
 
 namespace leapmap {
@@ -46,6 +47,7 @@ VariedDesigns::VariedDesigns(const Spec& spec, const std::vector<Axis>& axes)
     variables_.push_back(*find_variable(axis.key, spec.hoop ? &*spec.hoop : nullptr));
     varies_body_ = varies_body_ || variables_.back().of_body();
   }
+  if (varies_body_) mass_ = reduce_checked(body_).total_mass;
 }
 
 Design VariedDesigns::at(std::span<const double> values, Body* wanted) const {
@@ -56,8 +58,9 @@ Design VariedDesigns::at(std::span<const double> values, Body* wanted) const {
   if (wanted || varies_body_) body = body_;
   for (std::size_t k = 0; k < values.size(); ++k) variables_[k].in(design, body) = values[k];
   if (varies_body_) {
-    apply_ratios(reduce_checked(body), design);
-    design.size = body.diameter / body_.diameter;
+    const ReducedBody reduced = reduce_checked(body);
+    apply_ratios(reduced, design);
+    design.size = body.diameter / body_.diameter, design.mass = reduced.total_mass / mass_;
   }
   return design;
 }
@@ -131,12 +134,17 @@ std::string hop_command(const Spec& spec, const Design& design) {
       command += fmt::format(" {} {}", flag_of(*parameter), value);
   if (spec.scene.friction != Scene{}.friction)
     command += fmt::format(" --friction {}", model_of(spec.scene).name);
+  const Scales scales = scales_of(spec, design);
+  const double wall = 0.5 * wall_in_radii(spec.scene, design.size);
   for (const Parameter& parameter : parameters())
     if (const auto* member = std::get_if<double Scene::*>(&parameter.member);
         member && has(spec.scene.friction, parameter.only_of) &&
-        !(*member == &Scene::mass && spec.scene.mass == 0.0))
+        !(*member == &Scene::mass && scales.mass == 0.0))
       command += fmt::format(" --set {}={}", parameter.name,
-                             spec.scene.**member * (*member == &Scene::radius ? design.size : 1.0));
+                             *member == &Scene::radius         ? scales.radius
+                             : *member == &Scene::mass         ? scales.mass
+                             : *member == &Scene::clear_height ? wall
+                                                               : spec.scene.**member);
   if (!spec.scene.motor_in_flight && design.drive_torque != 0.0) command += " --set motor_in_flight=false";
   if (spec.scene.jumps > 1) command += fmt::format(" --set scene.jumps={}", spec.scene.jumps);
   if (spec.scene.settle > 0)

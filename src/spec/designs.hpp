@@ -37,6 +37,7 @@ class VariedDesigns {
  private:
   Design design_;
   Body body_;
+  double mass_ = 1.0;  // of the nominal body, if it varies
   std::vector<Variable> variables_;
   bool varies_body_ = false;
 };

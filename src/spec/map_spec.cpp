@@ -16,6 +16,10 @@
 namespace leapmap {
 namespace {
 
+bool is_in_metres(const Spec& spec, const SceneSlot& slot) {
+  return slot.member == &Scene::clear_height && spec.scene.clear_height_in_metres;
+}
+
 /// The values of an option: a number's alone, an axis's all.
 std::vector<double> numbers_of(Spec& spec, const Option& option) {
   if (std::holds_alternative<SpreadSlot>(option.slot) || std::holds_alternative<GoalSlot>(option.slot))
@@ -27,13 +31,16 @@ std::vector<double> numbers_of(Spec& spec, const Option& option) {
     const double value = spec.design.*slot->member;
     return std::isnan(value) ? std::vector<double>{} : std::vector{value};  // NaN: follows another
   }
-  if (const auto* slot = std::get_if<SceneSlot>(&option.slot)) return {spec.scene.*slot->member};
+  if (const auto* slot = std::get_if<SceneSlot>(&option.slot))
+    return is_in_metres(spec, *slot) ? std::vector<double>{} : std::vector{spec.scene.*slot->member};
   if (const auto* slot = std::get_if<NumberSlot>(&option.slot)) return {(*slot)(spec)};
   if (const auto* slot = std::get_if<IntegerSlot>(&option.slot)) return {static_cast<double>((*slot)(spec))};
   return {};
 }
 
 std::vector<std::string> texts_of(Spec& spec, const Option& option) {
+  if (const auto* slot = std::get_if<SceneSlot>(&option.slot); slot && is_in_metres(spec, *slot))
+    return {fmt::format("{} m", spec.scene.clear_height)};
   if (std::holds_alternative<SpreadSlot>(option.slot)) {
     const auto spread = std::ranges::find(spec.scatter.spreads, option.key, &Spread::parameter);
     return spread == spec.scatter.spreads.end() ? std::vector<std::string>{} : std::vector{text_of(*spread)};

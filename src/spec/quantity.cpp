@@ -106,6 +106,31 @@ std::size_t length_of_number(std::string_view text) {
   return mantissa;
 }
 
+struct Parts {
+  double number;
+  std::string_view unit;  // empty: none
+};
+
+Parts parts_of(std::string_view text) {
+  const std::string_view whole = trimmed(text);
+  const std::size_t length = length_of_number(whole);
+  const std::optional<double> number = number_in(whole.substr(0, length));
+  if (!number) throw InputError(fmt::format("'{}' is not a number", text));
+  return {*number, trimmed(whole.substr(length))};
+}
+
+/// A unit, found in `text`, in the SI unit of one of leapmap's own.
+double size_in_si(std::string_view text, std::string_view unit, const OwnUnit& own) {
+  std::optional<double> size;
+  try {
+    size = in_si(unit, own.si);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("'{}': {}", text, error.what()));
+  }
+  if (!size) throw InputError(fmt::format("'{}' cannot be converted to {}", text, own.si));
+  return *size;
+}
+
 }  // namespace
 
 std::optional<double> units_in_own(std::string_view unit, std::string_view own, const Scales& scales) {
@@ -117,28 +142,24 @@ std::optional<double> units_in_own(std::string_view unit, std::string_view own, 
 }
 
 double number_in_own_unit(std::string_view text, std::string_view own, const Scales& scales) {
-  const std::string_view whole = trimmed(text);
-  const std::size_t length = length_of_number(whole);
-  const std::optional<double> number = number_in(whole.substr(0, length));
-  if (!number) throw InputError(fmt::format("'{}' is not a number", text));
-  const std::string_view unit = trimmed(whole.substr(length));
-  if (unit.empty() || unit == own) return *number;
-  if (own == "rad" && unit == "deg") return *number * degrees(1.0);  // as ever, to the last bit
+  const Parts parts = parts_of(text);
+  if (parts.unit.empty() || parts.unit == own) return parts.number;
+  if (own == "rad" && parts.unit == "deg") return parts.number * degrees(1.0);  // as ever, to the last bit
   const OwnUnit* known = find_own_unit(own);
   if (!known) throw InputError(fmt::format("'{}' is not a number without a unit", text));
-  std::optional<double> size;
-  try {
-    size = in_si(unit, known->si);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("'{}': {}", text, error.what()));
-  }
-  if (!size) throw InputError(fmt::format("'{}' cannot be converted to {}", text, known->si));
+  const double size = size_in_si(text, parts.unit, *known);
   const double ours = known->size(scales);
   if (std::isnan(ours))
     throw InputError(fmt::format("'{}' needs the diameter, and each hoop has its own", text));
   if (!(ours > 0.0))
     throw InputError(fmt::format("'{}' needs the total mass too, by [hoop], scene.mass or --mass", text));
-  return *number * *size / ours;
+  return parts.number * size / ours;
+}
+
+std::optional<double> number_in_si(std::string_view text, const OwnUnit& own) {
+  const Parts parts = parts_of(text);
+  if (parts.unit.empty() || parts.unit == own.name) return {};
+  return parts.number * size_in_si(text, parts.unit, own);
 }
 
 }  // namespace leapmap

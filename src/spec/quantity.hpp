@@ -14,6 +14,10 @@ namespace leapmap {
 /// known.
 double number_in_own_unit(std::string_view text, std::string_view own, const Scales& scales);
 
+/// A number with a unit, in the SI unit of leapmap's own unit `own`; nothing: it has no unit. Throws as
+/// above.
+std::optional<double> number_in_si(std::string_view text, const OwnUnit& own);
+
 /// How many of a unit are one of leapmap's own; nothing: it is of another kind, or needs a mass that is not
 /// known. Throws InputError if UDUNITS does not know the unit.
 std::optional<double> units_in_own(std::string_view unit, std::string_view own, const Scales& scales);

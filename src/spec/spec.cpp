@@ -38,7 +38,16 @@ struct Assign {
     }
   }
   void operator()(HoopSlot) const { assign_to_hoop(entry, spec); }
-  void operator()(SceneSlot slot) const { spec.scene.*slot.member = one_number(); }
+  void operator()(SceneSlot slot) const {
+    if (slot.member == &Scene::clear_height)
+      if (const auto metres = to_si(entry, *entry.node)) {
+        if (!in_range(*entry.option, *metres))
+          refuse(entry, "is out of range", allowed_values(*entry.option));
+        spec.scene.clear_height = *metres, spec.scene.clear_height_in_metres = true;
+        return;
+      }
+    spec.scene.*slot.member = one_number();
+  }
   void operator()(NumberSlot slot) const { slot(spec) = one_number(); }
   void operator()(FrictionSlot) const { spec.scene.friction = find_model(text(*entry.node))->friction; }
   void operator()(SwitchSlot slot) const {
@@ -360,7 +369,9 @@ void assign(std::vector<Entry>& entries, Spec& spec) {
   for (Entry& entry : entries) {
     if (sets_scale(entry)) continue;
     entry.scales = common_scales(spec);
-    const bool of_made = std::holds_alternative<GoalSlot>(entry.option->slot);
+    entry.nominal = nominal_scales(spec);
+    const bool of_made = std::holds_alternative<GoalSlot>(entry.option->slot) ||
+                         std::holds_alternative<SceneSlot>(entry.option->slot);
     if (listed || (made && of_made)) entry.scales.mass = 0.0;
     if (listed || (sized && of_made)) entry.scales.radius = std::numeric_limits<double>::quiet_NaN();
     std::visit(Assign{entry, spec}, entry.option->slot);

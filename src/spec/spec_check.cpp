@@ -89,10 +89,16 @@ void check_gradients(const Spec& spec) {
   if (!output.gradients.empty() && resolved_method(spec.numerics) != "exact")
     refuse(spec, "gradients", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
            "with method = \"exact\"");
-  for (const std::string& name : output.gradients)
-    if (const Field* field = find_field(name); field && !has(spec.scene.friction, field->only_of))
+  for (const std::string& name : output.gradients) {
+    const Field* field = find_field(name);
+    if (field && !has(spec.scene.friction, field->only_of))
       refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)),
              with_model(*field->only_of));
+    if (field && can_be_differentiated(*field) && !can_be_differentiated(*field, spec.scene))
+      refuse(spec, "gradients",
+             fmt::format("'{}' has no derivatives if hoops of several sizes clear one wall", name),
+             "with clear_height in hoop diameters");
+  }
   const std::vector<Variable> of_body = spec.hoop ? variables_of(*spec.hoop) : std::vector<Variable>{};
   for (const std::string& name : output.gradients_by) {
     if (find_body_number(name) && std::ranges::find(of_body, name, &Variable::key) == of_body.end())

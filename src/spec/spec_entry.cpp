@@ -9,6 +9,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
+#include "spec/quantity.hpp"
 #include "spec/spacing.hpp"
 
 namespace leapmap {
@@ -53,6 +54,18 @@ double to_number(const Entry& entry, const toml::node& node, std::string_view pa
     refuse(entry, where + "is out of range" + meant_degrees(option.range, option.unit, *value),
            allowed_values(option));
   return *value;
+}
+
+std::optional<double> to_si(const Entry& entry, const toml::node& node) {
+  const OwnUnit* own = find_own_unit(entry.option->unit);
+  const auto* text = node.as_string();
+  if (!own || !text || own->size(entry.scales) > 0.0 || !(own->size(entry.nominal) > 0.0)) return {};
+  try {
+    return number_in_si(text->get(), *own);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}: {}; allowed: {}", entry.place, name_of(entry), error.what(),
+                                 allowed_values(*entry.option)));
+  }
 }
 
 std::optional<std::int64_t> to_whole(const toml::node& node) {

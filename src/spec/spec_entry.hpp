@@ -22,7 +22,8 @@ struct Entry {
   toml::source_position position;
   const toml::node* node;
   std::string key{};  // "slope"; of [hoop] and its tolerances "hoop.slug.mass"
-  Scales scales{};    // of the scene, for numbers with units
+  Scales scales{};    // of all hoops, for numbers with units; radius NaN, mass 0: each hoop has its own
+  Scales nominal{};   // of the nominal hoop
 };
 
 /// The key with its section, for messages.
@@ -33,6 +34,9 @@ std::string name_of(const Entry& entry);
 
 /// A number in the option's unit and range; `part` of the value, for messages.
 double to_number(const Entry& entry, const toml::node& node, std::string_view part = "");
+
+/// A text with a unit, in the SI unit of the option's own, if each hoop has its own; else nothing.
+std::optional<double> to_si(const Entry& entry, const toml::node& node);
 
 /// A whole number, also one written as 1e6.
 std::optional<std::int64_t> to_whole(const toml::node& node);

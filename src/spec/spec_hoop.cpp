@@ -9,6 +9,7 @@
 
 #include "leapmap/errors.hpp"
 #include "model/variable.hpp"
+#include "physics/body.hpp"
 #include "spec/designs.hpp"
 #include "support/closest.hpp"
 #include "support/number.hpp"
@@ -204,6 +205,17 @@ Scales common_scales(const Spec& spec) {
   if (mass_varies(spec)) scales.mass = 0.0;
   if (find_varying(spec, "hoop.diameter")) scales.radius = std::numeric_limits<double>::quiet_NaN();
   return scales;
+}
+
+Scales nominal_scales(const Spec& spec) {
+  Scales scales = scales_of(spec.scene);
+  if (spec.hoop) scales.mass = reduce_checked(*spec.hoop).total_mass;
+  return scales;
+}
+
+Scales scales_of(const Spec& spec, const Design& design) {
+  const Scales nominal = nominal_scales(spec);
+  return {nominal.radius * design.size, nominal.gravity, nominal.mass * design.mass};
 }
 
 bool mass_varies(const Spec& spec) {

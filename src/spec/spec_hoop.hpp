@@ -32,6 +32,10 @@ void check_hoop(const Spec& spec);
 /// What units of the spec's numbers are converted by: without the mass, or the radius, of which each design
 /// has its own.
 Scales common_scales(const Spec& spec);
+/// Those of the nominal hoop.
+Scales nominal_scales(const Spec& spec);
+/// Those of the hoop that one of the spec's designs is.
+Scales scales_of(const Spec& spec, const Design& design);
 /// Whether masses of the body differ from design to design.
 bool mass_varies(const Spec& spec);
 /// Where masses of the body vary, no total mass is known.

@@ -55,7 +55,9 @@ std::optional<std::string> value_of(const Option& option, Spec& spec) {
         } else if constexpr (std::is_same_v<Slot, HoopSlot>) {
           return std::nullopt;  // hoop_text's
         } else if constexpr (std::is_same_v<Slot, SceneSlot>) {
-          return toml_number(spec.scene.*slot.member);
+          const double value = spec.scene.*slot.member;
+          const bool in_metres = slot.member == &Scene::clear_height && spec.scene.clear_height_in_metres;
+          return in_metres ? fmt::format("\"{} m\"", value) : toml_number(value);
         } else if constexpr (std::is_same_v<Slot, FrictionSlot>) {
           return quoted_text(std::string(model_of(spec.scene).name));
         } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
@@ -139,10 +141,14 @@ std::string text_of(const Goal& goal) {
   const auto* code = std::get_if<Code>(&field.source);
   if (code && !code->names.empty())
     return fmt::format("{{ is = \"{}\" }}", code->names[static_cast<std::size_t>(goal.at_least)]);
-  if (goal.at_least == goal.at_most) return fmt::format("{{ is = {} }}", toml_number(goal.at_least));
+  const auto limit = [&](double value) {
+    return goal.unit_of_nominal > 0.0 ? fmt::format("\"{} {}\"", value, find_own_unit(own_unit(field))->si)
+                                      : toml_number(value);
+  };
+  if (goal.at_least == goal.at_most) return fmt::format("{{ is = {} }}", limit(goal.at_least));
   std::vector<std::string> parts;
-  if (std::isfinite(goal.at_least)) parts.push_back("at_least = " + toml_number(goal.at_least));
-  if (std::isfinite(goal.at_most)) parts.push_back("at_most = " + toml_number(goal.at_most));
+  if (std::isfinite(goal.at_least)) parts.push_back("at_least = " + limit(goal.at_least));
+  if (std::isfinite(goal.at_most)) parts.push_back("at_most = " + limit(goal.at_most));
   return fmt::format("{{ {} }}", fmt::join(parts, ", "));
 }
 

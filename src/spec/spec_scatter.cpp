@@ -62,6 +62,18 @@ double to_bound(const Entry& entry, const Field& field, const toml::node& node, 
   return to_number(entry, node, part);
 }
 
+/// Goal::unit_of_nominal: not 0 if the limits have a unit of the SI, and each hoop has its own of leapmap's.
+double unit_of_nominal(const Entry& entry, const Field& field, const toml::table& goal) {
+  if (!std::holds_alternative<Quantity>(field.source)) return 0.0;
+  std::size_t in_si = 0;
+  for (const auto& [part, node] : goal) in_si += to_si(entry, node).has_value();
+  if (in_si == 0) return 0.0;
+  if (in_si < goal.size())
+    refuse(entry, "has one limit in a unit of the SI, which differs from hoop to hoop, and one in leapmap's",
+           "both in the same");
+  return find_own_unit(entry.option->unit)->size(entry.nominal);
+}
+
 }  // namespace
 
 Spread to_spread(const Entry& entry) {
@@ -88,11 +100,12 @@ Goal to_goal(const Entry& entry) {
   const Field& field = *find_field(entry.option->key);
   const toml::table* table = entry.node->as_table();
   if (!table || table->empty()) refuse(entry, "is not a goal", goal_forms);
-  Goal goal{.field = std::string(field.name)};
+  Goal goal{.field = std::string(field.name), .unit_of_nominal = unit_of_nominal(entry, field, *table)};
   for (const auto& [part, node] : *table) {
     if (part != "at_least" && part != "at_most" && !(part == "is" && table->size() == 1))
       refuse(entry, fmt::format("'{}' does not belong to this goal", part.str()), goal_forms);
-    const double bound = to_bound(entry, field, node, part.str());
+    const double bound =
+        goal.unit_of_nominal > 0.0 ? *to_si(entry, node) : to_bound(entry, field, node, part.str());
     if (part != "at_most") goal.at_least = bound;
     if (part != "at_least") goal.at_most = bound;
   }

@@ -112,7 +112,7 @@ void MadeHoops::take_body(const Body& made, const ReducedBody& nominal, Design& 
   if (nominal.eccentricity > balanced && reduced.eccentricity > balanced)
     design.release_angle += std::remainder(reduced.direction - nominal.direction, 2.0 * std::numbers::pi);
   const double larger = made.diameter / body_.diameter;
-  design.size *= larger;
+  design.size *= larger, design.mass *= reduced.total_mass / nominal.total_mass;
   design.release_spin *= std::sqrt(larger);
   design.drive_torque *= nominal.total_mass / (reduced.total_mass * larger);
 }

@@ -47,15 +47,29 @@ double deviation(std::span<const double> values) {
 
 }  // namespace
 
-bool GoalCheck::reached(const Outcome& outcome) const {
+double GoalCheck::value(const Design& design, const Outcome& outcome) const {
   const auto* word = std::get_if<Word>(&field->source);
   const double value = word ? static_cast<double>(outcome.*word->member) : stored_number(*field, outcome);
-  return value >= at_least && value <= at_most;
+  if (!unit) return value;
+  // Units are products of powers: how much larger one is does not depend on what the nominal hoop is.
+  return value * unit_of_nominal *
+         (unit->size({design.size, 1.0, design.mass}) / unit->size({1.0, 1.0, 1.0}));
+}
+
+bool GoalCheck::reached(const Design& design, const Outcome& outcome) const {
+  const double now = value(design, outcome);
+  return now >= at_least && now <= at_most;
+}
+
+GoalCheck goal_check(const Goal& goal) {
+  const Field* field = find_field(goal.field);
+  return {field, goal.at_least, goal.at_most, goal.unit_of_nominal,
+          goal.unit_of_nominal > 0.0 ? find_own_unit(own_unit(*field)) : nullptr};
 }
 
 std::vector<GoalCheck> goal_checks(const std::vector<Goal>& goals) {
   std::vector<GoalCheck> checks;
-  for (const Goal& goal : goals) checks.push_back({find_field(goal.field), goal.at_least, goal.at_most});
+  for (const Goal& goal : goals) checks.push_back(goal_check(goal));
   return checks;
 }
 
@@ -170,15 +184,15 @@ void MadeTally::clear() {
   for (MadeSample& sample : samples_) sample.clear();
 }
 
-bool MadeTally::reaches_all(const Outcome& outcome) const {
+bool MadeTally::reaches_all(const Design& design, const Outcome& outcome) const {
   return std::all_of(goals_.begin(), goals_.end(),
-                     [&](const GoalCheck& goal) { return goal.reached(outcome); });
+                     [&](const GoalCheck& goal) { return goal.reached(design, outcome); });
 }
 
-void MadeTally::add(const Outcome& outcome, std::size_t replicate) {
+void MadeTally::add(const Design& design, const Outcome& outcome, std::size_t replicate) {
   bool all = true;
   for (std::size_t k = 0; k < goals_.size(); ++k) {
-    const bool reached = goals_[k].reached(outcome);
+    const bool reached = goals_[k].reached(design, outcome);
     all = all && reached;
     if (!reached) missed_[k].count(replicate);
   }

@@ -11,6 +11,7 @@
 #include "leapmap/outcome.hpp"
 #include "leapmap/spec.hpp"
 #include "model/fields.hpp"
+#include "model/own_units.hpp"
 #include "numerics/sobol_points.hpp"
 
 namespace leapmap {
@@ -19,10 +20,15 @@ namespace leapmap {
 struct GoalCheck {
   const Field* field;
   double at_least, at_most;
+  double unit_of_nominal = 0.0;   ///< as of Goal
+  const OwnUnit* unit = nullptr;  ///< of the field, if the limits are in SI
 
-  /// False where the field does not apply.
-  bool reached(const Outcome& outcome) const;
+  /// The field's value in the unit of the limits.
+  double value(const Design& design, const Outcome& outcome) const;
+  /// False if the field does not apply.
+  bool reached(const Design& design, const Outcome& outcome) const;
 };
+GoalCheck goal_check(const Goal& goal);
 std::vector<GoalCheck> goal_checks(const std::vector<Goal>& goals);
 
 /// How many of equally many hoops of each replicate are of some kind.
@@ -67,8 +73,8 @@ class MadeTally {
   MadeTally(const std::vector<Goal>& goals, const std::vector<const Field*>& quantities, std::size_t samples);
 
   void clear();
-  void add(const Outcome& outcome, std::size_t replicate);
-  bool reaches_all(const Outcome& outcome) const;
+  void add(const Design& design, const Outcome& outcome, std::size_t replicate);
+  bool reaches_all(const Design& design, const Outcome& outcome) const;
 
   Estimate yield() const { return known(reached_.share()); }
   Estimate jumps() const { return known(jumped_.share()); }

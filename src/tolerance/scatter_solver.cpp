@@ -55,7 +55,8 @@ void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns,
       const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
       hoops_.fill(first, std::span(made_).first(count));
       solver_(std::span(made_).first(count), std::span(outcomes_).first(count));
-      for (std::size_t k = 0; k < count; ++k) tally_.add(outcomes_[k], (first + k) / hoops_.a_replicate());
+      for (std::size_t k = 0; k < count; ++k)
+        tally_.add(made_[k], outcomes_[k], (first + k) / hoops_.a_replicate());
     }
     for (std::size_t f = 0; f < columns.fields().size(); ++f)
       columns.put(f, i, tell(std::get<OfMade>(columns.fields()[f]->source)));

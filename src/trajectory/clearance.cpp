@@ -183,8 +183,8 @@ void differentiate(const Scene& scene, const Design& design, std::size_t place, 
     return dual;
   };
   const Flown<DesignDual> flown = flown_by<DesignDual>(time_unit(scene), number);
-  const Passage<DesignDual> passage =
-      passage_of(reduce(dual_parameters<DesignDual>(design), scene), flown, 2.0 * scene.clear_height);
+  const Passage<DesignDual> passage = passage_of(reduce(dual_parameters<DesignDual>(design), scene), flown,
+                                                 wall_in_radii(scene, design.size));
   const auto reach = [&](const Extreme& at, double side) {
     const bool lands = at.time == flown.time.value;
     return DesignDual(passage.way) * passage.reach(lands ? flown.time : DesignDual(at.time), side);
@@ -200,9 +200,10 @@ std::span<double Outcome::*const> numbers_of_flights() { return flown_numbers; }
 
 void find_clearances(const Scene& scene, std::span<const Design> designs, std::span<Outcome> outcomes,
                      const Gradients& flights, Gradients* gradients) {
-  const double second = time_unit(scene), wall = 2.0 * scene.clear_height;
+  const double second = time_unit(scene);
   for (std::size_t i = 0; i < designs.size(); ++i) {
     Outcome& outcome = outcomes[i];
+    const double wall = wall_in_radii(scene, designs[i].size);
     if (outcome.status != Status::jumped || !(2.0 * outcome.jump_height > wall)) continue;
     const auto flown = flown_by<double>(
         second, [&](double Outcome::*member, double unit) { return outcome.*member * unit; });

@@ -610,9 +610,9 @@ def test_the_diameter_is_an_axis_a_tolerance_and_free_as_any_number(drawing, tmp
     sd = json.loads(made_hoops.stdout)["scatter"]["quantities"]["jump_time"]["sd"]["value"]
     at_120 = by["jump_time"][1]
     assert sd == pytest.approx(abs(at_120) * 1e-3, rel=0.3), "to first order, but for the release's spin"
-    for more in (("--set", 'clear_height="10 mm"'), ("--set", 'hop_height="6 mm"')):
-        refused = leapmap("sweep", drawing, "--hoop.diameter", '{from="100 mm",to="180 mm",count=5}', *more,
-                          "--dry-run")
+    for varied in (("--hoop.diameter", '{from="100 mm",to="180 mm",count=5}'),
+                   ("--set", 'tolerances.hoop.diameter={normal="1 mm"}')):
+        refused = leapmap("sweep", drawing, *varied, "--set", 'hop_height="6 mm"', "--dry-run")
         assert refused.returncode == 2 and "each hoop has its own" in refused.stderr
     listed = tmp_path / "list.csv"
     listed.write_text("hoop.diameter [mm],release_spin [rpm]\n120,10\n160,10\n")
@@ -622,3 +622,57 @@ def test_the_diameter_is_an_axis_a_tolerance_and_free_as_any_number(drawing, tmp
     refused = leapmap("sweep", drawing, "--points", listed, "--set", 'hop_height="6 mm"', "-o",
                       tmp_path / "l.h5")
     assert refused.returncode == 2 and "each hoop has its own" in refused.stderr
+
+
+WALLED = ("--set", 'clear_height="8 mm"', "--set", 'slope="34 deg"', "--set", "friction=coulomb", "--set",
+          "mu_static=0.6")
+
+
+def test_hoops_of_every_size_clear_the_same_wall(drawing, tmp_path):
+    """A wall in mm stays, one in diameters grows with the hoop."""
+    made, table = tmp_path / "m.h5", tmp_path / "m.csv"
+    sizes = ("--hoop.diameter", '{from="100 mm",to="180 mm",count=5}')
+    fields = ("--set", 'output.fields=["jump_height","clears_from","clears_to"]')
+    done = leapmap("sweep", drawing, *WALLED, *sizes, *fields, "--set", "numerics.audit=1", "-o", made)
+    assert done.returncode == 0, done.stderr
+    assert "0 flags differ" in done.stdout and "0 wrong" in done.stdout
+    assert leapmap("export", made, "-o", table, "--units", "mm", "--quiet").returncode == 0
+    rows = list(csv.DictReader(table.open()))
+    assert len(rows) == 5
+    for row in rows:
+        mm = float(row["hoop.diameter [mm]"])
+        alone = told(drawing, *WALLED, "--set", f"hoop.diameter={mm} mm")
+        for name in ("clears_from", "clears_to"):
+            assert float(row[f"{name} [mm]"]) == pytest.approx(mm / 2 * alone[name], rel=1e-11), name
+    spec = tmp_path / "again.toml"
+    spec.write_text(leapmap("info", made, "--spec").stdout)
+    assert 'clear_height = "0.008 m"' in spec.read_text()
+    again = leapmap("sweep", spec, "-o", made, "--resume")
+    assert again.returncode == 0, again.stderr
+    other = leapmap("sweep", spec, "--set", "clear_height=0.008", "-o", made, "--resume")
+    assert other.returncode == 2 and "clear_height" in other.stderr
+    refused = leapmap("sweep", drawing, *WALLED, *sizes, "--set", 'output.gradients=["clears_to"]',
+                      "--dry-run")
+    assert refused.returncode == 2 and "hoops of several sizes clear one wall" in refused.stderr
+
+
+def test_goals_in_mm_and_newtons_hold_for_hoops_of_every_size_and_mass(drawing, tmp_path):
+    """The lightest slug with which a hoop of some diameter does what is asked in mm and N."""
+    asked = ("--set", 'goal.jump_height={at_least="50 mm"}', "--set", 'goal.max_normal_force={at_most="9 N"}',
+             "--set", 'goal.clears_to={at_least="150 mm"}')
+    done = leapmap("design", drawing, *WALLED, "--hoop.diameter", '{from="100 mm",to="150 mm"}', "--set",
+                   'hoop.slug.mass={from="60 g",to="120 g"}', *asked, "--set", "minimize=hoop.slug.mass",
+                   "--json", "--sample", 2048)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)["designs"][0]
+    sizes = ("--set", f"hoop.diameter={found['parameters']['hoop.diameter']!r}", "--set",
+             f"hoop.slug.mass={found['parameters']['hoop.slug.mass']!r}")
+    alone = told(drawing, *WALLED, *sizes)
+    radius, mass = alone["scene"]["radius"], alone["scene"]["mass"]
+    assert 2 * radius * alone["jump_height"] >= 0.05
+    assert mass * 9.81 * alone["max_normal_force"] <= 9.0
+    assert radius * alone["clears_to"] >= 0.15
+    assert any(" m" in bind or " N" in bind for bind in found["binds"]), "one of them stops the mass"
+    mixed = leapmap("design", drawing, "--hoop.diameter", '{from="100 mm",to="150 mm"}', "--set",
+                    'goal.jump_height={at_least="50 mm",at_most=0.9}', "--set", "minimize=hoop.diameter")
+    assert mixed.returncode == 2 and "both in the same" in mixed.stderr and mixed.stderr.count("\n") == 1

@@ -92,7 +92,7 @@ TEST_P(Questions, GoalsHoldForEachDesignAsTheSolverSeesItAlone) {
   for (const FoundDesign& one : found.designs) {
     const Outcome outcome = solve(one.design, spec.scene);
     for (const GoalCheck& goal : goal_checks(question.one.goals))
-      EXPECT_TRUE(goal.reached(outcome)) << goal.field->name;
+      EXPECT_TRUE(goal.reached(one.design, outcome)) << goal.field->name;
     for (const FreeParameter& parameter : question.free) {
       EXPECT_GE(one.design.*parameter.variable.parameter(), parameter.side.low);
       EXPECT_LE(one.design.*parameter.variable.parameter(), parameter.side.high);

@@ -92,6 +92,21 @@ def test_outcomes_are_shown_in_a_drawing_s_units():
     assert (shown.status == o.status).all() and np.isnan(shown.jump_height[1]) and o.jump_height[0] < 2
 
 
+def test_specs_take_hoops_with_axes_free_numbers_and_tolerances():
+    asked = {"friction": "coulomb", "mu_static": 0.6}
+    slug = leapmap.Weight("85 g", at="47 mm", name="slug")
+    one = leapmap.solve(hoop=drawing(slug), slope="30 deg", **asked)
+    masses = {"values": ["70 g", "85 g"]}
+    ds = leapmap.sweep({"scene": asked}, hoop=drawing(slug), slope="30 deg", **{"hoop.slug.mass": masses})
+    assert float(ds.jump_height.sel({"hoop.slug.mass": 0.085})) == pytest.approx(one.jump_height, rel=1e-12)
+    found = leapmap.design(hoop=drawing(slug), slope="30 deg", maximize="jump_height", sample=512, most=1,
+                           **asked, **{"hoop.slug.mass": {"from": "70 g", "to": "85 g"}})
+    assert found.objectives["jump_height"][0] >= one.jump_height * (1 - 1e-12)
+    spread = leapmap.scatter({"hoop": drawing(), "design": {"slope": "30 deg"}, "scene": asked},
+                             scatter={"hoop.weight1.mass": {"normal": "1 g"}})
+    assert 0 < spread["jump_height"]["sd"].value < 0.05
+
+
 @pytest.mark.parametrize(("make", "says"), [
     (lambda: leapmap.Weight("85 mm", at=0.01), "'85 mm' cannot be converted to kg; allowed: "),
     (lambda: leapmap.Weight("85 gg", at=0.01), "the unit 'gg' is unknown"),
@@ -102,6 +117,9 @@ def test_outcomes_are_shown_in_a_drawing_s_units():
     (lambda: leapmap.Hoop("90 mm", mass=1, weights=[SLUG, BATTERY]),
      "hoop.weights[0].at = 0.047 is out of range"),
     (lambda: leapmap.solve(hoop="120 mm"), "allowed: a leapmap.Hoop"),
+    (lambda: leapmap.sweep({"hoop": {"diameter": 0.1}}, hoop=drawing()), "allowed: one of the two"),
+    (lambda: leapmap.design("hoop.toml", hoop=drawing()), "has no effect beside a file or [hoop]"),
+    (lambda: leapmap.design(hoop=drawing(leapmap.Weight([0.04, 0.08], at="47 mm"))), "hoop holds arrays"),
     (lambda: leapmap.solve(hoop=drawing(), mass_ratio=3), "mass_ratio = 3 has no effect beside hoop"),
     (lambda: leapmap.solve(hoop=drawing(), radius="60 mm"), "radius = '60 mm' has no effect beside hoop"),
     (lambda: leapmap.Hoop("120 mm", mass=1, inertia=np.nan), "inertia = nan is not finite"),

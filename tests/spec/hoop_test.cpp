@@ -149,6 +149,40 @@ TEST(HoopNumbers, HaveTheDerivativesOfDifferences) {
   }
 }
 
+TEST(HoopNumbers, ThatScatterAreJudgedByTheirOwnMillimetresAndNewtons) {
+  const Spec spec =
+      parse_spec(drawing, "drawing",
+                 {"hoop.slug.mass=85 g", "slope=34 deg", "tolerances.hoop.diameter={normal=\"3 %\"}",
+                  "tolerances.hoop.slug.mass={normal=\"2 g\"}", "tolerances.samples=512",
+                  "goal.jump_height={at_least=\"52 mm\"}", "goal.max_normal_force={at_most=\"8.8 N\"}"});
+  EXPECT_EQ(resolved_text(parse_spec(resolved_text(spec))), resolved_text(spec));
+  const ScatterReport report = scatter(spec);
+  std::size_t both = 0, high = 0, soft = 0, by_nominal = 0;
+  for (std::size_t i = 0; i < report.made.size(); ++i) {
+    const Design& made = report.made[i];
+    // Size and mass are those of a body with the ratios that the solver was given.
+    Body body = *spec.hoop;
+    const double mass = 0.158 * made.mass;
+    body.diameter = 0.12 * made.size, body.weights[0].mass += mass - 0.158;
+    const ReducedBody reduced = reduce_body(body);
+    ASSERT_NEAR(reduced.total_mass, mass, 1e-15);
+    ASSERT_NEAR(reduced.mass_ratio, made.mass_ratio, 1e-12 * made.mass_ratio);
+    ASSERT_NEAR(reduced.offset_ratio, made.offset_ratio, 1e-12);
+    ASSERT_NEAR(reduced.inertia_factor, made.inertia_factor, 1e-12 * made.inertia_factor);
+    const Outcome& outcome = report.outcomes[i];
+    const bool is_high = body.diameter * outcome.jump_height >= 0.052,
+               is_soft = mass * spec.scene.gravity * outcome.max_normal_force <= 8.8;
+    high += is_high, soft += is_soft, both += is_high && is_soft;
+    by_nominal += 0.12 * outcome.jump_height >= 0.052 && 0.158 * 9.81 * outcome.max_normal_force <= 8.8;
+  }
+  const auto all = static_cast<double>(report.made.size());
+  EXPECT_EQ(report.yield.value, static_cast<double>(both) / all);
+  EXPECT_EQ(report.missed[0].value, 1.0 - static_cast<double>(high) / all);
+  EXPECT_EQ(report.missed[1].value, 1.0 - static_cast<double>(soft) / all);
+  EXPECT_NE(both, by_nominal) << "or the test could not tell the two apart";
+  EXPECT_TRUE(both > 51 && both < 461) << both << " of 512: some reach the goals, some do not";
+}
+
 TEST(HoopNumbers, ThatCannotVaryAreRefused) {
   const auto refusal = [](const std::string& more, const std::vector<std::string>& overrides = {}) {
     try {
@@ -163,8 +197,7 @@ TEST(HoopNumbers, ThatCannotVaryAreRefused) {
   };
   says(refusal("", {"hoop.diameter={values=[0.12,0.09]}"}), "hoop.slug.at = 0.047 is beyond the rim");
   says(refusal("", {"hoop.slug.at={from=\"40 mm\",to=\"61 mm\",count=3}"}), "hoop.slug.at = 0.061");
-  says(refusal("", {"hoop.diameter={from=0.1,to=0.2,count=3}", "clear_height=10 mm"}),
-       "each hoop has its own");
+  says(refusal("", {"hoop.diameter={from=0.1,to=0.2,count=3}", "hop_height=10 mm"}), "each hoop has its own");
   says(refusal("", {"scatter.hoop.slg.mass={normal=\"1 g\"}"}), "did you mean slug?");
   says(refusal("", {"scatter.hoop.slug.mass={normal=\"1 mm\"}"}), "scatter.hoop.slug.mass");
   says(refusal("[tolerances]\nhoop.slug.mass = { normal = \"1 g\" }\nmass_ratio = { normal = \"1 %\" }\n"),

@@ -69,7 +69,8 @@ Plain plain_sampling(const Spec& spec, const Design& drawn, std::size_t hoops) {
   const auto goals = goal_checks(spec.goals);
   Plain plain{};
   for (const Outcome& outcome : outcomes) {
-    plain.yield += std::ranges::all_of(goals, [&](const GoalCheck& goal) { return goal.reached(outcome); });
+    plain.yield +=
+        std::ranges::all_of(goals, [&](const GoalCheck& goal) { return goal.reached({}, outcome); });
     if (outcome.status == Status::jumped) plain.heights.push_back(outcome.jump_height);
   }
   plain.yield /= static_cast<double>(hoops);
@@ -348,7 +349,7 @@ TEST(Scatter, IsReadFromASpecAndToldInItAgain) {
   const auto goals = goal_checks(spec.goals);
   EXPECT_TRUE(goals[static_cast<std::size_t>(std::ranges::find(spec.goals, "phase_sequence", &Goal::field) -
                                              spec.goals.begin())]
-                  .reached(outcome));
+                  .reached({}, outcome));
 }
 
 }  // namespace

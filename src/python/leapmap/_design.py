@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Search for designs: leapmap design, and the same problem for other optimizers."""
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from leapmap import _core
-from leapmap._arguments import array, mapping, names, path, whole
+from leapmap._arguments import array, mapping, names, whole
 from leapmap._results import Outcomes
-from leapmap._sweep import _keyed, _toml
+from leapmap._sweep import _keyed, question
 
 
 @dataclass(frozen=True)
@@ -222,10 +221,7 @@ class DesignProblem:
 
 
 def _question(spec, goal, maximize, minimize, scatter, overrides):
-    text, origin = (path("spec", spec),
-                    None) if spec is not None and not isinstance(spec, Mapping) else (_toml(spec or {}),
-                                                                                      "<dict>")
-    changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
+    text, origin, changes = question(spec, overrides)
     for section, keys in (("scatter", scatter), ("goal", goal)):
         changes += [f"{section}.{key}={_keyed(key, value)}" for key, value in mapping(section, keys).items()]
     for key, asked in (("maximize", maximize), ("minimize", minimize)):

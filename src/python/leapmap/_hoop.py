@@ -56,7 +56,7 @@ class Weight:
 
 
 class Hoop:
-    """A ring with weights, for solve, gradient, trace and gaits; others take ``**hoop.parameters``.
+    """A ring with weights, for every function that takes a design or a spec.
 
     Numbers may be arrays, which broadcast; the diameter is one number.
 
@@ -121,6 +121,7 @@ class Hoop:
         except ValueError:
             raise ValueError("the arrays of a hoop do not broadcast; allowed: numpy's rules") from None
         self._names = [f"weights[{k}]" if w.name is None else w.name for k, w in enumerate(weights)]
+        self._given = [w.name for w in weights]
         reduced = {
             name: values.reshape(self._numbers.shape[:-1])
             for name, values in _core.reduce_hoops(_rows(self._numbers), self._names).items()
@@ -130,6 +131,17 @@ class Hoop:
         one = {} if self.total_mass.ndim else {"mass": float(self.total_mass)}
         self.parameters = {name: values[()] for name, values in reduced.items()}
         self.parameters |= {"radius": float(diameter) / 2} | one
+
+    def section(self):
+        """The hoop as [hoop] of a spec, a mapping; weights without a name are weight1, weight2, ..."""
+        if self._numbers.ndim > 1:
+            raise ValueError("hoop holds arrays; allowed: numbers, and axes as hoop.NAME.mass of the spec")
+        diameter, mass, inertia, *rest = map(float, self._numbers)
+        keys = ("mass", "at", "angle", "inertia")
+        weights = [{"name": name or f"weight{k + 1}"} | dict(zip(keys, rest[4 * k:4 * k + 4]))
+                   for k, name in enumerate(self._given)]
+        ring = {"diameter": diameter, "mass": mass} | ({} if np.isnan(inertia) else {"inertia": inertia})
+        return ring | ({"weight": weights} if weights else {})
 
     def _differentiate(self, by, values):
         """Derivatives by the hoop's own numbers, in place of those by its ratios.

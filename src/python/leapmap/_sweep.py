@@ -18,6 +18,7 @@ import numpy as np
 
 from leapmap import _analysis, _core
 from leapmap._arguments import path, shown, whole
+from leapmap._hoop import Hoop
 
 try:
     from h5py._objects import phil as _hdf5  # HDF5 is one for the whole process: h5py's other threads wait
@@ -71,8 +72,9 @@ def sweep(spec, file=None, *, in_memory=False, resume=False, overwrite=False, th
     >>> dict(ds.sizes)
     {'slope': 50, 'mass_ratio': 3}
     """
-    text, origin = (_toml(spec), "<dict>") if isinstance(spec, Mapping) else (path("spec", spec), None)
-    changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
+    if spec is None:
+        path("spec", spec)  # which refuses it
+    text, origin, changes = question(spec, overrides)
     if in_memory and file is not None:
         raise ValueError(f"file = {file!r} has no effect with in_memory=True; allowed: one of the two")
     target = None if in_memory else os.fspath(file) if file is not None else _core.spec_file(
@@ -258,6 +260,8 @@ def _value(value, in_table=False, depth=0):
                                 for key, item in value.items()) + " }"
     if isinstance(value, (int, np.integer)):
         return str(int(value))
+    if isinstance(value, (list, tuple)) and value and all(isinstance(item, Mapping) for item in value):
+        return "[" + ", ".join(_value(item, True, depth + 1) for item in value) + "]"
     if isinstance(value, (list, tuple)) and value and all(isinstance(item, str) for item in value):
         return "[" + ", ".join(map(_text, value)) + "]"
     if np.ma.is_masked(value):
@@ -277,6 +281,21 @@ def _value(value, in_table=False, depth=0):
     return numbers if in_table else f"{{ values = {numbers} }}"
 
 
+def question(spec, overrides):
+    """A spec's text or path, its origin, None for a path, and KEY=VALUE of overrides; hoop may be a Hoop."""
+    overrides = dict(overrides)
+    hoop = overrides.get("hoop")
+    if isinstance(hoop, Hoop):
+        if spec is not None and (not isinstance(spec, Mapping) or "hoop" in spec):
+            raise ValueError(
+                f"hoop = {shown(hoop)} has no effect beside a file or [hoop]; allowed: one of the two")
+        spec = {"hoop": overrides.pop("hoop")} | dict(spec or {})
+    changes = [f"{key}={_keyed(key, value)}" for key, value in overrides.items()]
+    if spec is None or isinstance(spec, Mapping):
+        return _toml(spec or {}), "<dict>", changes
+    return path("spec", spec), None, changes
+
+
 def _keyed(key, value):
     try:
         return _value(value)
@@ -287,6 +306,8 @@ def _keyed(key, value):
 def _toml(spec):
     lines = []
     for section, keys in spec.items():
+        if isinstance(keys, Hoop):
+            keys = keys.section()
         if not isinstance(keys, Mapping):
             raise ValueError(
                 f"{section} = {keys!r} is not a section; allowed: {{section: {{key: value}}}}, as in a "
