@@ -406,7 +406,10 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   };
   return { show, stopAt, remodel, retell: () =>
     { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } },
-    isOfMap: () => now.source[0] === "design", follow, recount, haunt: () => { if (now.story) haunt(); } };
+    isOfMap: () => now.source[0] === "design",
+    /** Whether the hoop shown is that design of the map. */
+    isOf: (index) => now.source[0] === "design" && now.story && String(now.source[1]) === String(index),
+    hoop: () => ({ outcome: now.story.outcome, design: now.design }), follow, recount, haunt: () => { if (now.story) haunt(); } };
 }
 
 /** Numbers of a design as an address has them, name:value,name:value; kinetic friction that follows the

@@ -12,6 +12,9 @@ function numberRow(name, words, text, value) {
   return tr;
 }
 
+/** Whether the jumps of a hoop become the same, one by one or some in turn. */
+const isSteady = ({ gait_period: period }) => period > 0 && period < 255;
+
 /** Rows of what a story of a design tells; chosen: {mass, jumps}. */
 function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
   const R = design.radius, second = Math.sqrt(R / design.gravity), measure = measuresOf(design, chosen.mass),
@@ -41,7 +44,7 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
       heights.map((h) => measure.length(2 * R * h)).join(", "));
   }
   // The first jump may be the lowest: what its jumps come to, for who wants to go on jumping.
-  if (jumped && outcome.gait_period > 0 && outcome.gait_period < 255)
+  if (jumped && isSteady(outcome))
     add("steady_jump", "steady jump", `${measure.length(2 * R * outcome.gait_height)}, ` +
       `${measure.speed(outcome.gait_speed)} down the plane` +
       (outcome.gait_period > 1 ? `, mean of ${outcome.gait_period} jumps in turn` : ""), outcome.gait_height);

@@ -170,14 +170,19 @@ function start(map, solver, teller) {
       { element("spoken").textContent = `${element("place").textContent}. ${element("value").textContent}`; },
       600);
   };
+  /** The height is that of the first jump: the steady one beside it, of the hoop that is shown. */
+  const steadyNote = ({ outcome, design }) =>
+    (view.view.field.name === "jump_height" && isSteady(outcome)
+    ? `steady jump ${toldIn(outcome.gait_height, "diameters", design)}` : "");
   const tellOwn = () => {
     const { outcome, title, design } = own, { field } = view.view, v = outcome[field.name];
     said = "";
     element("place").textContent = title;
     const instead = v === undefined ? (map.asked.made ? "being solved" : "unknown")
       : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ");
-    element("value").textContent = `${field.label}: ` +
-      (Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : instead);
+    element("value").textContent = [`${field.label}: ` +
+      (Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : instead),
+    steadyNote(own)].filter(Boolean).join("; ");
     tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name])
       ? toldIn(outcome[f.name], f.unit, design) : ""));
     speak();
@@ -214,7 +219,9 @@ function start(map, solver, teller) {
     element("place").textContent = placeText(map, index);
     const notesSaid = notes.filter((w) => w && !isSolving(shown))
       .map((note) => (shown.made ? `nominal: ${note}` : note));
-    element("value").textContent = [`${shown.label}: ${text(shown)}`, ...notesSaid].join("; ");
+    const steady = chosen.isOf(index) ? steadyNote(chosen.hoop()) : "";
+    element("value").textContent = [`${shown.label}: ${text(shown)}`, steady, ...notesSaid].filter(Boolean)
+      .join("; ");
     tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));
     speak();
     const { dataset } = element("readout");
@@ -223,7 +230,7 @@ function start(map, solver, teller) {
   };
   const pointed = (index) => { points = true; told(index); };
   const view = (map.columns ? listView : mapView)(canvas, map, pointed, (index, byHand) =>
-    { own = null; chosen.show(index, byHand); });
+    { own = null; chosen.show(index, byHand); said = ""; told(index); });
   canvas.addEventListener("pointerleave", () => { points = false; if (own) tellOwn(); });
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value

@@ -153,10 +153,18 @@ def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(pag
     assert float(shown["steady_jump"]) == pytest.approx(of_spec["gait_height"], rel=1e-9)
     words = page.find_element("id", "numbers").text
     assert "steady jump 27.28 mm, 1.996 m/s" in words and " N" in words, words
+    beside = page.find_element("id", "value").text
+    assert "= 10.34 mm; steady jump 27.28 mm" in beside, "of the hoop shown, beside the map"
     address = page.execute_script("return location.hash")
     at(page, html, address)
     assert numbers(page) == shown
     assert page.find_element("id", "drawing-told").get_property("textContent") == told
+    page.find_element("id", "map").send_keys(Keys.ARROW_RIGHT, Keys.ENTER)
+    of_map, beside = numbers(page), page.find_element("id", "value").text
+    assert of_map["jump_height"] != shown["jump_height"]
+    assert ("steady jump" in beside) == ("steady_jump" in of_map), beside
+    page.find_element("id", "map").send_keys(Keys.ARROW_RIGHT)
+    assert "steady jump" not in page.find_element("id", "value").text, "of a hoop that is not shown"
 
 
 @pytest.mark.parametrize(("name", "value", "words"), [("ring.diameter", "-1", "diameter"),
