@@ -1,59 +1,59 @@
 # What the library is made of: solvers for each instruction set, solvers in scalars, and all the rest.
 set(LEAPMAP_KERNEL_SOURCES  # src/model/kernels.hpp
-  src/coulomb/coulomb.cpp
-  src/coulomb/coulomb_integration.cpp
-  src/coulomb/coulomb_lanes.cpp
-  src/coulomb/exact_motion.cpp
-  src/coulomb/gradient.cpp
-  src/coulomb/integrated_motion.cpp
-  src/coulomb/model.cpp
-  src/coulomb/recorded_way.cpp
-  src/coulomb/rolling_lanes.cpp
-  src/coulomb/rolling_leg.cpp
-  src/coulomb/sliding_lanes.cpp
-  src/coulomb/sliding_leg.cpp
-  src/coulomb/sliding_panel.cpp
-  src/coulomb/solving.cpp
-  src/coulomb/timed_rolls.cpp
-  src/coulomb/way.cpp
+  src/friction/coulomb.cpp
+  src/friction/coulomb_integration.cpp
+  src/friction/coulomb_lanes.cpp
+  src/friction/exact_motion.cpp
+  src/friction/gradient.cpp
+  src/friction/integrated_motion.cpp
+  src/friction/model.cpp
+  src/friction/recorded_way.cpp
+  src/friction/rolling_lanes.cpp
+  src/friction/rolling_leg.cpp
+  src/friction/sliding_lanes.cpp
+  src/friction/sliding_leg.cpp
+  src/friction/sliding_panel.cpp
+  src/friction/solving.cpp
+  src/friction/timed_rolls.cpp
+  src/friction/way.cpp
   src/model/kernels.cpp
-  src/physics/three_coordinates.cpp
-  src/rolling/clock.cpp
-  src/rolling/dual_time.cpp
-  src/rolling/exact.cpp
-  src/rolling/dual_jump.cpp
-  src/rolling/exact_motion.cpp
-  src/rolling/find.cpp
-  src/rolling/gradient.cpp
-  src/rolling/halved_time.cpp
-  src/rolling/integrated_motion.cpp
-  src/rolling/leg.cpp
-  src/rolling/model.cpp
-  src/rolling/prepare.cpp
-  src/rolling/rolling_integration.cpp
-  src/rolling/rolling_motion.cpp
-  src/rolling/way.cpp
+  src/hoop/three_coordinates.cpp
+  src/noslip/clock.cpp
+  src/noslip/dual_time.cpp
+  src/noslip/exact.cpp
+  src/noslip/dual_jump.cpp
+  src/noslip/exact_motion.cpp
+  src/noslip/find.cpp
+  src/noslip/gradient.cpp
+  src/noslip/halved_time.cpp
+  src/noslip/integrated_motion.cpp
+  src/noslip/leg.cpp
+  src/noslip/model.cpp
+  src/noslip/prepare.cpp
+  src/integrate/rolling_integration.cpp
+  src/noslip/rolling_motion.cpp
+  src/noslip/way.cpp
   src/trajectory/way.cpp
-  src/rolling/rolling_time.cpp
-  src/rolling/solving.cpp
-  src/rolling/take_off.cpp)
+  src/noslip/rolling_time.cpp
+  src/noslip/solving.cpp
+  src/noslip/take_off.cpp)
 # Of these the library itself has what no lanes are for: the exact solver in double and long double, for
 # studies and tests.
 set(LEAPMAP_SCALAR_SOURCES
-  src/coulomb/coulomb.cpp
-  src/coulomb/refined.cpp
-  src/coulomb/rolling_leg.cpp
-  src/coulomb/sliding_leg.cpp
-  src/coulomb/sliding_panel.cpp
-  src/rolling/clock.cpp
-  src/rolling/exact.cpp
-  src/rolling/find.cpp
-  src/rolling/halved_time.cpp
-  src/rolling/leg.cpp
-  src/rolling/prepare.cpp
-  src/rolling/refined.cpp
-  src/rolling/rolling_time.cpp
-  src/rolling/take_off.cpp)
+  src/friction/coulomb.cpp
+  src/friction/refined.cpp
+  src/friction/rolling_leg.cpp
+  src/friction/sliding_leg.cpp
+  src/friction/sliding_panel.cpp
+  src/noslip/clock.cpp
+  src/noslip/exact.cpp
+  src/noslip/find.cpp
+  src/noslip/halved_time.cpp
+  src/noslip/leg.cpp
+  src/noslip/prepare.cpp
+  src/noslip/refined.cpp
+  src/noslip/rolling_time.cpp
+  src/noslip/take_off.cpp)
 set(LEAPMAP_SOURCES
   src/audit/audit.cpp
   src/audit/audit_gait.cpp
@@ -95,10 +95,10 @@ set(LEAPMAP_SOURCES
   src/engine/provenance.cpp
   src/engine/scatter.cpp
   src/engine/solve.cpp
-  src/gait/error_growth.cpp
-  src/gait/find_gaits.cpp
-  src/gait/return_map.cpp
-  src/gait/settle.cpp
+  src/gaits/error_growth.cpp
+  src/gaits/find_gaits.cpp
+  src/gaits/return_map.cpp
+  src/gaits/settle.cpp
   src/leapmap/outcome.cpp
   src/leapmap/version.cpp
   src/map/hdf5.cpp
@@ -126,7 +126,7 @@ set(LEAPMAP_SOURCES
   src/numerics/sobol_indices.cpp
   src/numerics/sobol_points.cpp
   src/numerics/sobol_sequence.cpp
-  src/physics/body.cpp
+  src/hoop/body.cpp
   src/referee/flight.cpp
   src/referee/motion.cpp
   src/referee/referee.cpp
@@ -173,4 +173,4 @@ set(LEAPMAP_SOURCES
   src/tolerance/made_sample.cpp
   src/tolerance/scatter_solver.cpp
   src/trajectory/clearance.cpp
-  src/trajectory/contestant.cpp)
+  src/integrate/contestant.cpp)

@@ -408,7 +408,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     { pins.show(); if (now.story) { tell(); showGaits(now.design); showGradient(now.design); draw(); } },
     isOfMap: () => now.source[0] === "design",
     /** Whether the hoop shown is that design of the map. */
-    isOf: (index) => now.source[0] === "design" && now.story && String(now.source[1]) === String(index),
+    isOf: (index) =>
+      Boolean(now.story) && now.source[0] === "design" && now.source[1] === String(index),
     hoop: () => ({ outcome: now.story.outcome, design: now.design }), follow, recount, haunt: () => { if (now.story) haunt(); } };
 }
 

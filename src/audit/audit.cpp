@@ -10,6 +10,7 @@
 
 #include "engine/map_layout.hpp"
 #include "engine/parallel.hpp"
+#include "hoop/units.hpp"
 #include "leapmap/errors.hpp"
 #include "map/hdf5.hpp"
 #include "model/fields.hpp"
@@ -20,7 +21,6 @@
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
 #include "trajectory/later_jump.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "audit/audit_solver.hpp"
-#include "gait/error_growth.hpp"
-#include "gait/return_map.hpp"
-#include "gait/settle.hpp"
+#include "gaits/error_growth.hpp"
+#include "gaits/return_map.hpp"
+#include "gaits/settle.hpp"
+#include "integrate/integration_options.hpp"
 #include "model/model.hpp"
-#include "trajectory/integration_options.hpp"
 
 namespace leapmap {
 namespace {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "hoop/units.hpp"
 #include "map/tile.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
@@ -14,7 +15,6 @@
 #include "request/request.hpp"
 #include "request/solver.hpp"
 #include "spec/designs.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

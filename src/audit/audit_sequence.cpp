@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "audit/audit.hpp"
+#include "integrate/integration_options.hpp"
 #include "model/model.hpp"
 #include "request/request.hpp"
-#include "trajectory/integration_options.hpp"
 
 namespace leapmap {
 namespace {

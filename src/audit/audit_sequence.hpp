@@ -7,7 +7,7 @@
 #include <span>
 
 #include "audit/audit_solver.hpp"
-#include "gait/error_growth.hpp"
+#include "gaits/error_growth.hpp"
 #include "leapmap/audit.hpp"
 #include "leapmap/spec.hpp"
 
@@ -19,9 +19,9 @@ class SequenceAuditor {
   SequenceAuditor(const Spec& spec, double allowed);
 
   /// Looks at the jumps after the first by the method that audits first jumps. Errors may have grown as much
-  /// as derivatives from landing to landing tell (gait/error_growth.hpp). Jumps are beyond it where they have
-  /// grown by more than audited_growth, where the second method gives up, and from where its own answers part
-  /// that begin a hair away.
+  /// as derivatives from landing to landing tell (gaits/error_growth.hpp). Jumps are beyond it where they
+  /// have grown by more than audited_growth, where the second method gives up, and from where its own answers
+  /// part that begin a hair away.
   void look_at(std::size_t number, const Design& design, const Outcome& ours, AuditReport& report) const;
 
  private:

@@ -4,8 +4,8 @@
 #include <array>
 #include <numbers>
 
+#include "hoop/rolling_by_angle.hpp"
 #include "model/model.hpp"
-#include "physics/rolling_by_angle.hpp"
 
 namespace leapmap {
 namespace {

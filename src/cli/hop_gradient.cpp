@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "cli/output.hpp"
+#include "hoop/units.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
 #include "spec/spec_hoop.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap::cli {
 namespace {

@@ -3,9 +3,9 @@
 #include <nlopt.hpp>
 
 #include "design/descend.hpp"
+#include "hoop/units.hpp"
 #include "leapmap/errors.hpp"
 #include "request/solver.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

@@ -11,12 +11,12 @@
 
 #include "film/film_angles.hpp"
 #include "film/place_film.hpp"
+#include "hoop/units.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
 #include "numerics/median.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

@@ -12,6 +12,7 @@
 #include "design/improve.hpp"
 #include "design/judge.hpp"
 #include "engine/parallel.hpp"
+#include "hoop/units.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/find_designs.hpp"
 #include "leapmap/gradient.hpp"
@@ -21,7 +22,6 @@
 #include "request/solver.hpp"
 #include "spec/options.hpp"
 #include "support/stop.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

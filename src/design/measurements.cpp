@@ -13,6 +13,7 @@
 #include "film/observations.hpp"
 #include "film/place_film.hpp"
 #include "film/tracker_project.hpp"
+#include "hoop/units.hpp"
 #include "leapmap/fit.hpp"
 #include "model/fields.hpp"
 #include "numerics/median.hpp"
@@ -20,7 +21,6 @@
 #include "support/csv.hpp"
 #include "support/number.hpp"
 #include "support/posix.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

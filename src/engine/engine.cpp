@@ -11,10 +11,10 @@
 
 #include "engine/ordered_delivery.hpp"
 #include "engine/parallel.hpp"
+#include "hoop/units.hpp"
 #include "leapmap/errors.hpp"
 #include "request/solver.hpp"
 #include "spec/designs.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "film/motion_at.hpp"
-#include "trajectory/units.hpp"
+#include "hoop/units.hpp"
 
 namespace leapmap {
 namespace {

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <limits>
 
-#include "coulomb/contact_phases.hpp"
+#include "friction/contact_phases.hpp"
+#include "hoop/landing.hpp"
+#include "hoop/sliding.hpp"
+#include "hoop/stick.hpp"
+#include "hoop/units.hpp"
 #include "model/model.hpp"
-#include "physics/landing.hpp"
-#include "physics/sliding.hpp"
-#include "physics/stick.hpp"
 #include "trajectory/gradient.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

@@ -14,13 +14,13 @@
 #include "film/film_model.hpp"
 #include "film/marks.hpp"
 #include "film/observations.hpp"
+#include "hoop/rolling.hpp"
+#include "hoop/sliding.hpp"
+#include "hoop/units.hpp"
 #include "model/variable.hpp"
 #include "numerics/median.hpp"
-#include "physics/rolling.hpp"
-#include "physics/sliding.hpp"
 #include "spec/spacing.hpp"
 #include "support/closest.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

@@ -4,27 +4,27 @@
 
 #include <array>
 
-#include "coulomb/model.hpp"
+#include "friction/model.hpp"
+#include "integrate/contestant.hpp"
+#include "noslip/model.hpp"
 #include "numerics/lanes.hpp"
-#include "rolling/model.hpp"
-#include "trajectory/contestant.hpp"
 
 namespace leapmap {
 namespace {
 
 // Made by the compiler: nothing of a set may run before it is chosen.
 constinit const std::array list{
-    Model{Friction::sticking, "sticking", "never slips (the paper's model)", false, rolling::exact,
-          rolling::jumps, rolling::gradients, rolling::dual_jumps, rolling::integration,
-          rolling::integrated_jumps, rolling::refined, rolling::tell_exactly,
+    Model{Friction::sticking, "sticking", "never slips (the paper's model)", false, noslip::exact,
+          noslip::jumps, noslip::gradients, noslip::dual_jumps, noslip::integration, noslip::integrated_jumps,
+          noslip::refined, noslip::tell_exactly,
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
-            return rolling::tell_by_integration(design, scene, options, interval);
+            return noslip::tell_by_integration(design, scene, options, interval);
           },
-          rolling::solving, rolling::effort, rolling::ways},
-    Model{Friction::coulomb, "coulomb", "slips, by Coulomb friction", true, coulomb::exact, coulomb::jumps,
-          coulomb::gradients, coulomb::dual_jumps, coulomb::integration, coulomb::integrated_jumps,
-          coulomb::refined, coulomb::tell_exactly, coulomb::tell_by_integration, coulomb::solving,
-          coulomb::effort, coulomb::ways}};
+          noslip::solving, noslip::effort, noslip::ways},
+    Model{Friction::coulomb, "coulomb", "slips, by Coulomb friction", true, friction::exact, friction::jumps,
+          friction::gradients, friction::dual_jumps, friction::integration, friction::integrated_jumps,
+          friction::refined, friction::tell_exactly, friction::tell_by_integration, friction::solving,
+          friction::effort, friction::ways}};
 
 constinit const Kernels of_this_set{list, static_cast<int>(batch_width)};
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "physics/body.hpp"
+#include "hoop/body.hpp"
 
 namespace leapmap {
 namespace {

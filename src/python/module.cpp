@@ -11,6 +11,7 @@
 
 #include "engine/map_layout.hpp"
 #include "engine/solve_blocks.hpp"
+#include "hoop/units.hpp"
 #include "leapmap/leapmap.hpp"
 #include "model/fields.hpp"
 #include "model/model.hpp"
@@ -24,7 +25,6 @@
 #include "spec/quantity.hpp"
 #include "spec/spec.hpp"
 #include "support/printable.hpp"
-#include "trajectory/units.hpp"
 
 namespace py = pybind11;
 

@@ -7,8 +7,6 @@
 #include <limits>
 #include <numbers>
 
-#include "support/stop.hpp"
-
 namespace leapmap::referee {
 namespace {
 
@@ -52,7 +50,8 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
   const double began = time_;
   // A guard is a function of the state alone: its rate is its change along the motion's straight
   // continuation.
-  const auto sample = [&](const Guard& guard, const Y& y) {
+  const auto sample = [&](std::size_t number, const Y& y) {
+    const Guard& guard = guards[number];
     const Motion at = motion_of(y);
     const Y f = derivative(system_.body, mode, at);
     const double d = 1e-5 / (std::abs(at.spin) + 1.0 / second_);
@@ -61,34 +60,16 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
     return Sample<double>{guard(at), (guard(motion_of(ahead)) - guard(motion_of(behind))) / (2.0 * d)};
   };
   const Y start = state_of(at_);
-  std::vector<Sample<double>> now;
-  for (const Guard& guard : guards) now.push_back(sample(guard, start));
-  if (falls_.size() < guards.size()) falls_.resize(guards.size());
+  guarded_.begin(start, guards.size(), sample);
   if (!integrator_.start(start, 0.01 / (1.0 / second_ + std::abs(at_.spin)))) return false;
-  const auto retake = [&](double tau, Y& y) { return integrator_.retake(tau, y); };
-  struct Event {
-    double tau;
-    std::size_t guard;
-    Motion at;
-  };
-  std::vector<Event> events;
+  const auto angle = [](const Y& y) { return y[2]; };
   for (;;) {
-    throw_if_stopped();
-    if (++steps_ > most_steps_ || !integrator_.advance()) return false;
+    if (++steps_ > most_steps_ || guarded_.take(integrator_, angle, 16.0, sample) != Stepped::taken)
+      return false;
     const Step<6>& step = integrator_.step();
-    const double turned = std::abs(step.y1[2] - step.y0[2]);
-    const int looks = 1 + static_cast<int>(std::min(turned * (16.0 / std::numbers::pi), 1000.0));
-    events.clear();
-    for (std::size_t g = 0; g < guards.size(); ++g) {
-      now[g] = find_falls(
-          step, looks, now[g], [&](const Y& y) { return sample(guards[g], y); }, retake, falls_[g]);
-      if (falls_[g].failed) return false;
-      for (const Fall<6>& fall : falls_[g].falls) events.push_back({fall.tau, g, motion_of(fall.state)});
-    }
-    std::ranges::stable_sort(events, {}, &Event::tau);
-    for (const Event& event : events) {
+    for (const Event<6>& event : guarded_.events()) {
       if (meets_forces) meet(mode, event.tau);
-      at_ = event.at;
+      at_ = motion_of(event.state);
       // but for rounding they are
       at_.y = scene_.radius, at_.y_rate = 0.0;
       if (mode.kind == Mode::rolls) at_.x_rate = scene_.radius * at_.spin;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "integrate/guarded_steps.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
@@ -56,7 +57,7 @@ class Referee {
   double second_;  ///< sqrt(R/g) [s], in which spins are given
   System system_{};
   GslIntegrator<6> integrator_;
-  std::vector<Falls<6>> falls_;
+  GuardedSteps<6> guarded_;
   long most_steps_, steps_ = 0;
   Motion at_{};        ///< where the hoop is
   double time_ = 0.0;  ///< since release [s]

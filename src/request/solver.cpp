@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gait/error_growth.hpp"
-#include "gait/settle.hpp"
+#include "gaits/error_growth.hpp"
+#include "gaits/settle.hpp"
+#include "hoop/units.hpp"
 #include "model/model.hpp"
 #include "spec/spec.hpp"
 #include "trajectory/clearance.hpp"
 #include "trajectory/sequence.hpp"
-#include "trajectory/units.hpp"
 #include "trajectory/way.hpp"
 
 namespace leapmap {

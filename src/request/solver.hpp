@@ -2,11 +2,11 @@
 /// Solves designs by the method of a request.
 #pragma once
 
+#include "integrate/integration_options.hpp"
 #include "leapmap/motion.hpp"
 #include "request/request.hpp"
 #include "tolerance/scatter_solver.hpp"
 #include "trajectory/gradient.hpp"
-#include "trajectory/integration_options.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap {

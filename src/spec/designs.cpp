@@ -7,8 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "hoop/body.hpp"
 #include "model/model.hpp"
-#include "physics/body.hpp"
 #include "spec/options.hpp"
 #include "spec/spec_hoop.hpp"
 #include "support/printable.hpp"

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
+#include "hoop/body.hpp"
 #include "leapmap/errors.hpp"
 #include "map/layout.hpp"
 #include "map/schema.hpp"
 #include "model/model.hpp"
 #include "model/variable.hpp"
-#include "physics/body.hpp"
 #include "spec/options.hpp"
 #include "spec/scatter_check.hpp"
 #include "spec/spacing.hpp"

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <span>
 
+#include "hoop/body.hpp"
 #include "leapmap/errors.hpp"
 #include "model/variable.hpp"
-#include "physics/body.hpp"
 #include "spec/designs.hpp"
 #include "support/closest.hpp"
 #include "support/number.hpp"

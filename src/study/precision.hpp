@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "integrate/contestant.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
-#include "trajectory/contestant.hpp"
 
 namespace leapmap {
 

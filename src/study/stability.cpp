@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "hoop/rolling.hpp"
 #include "model/model.hpp"
 #include "numerics/nan.hpp"
-#include "physics/rolling.hpp"
 #include "study/truth.hpp"
 
 namespace leapmap {

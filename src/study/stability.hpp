@@ -12,10 +12,10 @@
 #include <string_view>
 #include <vector>
 
+#include "integrate/contestant.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
 #include "study/truth.hpp"
-#include "trajectory/contestant.hpp"
 
 namespace leapmap {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "model/model.hpp"
+#include "noslip/exact.hpp"
 #include "numerics/game_steppers.hpp"
 #include "numerics/gsl_integrator.hpp"
-#include "rolling/exact.hpp"
 #include "study/precision.hpp"
 #include "study/stability.hpp"
 

@@ -4,9 +4,9 @@
 #include <functional>
 #include <numbers>
 
+#include "hoop/flight_search.hpp"
+#include "noslip/exact.hpp"
 #include "numerics/nan.hpp"
-#include "physics/flight_search.hpp"
-#include "rolling/exact.hpp"
 #include "study/precision.hpp"
 #include "study/stability.hpp"
 

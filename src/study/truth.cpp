@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "integrate/contestant.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
-#include "trajectory/contestant.hpp"
 
 namespace leapmap {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "hoop/body.hpp"
 #include "numerics/normal_law.hpp"
-#include "physics/body.hpp"
 
 namespace leapmap {
 namespace {

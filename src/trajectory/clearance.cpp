@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "hoop/flight.hpp"
+#include "hoop/units.hpp"
 #include "numerics/maximum.hpp"
-#include "physics/flight.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "hoop/flight_dual.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "numerics/dual.hpp"
-#include "physics/flight_dual.hpp"
 
 namespace leapmap {
 

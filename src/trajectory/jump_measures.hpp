@@ -5,9 +5,9 @@
 
 #include <array>
 
+#include "hoop/contact_state.hpp"
+#include "hoop/landing.hpp"
 #include "leapmap/outcome.hpp"
-#include "physics/landing.hpp"
-#include "trajectory/contact_state.hpp"
 
 namespace leapmap {
 

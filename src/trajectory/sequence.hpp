@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
+#include "hoop/contact_state.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
-#include "trajectory/contact_state.hpp"
 #include "trajectory/later_jump.hpp"
 #include "trajectory/solver.hpp"
 

@@ -3,11 +3,11 @@
 /// units until they are all taken (units.hpp).
 #pragma once
 
+#include "hoop/contact_state.hpp"
+#include "hoop/flight.hpp"
+#include "hoop/sliding.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/motion.hpp"
-#include "physics/flight.hpp"
-#include "physics/sliding.hpp"
-#include "trajectory/contact_state.hpp"
 
 namespace leapmap {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "physics/flight.hpp"
-#include "physics/rolling.hpp"
+#include "hoop/flight.hpp"
+#include "hoop/rolling.hpp"
 #include "trajectory/gradient.hpp"
 
 namespace leapmap {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <span>
 
+#include "hoop/rolling_by_angle.hpp"
 #include "leapmap/outcome.hpp"
 #include "numerics/maximum.hpp"
-#include "physics/rolling_by_angle.hpp"
 
 namespace leapmap {
 

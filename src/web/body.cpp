@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A hoop from a drawing, reduced.
-#include "physics/body.hpp"
+#include "hoop/body.hpp"
 
 #include <array>
 #include <vector>

@@ -6,11 +6,11 @@
 #include <string>
 #include <variant>
 
-#include "coulomb/gradient.hpp"
-#include "coulomb/model.hpp"
+#include "friction/gradient.hpp"
+#include "friction/model.hpp"
 #include "model/parameters.hpp"
-#include "rolling/gradient.hpp"
-#include "rolling/model.hpp"
+#include "noslip/gradient.hpp"
+#include "noslip/model.hpp"
 #include "trajectory/way.hpp"
 #include "web/page.hpp"
 
@@ -24,7 +24,7 @@ constexpr std::array lift_off_names{"time",      "angle",       "spin", "height"
                                     "apex_time", "flight_time", "dip",  "is_jump"};
 
 /// The models' motions, in the order of Friction.
-constexpr std::array tells{rolling::tell_exactly, coulomb::tell_exactly};
+constexpr std::array tells{noslip::tell_exactly, friction::tell_exactly};
 
 /// The last solve's.
 struct SolvedHoop {
@@ -61,7 +61,7 @@ LEAPMAP_EXPORT void solve(int friction, double tolerance, double interval) {
   const Motion motion = tell(design, scene, tolerance, interval);
   told.outcome = motion.outcome;
   tell_more(scene, tolerance, {&design, 1}, {&told.outcome, 1});
-  const auto ways = scene.friction == Friction::coulomb ? coulomb::ways : rolling::ways;
+  const auto ways = scene.friction == Friction::coulomb ? friction::ways : noslip::ways;
   ContactState<double> at = released<double>(design);
   Outcome again;
   ways(scene, tolerance)(Start::release, {&design, 1}, {&at, 1}, {&again, 1});

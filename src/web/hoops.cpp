@@ -2,7 +2,7 @@
 /// Many hoops: those of a map, and those that go on jumping.
 #include <algorithm>
 
-#include "gait/return_map.hpp"
+#include "gaits/return_map.hpp"
 #include "web/page.hpp"
 
 namespace leapmap::web {

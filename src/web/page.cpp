@@ -5,12 +5,12 @@
 #include <memory>
 #include <variant>
 
-#include "coulomb/coulomb.hpp"
-#include "coulomb/model.hpp"
-#include "gait/error_growth.hpp"
-#include "gait/settle.hpp"
-#include "rolling/exact.hpp"
-#include "rolling/model.hpp"
+#include "friction/coulomb.hpp"
+#include "friction/model.hpp"
+#include "gaits/error_growth.hpp"
+#include "gaits/settle.hpp"
+#include "noslip/exact.hpp"
+#include "noslip/model.hpp"
 
 namespace leapmap::web {
 namespace {
@@ -30,8 +30,8 @@ Solver first_jump_solver(const Scene& scene, double tolerance) {
 }
 
 DualJumpSolver dual_solver(const Scene& scene, double tolerance) {
-  return scene.friction == Friction::coulomb ? coulomb::dual_jumps(scene, tolerance)
-                                             : rolling::dual_jumps(scene, tolerance);
+  return scene.friction == Friction::coulomb ? friction::dual_jumps(scene, tolerance)
+                                             : noslip::dual_jumps(scene, tolerance);
 }
 
 void fill(std::span<const double> values, Design& design, Scene& scene) {

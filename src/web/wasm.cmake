@@ -18,12 +18,12 @@ if(LEAPMAP_EMCC AND BOOST_INCLUDE_DIR)
     -DLEAPMAP_SCALARS)
   set(parts
     web/body web/hoop web/hoops web/made web/page web/without_gsl web/without_stop model/fields
-    model/parameters model/variable coulomb/coulomb coulomb/exact_motion coulomb/gradient
-    coulomb/recorded_way coulomb/way rolling/way trajectory/way coulomb/rolling_leg coulomb/sliding_leg
-    coulomb/sliding_panel rolling/clock rolling/dual_time rolling/exact rolling/exact_motion
-    rolling/dual_jump rolling/find rolling/gradient rolling/halved_time rolling/leg rolling/prepare
-    rolling/rolling_motion rolling/rolling_time rolling/take_off leapmap/outcome gait/error_growth
-    gait/return_map gait/settle numerics/sobol_points tolerance/made_hoops tolerance/made_sample
+    model/parameters model/variable friction/coulomb friction/exact_motion friction/gradient
+    friction/recorded_way friction/way noslip/way trajectory/way friction/rolling_leg friction/sliding_leg
+    friction/sliding_panel noslip/clock noslip/dual_time noslip/exact noslip/exact_motion
+    noslip/dual_jump noslip/find noslip/gradient noslip/halved_time noslip/leg noslip/prepare
+    noslip/rolling_motion noslip/rolling_time noslip/take_off leapmap/outcome gaits/error_growth
+    gaits/return_map gaits/settle numerics/sobol_points tolerance/made_hoops tolerance/made_sample
     tolerance/scatter_solver)
   # All in four units, as most of the time goes into reading headers.
   foreach(part ${parts})

@@ -11,7 +11,7 @@
 
 #include "audit/audit.hpp"
 #include "engine/engine.hpp"
-#include "gait/error_growth.hpp"
+#include "gaits/error_growth.hpp"
 #include "leapmap/gait.hpp"
 #include "leapmap/solve.hpp"
 #include "spec/designs.hpp"

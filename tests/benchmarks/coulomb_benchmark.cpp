@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "benchmarks/tell_errors.hpp"
-#include "coulomb/coulomb_integration.hpp"
-#include "coulomb/coulomb_lanes.hpp"
+#include "friction/coulomb_integration.hpp"
+#include "friction/coulomb_lanes.hpp"
 #include "study/precision.hpp"
 
 namespace leapmap {

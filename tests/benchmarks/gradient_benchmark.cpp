@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "benchmarks/timing.hpp"
-#include "coulomb/model.hpp"
-#include "rolling/model.hpp"
+#include "friction/model.hpp"
+#include "noslip/model.hpp"
 #include "support/designs.hpp"
 
 namespace {
@@ -57,12 +57,12 @@ int main(int argc, char** argv) {
   GradientWanted asked{{&Outcome::jump_height, &Outcome::jump_time}, {}};
   for (std::size_t k = 0; k < without_slip; ++k) asked.by.push_back(k);
   const Scene sticking;
-  compare("without slip, a grid", grid(200), rolling::exact(sticking, 1e-12, wanted),
-          rolling::gradients(sticking, 1e-12, wanted, asked), asked, runs);
-  compare("without slip, at random", random_designs(20'000), rolling::exact(sticking, 1e-12, wanted),
-          rolling::gradients(sticking, 1e-12, wanted, asked), asked, runs);
+  compare("without slip, a grid", grid(200), noslip::exact(sticking, 1e-12, wanted),
+          noslip::gradients(sticking, 1e-12, wanted, asked), asked, runs);
+  compare("without slip, at random", random_designs(20'000), noslip::exact(sticking, 1e-12, wanted),
+          noslip::gradients(sticking, 1e-12, wanted, asked), asked, runs);
   const Scene coulomb{.friction = Friction::coulomb};
   for (std::size_t k = without_slip; k < differentiable.size(); ++k) asked.by.push_back(k);
-  compare("with friction, a grid", grid(30), coulomb::exact(coulomb, 1e-10, wanted),
-          coulomb::gradients(coulomb, 1e-10, wanted, asked), asked, runs);
+  compare("with friction, a grid", grid(30), friction::exact(coulomb, 1e-10, wanted),
+          friction::gradients(coulomb, 1e-10, wanted, asked), asked, runs);
 }

@@ -7,8 +7,8 @@
 /// from axes, everything but the file.
 #include "benchmarks/tell_errors.hpp"
 #include "engine/engine.hpp"
-#include "rolling/exact.hpp"
-#include "rolling/rolling_integration.hpp"
+#include "integrate/rolling_integration.hpp"
+#include "noslip/exact.hpp"
 #include "spec/designs.hpp"
 #include "study/precision.hpp"
 

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "benchmarks/timing.hpp"
-#include "gait/error_growth.hpp"
-#include "gait/settle.hpp"
+#include "gaits/error_growth.hpp"
+#include "gaits/settle.hpp"
+#include "integrate/integration_options.hpp"
 #include "model/model.hpp"
-#include "trajectory/integration_options.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "engine/engine.hpp"
+#include "integrate/rolling_integration.hpp"
 #include "request/solver.hpp"
-#include "rolling/rolling_integration.hpp"
 
 namespace leapmap {
 namespace {

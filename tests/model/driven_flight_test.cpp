@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Flights in which the motor goes on: events against dense sampling, methods against methods, and what
 /// becomes of maps that idle motors leave without an answer.
-#include "physics/driven_flight.hpp"
+#include "hoop/driven_flight.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <numbers>
 #include <random>
 
+#include "hoop/flight_search.hpp"
 #include "leapmap/solve.hpp"
 #include "model/model.hpp"
-#include "physics/flight_search.hpp"
 #include "referee/referee.hpp"
 #include "support/aimed.hpp"
 #include "support/designs.hpp"

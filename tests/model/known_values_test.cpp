@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "physics/rolling.hpp"
-#include "rolling/model.hpp"
+#include "hoop/rolling.hpp"
+#include "noslip/model.hpp"
 #include "support/designs.hpp"
 
 namespace leapmap {
@@ -17,8 +17,8 @@ using testing::adaptive;
 constexpr double integrated = 1e-11;
 
 TEST(KnownValues, ThePapersHoopFromRest) {
-  const Motion motion = rolling::tell_by_integration(testing::paper_hoop(), testing::unit_scene(),
-                                                     adaptive("gsl-rk8pd", 1e-13));
+  const Motion motion =
+      noslip::tell_by_integration(testing::paper_hoop(), testing::unit_scene(), adaptive("gsl-rk8pd", 1e-13));
   ASSERT_EQ(motion.candidates.size(), 2u);
   EXPECT_NEAR(motion.candidates[0].t, 6.0995372752511926, integrated);
   EXPECT_NEAR(motion.candidates[0].height, 0.0034444672, 1e-10);  // as many digits as the table has
@@ -46,7 +46,7 @@ TEST(KnownValues, TheReleaseThatPutsTheCandidatesAtThePapersTimes) {
   Design design = testing::paper_hoop();
   design.release_angle = 4.515558;
   design.release_spin = 17.13540 * second;
-  const Motion motion = rolling::tell_by_integration(design, scene, adaptive("gsl-rk8pd", 1e-12));
+  const Motion motion = noslip::tell_by_integration(design, scene, adaptive("gsl-rk8pd", 1e-12));
   ASSERT_EQ(motion.candidates.size(), 2u);
   // The release is given to 7 digits; the heights and times are given to the digits compared.
   EXPECT_NEAR(motion.candidates[0].t, 0.17, 1e-6);
@@ -90,8 +90,7 @@ TEST(KnownValues, FromRestOnAFlatPlaneItLiftsOnlyAboveAMassRatioOf13WhereNGrazes
   scene.hop_height = 0.0;
   for (const double side : {-1.0, 1.0}) {
     design.mass_ratio = 13.0 * (1.0 + side * 1e-8);
-    const Motion motion =
-        rolling::tell_by_integration(design, scene, adaptive("gsl-rk8pd", 1e-13), 0.0, 1e-6);
+    const Motion motion = noslip::tell_by_integration(design, scene, adaptive("gsl-rk8pd", 1e-13), 0.0, 1e-6);
     EXPECT_EQ(motion.outcome.candidates, side > 0 ? 1 : 0) << side;
     ASSERT_EQ(motion.grazes.size(), 1u) << "the graze must be told";
     EXPECT_EQ(motion.grazes[0].normal_force<0.0, side> 0);

@@ -5,17 +5,17 @@
 
 #include <cmath>
 
+#include "hoop/rolling.hpp"
 #include "model/model.hpp"
-#include "physics/rolling.hpp"
-#include "rolling/model.hpp"
+#include "noslip/model.hpp"
 #include "support/designs.hpp"
 
 namespace leapmap {
 namespace {
 
 const Motion& paper_motion() {
-  static const Motion motion = rolling::tell_by_integration(testing::paper_hoop(), testing::unit_scene(),
-                                                            testing::adaptive("gsl-rk8pd", 1e-12), 0.01);
+  static const Motion motion = noslip::tell_by_integration(testing::paper_hoop(), testing::unit_scene(),
+                                                           testing::adaptive("gsl-rk8pd", 1e-12), 0.01);
   return motion;
 }
 
@@ -79,13 +79,13 @@ TEST(Motion, WithoutAJumpItEndsWithTheRollingAndWithoutAnIntervalItIsEmpty) {
   Design design = testing::paper_hoop();
   design.slope = 0.02;
   design.mass_ratio = 0.1;
-  const Motion motion = rolling::tell_by_integration(design, testing::unit_scene(),
-                                                     testing::adaptive("gsl-rk8pd", 1e-10), 0.05);
+  const Motion motion =
+      noslip::tell_by_integration(design, testing::unit_scene(), testing::adaptive("gsl-rk8pd", 1e-10), 0.05);
   EXPECT_EQ(motion.outcome.status, Status::no_jump);
   ASSERT_FALSE(motion.points.empty());
   EXPECT_EQ(motion.points.back().phase, Phase::rolling);
   EXPECT_TRUE(
-      rolling::tell_by_integration(design, testing::unit_scene(), testing::adaptive("gsl-rk8pd", 1e-10))
+      noslip::tell_by_integration(design, testing::unit_scene(), testing::adaptive("gsl-rk8pd", 1e-10))
           .points.empty());
 }
 
@@ -168,12 +168,12 @@ TEST(Motion, ALongRunIsSampledToItsEndInTimeThatGrowsWithItsLength) {
   scene.hop_height = 50.0;
   scene.runway = 200.0;  // quadratic work would take minutes
   EXPECT_TRUE(expect_the_same_motion(design, scene, "200 turns", 100.0));
-  const Motion motion = rolling::tell_exactly(design, scene, 1e-10, 0.05);
+  const Motion motion = noslip::tell_exactly(design, scene, 1e-10, 0.05);
   ASSERT_EQ(motion.outcome.status, Status::no_jump);
   const double end = design.release_angle + 400.0 * std::numbers::pi;
   EXPECT_NEAR(motion.points.back().phi, end, 0.05 * motion.points.back().spin);
   scene.runway = 4000.0;  // more panels than one quadrature may take
-  EXPECT_GT(rolling::tell_exactly(design, scene, 1e-10, 1.0).points.back().phi,
+  EXPECT_GT(noslip::tell_exactly(design, scene, 1e-10, 1.0).points.back().phi,
             20.0 * (end - design.release_angle) - 200.0);
 }
 
@@ -182,7 +182,7 @@ TEST(Motion, AHoopThatRocksIsShownUntilItRepeatsItself) {
   design.slope = 0.1;
   design.release_angle = 1.0;  // rises to a stall
   design.release_spin = 0.3;
-  const Motion motion = rolling::tell_exactly(design, testing::unit_scene(), 1e-10, 0.05);
+  const Motion motion = noslip::tell_exactly(design, testing::unit_scene(), 1e-10, 0.05);
   ASSERT_EQ(motion.outcome.status, Status::stalled);
   ASSERT_GT(motion.points.size(), 5u);
   int turns = 0;
@@ -199,7 +199,7 @@ TEST(Motion, AHoopThatRocksIsShownUntilItRepeatsItself) {
   design.release_spin = 0.0;
   design.slope = 0.0;
   design.release_angle = 0.0;  // at rest, and nothing pulls
-  EXPECT_TRUE(rolling::tell_exactly(design, testing::unit_scene(), 1e-10, 0.05).points.empty());
+  EXPECT_TRUE(noslip::tell_exactly(design, testing::unit_scene(), 1e-10, 0.05).points.empty());
 }
 
 }  // namespace

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <random>
 
+#include "integrate/integration_options.hpp"
 #include "model/model.hpp"
 #include "referee/referee.hpp"
 #include "support/aimed.hpp"
 #include "support/designs.hpp"
-#include "trajectory/integration_options.hpp"
 
 namespace leapmap {
 namespace {

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "hoop/contact_state.hpp"
 #include "leapmap/gradient.hpp"
 #include "leapmap/solve.hpp"
 #include "leapmap/trace.hpp"
@@ -17,7 +18,6 @@
 #include "model/model.hpp"
 #include "request/solver.hpp"
 #include "support/reference_table.hpp"
-#include "trajectory/contact_state.hpp"
 
 namespace leapmap {
 namespace {

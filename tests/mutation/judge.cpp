@@ -7,11 +7,11 @@
 #include <random>
 #include <string>
 
-#include "coulomb/coulomb.hpp"
-#include "coulomb/coulomb_integration.hpp"
+#include "friction/coulomb.hpp"
+#include "friction/coulomb_integration.hpp"
+#include "integrate/rolling_integration.hpp"
+#include "noslip/exact.hpp"
 #include "referee/referee.hpp"
-#include "rolling/exact.hpp"
-#include "rolling/rolling_integration.hpp"
 #include "trajectory/jump_measures.hpp"
 
 namespace leapmap {

@@ -19,10 +19,10 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = [
     "src/" + name + ".cpp"
-    for name in ("rolling/clock", "rolling/exact", "rolling/find", "rolling/halved_time", "rolling/leg",
-                 "rolling/prepare", "rolling/rolling_time", "rolling/take_off", "rolling/rolling_integration",
-                 "physics/three_coordinates", "coulomb/rolling_leg", "coulomb/sliding_leg",
-                 "coulomb/sliding_panel", "coulomb/coulomb", "coulomb/coulomb_integration")
+    for name in ("noslip/clock", "noslip/exact", "noslip/find", "noslip/halved_time", "noslip/leg",
+                 "noslip/prepare", "noslip/rolling_time", "noslip/take_off", "integrate/rolling_integration",
+                 "hoop/three_coordinates", "friction/rolling_leg", "friction/sliding_leg",
+                 "friction/sliding_panel", "friction/coulomb", "friction/coulomb_integration")
 ] + ["tests/mutation/judge.cpp"]
 LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
 OFF = "T(1.001)"
@@ -119,7 +119,7 @@ def stands_alone():
 
 
 def header_of(sources, file):
-    return (sources / "physics" / f"{file}.hpp").resolve()
+    return (sources / "hoop" / f"{file}.hpp").resolve()
 
 
 def judged(name, folder, library):

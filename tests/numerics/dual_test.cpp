@@ -5,12 +5,12 @@
 
 #include <random>
 
-#include "physics/flight.hpp"
-#include "physics/rolling_by_angle.hpp"
-#include "rolling/exact.hpp"
+#include "hoop/flight.hpp"
+#include "hoop/rolling_by_angle.hpp"
+#include "hoop/units.hpp"
+#include "noslip/exact.hpp"
 #include "support/designs.hpp"
 #include "support/reference_table.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

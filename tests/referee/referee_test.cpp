@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "physics/landing.hpp"
-#include "physics/sliding.hpp"
+#include "hoop/landing.hpp"
+#include "hoop/sliding.hpp"
 #include "support/designs.hpp"
 #include "support/reference_table.hpp"
 

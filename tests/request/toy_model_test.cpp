@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "hoop/units.hpp"
+#include "integrate/integration_options.hpp"
 #include "leapmap/boundaries.hpp"
 #include "leapmap/errors.hpp"
 #include "leapmap/gait.hpp"
@@ -18,8 +20,6 @@
 #include "spec/spec.hpp"
 #include "support/temporary_folder.hpp"
 #include "sweep/check.hpp"
-#include "trajectory/integration_options.hpp"
-#include "trajectory/units.hpp"
 
 namespace leapmap {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "rolling/exact.hpp"
+#include "noslip/exact.hpp"
 #include "study/truth.hpp"
 
 namespace leapmap {

@@ -8,9 +8,9 @@
 #include <optional>
 #include <random>
 
+#include "hoop/rolling_by_angle.hpp"
 #include "leapmap/design.hpp"
-#include "physics/rolling_by_angle.hpp"
-#include "rolling/lift_off_scan.hpp"
+#include "noslip/lift_off_scan.hpp"
 #include "support/designs.hpp"
 
 namespace leapmap::testing {

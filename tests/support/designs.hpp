@@ -4,10 +4,10 @@
 
 #include <random>
 
+#include "integrate/rolling_integration.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
-#include "rolling/rolling_integration.hpp"
 
 namespace leapmap::testing {
 

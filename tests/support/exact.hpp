@@ -10,7 +10,7 @@
 
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
-#include "rolling/exact.hpp"
+#include "noslip/exact.hpp"
 #include "support/designs.hpp"
 
 namespace leapmap::testing {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/parameters.hpp"
+#include "hoop/parameters.hpp"
 
 namespace leapmap::testing {
 

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Rolling, sliding, flying and landing with Coulomb friction, as a machine of phases.
+///
+// clang-format off
+///   phase       | ends when                           | and then
+///   ------------+-------------------------------------+----------------------------------------------
+///   R rolling   | |F| - mu_s N rises through zero     | S, the way that F held back (v gets the sign
+///     v = 0     |                                     |   of -F); F if n0 <= 0 there
+///               | it has turned round twice           | stalled: it repeats itself
+///   S sliding   | n0 falls through zero               | F, lift-off
+///     v > 0 or  | v comes back to zero                | R if |F| <= mu_s N, else S the other way
+///     v < 0     | Ic + rho s q falls to zero          | indeterminate (Painleve)
+///   F flight    | its apex reaches hop_height         | jumped
+///               | it begins by sinking, as the motor  | indeterminate: the plane would have to
+///               |   that lifted it idles in flight    |   pull in contact, and is in the way
+///               | y comes back to zero                | landing, impulses at once; then F if it
+///               |                                     |   rebounds or n0 <= 0, S if v is not zero,
+///               |                                     |   else as where v comes back to zero
+///   R, S, F     | the centre has travelled the        | no_jump
+///               |   runway, either way                |
+///   at release  |                                     | R if N > 0 and |F| <= mu_s N, else
+///               |                                     |   airborne_at_release if n0 <= 0, else S;
+///               |                                     |   stalled at rest where nothing pulls
+// clang-format on
+///
+/// A hoop that rolls or slides may turn round. One that rocks may slip a little less on every swing, for
+/// ever: it is stalled, too, when its phases come again and again with less spin each (Rocking). At v = 0 the
+/// forces decide, never the sign of a rounded v, and what friction holds but for rounding it holds.
+/// Painleve's region is where the rigid-body equations have no answer or two; a slide that runs into its edge
+/// is followed until doubles cannot tell the edge from where it is. A design that goes through more than
+/// most_phases phases is failed.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "hoop/contact_state.hpp"
+#include "hoop/rolling.hpp"
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+
+namespace leapmap {
+
+/// What the phases end in. slips_*: the direction that v takes.
+enum class PhaseEnd {
+  slips_forwards,
+  slips_backwards,
+  slip_ends,
+  lifts_off,
+  stalls,
+  runway_ends,
+  indeterminate,
+  too_long,
+  reverses,  ///< against a resisting torque
+  failed
+};
+
+/// What a design's friction and landing look like, its defaults settled. Static friction is never below
+/// kinetic: between the two neither sticking nor sliding would be consistent.
+template <class S>
+struct Contact {
+  S mu_static, mu_kinetic, restitution, rest_speed;
+};
+template <class S>
+Contact<S> contact_of(const Design& design, const Scene& scene) {
+  const double kinetic = std::isnan(design.mu_kinetic) ? design.mu_static : design.mu_kinetic;
+  return {S(std::max(design.mu_static, kinetic)), S(kinetic), S(design.restitution), S(scene.rest_speed)};
+}
+
+inline constexpr int most_phases = 2'000;
+/// Why a hoop fails that rebounds ever less, and never so little that rest_speed counts it as none.
+inline constexpr const char* endless_rebounds =
+    "its rebounds never end, as rest_speed counts none as the last; allowed: rest_speed = 1e-12 or more";
+
+/// phase_sequence: two bits a phase, the first lowest, up to 32.
+class PhaseSequence {
+ public:
+  void append(Phase phase) {
+    if (count_ < 32) code_ |= static_cast<std::uint64_t>(phase) << (2 * count_);
+    ++count_;
+  }
+  std::uint64_t code() const { return code_; }
+  int count() const { return count_; }
+
+ private:
+  std::uint64_t code_ = 0;
+  int count_ = 0;
+};
+
+/// Sees a hoop rock to rest: every phase of a cycle comes again in its place with less spin, and what a cycle
+/// travels shrinks so fast that all that is left of it is next to nothing. The plane is the same everywhere,
+/// so that there is nothing but the angle to tell one swing from another. Cycles of 2, 3, 4, 6 or 12 phases
+/// are seen, and only after those that phase_sequence holds.
+class Rocking {
+ public:
+  /// Looks at a phase as it begins; direction: of sliding. True: it rocks to rest.
+  bool settles(Phase phase, int direction, double travel, double angle, double spin) {
+    Begun now{phase, direction, travel, angle, spin, HUGE_VAL};
+    Begun& before = cycle_[static_cast<std::size_t>(count_ % cycle)];
+    if (count_ >= cycle) now.drift = std::abs(travel - before.travel);
+    const double share = now.drift / before.drift;  // of the drift of a cycle that the next one has
+    const bool again = count_ >= 2 * cycle && phase != Phase::flight && before.phase == phase &&
+                       before.direction == direction && before.spin * spin > 0.0 &&
+                       std::abs(spin) < std::abs(before.spin) && share < 1.0 &&
+                       now.drift * share / (1.0 - share) < nothing &&
+                       std::abs(angle - before.angle) < nothing;
+    shrinking_ = again ? shrinking_ + 1 : 0;
+    before = now;
+    ++count_;
+    return count_ > 32 && shrinking_ >= cycle;
+  }
+
+ private:
+  static constexpr int cycle = 12;
+  static constexpr double nothing = 0.1;  // [R, rad]
+  struct Begun {
+    Phase phase{};
+    int direction = 0;
+    double travel = 0.0, angle = 0.0, spin = 0.0, drift = 0.0;
+  };
+  std::array<Begun, cycle> cycle_{};
+  int count_ = 0, shrinking_ = 0;
+};
+
+}  // namespace leapmap

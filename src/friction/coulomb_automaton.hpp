@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The machine of contact_phases.hpp, for any way of rolling, sliding and flying: it tells which phase comes
+/// next, is told how that ended, and lands by itself.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "friction/coulomb.hpp"
+#include "hoop/flight_search.hpp"
+#include "hoop/jump_rule.hpp"
+#include "hoop/landing.hpp"
+#include "hoop/sliding.hpp"
+#include "hoop/stick.hpp"
+#include "hoop/units.hpp"
+#include "leapmap/design.hpp"
+#include "leapmap/scene.hpp"
+#include "support/stop.hpp"
+#include "trajectory/jump_measures.hpp"
+
+namespace leapmap {
+
+/// What a contact with v = 0 or v != 0 goes on as.
+enum class ContactPhase { rolls, slides_forwards, slides_backwards, leaves };
+
+/// Whether a contact with n0 <= 0, which would leave the plane were it not held, does.
+enum class Leaving {
+  unless_it_sticks,  ///< rolling on is consistent there too, and what rolls goes on rolling
+  always,
+  never
+};
+
+/// At v != 0 it slides; at v = 0 the forces of rolling decide.
+template <class S>
+ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const ContactState<S>& at,
+                           Leaving leaving) {
+  const Trig<S> phi = trig(at.angle);
+  const bool would_leave =
+      leaving != Leaving::never && free_normal_force(hoop, phi, at.spin * at.spin) <= S(0);
+  if (would_leave && (leaving == Leaving::always || at.slip != S(0))) return ContactPhase::leaves;
+  if (at.slip != S(0)) return at.slip > S(0) ? ContactPhase::slides_forwards : ContactPhase::slides_backwards;
+  const auto guards =
+      stick_guards(hoop, phi, S(at.spin * at.spin * contact_inertia(hoop, phi)), contact.mu_static);
+  const S N = normal_force(hoop, phi, at.spin, angular_acceleration(hoop, phi, at.spin));
+  if (N > S(0) && guards.downhill.value >= S(0) && guards.uphill.value >= S(0)) return ContactPhase::rolls;
+  if (would_leave) return ContactPhase::leaves;
+  return guards.uphill.value > guards.downhill.value ? ContactPhase::slides_backwards  // F points downhill
+                                                     : ContactPhase::slides_forwards;
+}
+
+/// What comes next, and which way it slides (1, -1; 0: it does not).
+struct NextPhase {
+  Phase phase;
+  int direction;
+};
+
+/// The flight of a hoop that leaves the plane, or rebounds from it.
+template <class S>
+Flight<S> flight_from(const Hoop<S>& hoop, const ContactState<S>& at) {
+  const LiftOff<S> lift_off{at.time, at.angle, at.spin};
+  return at.normal > S(0) ? fly_off(hoop, lift_off, at.normal) : fly(hoop, lift_off);
+}
+
+/// One design on its way through its phases. Nothing for a next phase: it has ended.
+template <class S>
+class PhaseMachine {
+ public:
+  /// from: the release, or a state just after a landing. Scene and observer have to outlive the machine.
+  PhaseMachine(const Design& design, const ContactState<S>& from, const Scene& scene,
+               const CoulombObserver& observer)
+      : scene_(&scene),
+        observer_(&observer),
+        hoop_(reduce<S>(design, scene)),
+        contact_(contact_of<S>(design, scene)),
+        runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
+        at_(from) {
+    released_ = contact_energy(hoop_, at_);
+    const S c(design.resisting_torque), rounding(1e-14);
+    held_ = c > S(0) && at_.spin * at_.spin == S(0) &&
+            std::abs(torque(hoop_, trig(at_.angle)) + hoop_.resistance) <= c * (S(1) + rounding);
+  }
+
+  std::optional<NextPhase> begin(Start start) {
+    if (start == Start::landing) return go_on(phase_after_landing(Leaving::always));
+    const ContactPhase next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
+    return next == ContactPhase::leaves ? ended_as(Status::airborne_at_release) : go_on(next);
+  }
+
+  /// On from the end of the rolling or sliding that was told last, in which the hoop moved `to` there.
+  std::optional<NextPhase> after(PhaseEnd end, const ContactState<S>& to) {
+    using std::abs;
+    driven_ += hoop_.motor() * (to.angle - at_.angle);
+    if (slides_) slipped_ += abs((to.travel - at_.travel) - (to.angle - at_.angle));
+    const S turned_in_flight = at_.turned_in_flight;
+    at_ = to, at_.turned_in_flight = turned_in_flight;
+    switch (end) {
+      case PhaseEnd::slips_forwards:
+      case PhaseEnd::slips_backwards:
+        return go_on(free_normal_force(hoop_, trig(at_.angle), S(at_.spin * at_.spin)) <= S(0)
+                         ? ContactPhase::leaves
+                     : end == PhaseEnd::slips_forwards ? ContactPhase::slides_forwards
+                                                       : ContactPhase::slides_backwards);
+      case PhaseEnd::slip_ends:
+        return go_on(contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks));
+      case PhaseEnd::lifts_off:
+        return go_on(ContactPhase::leaves);
+      case PhaseEnd::stalls:
+        if (hoop_.resistance == S(0) || held_ || is_held(hoop_, trig(at_.angle)))
+          return ended_as(Status::stalled);
+        [[fallthrough]];
+      case PhaseEnd::reverses:
+        return ended_as(Status::failed, reverses_against_resistance);
+      case PhaseEnd::runway_ends:
+        return ended_as(Status::no_jump);
+      case PhaseEnd::indeterminate:
+        return ended_as(Status::indeterminate);
+      case PhaseEnd::too_long:
+        return ended_as(Status::failed, "it slides on for longer than is followed");
+      case PhaseEnd::failed:
+        break;
+    }
+    return ended_as(Status::failed, "a phase could not be solved to the tolerance");
+  }
+
+  /// On from the flight that was told last: it lands, unless that was it.
+  std::optional<NextPhase> after(const Flight<S>& flight) {
+    const LiftOff<S> lift_off{at_.time, at_.angle, at_.spin};
+    if (sinks_without_motor()) return ended_as(Status::indeterminate);
+    begin_phase(Phase::flight, 0);
+    const bool jumps = look_at(lift_off, flight);
+    const S left_at = at_.travel;
+    const S left = at_.angle;
+    at_ = after_flight(hoop_, at_, flight.flight_time);
+    if (hoop_.aloft != S(0)) driven_ += hoop_.motor() * (at_.angle - left);
+    if (!jumps && !(std::abs(at_.travel) < runway_)) return ended_as(Status::no_jump);
+    const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
+                                    contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
+    if (jumps) keep_measures(measures_of(hoop_, S(at_.travel - left_at), at_, landing), outcome_);
+    at_.spin = landing.after.spin, at_.slip = landing.after.slip;
+    at_.normal = landing.after.normal;
+    if (!jumps && at_.spin * hoop_.resistance < S(0))
+      return ended_as(Status::failed, reverses_against_resistance);
+    if (jumps) {
+      outcome_.landing_spin = static_cast<double>(at_.spin);
+      return ended_as(Status::jumped);
+    }
+    // A flight that rounding made of n0 = 0 takes no time; it is contact.
+    return go_on(phase_after_landing(flight.flight_time > S(0) ? Leaving::always : Leaving::never));
+  }
+
+  const Hoop<S>& hoop() const { return hoop_; }
+  const Contact<S>& contact() const { return contact_; }
+  /// How far the centre may travel.
+  const S& runway() const { return runway_; }
+  /// Once it has ended.
+  const Outcome& outcome() const { return outcome_; }
+  /// Where the phase told last begins, or where the design ended: of one that jumps just after the landing.
+  const ContactState<S>& at() const { return at_; }
+
+ private:
+  ContactPhase phase_after_landing(Leaving leaving) const {
+    return at_.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
+  }
+
+  std::optional<NextPhase> go_on(ContactPhase next) {
+    if (sequence_.count() >= most_phases)
+      return ended_as(Status::failed, contact_.restitution > S(0) && contact_.rest_speed < S(1e-12)
+                                          ? endless_rebounds
+                                          : "more phases than a design may go through");
+    if (next == ContactPhase::leaves) return NextPhase{Phase::flight, 0};
+    // At rest the resistance is as large as it has to be for a hoop that does not slide.
+    if (held_ && next != ContactPhase::rolls) return ended_as(Status::failed, reverses_against_resistance);
+    slides_ = next != ContactPhase::rolls;
+    const NextPhase phase{slides_ ? Phase::sliding : Phase::rolling, !slides_ ? 0
+                                                                     : next == ContactPhase::slides_forwards
+                                                                         ? 1
+                                                                         : -1};
+    if (!begin_phase(phase.phase, phase.direction)) return phase;
+    ended_as(Status::stalled);
+    outcome_.slip_distance = Outcome::none;  // it goes on slipping, a little less on every swing
+    return std::nullopt;
+  }
+
+  /// Returns whether the hoop rocks to rest: the phase is then its last.
+  bool begin_phase(Phase phase, int direction) {
+    const ContactState<double> state = in_double(at_);
+    sequence_.append(phase);
+    if (observer_->phase) observer_->phase(phase, state, direction);
+    return rocking_.settles(phase, direction, state.travel, state.angle, state.spin);
+  }
+
+  /// What is not known of a design that has no answer is not told.
+  std::nullopt_t ended_as(Status status, const char* reason = nullptr) {
+    if (observer_->end) observer_->end(in_double(at_));
+    if (status == Status::failed || status == Status::indeterminate) {
+      outcome_ = {};
+    } else {
+      outcome_.slip_distance = static_cast<double>(slipped_);
+      to_seconds(outcome_, time_unit(*scene_));
+    }
+    outcome_.status = status;
+    outcome_.failure = reason;
+    outcome_.phase_sequence = sequence_.code();
+    return std::nullopt;
+  }
+
+  /// Whether it is the motor alone that lifts the hoop off, and idles in flight, so that the flight would
+  /// begin by sinking into the plane, even if it came up again later. Neither contact nor flight is
+  /// consistent then.
+  bool sinks_without_motor() const {
+    const S held_down = hoop_.cos_slope + hoop_.rho * trig(at_.angle).cos * at_.spin * at_.spin;
+    const bool idles = hoop_.motor() != S(0) && hoop_.aloft == S(0);
+    return idles && !(at_.normal > S(0)) && held_down > S(1e-9);
+  }
+
+  /// Tells of a flight, and whether it is the jump.
+  bool look_at(const LiftOff<S>& lift_off, const Flight<S>& flight) {
+    const LiftOff<double> told{static_cast<double>(lift_off.time), static_cast<double>(lift_off.angle),
+                               static_cast<double>(lift_off.spin)};
+    const Flight<double> flown{static_cast<double>(flight.height), static_cast<double>(flight.apex_time),
+                               static_cast<double>(flight.flight_time), static_cast<double>(flight.dip)};
+    const bool jumps = consider(outcome_, *scene_, told, flown, static_cast<double>(at_.travel));
+    if (observer_->lift_off) observer_->lift_off(told, flown);
+    if (jumps) {
+      outcome_.energy_lost = static_cast<double>(released_ + driven_ - contact_energy(hoop_, at_));
+    }
+    return jumps;
+  }
+
+  const Scene* scene_;
+  const CoulombObserver* observer_;
+  Hoop<S> hoop_;
+  Contact<S> contact_;
+  S runway_, released_{0}, slipped_{0};
+  S driven_{0};          // work of the motor
+  ContactState<S> at_;   // where the last phase began, or where all ended
+  bool slides_ = false;  // in the phase told last
+  bool held_ = false;    // it begins at rest, and the resisting torque is the larger one
+  PhaseSequence sequence_;
+  Rocking rocking_;
+  Outcome outcome_;
+};
+
+/// Goes through the phases until the design ends. roll(hoop, contact, state, runway) and slide(...,
+/// direction) move the state to their phase's end, or as far as they came; direction is 1 or -1.
+template <class S, class Roll, class Slide>
+Outcome go_through_phases(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
+                          const CoulombObserver& observer, const Roll& roll, const Slide& slide) {
+  PhaseMachine<S> machine(design, from, scene, observer);
+  for (auto next = machine.begin(start); next;) {
+    throw_if_stopped();
+    if (next->phase == Phase::flight) {
+      next = machine.after(flight_from(machine.hoop(), machine.at()));
+      continue;
+    }
+    ContactState<S> at = machine.at();
+    const PhaseEnd end =
+        next->phase == Phase::rolling
+            ? roll(machine.hoop(), machine.contact(), at, machine.runway())
+            : slide(machine.hoop(), machine.contact(), at, machine.runway(), next->direction);
+    next = machine.after(end, at);
+  }
+  if (machine.outcome().status == Status::jumped) from = machine.at();
+  return machine.outcome();
+}
+
+}  // namespace leapmap

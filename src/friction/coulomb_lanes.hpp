@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Many designs with Coulomb friction at once: each goes through its phases (coulomb_automaton.hpp), and
+/// those that slide, roll or fly do so side by side in lanes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "friction/coulomb_automaton.hpp"
+#include "friction/rolling_lanes.hpp"
+#include "friction/sliding_lanes.hpp"
+
+namespace leapmap {
+
+/// A thread's own workspace. An outcome depends on the design and the scene alone.
+template <class T>
+class CoulombLanes {
+ public:
+  using S = ScalarOf<T>;
+
+  /// tolerance: relative, of times; angles, spins and heights follow.
+  explicit CoulombLanes(double tolerance)
+      : rolling_(tolerance, most_on_their_way), sliding_(tolerance, most_on_their_way) {}
+
+  /// Solves designs[i] into outcomes[i].
+  void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
+  /// The same from where states[i] have designs[i], which have just landed there or are released; moves each
+  /// to just after the landing of its jump.
+  void solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
+             const Scene& scene, std::span<Outcome> outcomes);
+
+ private:
+  static constexpr std::size_t most_on_their_way = 64;
+
+  struct OnItsWay {
+    std::size_t design;
+    std::optional<PhaseMachine<S>> machine;
+  };
+  struct Flown {
+    std::uint32_t place;
+    Flight<S> flight;
+  };
+  void find_pivot_zeros(std::span<const Design> designs, const Scene& scene);
+  void go_on(std::uint32_t place, const NextPhase& next);
+  /// Lets some of flying_ fly, and adds them to flown_.
+  void fly_some();
+
+  RollingLanes<T> rolling_;
+  SlidingLanes<T> sliding_;
+  std::vector<OnItsWay> on_their_way_ = std::vector<OnItsWay>(most_on_their_way);
+  std::vector<std::uint32_t> free_, flying_, rebounding_;  // places; rebounds fly by themselves
+  std::vector<EndedPhase<S>> ended_;
+  std::vector<Flown> flown_;
+  std::vector<ContactState<S>> releases_;
+  std::vector<PivotZeros<S>> pivot_zeros_;  // of the designs
+};
+
+}  // namespace leapmap

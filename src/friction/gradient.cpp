@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "friction/gradient.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "friction/model.hpp"
+#include "friction/panel_forces.hpp"
+#include "friction/recorded_way.hpp"
+#include "hoop/landing.hpp"
+#include "hoop/sliding.hpp"
+#include "hoop/stick.hpp"
+#include "hoop/units.hpp"
+#include "trajectory/jump_measures.hpp"
+
+namespace leapmap {
+namespace {
+
+using D = DesignDual;
+
+/// A guard, in weights, that passes zero more slowly than this, per sqrt(R/g) or per radian: its zero is
+/// known to so few digits that no derivative is worth telling.
+constexpr double slowest = 1e-4;
+/// The chain of duals repeats the plain solver's states so closely, or something was not as it seemed.
+constexpr double agreement = 1e-6;
+
+/// As contact_of has it. Where mu_kinetic follows mu_static both are one parameter, and so they are where
+/// mu_static, being less than mu_kinetic, counts as much.
+Contact<D> dual_contact(const Design& design, const Scene& scene) {
+  const bool one = kinetic_follows(design) || design.mu_static < design.mu_kinetic;
+  const D fixed = kinetic_follows(design) ? D::parameter(design.mu_static, by_mu_static)
+                                          : D::parameter(design.mu_kinetic, by_mu_kinetic);
+  return {one ? fixed : D::parameter(design.mu_static, by_mu_static), fixed,
+          D::parameter(design.restitution, by_restitution), D(scene.rest_speed)};
+}
+
+/// The chain of one design's phases.
+class Chain {
+ public:
+  Chain(const Hoop<D>& hoop, const Contact<D>& contact, const ContactState<D>& from, double second,
+        const SlidingPanels<D>& panels, const SlidingPanels<double>& plain_panels, const DualTime<D>& time)
+      : panels_(panels),
+        plain_panels_(plain_panels),
+        time_(time),
+        second_(second),
+        contact_(contact),
+        hoop_(hoop),
+        at_(from) {
+    turns_on_ = any_aloft(hoop);
+    released_ = contact_energy(hoop_, at_);
+  }
+
+  /// Asks for what the way to the jump asks of hoop and motor.
+  void follow_way() { meter_.emplace(hoop_, at_.spin); }
+
+  /// put(quantity, value, unit) takes what is known; a chain that breaks puts no more, and returns false.
+  template <class Put>
+  bool run(const RecordedWay& recorded, const Outcome& outcome, const Put& put) {
+    std::size_t flight = 0, slide = 0;
+    for (std::size_t k = 0; k < recorded.phases.size(); ++k) {
+      const RecordedWay::Begun& begun = recorded.phases[k];
+      const bool last = k + 1 == recorded.phases.size();
+      const ContactState<double>& next = last ? recorded.end : recorded.phases[k + 1].at;
+      if (!agrees(begun.at)) return false;
+      switch (begun.phase) {
+        case Phase::rolling:
+          if (last) break;  // it stalls, or the runway ends: nothing slips any more
+          if (!roll(begun, next)) return false;
+          break;
+        case Phase::sliding:
+          if (slide == recorded.slides.size()) break;  // it rocks to rest, which nobody followed
+          if (!slide_on(recorded.slides[slide++], begun.direction, next,
+                        !last && recorded.phases[k + 1].phase == Phase::flight))
+            return false;
+          break;
+        case Phase::flight:
+          fly(recorded.flights[flight], flight == 0, last && outcome.status == Status::jumped, put);
+          ++flight;
+          break;
+      }
+    }
+    put(&Outcome::slip_distance, slipped_, 1.0);
+    return true;
+  }
+
+  /// Where it came to: of a jump just after its landing.
+  const ContactState<D>& at() const { return at_; }
+
+ private:
+  /// Takes the plain solver's values, if the chain came to the same.
+  bool agrees(const ContactState<double>& there) {
+    bool near = true;
+    const auto take = [&](D& value, double number) {
+      near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
+      value.value = number;
+    };
+    take(at_.time, there.time), take(at_.travel, there.travel), take(at_.angle, there.angle);
+    take(at_.spin, there.spin), take(at_.slip, there.slip), take(at_.normal, there.normal);
+    return near;
+  }
+
+  bool roll(const RecordedWay::Begun& begun, const ContactState<double>& to) {
+    const Roll<D> roll = begin_roll(hoop_, at_.angle, at_.spin);
+    const D there(to.angle);
+    const D E = vis_viva_past_release(roll, D(there - at_.angle));
+    const Trig<D> phi = trig(there);
+    const StickGuards<D> guards = stick_guards(hoop_, phi, E, contact_.mu_static);
+    const Sample<D>& guard =
+        abs(guards.downhill.value) < abs(guards.uphill.value) ? guards.downhill : guards.uphill;
+    const double J = contact_inertia(hoop_, phi).value;
+    if (!(std::abs(guard.rate.value) > slowest * J * J)) return false;
+    const D end = with_derivatives(to.angle, guard.value, guard.rate.value);
+    const D left = vis_viva_past_release(roll, D(end - at_.angle)) / contact_inertia(hoop_, trig(end));
+    if (!(left > D(0.0))) return false;
+    if (meter_) meter_->roll(roll, at_.spin, begun.turns, end);
+    at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
+    at_.travel += end - at_.angle;
+    driven_ += hoop_.motor() * (end - at_.angle);
+    at_.angle = end;
+    at_.spin = to.spin < 0.0 ? -sqrt(left) : sqrt(left);
+    return true;
+  }
+
+  bool slide_on(const SlideTold<double>& taken, int direction, const ContactState<double>& to,
+                bool then_flies) {
+    const ContactState<D> from = at_;
+    SlidingPanels<D>::Slide slide{hoop_, contact_.mu_kinetic * static_cast<double>(direction), {}, {}, {}};
+    slide.free_force = free_normal_force(hoop_, trig(at_.angle), at_.spin * at_.spin);
+    if (at_.spin == D(0.0)) set_out_from_rest(slide.friction);
+    for (const auto& one : taken)
+      if (!over_panel(slide, dual_part(slide, one), HUGE_VAL)) return false;
+    const Trig<D> phi = trig(at_.angle);
+    const SlidingMotion<D> motion = sliding_motion(hoop_, phi, at_.spin * at_.spin, slide.friction);
+    const double travels = at_.slip.value + at_.spin.value;
+    // What is zero here, and how fast it falls or rises.
+    const bool slip_ends = to.slip == 0.0;
+    const D zero = slip_ends ? at_.slip : then_flies ? slide.free_force : at_.travel;
+    const double rate =
+        slip_ends ? motion.slip.value
+        : then_flies
+            ? at_.spin.value * free_normal_force_rate(hoop_, phi, at_.spin * at_.spin, motion.angular).value
+            : travels;
+    if (!(std::abs(rate) > slowest)) return false;
+    for (std::size_t k = 0; k < zero.by.size(); ++k) {
+      const double later = -zero.by[k] / rate;
+      at_.time.by[k] += later;
+      at_.angle.by[k] += later * at_.spin.value;
+      at_.spin.by[k] += later * motion.angular.value;
+      at_.slip.by[k] += later * motion.slip.value;
+      at_.travel.by[k] += later * travels;
+    }
+    const D turned = at_.angle - from.angle;
+    if (meter_) {
+      const D force =
+          sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, slide.friction).normal_force;
+      meter_->meet({force, at_.spin}), meter_->turn(turned);
+    }
+    if (slip_ends) at_.slip = D(0.0);
+    driven_ += hoop_.motor() * turned;
+    slipped_ += abs(at_.travel - from.travel - turned);
+    return true;
+  }
+
+  using Part = SlidingPanels<D>::Taken;
+
+  /// The plain solver's panel in duals. Where the hoop has just set out, u = w^2 is small, and time's
+  /// derivatives go as u^(-3/2): fixed nodes would not resolve them however well they resolve the values. So
+  /// the stretch moves with the zero of u just before its start, as SlidingPanels::stretch_of places it, and
+  /// all is smooth along it again. Its end keeps its q. A zero that is farther behind needs no such care,
+  /// and would move so much that digits are lost.
+  Part dual_part(const SlidingPanels<D>::Slide& slide, const SlidingPanels<double>::Taken& taken) const {
+    if (!taken.stretch) return {{}, D(taken.duration)};
+    const auto& plain = *taken.stretch;
+    SlidingPanels<D>::Stretch stretch{D(plain.shift), D(plain.begin), D(plain.span)};
+    const SlidingMotion<D> start =
+        sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, slide.friction);
+    const D rise = at_.spin < D(0.0) ? -start.angular : start.angular;
+    if (at_.spin == D(0.0) || !(rise > D(0.0))) return {stretch, {}};
+    const auto moving = SlidingPanels<D>::stretch_of(at_.spin, rise, D(HUGE_VAL));
+    constexpr double near = 0.25;  // of the panel's length
+    const bool is_near = -plain.shift < near * plain.length();
+    if (!is_near || !(std::abs(moving.shift.value - plain.shift) <= 1e-3 * std::abs(plain.shift)))
+      return {stretch, {}};
+    stretch.shift.by = moving.shift.by, stretch.begin.by = moving.begin.by;
+    stretch.span = D(plain.begin + plain.span) - stretch.begin;
+    return {stretch, {}};
+  }
+
+  /// Slides over a panel, in halves where that resolves the values but not their derivatives, and as long as
+  /// that helps. excess: of the panel that it is half of.
+  bool over_panel(SlidingPanels<D>::Slide& slide, const Part& part, double excess) {
+    constexpr double resolved = 1e3;  // times the finest tolerance
+    constexpr int most_panels = 2'000;
+    SlidingPanels<D>::Panel panel;
+    panels_.solve(slide, at_, part, panel);
+    if (!std::isfinite(panel.excess) || ++panels_taken_ > most_panels) return false;
+    if (panel.excess <= resolved || !(panel.excess < 0.5 * excess)) {
+      if (meter_) meet(slide, part, panel);
+      at_ = panel.end;
+      slide.free_force = panel.free_force.end.value;
+      return true;
+    }
+    Part first = part, second = part;
+    if (part.stretch) {
+      const D half = 0.5 * part.stretch->span;
+      first.stretch->span = second.stretch->span = half;
+      second.stretch->shift -= first.stretch->length(), second.stretch->begin += half;
+    } else {
+      first.duration = second.duration = 0.5 * part.duration;
+    }
+    return over_panel(slide, first, panel.excess) && over_panel(slide, second, panel.excess);
+  }
+
+  /// The largest force and spins within a panel, which are looked for in plain numbers.
+  void meet(const SlidingPanels<D>::Slide& slide, const Part& part, const SlidingPanels<D>::Panel& panel) {
+    const SlidingPanels<double>::Slide plain_slide{
+        mapped<double>(hoop_, [](const D& number) { return number.value; }),
+        slide.friction.value,
+        {},
+        {},
+        slide.free_force.value};
+    SlidingPanels<double>::Taken plain_part{{}, part.duration.value};
+    if (part.stretch)
+      plain_part.stretch = {part.stretch->shift.value, part.stretch->begin.value, part.stretch->span.value,
+                            part.stretch->curve.value};
+    const ContactState<double> from = plain(at_);
+    SlidingPanels<double>::Panel plain_panel;
+    plain_panels_.solve(plain_slide, from, plain_part, plain_panel);
+    const PanelForces<double> known(plain_panels_, plain_slide, from, plain_part, plain_panel);
+    const PanelForces<D> forces(panels_, slide, at_, part, panel);
+    meter_->slide([&](double place) { return known.rated_at(place); },
+                  [&](double place) { return forces.at(place); });
+  }
+
+  /// From rest u = w^2 does not depend on the spin to first order, and yet time and slip at an angle do: a
+  /// hoop with a small spin is one that was at rest spin / phi'' ago, but for the slip gained since.
+  void set_out_from_rest(const D& friction) {
+    const SlidingMotion<D> motion = sliding_motion(hoop_, trig(at_.angle), D(0.0), friction);
+    for (std::size_t k = 0; k < at_.spin.by.size(); ++k) {
+      const double ago = at_.spin.by[k] / motion.angular.value;
+      at_.time.by[k] -= ago, at_.slip.by[k] -= ago * motion.slip.value, at_.spin.by[k] = 0.0;
+    }
+  }
+
+  template <class Put>
+  void fly(const Flight<double>& flight, bool first, bool jumps, const Put& put) {
+    const Trig<D> phi = trig(at_.angle);
+    const FlightDual<D> flown =
+        with_derivatives(hoop_, phi, at_.spin, at_.normal, flight.apex_time, flight.flight_time);
+    if (first) {
+      put(&Outcome::first_jump_height, flown.height, 1.0);
+      put(&Outcome::first_jump_time, at_.time, second_);
+    }
+    if (jumps) {
+      put_jump(put, at_.angle, at_.spin, at_.travel, flown, second_);
+      put(&Outcome::jump_time, at_.time, second_);
+      put(&Outcome::dip,
+          D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
+      put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
+    }
+    if (meter_ && jumps)
+      put_way(meter_->way(), [&](double Outcome::*quantity, const D& value) { put(quantity, value, 1.0); });
+    if (meter_) meter_->fly(at_.spin, flown.flight_time);
+    const D left_at = at_.travel, left = at_.angle;
+    at_ = after_flight(hoop_, at_, flown.flight_time);
+    if (turns_on_) driven_ += hoop_.motor() * (at_.angle - left);
+    const Landing<D> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
+                                    contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
+    if (jumps)
+      put_measures(measures_of(hoop_, D(at_.travel - left_at), at_, landing), D(1.0),
+                   [&](double Outcome::*kept, const D& value) { put(kept, value, 1.0); });
+    at_.spin = landing.after.spin, at_.slip = landing.after.slip, at_.normal = landing.after.normal;
+    if (jumps) put(&Outcome::landing_spin, at_.spin, 1.0);
+  }
+
+  /// When the flight is deepest below the plane before its apex; zero: it never is.
+  double deepest(const Flight<double>& flight) const {
+    if (!(flight.dip < 0.0)) return 0.0;
+    Hoop<double> hoop{};  // of which a flight sees these
+    hoop.cos_slope = hoop_.cos_slope.value, hoop.rho = hoop_.rho.value, hoop.aloft = hoop_.aloft.value;
+    return lowest_time(hoop, at_.angle.value, at_.spin.value, at_.normal.value, flight.apex_time);
+  }
+
+  const SlidingPanels<D>& panels_;
+  const SlidingPanels<double>& plain_panels_;
+  const DualTime<D>& time_;
+  double second_;
+  Contact<D> contact_;
+  Hoop<D> hoop_;
+  bool turns_on_;  // the motor, in flight
+  ContactState<D> at_;
+  D released_{0.0}, driven_{0.0}, slipped_{0.0};
+  int panels_taken_ = 0;
+  std::optional<WayMeter<D>> meter_;
+};
+
+}  // namespace
+
+void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
+                             Gradients& gradients) {
+  for (std::size_t i = 0; i < designs.size(); ++i) outcomes[i] = solver_.solve(designs[i], scene);
+  derive_solved(designs, scene, outcomes, gradients);
+}
+
+void CoulombGradients::derive_solved(std::span<const Design> designs, const Scene& scene,
+                                     std::span<const Outcome> outcomes, Gradients& gradients) {
+  gradients.begin(designs.size());
+  const std::vector<OutcomeNumber>& asked = gradients.wanted().of;
+  const bool follows_ways = std::any_of(asked.begin(), asked.end(), is_of_way);
+  RecordedWay recorded;
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate ||
+        !(gradients.wanted().any_of_first_jump_in(outcomes[i]) ||
+          (follows_ways && outcomes[i].status == Status::jumped)))
+      continue;
+    ContactState<double> at = released<double>(designs[i]);
+    if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
+      continue;
+    Chain chain(reduce(dual_parameters<D>(designs[i]), scene), dual_contact(designs[i], scene),
+                dual_release(designs[i]), time_unit(scene), panels_, plain_panels_, time_);
+    if (follows_ways) chain.follow_way();
+    chain.run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
+      if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
+      if (is_of_way(quantity) || std::isfinite(outcomes[i].*quantity))
+        gradients.put(quantity, i, value, unit);
+    });
+  }
+}
+
+Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& scene, Along along,
+                               ContactState<D>& at, const PutDual& put) {
+  RecordedWay recorded;
+  ContactState<double> landed = plain(at);
+  Outcome outcome = recorded_way(finer_, start, design, landed, scene, recorded);
+  if (outcome.status != Status::jumped) return outcome;
+  Contact<D> contact = dual_contact(design, scene);
+  if (along == Along::state)
+    contact = {D(contact.mu_static.value), D(contact.mu_kinetic.value), D(contact.restitution.value),
+               contact.rest_speed};
+  Chain chain(reduce(parameters_along(design, along), scene), contact, at, time_unit(scene), panels_,
+              plain_panels_, time_);
+  const bool known =
+      chain.run(recorded, outcome, [&](double Outcome::*quantity, const D& value, double unit) {
+        if (put) put(quantity, value, unit);
+      });
+  at = chain.at();
+  set_values(at, landed);
+  if (!known)
+    for (D* number : {&at.time, &at.travel, &at.angle, &at.spin, &at.slip, &at.normal})
+      number->by.fill(std::numeric_limits<double>::quiet_NaN());
+  return outcome;
+}
+
+GradientSolver friction::gradients(const Scene& scene, double tolerance, const Wanted& wanted,
+                                   const GradientWanted&) {
+  Scene to_first = scene;
+  to_first.jumps = 1;
+  const GradientSolver first =
+      [solver = std::make_shared<CoulombGradients>(tolerance), plain = exact(to_first, tolerance, wanted),
+       scene](std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+        plain(designs, outcomes);
+        solver->derive_solved(designs, scene, outcomes, gradients);
+      };
+  if (scene.jumps == 1) return first;
+  return in_sequence(first, jumps(scene, tolerance, wanted), dual_jumps(scene, tolerance), scene);
+}
+
+DualJumpSolver friction::dual_jumps(const Scene& scene, double tolerance) {
+  return [solver = std::make_shared<CoulombGradients>(tolerance), scene](
+             Start start, const Design& design, Along along, ContactState<D>& at, const PutDual& put) {
+    return solver->jump(start, design, scene, along, at, put);
+  };
+}
+
+}  // namespace leapmap

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "friction/sliding_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+
+#include "trajectory/gradient.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr int most_iterations = 60;
+
+/// The largest, and infinity if any is no number: such a panel is not resolved.
+template <class Value>
+Value largest(std::initializer_list<Value> values) {
+  using Number = ScalarOf<Value>;
+  Value most(Number(0));
+  for (const Value& value : values)
+    most = select(value - value == Value(Number(0)), larger(most, value), Value(Number(HUGE_VAL)));
+  return most;
+}
+
+/// The least of the nodes that a T holds of an S, or of the one node that it holds of each of its lanes.
+template <class S, class T>
+ValueOf<S> least_node(const T& values) {
+  if constexpr (std::is_same_v<S, T>) {
+    return value_of(values);
+  } else {
+    const auto lanes = lanes_of(values);
+    return *std::min_element(lanes.begin(), lanes.end());
+  }
+}
+
+/// The same hoop for the nodes, one or many at once.
+template <class T, class S>
+Hoop<T> hoop_at_nodes(const Hoop<S>& hoop) {
+  if constexpr (std::is_same_v<T, S>) {
+    return hoop;
+  } else {
+    return widened<T>(hoop);
+  }
+}
+
+/// w^2, of which y is the value, or n0 where it is known `by_force`.
+template <class T>
+T spin_squared(const Hoop<T>& hoop, const Trig<T>& phi, const T& y, bool by_force) {
+  return by_force ? (y - free_normal_force(hoop, phi, T(ScalarOf<T>(0)))) / (hoop.rho * phi.cos) : y;
+}
+
+}  // namespace
+
+template <class S>
+auto SlidingPanels<S>::stretch_of(const S& spin, const S& rise, const S& length) -> Stretch {
+  // x = shift + q^2 takes out u's zero just before the start, where the spin is small and grows.
+  using std::sqrt;
+  const S shift = select(rise > S(0), larger(S(-spin * spin / (S(2) * rise)), S(-length)), S(-length));
+  const S begin = sqrt(-shift);
+  return {shift, begin, sqrt(length - shift) - begin};
+}
+
+template <class S>
+auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                                const S& way, bool by_force) const -> AtNodes {
+  constexpr std::size_t width = Grid::width;
+  const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
+  const Hoop<T> hoop = hoop_at_nodes<T>(slide.hoop);
+  AtNodes nodes_at;
+  T least(std::numeric_limits<Number>::max());
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
+    const T w = q * T(S(2) * stretch.curve * stretch.span), x = T(stretch.shift) + T(stretch.curve) * q * q;
+    const Trig<T> phi = nodes_at.phi[i / width] = trig(T(from.angle) + T(way) * x);
+    const SlidingCoefficients<T> at = nodes_at.sliding[i / width] = slide.coefficients(hoop, phi, T(way) * x);
+    least = smaller(least, at.pivot);
+    const T idle = free_normal_force(hoop, phi, T(S(0))), torque = hoop.drive / hoop.Ic;
+    const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoop.rho * phi.cos;
+    if (by_force) {
+      const T tangent = phi.sin / phi.cos;
+      put(turned * (grows - tangent), nodes_at.grows, i);
+      put(turned * (tangent * idle + T(S(3)) * hoop.rho * phi.cos * torque), nodes_at.drives, i);
+    } else {
+      put(turned * grows, nodes_at.grows, i);
+      put(turned * T(S(2)) * (at.turn * idle + torque), nodes_at.drives, i);
+    }
+    put(w, nodes_at.weight, i);
+    put(x, nodes_at.angle, i);
+  }
+  nodes_at.least_pivot = least;
+  return nodes_at;
+}
+
+// One panel from end to end: its steps share some twenty arrays of nodes.
+// NOLINTBEGIN(readability-function-size)
+template <class S>
+void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                                      Panel& panel) const {
+  using std::exp, std::sqrt;
+  constexpr std::size_t width = Grid::width;
+  const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
+  const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
+  const Hoop<S>& hoop = slide.hoop;
+  const Hoop<T> hoops = hoop_at_nodes<T>(hoop);
+  const T m(slide.friction);
+  AtEnd start, end;
+  start.phi = trig(from.angle);
+  start.sliding = slide.coefficients(hoop, start.phi, S(0));
+  const S start_angular = start.sliding.turn * slide.free_force + hoop.drive / hoop.Ic;
+  const S way = select((from.spin < S(0)) | ((from.spin == S(0)) & (start_angular < S(0))), S(-1), S(1));
+  const S length = stretch.length();
+  const Mask rests = stretch.begin + stretch.span == S(0);  // at its end
+  panel.spin_vanishes = Mask(false);
+  panel.excess = Value(std::numeric_limits<Number>::infinity());
+  panel.turned = way * length;
+  panel.end.angle = from.angle + panel.turned;
+  end.phi = trig(panel.end.angle);
+  end.sliding = slide.coefficients(hoop, end.phi, S(way * length));
+  // With n0 in place of u, where it is the one that vanishes, and the cosine stays away from zero.
+  const S farthest = S(-0.2);
+  const bool by_force = panel.by_force =
+      slide.edge && all((slide.free_force < S(0.5) * hoop.cos_slope) & (start.phi.cos < farthest) &
+                        (end.phi.cos < farthest));
+  const AtNodes at = at_nodes(slide, from, stretch, way, by_force);
+  panel.least_pivot =
+      smaller(least_node<S, T>(at.least_pivot), value_of(S(smaller(start.sliding.pivot, end.sliding.pivot))));
+  panel.indeterminate = !(panel.least_pivot > Value(Number(0)));
+  if (all(panel.indeterminate)) return;
+
+  const typename Grid::Integrated growth = grid_.integrated(at.grows);
+  panel.growth = growth.running;
+  Values grown_by;
+  Values& driven = panel.driven_rate;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const T grown = exp(get(panel.growth, i));
+    put(grown, grown_by, i);
+    put(get(at.drives, i) * reciprocal(grown), driven, i);
+  }
+  const typename Grid::Integrated drives = grid_.integrated(driven);
+  panel.driven = drives.running;
+  start.u = from.spin * from.spin, start.force = slide.free_force;
+  const S start_y = panel.start_y = by_force ? start.force : start.u;
+  const S end_growth = exp(growth.whole), end_driven = drives.whole;
+  const S end_y = end_growth * (start_y + end_driven);
+  const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& phi, const R& y) {
+    return by_force ? y : free_normal_force(hoop_at, phi, y);
+  };
+  end.u = select(rests, S(0), spin_squared(hoop, end.phi, end_y, by_force));
+  end.force = force(hoop, end.phi, end_y);
+  // Where it is at rest at an end, the nodes tell.
+  const S fast(std::numeric_limits<Number>::max());
+  T least_u(smaller(select(start.u > S(0), start.u, fast), select(rests, fast, end.u)));
+  Values& time_rate = panel.time_rate;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const Trig<T>& phi = at.phi[i / width];
+    const SlidingCoefficients<T>& there = at.sliding[i / width];
+    const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
+    const T u = spin_squared(hoops, phi, y, by_force), n0 = force(hoops, phi, y);
+    least_u = smaller(least_u, u);
+    const T w = get(at.weight, i), rate = w * reciprocal_sqrt(u);
+    put(rate, time_rate, i);
+    put(sliding_motion(hoops, phi, u, m, there, n0).slip * rate, panel.slip.rate, i);
+    put(n0, panel.free_force.value, i);
+    const T angular = there.turn * n0 + hoops.drive / hoops.Ic;
+    put(T(way) * w * free_normal_force_rate(hoops, phi, u, angular), panel.free_force.rate, i);
+  }
+  const Value slowest = least_node<S, T>(least_u);
+  panel.spin_vanishes = !(slowest > Value(Number(0)));
+  end.weight = S(2) * stretch.curve * stretch.span * (stretch.begin + stretch.span);
+  start.weight = S(2) * stretch.curve * stretch.span * stretch.begin;
+  const Value of_one = by_force ? Value(Number(1)) : largest_part(S(S(1) + start.u));
+  const Value spin_tail = largest<Value>({growth.tail, drives.tail / of_one});
+  const Value roundings = slide.rounding_at_end(end.sliding.pivot);
+  panel.spin_excess =
+      select(panel.indeterminate, panel.excess, Value(spin_tail / (Value(tolerance_) + roundings)));
+  const auto driven_by = [&](const AtEnd& edge) {
+    return way * edge.weight * S(2) *
+           (edge.sliding.turn * free_normal_force(hoop, edge.phi, S(0)) + hoop.drive / hoop.Ic);
+  };
+  panel.driven_start = {S(0), driven_by(start)};
+  panel.driven_end = {end_driven, driven_by(end) / end_growth};
+  if (all(panel.spin_vanishes)) return;
+
+  // At rest weight over spin has a limit.
+  end.time_rate = select(rests, time_rate[nodes - 1], S(end.weight / sqrt(end.u)));
+  start.time_rate = select(start.u > S(0), S(start.weight / sqrt(start.u)), time_rate[0]);
+  const S duration = grid_.integral(time_rate);
+  panel.end.time = from.time + duration;
+  panel.end.spin = way * sqrt(end.u);
+  const Value slip_tail = integrate_slip(slide, from, at, start, end, panel);
+  // Beside the end at rest w^2 has few digits, and little weight.
+  const Value lost =
+      select(rests, Value(Number(1)), smaller(Value(value_of(start.u) / slowest), Value(Number(1e6))));
+  const Value noise = roundings + Value(Number(16) * std::numeric_limits<Number>::epsilon()) * lost;
+  const Value time_tail = Value(Number(0.1)) * grid_.tail(time_rate) / largest_part(duration);
+  const Value excess = largest<Value>({spin_tail, time_tail, slip_tail}) / (Value(tolerance_) + noise);
+  panel.excess = select(panel.indeterminate | panel.spin_vanishes, panel.excess, excess);
+}
+// NOLINTEND(readability-function-size)
+
+template <class S>
+auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
+                                      const AtEnd& start, const AtEnd& end, Panel& panel) const -> Value {
+  using std::abs;
+  const Hoop<S>& hoop = slide.hoop;
+  const S way = select(panel.turned < S(0), S(-1), S(1));
+  const auto force_at = [&](const AtEnd& edge) {
+    const S angular = edge.sliding.turn * edge.force + hoop.drive / hoop.Ic;
+    return Sample<S>{edge.force, way * edge.weight * free_normal_force_rate(hoop, edge.phi, edge.u, angular)};
+  };
+  const auto slip_rate_at = [&](const AtEnd& edge) {
+    return edge.time_rate *
+           sliding_motion(hoop, edge.phi, edge.u, slide.friction, edge.sliding, edge.force).slip;
+  };
+  panel.free_force.start = force_at(start), panel.free_force.end = force_at(end);
+  const typename Grid::Integrated slips = grid_.integrated(panel.slip.rate);
+  Values slip_time;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    panel.slip.value[i] = from.slip + slips.running[i];
+    slip_time[i] = panel.slip.value[i] * panel.time_rate[i];
+    panel.travel.rate[i] = way * at.weight[i] + slip_time[i];
+  }
+  const typename Grid::Integrated carries = grid_.integrated(slip_time);
+  for (std::size_t i = 0; i < nodes; ++i)
+    panel.travel.value[i] = from.travel + way * at.angle[i] + carries.running[i];
+  panel.end.slip = from.slip + slips.whole;
+  panel.end.travel = from.travel + panel.turned + carries.whole;
+  panel.slip.start = {from.slip, slip_rate_at(start)};
+  panel.slip.end = {panel.end.slip, slip_rate_at(end)};
+  panel.travel.start = {from.travel, way * start.weight + from.slip * start.time_rate};
+  panel.travel.end = {panel.end.travel, way * end.weight + panel.end.slip * end.time_rate};
+  return slips.tail / largest_part(S(S(1) + abs(from.slip)));
+}
+
+template <class S>
+auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                                const Panel& panel, const S& place) const -> Inside {
+  using std::exp, std::sqrt;
+  const S beside(0.1), small(0.01);
+  Inside inside{from, place > beside};
+  if (!any(inside.is_sharp)) return inside;
+  ContactState<S>& at = inside.state;
+  const S way = select(panel.turned < S(0), S(-1), S(1));
+  at.angle += way * stretch.angle(place);
+  const Values times = grid_.integrals(panel.time_rate);
+  const auto [growth, driven, taken, slip, travel] = grid_.template values<5>(
+      {&panel.growth, &panel.driven, &times, &panel.slip.value, &panel.travel.value}, place);
+  const S y = exp(growth) * (panel.start_y + driven);
+  const S u = spin_squared(slide.hoop, trig(at.angle), y, panel.by_force);
+  inside.is_sharp =
+      inside.is_sharp & (u > small * larger(S(from.spin * from.spin), S(panel.end.spin * panel.end.spin)));
+  at.spin = way * sqrt(u);
+  at.time += taken;
+  at.slip = slip;
+  at.travel = travel;
+  return inside;
+}
+
+// NOLINTBEGIN(readability-function-size)
+template <class S>
+void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration,
+                                     Panel& panel) const {
+  constexpr std::size_t width = Grid::width;
+  using std::abs;
+  const Hoop<S>& hoop = slide.hoop;
+  const S& friction = slide.friction;
+  panel.indeterminate = panel.spin_vanishes = false;
+  panel.excess = std::numeric_limits<Number>::infinity();
+  Values turned, spin, angular;
+  for (std::size_t i = 0; i < nodes; ++i)
+    spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
+  bool settled = false;
+  int left = has_derivatives<S> ? 6 : 0;  // iterations once the values are settled: derivatives come after
+  const Hoop<T> hoops = hoop_at_nodes<T>(hoop);
+  const T m(friction), length(duration);
+  for (int iteration = 0; iteration < most_iterations && !(settled && left-- <= 0); ++iteration) {
+    Number least_pivot = value_of(hoop.Ic) + Number(2);
+    for (std::size_t i = 0; i < nodes; i += width) {
+      const T x = Lanes<T>::load(turned.data() + i);
+      const Trig<T> phi = trig(T(from.angle) + x);
+      const SlidingCoefficients<T> at = slide.coefficients(hoops, phi, x);
+      const auto pivots = lanes_of(at.pivot);
+      least_pivot = std::min(least_pivot, *std::min_element(pivots.begin(), pivots.end()));
+      if (!(least_pivot > Number(0))) {
+        panel.indeterminate = true;
+        return;
+      }
+      const T w = Lanes<T>::load(spin.data() + i), u = w * w;
+      const T n0 = free_normal_force(hoops, phi, u);
+      const SlidingMotion<T> motion = sliding_motion(hoops, phi, u, m, at, n0);
+      Lanes<T>::store(length * motion.angular, angular.data() + i);
+      Lanes<T>::store(length * motion.slip, panel.slip.rate.data() + i);
+      Lanes<T>::store(n0, panel.free_force.value.data() + i);
+      Lanes<T>::store(length * w * free_normal_force_rate(hoops, phi, u, motion.angular),
+                      panel.free_force.rate.data() + i);
+    }
+    const Values gained = grid_.integrals(angular);
+    Number change(0), most(1);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      change = largest<Number>({change, std::abs(value_of(from.spin + gained[i] - spin[i]))});
+      most = std::max({most, std::abs(value_of(from.spin)), std::abs(value_of(angular[i]))});
+      spin[i] = from.spin + gained[i];
+    }
+    const Values spun = grid_.integrals(spin);
+    for (std::size_t i = 0; i < nodes; ++i) turned[i] = duration * spun[i];
+    // Near the edge, or a needle of the spin, accelerations are known to some roundings more.
+    constexpr Number epsilon = std::numeric_limits<Number>::epsilon();
+    const Number noise = std::min(slide.rounding(least_pivot), Number(1e4) * epsilon);
+    settled = change <= (Number(8) * epsilon + noise) * most;
+  }
+  panel.end.spin = from.spin + grid_.integral(angular);
+  panel.turned = duration * grid_.integral(spin);
+  panel.end.angle = from.angle + panel.turned;
+  const Trig<S> start_phi = trig(from.angle), end_phi = trig(panel.end.angle);
+  const SlidingCoefficients<S> at_start = slide.coefficients(hoop, start_phi, S(0)),
+                               at_end = slide.coefficients(hoop, end_phi, panel.turned);
+  panel.indeterminate = !(at_end.pivot > S(0));
+  if (panel.indeterminate) return;
+  const auto sample_force = [&](const Trig<S>& phi, const S& w, const SlidingMotion<S>& motion) {
+    return Sample<S>{free_normal_force(hoop, phi, S(w * w)),
+                     duration * w * free_normal_force_rate(hoop, phi, S(w * w), motion.angular)};
+  };
+  const auto motion_at = [&](const Trig<S>& phi, const S& w, const SlidingCoefficients<S>& at) {
+    const S u = w * w;
+    return sliding_motion(hoop, phi, u, friction, at, free_normal_force(hoop, phi, u));
+  };
+  const SlidingMotion<S> start = motion_at(start_phi, from.spin, at_start),
+                         end = motion_at(end_phi, panel.end.spin, at_end);
+  panel.free_force.start = sample_force(start_phi, from.spin, start);
+  panel.free_force.end = sample_force(end_phi, panel.end.spin, end);
+  panel.slip.start = {from.slip, duration * start.slip};
+  panel.travel.start = {from.travel, duration * (from.slip + from.spin)};
+  const Values slipped = grid_.integrals(panel.slip.rate);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    panel.slip.value[i] = from.slip + slipped[i];
+    panel.travel.rate[i] = duration * (panel.slip.value[i] + spin[i]);
+  }
+  const Values travelled = grid_.integrals(panel.travel.rate);
+  for (std::size_t i = 0; i < nodes; ++i) panel.travel.value[i] = from.travel + travelled[i];
+  panel.end.time = from.time + duration;
+  panel.end.slip = from.slip + grid_.integral(panel.slip.rate);
+  panel.end.travel = from.travel + grid_.integral(panel.travel.rate);
+  panel.slip.end = {panel.end.slip, duration * end.slip};
+  panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
+  if (settled)
+    panel.excess = largest<Number>({grid_.tail(angular) / largest_part(S(S(1) + abs(from.spin))),
+                                    grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
+                   (tolerance_ + slide.rounding_at_end(at_end.pivot));
+}
+// NOLINTEND(readability-function-size)
+
+#ifdef LEAPMAP_KERNELS
+template class SlidingPanels<double>;
+template auto SlidingPanels<Batch>::stretch_of(const Batch&, const Batch&, const Batch&) -> Stretch;
+template void SlidingPanels<Batch>::solve_by_angle(const Slide&, const ContactState<Batch>&, const Stretch&,
+                                                   Panel&) const;
+template auto SlidingPanels<Batch>::state_at(const Slide&, const ContactState<Batch>&, const Stretch&,
+                                             const Panel&, const Batch&) const -> Inside;
+template class SlidingPanels<DesignDual>;
+#endif
+#ifdef LEAPMAP_SCALARS
+template class SlidingPanels<long double>;
+#endif
+
+}  // namespace leapmap

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// A stretch of one sliding phase, solved at the nodes of a panel.
+///
+/// In the angle u = w^2 obeys du/dphi = a u + b with a = 2 rho c turn, b = 2 n1 turn + 2 tau / Ic,
+/// n1 = cos(theta) + rho s tau / Ic (hoop/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the
+/// integral of a; time, slip and travel are integrals over u's root. Near Painleve's edge n0 takes the place
+/// of u: it obeys an equation of the same kind, with -tan(phi) + 2 rho c turn and
+/// tan(phi) n1 + 3 rho c tau / Ic, and keeps its digits where it vanishes with the pivot. Where the spin goes
+/// through zero panels are in time, angle and spin at their nodes by Picard's iteration; or, as u is smooth
+/// there, one by angle ends where u is zero.
+#pragma once
+
+#include <optional>
+
+#include "friction/contact_phases.hpp"
+#include "hoop/painleve.hpp"
+#include "numerics/spectral.hpp"
+
+namespace leapmap {
+
+/// S: a number; a dual, whose derivatives panels of given lengths carry along; or a batch, the panels of as
+/// many slides at once, by angle and far from any edge.
+template <class S>
+class SlidingPanels {
+ public:
+  using Number = ScalarOf<S>;
+  using Value = ValueOf<S>;
+  using Mask = MaskOf<S>;
+  static constexpr std::size_t nodes = 24;
+  using Grid = SpectralPanel<S, nodes>;
+  using Values = typename Grid::Values;
+
+  /// A function at the panel's start, nodes and end, and its derivative by the panel's coordinate.
+  struct Course {
+    Sample<S> start;
+    Values value, rate;
+    Sample<S> end;
+  };
+  /// What the nodes of a panel hold, in order of time, and its end.
+  struct Panel {
+    Course slip, travel, free_force;
+    // Of a panel by angle: y = e^growth (start_y + driven) is w^2 or, where it says so, n0.
+    Values growth, driven, driven_rate, time_rate;
+    Sample<S> driven_start, driven_end;
+    S start_y;
+    bool by_force;
+    Value least_pivot;
+    Value spin_excess;  ///< the nodes resolve y if at most 1, also where the spin vanishes
+    ContactState<S> end;
+    S turned;            ///< from start to end
+    Value excess;        ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    Mask indeterminate;  ///< the pivot is not above zero somewhere: the equations have no answer there
+    Mask spin_vanishes;  ///< w^2 is not above zero somewhere
+  };
+  /// A panel by angle: |phi - from| = shift + curve q^2, q from begin to begin + span.
+  struct Stretch {
+    S shift, begin, span;
+    S curve = S(1);  ///< or -1: the spin vanishes where q is zero, at the panel's end or beyond
+    S angle(const S& place) const { return shift + curve * (begin + span * place) * (begin + span * place); }
+    S length() const { return angle(S(1)); }
+  };
+  /// A panel as a slide took it: a stretch by angle, or else a duration.
+  struct Taken {
+    std::optional<Stretch> stretch;
+    S duration;
+  };
+  /// What a slide is about.
+  struct Slide {
+    Hoop<S> hoop;
+    S friction;                           ///< mu_kinetic sign(v)
+    std::optional<PainleveEdge<S>> edge;  ///< the nearest, if it is near
+    S left;                               ///< angle from a panel's start to it
+    S free_force;                         ///< n0 at a panel's start
+
+    /// What sliding says at an angle, `turned` past the panel's start.
+    template <class T>
+    SlidingCoefficients<T> coefficients(const Hoop<T>& hoops, const Trig<T>& phi, const T& turned) const {
+      const T m(friction);
+      if (!edge) return sliding_coefficients(hoops, phi, m);
+      return sliding_coefficients(hoops, phi, m, edge->pivot(hoops, m, T(left) - T(edge->way) * turned));
+    }
+    /// Relative rounding of the accelerations where the pivot is so large: it comes of terms that may cancel.
+    Value rounding(const Value& pivot) const {
+      using std::abs;
+      const Value Ic = value_of(hoop.Ic), rho = value_of(hoop.rho);
+      return Value(Number(16) * std::numeric_limits<Number>::epsilon()) *
+             (Ic + rho * (rho + Value(Number(2)) * Value(abs(value_of(friction))))) / pivot;
+    }
+    /// The same at a panel's end: near the edge the pivot comes without cancellation.
+    Value rounding_at_end(const S& pivot) const {
+      return rounding(edge ? Value(Number(1)) : value_of(pivot));
+    }
+  };
+
+  explicit SlidingPanels(Number tolerance) : tolerance_(tolerance) {}
+
+  /// The stretch of that length, its nodes closer where the spin is small and grows. rise: of w^2 / 2, an
+  /// angle.
+  static Stretch stretch_of(const S& spin, const S& rise, const S& length);
+  /// The stretch of that length to where the spin vanishes.
+  static Stretch stretch_to_rest(const S& length) {
+    using std::sqrt;
+    const S root = sqrt(length);
+    return {length, -root, root, S(-1)};
+  }
+  /// Solves a panel by angle. Where it is indeterminate, only `excess` holds besides; where the spin
+  /// vanishes, excess, spin_excess, start_y and the driven ones do: the rest is the panel's that was there
+  /// before.
+  void solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
+                      Panel& panel) const;
+  /// A state inside a panel, and whether it has kept its digits.
+  struct Inside {
+    ContactState<S> state;
+    Mask is_sharp;
+  };
+  /// The state at a place in (0, 1] of a panel by angle that is solved. It loses digits beside the panel's
+  /// start, and where the spin is small against those at its ends.
+  Inside state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const Panel& panel,
+                  const S& place) const;
+  /// Solves a panel of that duration. It has no growth and nothing driven; where it is indeterminate only
+  /// `excess` holds.
+  void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
+  /// Solves a panel as a slide took it.
+  void solve(const Slide& slide, const ContactState<S>& from, const Taken& taken, Panel& panel) const {
+    if (taken.stretch)
+      solve_by_angle(slide, from, *taken.stretch, panel);
+    else
+      solve_by_time(slide, from, taken.duration, panel);
+  }
+
+  const Grid& grid() const { return grid_; }
+  Number tolerance() const { return tolerance_; }
+
+ private:
+  using T = typename Grid::T;  ///< the nodes in lanes, or each lane a panel
+
+  /// What a panel by angle meets at its nodes.
+  struct AtNodes {
+    std::array<Trig<T>, nodes / Grid::width> phi;
+    std::array<SlidingCoefficients<T>, nodes / Grid::width> sliding;
+    Values angle, weight;  ///< past its start, and its derivative by the panel's coordinate
+    Values grows, drives;  ///< a and b of y' = a y + b, by that coordinate
+    T least_pivot;         ///< of those in each lane
+  };
+  AtNodes at_nodes(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const S& way,
+                   bool by_force) const;
+  /// And at one of its ends: w^2, n0, weight, and how fast time goes by the panel's coordinate.
+  struct AtEnd {
+    Trig<S> phi;
+    SlidingCoefficients<S> sliding;
+    S u, force, weight, time_rate;
+  };
+  /// Slip and travel of a panel whose spin and n0 are known, and n0 at its ends. Returns the slip's tail, of
+  /// one more than its size.
+  Value integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at, const AtEnd& start,
+                       const AtEnd& end, Panel& panel) const;
+
+  Number tolerance_;
+  Grid grid_;
+};
+
+}  // namespace leapmap

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The gait that a design settles on: an outcome's gait_ fields.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gaits/return_map.hpp"
+
+namespace leapmap {
+
+/// Lets designs jump Scene::settle times, sees whether they repeat themselves, and closes the orbit that they
+/// are near. A thread's own workspace.
+class GaitSolver {
+ public:
+  GaitSolver(const Scene& scene, JumpSolvers solvers) : scene_(scene), map_(scene, std::move(solvers)) {}
+  /// By the scene's model. tolerance: relative, of times.
+  GaitSolver(const Scene& scene, double tolerance) : GaitSolver(scene, jump_solvers(scene, tolerance)) {}
+
+  /// Fills in what outcomes tell of gaits.
+  void solve(std::span<const Design> designs, std::span<Outcome> outcomes);
+
+  /// The orbit that one design settles on. False: none.
+  bool orbit_of(const Design& design, Orbit& orbit);
+
+ private:
+  void settle(std::span<const Design> designs);
+  void look_on();
+  void jump_on(Start start);
+  bool find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit);
+
+  Scene scene_;
+  ReturnMap map_;
+  std::vector<std::size_t> going_;  // designs that still jump
+  std::vector<Design> some_;        // they, and where they landed
+  std::vector<Landed> states_;
+  std::vector<std::vector<Landed>> seen_;  // of each of them the last landings
+  std::vector<Outcome> found_;
+  std::vector<Status> ends_;  // of each design: jumped if it goes on
+};
+
+}  // namespace leapmap

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Sliding with Coulomb friction, beyond the paper: (7) to (9) with (2) kept and lambda_f = -mu sign(v)
+/// lambda_n.
+///
+/// v = x' - w is the contact point's velocity. With n0 = cos(theta) + rho c w^2 + rho s tau / Ic, which is
+/// minus the y'' of a hoop that the plane lets go, and q = rho s - m (1 - rho c), m = mu sign(v), the forces
+/// and accelerations are
+///   N = n0 Ic / (Ic + rho s q),   F = -m N,   phi'' = tau / Ic - n0 q / (Ic + rho s q).
+/// Both are linear in w^2: as a function of the angle u = w^2 obeys du/dphi = 2 phi'', a linear equation of
+/// first order. Where Ic + rho s q <= 0 the rigid-body equations have no answer or two (Painleve).
+#pragma once
+
+#include "hoop/rolling.hpp"
+
+namespace leapmap {
+
+/// What sliding says at one angle; everything else follows from w^2.
+template <class T>
+struct SlidingCoefficients {
+  T pivot;  ///< Ic + rho s q; not above zero: indeterminate
+  T turn;   ///< phi'' = turn n0 + tau / Ic
+  T push;   ///< N = push n0
+};
+
+/// q; friction: m = mu_kinetic sign(v).
+template <class T>
+T sliding_lever(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction) {
+  return hoop.rho * phi.sin - friction * height_of_mass(hoop, phi);
+}
+
+/// pivot: Ic + rho s q, where somebody knows it better.
+template <class T>
+SlidingCoefficients<T> sliding_coefficients(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction,
+                                            const T& pivot) {
+  const T inverse = reciprocal(pivot);
+  return {pivot, -sliding_lever(hoop, phi, friction) * inverse, hoop.Ic * inverse};
+}
+template <class T>
+SlidingCoefficients<T> sliding_coefficients(const Hoop<T>& hoop, const Trig<T>& phi, const T& friction) {
+  const T q = sliding_lever(hoop, phi, friction), pivot = hoop.Ic + hoop.rho * phi.sin * q;
+  return sliding_coefficients(hoop, phi, friction, pivot);
+}
+
+/// n0: the hoop leaves the plane where this falls through zero.
+template <class T>
+T free_normal_force(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared) {
+  return hoop.cos_slope + hoop.rho * (phi.cos * spin_squared + phi.sin * (hoop.drive / hoop.Ic));
+}
+
+/// Its derivative by time over the spin; angular: phi''.
+template <class T>
+T free_normal_force_rate(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared, const T& angular) {
+  return hoop.rho * (phi.cos * (T(2) * angular + hoop.drive / hoop.Ic) - phi.sin * spin_squared);
+}
+
+/// Accelerations while sliding.
+template <class T>
+struct SlidingMotion {
+  T normal_force;  ///< [weights]
+  T friction;      ///< lambda_f over the weight
+  T angular;       ///< phi''
+  T slip;          ///< v' = x'' - phi''
+};
+
+/// at: sliding_coefficients there; n0: free_normal_force there.
+template <class T>
+SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared,
+                                const T& friction, const SlidingCoefficients<T>& at, const T& n0) {
+  const T N = at.push * n0, F = -friction * N, angular = at.turn * n0 + hoop.drive / hoop.Ic;
+  const T arm = height_of_mass(hoop, phi);
+  return {N, F, angular, F + hoop.sin_slope - arm * angular - hoop.rho * phi.sin * spin_squared};
+}
+template <class T>
+SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin_squared,
+                                const T& friction) {
+  return sliding_motion(hoop, phi, spin_squared, friction, sliding_coefficients(hoop, phi, friction),
+                        free_normal_force(hoop, phi, spin_squared));
+}
+
+}  // namespace leapmap
