@@ -410,7 +410,8 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     /** Whether the hoop shown is that design of the map. */
     isOf: (index) =>
       Boolean(now.story) && now.source[0] === "design" && now.source[1] === String(index),
-    hoop: () => ({ outcome: now.story.outcome, design: now.design }), follow, recount, haunt: () => { if (now.story) haunt(); } };
+    hoop: () => ({ outcome: now.story.outcome, design: now.design }), follow, recount,
+    haunt: () => { if (now.story) haunt(); } };
 }
 
 /** Numbers of a design as an address has them, name:value,name:value; kinetic friction that follows the
