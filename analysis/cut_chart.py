@@ -120,11 +120,12 @@ def main():
                    help="of that axis, those nearest to these (default: six, spread over it)")
     planes.add_at(p)
     planes.add_fields(p)
+    planes.add_units(p)
     arguments = p.parse_args()
     fields = planes.fields_of(arguments)
-    style.save(
-        chart(read_map(arguments.source), arguments.along, arguments.by, arguments.values, arguments.at,
-              fields), arguments.output)
+    m = planes.in_units(read_map(arguments.source), arguments.units)
+    style.save(chart(m, arguments.along, arguments.by, arguments.values, arguments.at, fields),
+               arguments.output)
 
 
 if __name__ == "__main__":

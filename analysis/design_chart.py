@@ -159,23 +159,13 @@ def chart(grid, name, panels_of, drawing=None):
     return figure
 
 
-def in_units(m, units):
-    try:
-        looks.use_units(m, units, style.leapmap_module()._core.units_in_own)
-    except ValueError as error:
-        raise NotAMap(f"{m.path}: {error}") from None
-
-
 def main():
     p = style.parser(__doc__, "a map over two axes or more, for example maps/slope_mass_ratio_offset.h5", "")
     planes.add_options(p)
     cliffs.add_options(p)
-    p.add_argument("--units", help="units of the quantities, with blanks between them, for example \"mm ms\" "
-                   "(default: the map's own)")
+    planes.add_units(p)
     arguments = p.parse_args()
-    m = read_map(arguments.source)
-    if arguments.units:
-        in_units(m, arguments.units)
+    m = planes.in_units(read_map(arguments.source), arguments.units)
     drawn = [name for name in (*planes.FIELDS, "gait_height") if looks.quantity(m, name) is not None]
     if not drawn:
         raise NotAMap(f"{m.path}: has no jump_height or jump_time; a design chart wants one of them")

@@ -7,7 +7,7 @@ Colours show the number of the lift-off that jumps. Three designs are marked, ea
 A gap: neighbours on the front are far apart within the bounds, or another lift-off jumps. Needs leapmap's
 Python module."""
 import textwrap
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import h5py
 import numpy as np
@@ -22,13 +22,17 @@ CLOUD, SHOWN = 200_000, 15_000
 NUMBERS = ("#b2182b", "#2166ac", "#1b7837")
 
 
+def is_parameter(name):
+    return name in looks.PARAMETERS or name.startswith("hoop.")
+
+
 def shown(name, values):
     """As charts show it: angles in degrees."""
-    return looks.as_shown(name, np.asarray(values)) if name in looks.PARAMETERS else np.asarray(values)
+    return looks.as_shown(name, np.asarray(values)) if is_parameter(name) else np.asarray(values)
 
 
 def label(name):
-    return planes.axis_label(name) if name in looks.PARAMETERS else planes.field_label(name).replace(
+    return planes.axis_label(name) if is_parameter(name) else planes.field_label(name).replace(
         "\n", " ") if name in looks.LOOKS else name.replace("_", " ")
 
 
@@ -41,7 +45,8 @@ def called_out(x, y):
 @dataclass
 class Front:
     """Designs in the order of the first objective. parameters: those that were free; fixed: the others and
-    the scene, as leapmap.trace takes them; bounds: of the parameters, low and high of each."""
+    the scene, as leapmap.trace takes them; bounds: of the parameters, low and high of each; follows: what
+    follows from free numbers of [hoop], as leapmap.trace takes it, for each design."""
     objectives: list
     parameters: dict
     values: dict
@@ -49,10 +54,19 @@ class Front:
     jump_height: np.ndarray
     fixed: dict
     bounds: list
+    follows: dict = field(default_factory=dict)
+
+    def traced(self, i):
+        """Design i as leapmap.trace takes it."""
+        free = {n: v for n, v in self.parameters.items() if not n.startswith("hoop.")}
+        return self.fixed | {n: float(v[i]) for n, v in (free | self.follows).items()}
 
 
 def searched(path, problem, seed):
     """The front of a design problem, which is searched for."""
+    if of_hoop := [n for n in problem.names if n.startswith("hoop.")]:
+        raise NotAMap(f"{path}: {of_hoop[0]} is free; allowed: the map that leapmap design {path} -o MAP.h5 "
+                      "writes")
     found = style.leapmap_module().design(path, seed=seed)
     if not found.reached:
         raise NotAMap(
@@ -70,11 +84,16 @@ def stored(path):
     if list(m.dims) != ["design"] or len(objectives) != 2:
         raise NotAMap(f"{path}: is no Pareto front; allowed: a map that leapmap design -o wrote for two "
                       "objectives, or a spec of two")
-    columns = {n: design[n] for n in looks.PARAMETERS if n in design}
-    free = {n: v for n, v in columns.items() if np.ptp(v) > 0 or n in objectives}
+    columns = {n: design[n] for n in looks.listed(m)}
+    free = {n: v for n, v in columns.items() if np.ptp(v) > 0 or n in objectives or n.startswith("hoop.")}
     of_contact = ("rest_speed", ) if m.slips else ()
-    fixed = {n: scene[n] for n in ("friction", "runway", "hop_height", "radius", "gravity", *of_contact)}
+    fixed = {n: scene[n] for n in ("friction", "runway", "hop_height", "gravity", *of_contact)}
     fixed |= {n: float(v[0]) for n, v in columns.items() if n not in free}
+    if "hoop" in spec:
+        ratios = {n: design[n] for n in ("mass_ratio", "offset_ratio", "inertia_factor")}
+        follows = ratios | {"radius": np.broadcast_to(m.radii(), design["jump_height"].shape)}
+    else:
+        fixed["radius"], follows = scene["radius"], {}
     values = {n: design[n] for n in objectives}
     along, across = (np.diff(v) for v in values.values())
     is_front = all((d >= 0).all() or (d <= 0).all() for d in (along, across))
@@ -82,7 +101,7 @@ def stored(path):
         raise NotAMap(
             f"{path}: is no Pareto front of several designs; allowed: a map that leapmap design -o wrote")
     return Front(objectives, free, values, design["candidates"],
-                 design["jump_height"], fixed, [(v.min(), v.max()) for v in free.values()])
+                 design["jump_height"], fixed, [(v.min(), v.max()) for v in free.values()], follows)
 
 
 def pieces(front):
@@ -95,10 +114,9 @@ def pieces(front):
     return [slice(a, b) for a, b in zip(ends, ends[1:])]
 
 
-def draw_hoop(axis, leapmap, design, fixed, colour):
+def draw_hoop(axis, leapmap, hoop, colour):
     """The hoop at some moments of its jump, on its slope."""
-    motion = leapmap.trace(**fixed, **design, interval=2e-3)
-    hoop = {**fixed, **design}
+    motion = leapmap.trace(**hoop, interval=2e-3)
     slope, size, radius = hoop["slope"], hoop["offset_ratio"], hoop["radius"]
     t, start, end = np.asarray(motion.t), float(motion.outcome.jump_time), np.asarray(motion.t)[-1]
     down, up = np.array([np.cos(slope), -np.sin(slope)]), np.array([np.sin(slope), np.cos(slope)])
@@ -180,7 +198,7 @@ def chart(path, question, seed):
         design = {n: float(values[i]) for n, values in front.parameters.items()}
         beside = figure.add_subplot(grid[k, 1])
         if front.jump_height[i] > 0:
-            draw_hoop(beside, leapmap, design, front.fixed, NUMBERS[k])
+            draw_hoop(beside, leapmap, front.traced(i), NUMBERS[k])
         words = ", ".join(f"{planes.axis_label(n)} {shown(n, v):.4g}" for n, v in design.items()
                           if n not in front.objectives)
         beside.set_title(

@@ -21,10 +21,9 @@ def values_along(m, name):
     if name == "design":
         return m.dims[
             "design"], "designs of the list" if m.labels is not None else "number in the list, from 0"
-    if name not in m.fields or name not in looks.PARAMETERS:
-        listed = [n for n in m.fields if n in looks.PARAMETERS]
-        raise NotAMap(
-            f"{m.path}: -x {name}: is no parameter of this list; allowed: {', '.join(['design', *listed])}")
+    if name not in m.fields or looks.parameter(name) == (name, name, ""):
+        raise NotAMap(f"{m.path}: -x {name}: is no parameter of this list; allowed: "
+                      f"{', '.join(['design', *looks.listed(m)])}")
     return looks.as_shown(name, m.fields[name]), planes.axis_label(name)
 
 
@@ -32,7 +31,7 @@ def chart(m, along, fields):
     if "design" not in m.dims:
         raise NotAMap(f"{m.path}: is no list of designs but a grid; design_chart.py and cut_chart.py draw it")
     along = "design" if along == "label" else along or next(
-        (n for n in looks.PARAMETERS if n in m.fields and len(np.unique(m.fields[n])) > 1), "design")
+        (n for n in looks.listed(m) if len(np.unique(m.fields[n])) > 1), "design")
     x, label = values_along(m, along)
     drawn = {
         f: values
@@ -89,9 +88,11 @@ def main():
         "(default: the first parameter that varies)"
     )
     planes.add_fields(p)
+    planes.add_units(p)
     arguments = p.parse_args()
     fields = planes.fields_of(arguments)
-    style.save(chart(read_map(arguments.source), arguments.x, fields), arguments.output)
+    m = planes.in_units(read_map(arguments.source), arguments.units)
+    style.save(chart(m, arguments.x, fields), arguments.output)
 
 
 if __name__ == "__main__":

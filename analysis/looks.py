@@ -200,7 +200,8 @@ def levels_of(look, values):
 
 # of [hoop]: its words, its unit as shown, how many of that are one of the SI's
 BODY = {
-    "mass": ("mass", "g", 1e3), "at": ("distance from the axis", "mm", 1e3),
+    "diameter": ("diameter", "mm", 1e3), "mass": ("mass", "g", 1e3),
+    "at": ("distance from the axis", "mm", 1e3),
     "angle": ("direction", "°", 180 / math.pi), "inertia": ("moment of inertia", "kg mm²", 1e6)
 }
 
@@ -210,7 +211,16 @@ def _of_body(name):
     parts = name.split(".")
     if parts[0] != "hoop" or parts[-1] not in BODY or len(parts) > 3:
         return None
-    return parts[1] if len(parts) == 3 else "ring", BODY[parts[-1]]
+    whole = "hoop" if parts[-1] == "diameter" else "ring"
+    return parts[1] if len(parts) == 3 else whole, BODY[parts[-1]]
+
+
+def listed(m):
+    """The numbers that a list of designs gives: those of [hoop], and the parameters that do not follow from
+    it."""
+    of_hoop = [name for name in m.fields if _of_body(name)]
+    follow = ("mass_ratio", "offset_ratio", "inertia_factor") if of_hoop else ()
+    return of_hoop + [name for name in PARAMETERS if name in m.fields and name not in follow]
 
 
 def parameter(name):
@@ -259,14 +269,14 @@ def made_words(m):
 
 
 def goal_words(m):
-    words = []
+    words, text = [], lambda bound: bound if isinstance(bound, str) else f"{bound:g}"
     for field, (least, most) in m.goals().items():
         name = LOOKS[field].label if field in LOOKS else field
         if least == most:
             words.append(f"{name} is {least}")
         else:
-            words.append(name + (f" at least {least:g}" if least is not None else "") +
-                         (f" at most {most:g}" if most is not None else ""))
+            words.append(name + (f" at least {text(least)}" if least is not None else "") +
+                         (f" at most {text(most)}" if most is not None else ""))
     return words
 
 

@@ -36,6 +36,23 @@ def fields_of(arguments):
     return fields
 
 
+def add_units(parser):
+    """--units, for charts of a map's quantities; in_units takes them."""
+    parser.add_argument("--units", default="",
+                        help="units of the quantities, with blanks between them, for example \"mm ms\" "
+                        "(default: the map's own)")
+
+
+def in_units(m, units):
+    """The map with its quantities in these units."""
+    try:
+        if units:
+            looks.use_units(m, units, style.leapmap_module()._core.units_in_own)
+    except ValueError as error:
+        raise NotAMap(f"{m.path}: {error}") from None
+    return m
+
+
 def field_label(field):
     """A quantity and its unit in two short lines, for an axis upwards."""
     return "\n[".join(looks.LOOKS[field].title.replace(": height over time from release to apex",

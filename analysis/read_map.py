@@ -104,9 +104,16 @@ class Map:
         """How hoops of the map are made: {parameter: (law, width, whether that is in per cent)}; {}: they are
         as drawn."""
         made = {}
-        for name, law in self.spec().get("scatter", {}).items():
-            if name in ("samples", "seed"):
-                continue
+
+        def laws(prefix, table):
+            """Those of [hoop] are nested, as hoop.slug.mass."""
+            for name, law in table.items():
+                if isinstance(law, dict) and not law.keys() & {"normal", "uniform"}:
+                    yield from laws(f"{prefix}{name}.", law)
+                elif name not in ("samples", "seed"):
+                    yield prefix + name, law
+
+        for name, law in laws("", self.spec().get("scatter", {})):
             try:
                 (kind, width), = law.items()
                 percent = isinstance(width, str)
@@ -126,8 +133,8 @@ class Map:
         return numbers
 
     def goals(self):
-        """What hoops of the map must do: {field: (at least, at most)}, None: no bound, or a phase_sequence's
-        letters twice."""
+        """What hoops of the map must do: {field: (at least, at most)}, None: no bound; a code's name or a
+        phase_sequence's letters twice; "0.05 m": the same for hoops of every size and mass."""
         goals = {
             field: goal
             for field, goal in self.spec().get("goal", {}).items()
@@ -139,6 +146,10 @@ class Map:
             field: (goal.get("at_least", goal.get("is")), goal.get("at_most", goal.get("is")))
             for field, goal in goals.items()
         }
+
+    def has_goals_in_si(self):
+        return any(isinstance(bound, str) and bound[:1] in "-0123456789" for bounds in self.goals().values()
+                   for bound in bounds)
 
     def objectives(self):
         """What the designs of a list were found for: [(field or parameter, whether it is to be large)]."""

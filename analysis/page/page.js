@@ -145,6 +145,8 @@ function start(map, solver, teller) {
     `shown`) +
     (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop by exact`) +
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
+    (map.beyond_page?.length ? `; in the map's numbers, not in this page's: ${map.beyond_page.join(", ")}`
+    : "") +
     (map.fields.some((f) => f.name === "agility")
       ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "")
       + ".";
@@ -460,8 +462,8 @@ function start(map, solver, teller) {
 /** What the solver is to be asked of a hoop of one's own beside a file's map, so that all its fields are
     told. */
 function askedOfFile(map) {
-  const has = (cost) => map.fields.some((f) => costOf(f) === cost);
-  const goals = has("made") ? numberedGoals(map.goals, map.solver.codes) : null;
+  const has = (cost) => map.fields.some((f) => costOf(f) === cost), { beyond_page: beyond = [] } = map;
+  const goals = has("made") && beyond.length === 0 ? numberedGoals(map.goals, map.solver.codes) : null;
   return { jumps: map.jumps, settle: has("settle") ? map.settle : 0, growth: has("growth"), made: goals
     && madeAsked(map, goals) };
 }
@@ -481,6 +483,7 @@ function liveFrom(map) {
   if (map.slips) words.set("friction", "coulomb");
   if (map.settle > 0) words.set("settle", Math.min(map.settle, element("settle").max));
   for (const spread of map.spreads) words.append("made", spreadWord(spread));
+  if (map.beyond_page?.length) words.append("made", "none");  // others than the map's would mislead
   if (map.spreads.length > 0) words.set("samples", Math.min(map.samples, element("samples").max));
   if (map.spreads.length > 0 && map.seed !== 1) words.set("seed", map.seed);
   for (const { field, least, most } of map.goals) {

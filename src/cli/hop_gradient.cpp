@@ -90,6 +90,9 @@ void print_gradient(const Spec& spec) {
     infinite = infinite || std::ranges::any_of(row.by, [](double value) { return std::isnan(value); });
     say("\n");
   }
+  if (spec.hoop)
+    say("By numbers of [hoop], torques are held in (m + m_p) g R, spins in sqrt(g/R) and walls in hoop "
+        "diameters.\n");
   if (infinite)
     say("nan: infinite, as on a fold, at which a lift-off appears, or known to fewer than six digits. If\n"
         "mu_kinetic follows mu_static, the column mu_static is the derivative by both.\n");

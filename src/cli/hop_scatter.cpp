@@ -211,10 +211,12 @@ Json scatter_json(const Spec& spec, const ScatterReport& report) {
   }
   for (std::size_t k = 0; k < spec.goals.size(); ++k) {
     const Goal& goal = spec.goals[k];
-    json["goals"][goal.field] = {
-        {"at_least", goal.at_least}, {"at_most", goal.at_most}, {"missed", json_of(report.missed[k])}};
-    if (goal.unit_of_nominal > 0.0)
-      json["goals"][goal.field]["unit"] = find_own_unit(own_unit(*find_field(goal.field)))->si;
+    const double unit = goal.unit_of_nominal > 0.0 ? goal.unit_of_nominal : 1.0;
+    Json& told = json["goals"][goal.field] = {{"at_least", goal.at_least / unit},
+                                              {"at_most", goal.at_most / unit},
+                                              {"missed", json_of(report.missed[k])}};
+    if (goal.unit_of_nominal > 0.0)  // the limits above are those of the nominal hoop
+      told["of_each_hoop"] = text_of(goal);
   }
   for (const MadeQuantity& of : report.quantities) {
     const auto member = std::get<Quantity>(find_field(of.field)->source).member;

@@ -62,6 +62,72 @@ slope = { from = "20 deg", to = "40 deg", count = 5 }
     assert "jump height [hoop diameters] (in mm)" in words and "0.2 (24)" in words, words
 
 
+BODY = """[scene]
+friction = "coulomb"
+mu_static = 0.6
+[hoop]
+diameter = { from = "110 mm", to = "130 mm", count = 3 }
+mass = "61 g"
+[[hoop.weight]]
+name = "slug"
+mass = SLUG
+at = "45 mm"
+[design]
+slope = SLOPE
+"""
+
+
+def test_tolerances_and_goals_of_a_drawing_are_charted_and_left_out_of_the_page(monkeypatch, tmp_path):
+    """The page's solver takes neither: its own yields would be of other hoops."""
+    monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
+    spec = BODY.replace("SLUG", '"85 g"').replace("SLOPE", '{ from = "20 deg", to = "34 deg", count = 4 }') + """
+[tolerances]
+hoop.slug.mass = { normal = "2 g" }
+hoop.diameter = { uniform = "1 mm" }
+slope = { normal = "1 deg" }
+samples = 32
+[goal]
+jump_height = { at_least = "50 mm" }
+"""
+    path = sweep(tmp_path, spec)
+    done = draw("yield_chart.py", path, "-o", tmp_path / "yield")
+    assert done.returncode == 0, done.stderr
+    words = " ".join(texts(tmp_path / "yield.svg"))
+    for word in ("jump height at least 0.05 m", "diameter of hoop [mm]", "mass of slug σ = 2 g",
+                 "diameter of hoop ± 1 mm"):
+        assert word in words, word
+    made = scripted("explorer", path, "--module", f"{os.environ['LEAPMAP_BUILD']}/leapmap.wasm", "-o",
+                    tmp_path / "page.html")
+    assert made.returncode == 0, made.stderr
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>',
+                                (tmp_path / "page.html").read_text(), re.S)[1])
+    assert data["beyond_page"] == ["tolerances of [hoop]", "goals in units of the SI"]
+    assert data["spreads"] == data["goals"] == []
+
+
+def test_designs_found_for_a_drawing_are_charted_by_its_numbers(monkeypatch, tmp_path):
+    monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
+    question = (tmp_path / "q.toml")
+    question.write_text(
+        BODY.replace("SLUG", '{ from = "40 g", to = "120 g" }').replace("SLOPE", '"30 deg"').replace(
+            ", count = 3", "") + '[goal]\nmaximize = ["jump_height"]\nminimize = ["hoop.slug.mass"]\n')
+    best = tmp_path / "best.h5"
+    assert leapmap("design", question, "--most", 60, "--sample", 1024, "-o", best).returncode == 0
+    front = draw("front_chart.py", best, "--question", question, "-o", tmp_path / "front")
+    assert front.returncode == 0, front.stderr
+    words = texts(tmp_path / "front.svg")
+    assert "mass of slug [g]" in words and any("diameter of hoop [mm]" in word for word in words), words
+    listed = draw("list_chart.py", best, "-x", "hoop.slug.mass", "--units", "mm ms", "-o", tmp_path / "list")
+    assert listed.returncode == 0, listed.stderr
+    words = " ".join(texts(tmp_path / "list.svg"))
+    assert "mass of slug [g]" in words and "[mm]" in words and "[ms]" in words, words
+    refused = draw("front_chart.py", question, "-o", tmp_path / "x")
+    assert refused.returncode == 2 and "-o MAP.h5" in refused.stderr and refused.stderr.count("\n") == 1
+    for asked in (("-x", "hoop.slg.mass"), ("--units", "furlongg")):
+        refused = draw("list_chart.py", best, *asked, "-o", tmp_path / "x")
+        assert refused.returncode == 2 and refused.stderr.count("\n") == 1
+
+
 @pytest.mark.parametrize("field,label,level",
                          [("jump_height", "jump height [hoop diameters]", "0.75"),
                           ("jump_time", "time from release to the jump [s]", "0.4"),
