@@ -143,17 +143,20 @@ def quantity(m, name):
 def use_units(m, text, units_in_own):
     """Gives the map's quantities in the units of a text such as "mm m/s ms", the first that fits.
     units_in_own(unit, field, scales): how large the field's own unit is in another."""
-    numbers = m.numbers()
-    scales = {key: numbers[key] for key in ("radius", "gravity", "mass") if numbers.get(key)}
-    radii = m.radii()
+    gravity, radii, masses = m.numbers()["gravity"], m.radii(), m.masses()
 
     def size_of(word, name):
-        """How large the field's own unit is, for each design if they differ in size: a power of the
-        radius."""
-        if np.ndim(radii) == 0:
-            return units_in_own(word, name, scales)
-        one, four = (units_in_own(word, name, scales | {"radius": r}) for r in (1.0, 4.0))
-        return None if one is None else one * radii**(np.log(four / one) / np.log(4))
+        """How large the field's own unit is, for each design if they differ in size or mass: a product of
+        powers of both."""
+        at = lambda radius, mass: units_in_own(word, name, {"gravity": gravity, "radius": radius} | (
+            {} if masses is None else {"mass": mass}))
+        if np.ndim(radii) == 0 and np.ndim(masses) == 0:
+            return at(radii, masses)
+        one, larger, heavier = at(1.0, 1.0), at(4.0, 1.0), at(1.0, 4.0)
+        if one is None:
+            return None
+        power = lambda size: np.log(size / one) / np.log(4)
+        return one * radii**power(larger) * (1.0 if masses is None else masses)**power(heavier)
     agility, used = quantity(m, "agility"), set()
     for name in set(m.fields) & set(LOOKS):
         for word in text.split():
@@ -177,7 +180,8 @@ def in_drawing(m, name, units_in_own):
     numbers = m.numbers()
     if "hoop" not in m.spec() or np.ndim(m.radii()) > 0:
         return None
-    scales = {key: numbers[key] for key in ("radius", "gravity", "mass") if numbers.get(key)}
+    known = ("radius", "gravity", *(("mass", ) if np.ndim(m.masses()) == 0 else ()))
+    scales = {key: numbers[key] for key in known if numbers.get(key)}
     for word in ("mm", "N", "N.s", "J", "W", "rpm"):
         factor = units_in_own(word, name, scales)
         if factor is not None:

@@ -177,6 +177,24 @@ class Map:
         shape = [-1 if k == axis else 1 for k in range(len(self.dims))]
         return np.asarray(self.dims["hoop.diameter"]).reshape(shape) / 2
 
+    def masses(self):
+        """Total masses of the designs [kg]: one number, an array that goes with a field, or None: unknown."""
+        hoop = self.spec().get("hoop")
+        if hoop is None:
+            return self.numbers().get("mass") or None
+        total = 0.0
+        for key, value in (("hoop.mass", hoop["mass"]),
+                           *((f"hoop.{w['name']}.mass", w["mass"]) for w in hoop.get("weight", []))):
+            if key in self.fields:  # of a list
+                total = total + np.asarray(self.fields[key], float)
+            elif key in self.dims:
+                axis = list(self.dims).index(key)
+                shape = [-1 if k == axis else 1 for k in range(len(self.dims))]
+                total = total + np.asarray(self.dims[key]).reshape(shape)
+            else:
+                total = total + float(value)
+        return total
+
     def _of_hoop(self):
         """What the numbers of [hoop] come to; only the radius where an axis varies one of them, of the first
         design if it is the diameter."""

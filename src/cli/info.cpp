@@ -24,6 +24,7 @@
 #include "model/fields.hpp"
 #include "spec/designs.hpp"
 #include "spec/map_spec.hpp"
+#include "spec/options.hpp"
 #include "spec/spec_hoop.hpp"
 #include "support/printable.hpp"
 
@@ -247,9 +248,11 @@ void print_fields(const MapReader& map, ShownUnits& units) {
     } else if (summary.missing == designs) {
       say("  none\n");
     } else {
-      const ShownUnit shown = field && units.are_asked_for()
-                                  ? units.of(*field)
-                                  : ShownUnit{map.unit(name) == "1" ? "" : printable(map.unit(name)), 1.0};
+      const bool listed = !field && find_option("", name);  // a number that a list of designs gives
+      const ShownUnit shown = !units.are_asked_for() || (!field && !listed)
+                                  ? ShownUnit{map.unit(name) == "1" ? "" : printable(map.unit(name)), 1.0}
+                              : field ? units.of(*field)
+                                      : units.of(name);
       const std::string unit = shown.unit.empty() ? "" : " " + shown.unit;
       for (const auto& [words, extreme] :
            {std::pair{"least", &summary.least}, std::pair{"most", &summary.most}})

@@ -120,9 +120,14 @@ void print_place(const Spec& original, const std::string& at, const std::string&
   one.output = {};
   check_scatter(one);  // a percentage may be one of nothing just here
   Outcome outcome;
-  make_solver(request_of_outcomes(one))({&one.design, 1}, {&outcome, 1});
+  Request request = request_of_outcomes(one);
+  for (const std::string& name : original.output.fields)
+    if (const Field* field = find_field(name); number_of(*field)) add_column(request.columns, field);
+  make_solver(request)({&one.design, 1}, {&outcome, 1});
   ShownUnits units(unit_words, scales_of(original, one.design));
-  units.refuse_unusable(one.scene);
+  std::vector<std::string> axes;
+  for (const Axis& axis : original.axes) axes.push_back(axis.key);
+  units.refuse_unusable(one.scene, axes);
   print_outcome(outcome, one.scene, units);
   if (!original.scatter.spreads.empty()) print_made(one, units);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);

@@ -322,6 +322,15 @@ Spec list_of(const Spec& spec, const FoundDesigns& found) {
   list.output = spec.output, list.numerics.audit = 1.0;
   if (list.scatter.spreads.empty()) list.goals.clear();  // as in any map of hoops as drawn
   list.maximize = spec.maximize, list.minimize = spec.minimize;
+  // What was asked for is stored, too, if it is no field that a map has by default.
+  std::vector<const Field*> stored = columns_of(list);
+  const std::size_t before = stored.size();
+  for (const Field* field : quantities_of(question)) add_column(stored, field);
+  if (stored.size() > before && list.scatter.spreads.empty()) {
+    list.output.fields.clear();
+    for (const Field* field : stored)
+      if (!std::holds_alternative<Derivative>(field->source)) list.output.fields.emplace_back(field->name);
+  }
   list.list.count = found.designs.size();
   for (std::size_t k = 0; k < question.free.size(); ++k) {
     Axis& column = list.list.columns.emplace_back(Axis{question.free[k].name, {}});

@@ -348,8 +348,9 @@ bool sets_scale(const Entry& entry) {
                    slot->member == &Scene::mass));
 }
 
-/// Puts every entry's value where it belongs.
-void assign(std::vector<Entry>& entries, Spec& spec) {
+/// Puts every entry's value where it belongs. of_map: a resolved spec has units only where hoops differ in
+/// size or mass, as those of a list may whose numbers stand in the map alone.
+void assign(std::vector<Entry>& entries, Spec& spec, bool of_map) {
   for (const Entry& entry : entries)
     if (sets_scale(entry)) std::visit(Assign{entry, spec}, entry.option->slot);
   if (spec.hoop) {
@@ -365,7 +366,8 @@ void assign(std::vector<Entry>& entries, Spec& spec) {
   const bool sized = any([](const Entry& entry) {
     return std::holds_alternative<SpreadSlot>(entry.option->slot) && entry.key == "hoop.diameter";
   });
-  const bool listed = spec.hoop && any([](const Entry& entry) { return entry.option->key == "points"; });
+  const bool listed =
+      spec.hoop && (of_map || any([](const Entry& entry) { return entry.option->key == "points"; }));
   for (Entry& entry : entries) {
     if (sets_scale(entry)) continue;
     entry.scales = common_scales(spec);
@@ -433,7 +435,7 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
   std::vector<Entry> entries = entries_of(file, origin, spec);
   std::vector<toml::table> values;
   add_overrides(overrides, spec, values, entries);
-  assign(entries, spec);
+  assign(entries, spec, lenient);
   const bool asks_for_gaits = file.contains("gait") || std::ranges::any_of(entries, [](const Entry& e) {
                                 return e.option->section == "gait";
                               });

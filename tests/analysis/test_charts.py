@@ -105,12 +105,24 @@ jump_height = { at_least = "50 mm" }
     assert data["spreads"] == data["goals"] == []
 
 
+def units_of(path, field, unit):
+    """A field of a map as charts have it in a unit."""
+    code = ("import sys, looks, planes; from read_map import read_map; "
+            "m = planes.in_units(read_map(sys.argv[1]), sys.argv[3]); "
+            "print(*map(repr, map(float, m.fields[sys.argv[2]])))")
+    done = finished("env", f"PYTHONPATH={TOP}/analysis:{os.environ['PYTHONPATH']}", "/usr/bin/python3", "-c",
+                    code, path, field, unit)
+    assert done.returncode == 0, done.stderr
+    return np.array(done.stdout.split(), float)
+
+
 def test_designs_found_for_a_drawing_are_charted_by_its_numbers(monkeypatch, tmp_path):
     monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
     question = (tmp_path / "q.toml")
     question.write_text(
         BODY.replace("SLUG", '{ from = "40 g", to = "120 g" }').replace("SLOPE", '"30 deg"').replace(
-            ", count = 3", "") + '[goal]\nmaximize = ["jump_height"]\nminimize = ["hoop.slug.mass"]\n')
+            ", count = 3", "") + '[goal]\nmaximize = ["jump_height"]\nminimize = ["hoop.slug.mass"]\n'
+        'max_normal_force = { at_most = "30 N" }\n')
     best = tmp_path / "best.h5"
     assert leapmap("design", question, "--most", 60, "--sample", 1024, "-o", best).returncode == 0
     front = draw("front_chart.py", best, "--question", question, "-o", tmp_path / "front")
@@ -121,6 +133,11 @@ def test_designs_found_for_a_drawing_are_charted_by_its_numbers(monkeypatch, tmp
     assert listed.returncode == 0, listed.stderr
     words = " ".join(texts(tmp_path / "list.svg"))
     assert "mass of slug [g]" in words and "[mm]" in words and "[ms]" in words, words
+    newtons = units_of(best, "max_normal_force", "N")
+    with h5py.File(best) as m:
+        masses = 0.061 + m["hoop.slug.mass"][:]
+        assert np.ptp(masses) > 0.01, "each design has its own"
+        np.testing.assert_allclose(newtons, 9.81 * masses * m["max_normal_force"][:], rtol=1e-12)
     refused = draw("front_chart.py", question, "-o", tmp_path / "x")
     assert refused.returncode == 2 and "-o MAP.h5" in refused.stderr and refused.stderr.count("\n") == 1
     for asked in (("-x", "hoop.slg.mass"), ("--units", "furlongg")):

@@ -676,3 +676,52 @@ def test_goals_in_mm_and_newtons_hold_for_hoops_of_every_size_and_mass(drawing, 
     mixed = leapmap("design", drawing, "--hoop.diameter", '{from="100 mm",to="150 mm"}', "--set",
                     'goal.jump_height={at_least="50 mm",at_most=0.9}', "--set", "minimize=hoop.diameter")
     assert mixed.returncode == 2 and "both in the same" in mixed.stderr and mixed.stderr.count("\n") == 1
+
+
+def test_a_list_of_found_designs_keeps_its_wall_and_its_goals_in_mm(drawing, tmp_path):
+    """Its designs differ in size by the map's numbers alone: its spec names no axis."""
+    best = tmp_path / "best.h5"
+    done = leapmap("design", drawing, *WALLED, "--hoop.diameter", '{from="100 mm",to="150 mm"}', "--set",
+                   'goal.clears_to={at_least="150 mm"}', "--set",
+                   'tolerances.hoop.slug.mass={normal="1 g"}', "--set", "tolerances.samples=64", "--set",
+                   'goal.yield={at_least=0.5}', "--set", "maximize=hoop.diameter", "--sample", 256, "-o", best)
+    assert done.returncode == 0, done.stderr
+    checked = leapmap("check", best, "--sample", 8)
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    spec = leapmap("info", best, "--spec").stdout
+    assert 'clear_height = "0.008 m"' in spec and 'clears_to = { at_least = "0.15 m" }' in spec, spec
+    with h5py.File(best) as m:
+        mm = 1000 * m["hoop.diameter"][0]
+        found = m["yield"][0]
+    alone = leapmap("hop", drawing, *WALLED, "--set", f'hoop.diameter={mm!r} mm', "--scatter", "--set",
+                    'goal.clears_to={at_least="150 mm"}', "--set",
+                    'tolerances.hoop.slug.mass={normal="1 g"}', "--set", "tolerances.samples=64", "--json")
+    assert alone.returncode == 0, alone.stderr
+    assert abs(json.loads(alone.stdout)["scatter"]["yield"]["value"] - found) < 0.2, "other random numbers"
+
+
+def test_what_a_search_was_asked_for_is_in_its_map_and_what_a_map_stores_in_a_place(drawing, tmp_path):
+    best, table = tmp_path / "best.h5", tmp_path / "best.csv"
+    done = leapmap("design", drawing, "--set", 'slope="30 deg"', "--hoop.slug.mass",
+                   '{from="60 g",to="120 g"}', "--set", "maximize=jump_height", "--set", "minimize=max_normal_force", "--sample", 512, "--most", 20,
+                   "-o", best)
+    assert done.returncode == 0, done.stderr
+    assert leapmap("check", best, "--sample", 4).returncode == 0
+    assert leapmap("export", best, "-o", table, "--units", "mm g N", "--quiet").returncode == 0
+    rows = list(csv.DictReader(table.open()))
+    assert len(rows) > 3
+    for row in rows[::5]:
+        alone = told(drawing, "--slope", "30 deg", "--set", f"hoop.slug.mass={row['hoop.slug.mass [g]']} g")
+        newtons = 9.81 * alone["scene"]["mass"] * alone["max_normal_force"]
+        assert float(row["max_normal_force [N]"]) == pytest.approx(newtons, rel=1e-9)
+    shown = leapmap("info", best, "--units", "mm g")
+    assert shown.returncode == 0 and "hoop.slug.mass\n  least 60 " in shown.stdout, shown.stdout + shown.stderr
+    made = tmp_path / "m.h5"
+    fields = ("--set", 'output.fields=["jump_height","max_normal_force"]')
+    assert leapmap("sweep", drawing, "--set", 'slope="30 deg"', "--hoop.slug.mass",
+                   '{from="60 g",to="120 g",count=3}', *fields, "-o", made).returncode == 0
+    place = leapmap("info", made, "--at", "hoop.slug.mass=90 g", "--units", "mm g N")
+    alone = told(drawing, "--slope", "30 deg", "--set", "hoop.slug.mass=90 g")
+    newtons = 9.81 * alone["scene"]["mass"] * alone["max_normal_force"]
+    found = next(line.split() for line in place.stdout.splitlines() if "max_normal_force" in line)
+    assert float(found[1]) == pytest.approx(newtons, rel=1e-6) and found[2] == "N", place.stderr
