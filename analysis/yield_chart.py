@@ -5,7 +5,8 @@
 The yield has isolines at 50, 90 and 99 %, and the discontinuities of nominal hoops if leapmap boundaries has
 found them. Beside it: the nominal height, and the 5 % quantile of the height of manufactured hoops, in the
 same colours. A cross marks the highest nominal jump whose yield, less two of its errors, is 99 %, or else the
-best yield; a triangle the highest nominal jump of all. Needs yield; draws jump_height and jump_height_q05 if the map has them."""
+best yield; a triangle the highest nominal jump of all. Needs yield; draws jump_height and jump_height_q05 if
+the map has them."""
 import numpy as np
 from matplotlib.colors import Normalize, PowerNorm
 
@@ -45,8 +46,10 @@ def best(grid, plane):
 
 
 def at(grid, place):
-    return "at " + ", ".join(f"{looks.parameter(name)[1]} {value:.3g}{'' if looks.is_angle(name) else ' '}{looks.parameter(name)[2]}".rstrip()
-                             for name, value in zip((grid.x, grid.y), place))
+    def told(name, value):
+        _, symbol, unit = looks.parameter(name)
+        return f"{symbol} {value:.3g}{'' if unit == '°' else ' '}{unit}".rstrip()
+    return "at " + ", ".join(told(name, value) for name, value in zip((grid.x, grid.y), place))
 
 
 def marks_of(grid, yields, heights):

@@ -80,7 +80,8 @@ slope = SLOPE
 def test_tolerances_and_goals_of_a_drawing_are_charted_and_left_out_of_the_page(monkeypatch, tmp_path):
     """The page's solver takes neither: its own yields would be of other hoops."""
     monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
-    spec = BODY.replace("SLUG", '"85 g"').replace("SLOPE", '{ from = "20 deg", to = "34 deg", count = 4 }') + """
+    slopes = '{ from = "20 deg", to = "34 deg", count = 4 }'
+    spec = BODY.replace("SLUG", '"85 g"').replace("SLOPE", slopes) + """
 [tolerances]
 hoop.slug.mass = { normal = "2 g" }
 hoop.diameter = { uniform = "1 mm" }
