@@ -3,14 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "cli/output.hpp"
+#include "cli/shown_units.hpp"
 #include "cli/spoken.hpp"
 #include "model/fields.hpp"
+#include "model/variable.hpp"
 #include "numerics/sobol_points.hpp"
 #include "spec/options.hpp"
+#include "spec/quantity.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -52,14 +57,26 @@ std::string index_of(const Estimate& index) {
                                  : fmt::format("{:.2f} +- {:.2f}", index.value, half_interval(index));
 }
 
+/// Its width in the unit in which people give such numbers, if that does not depend on the hoop.
 std::string law_of(const Spread& spread) {
-  const Option& option = *find_option("scatter", spread.parameter);
-  const bool angle = option.unit == "rad" && !spread.percent;
-  return fmt::format("{} {:.4g}{}", spread.law == Spread::Law::normal ? "normal" : "uniform",
-                     angle ? spread.width * 180.0 / std::numbers::pi : spread.width,
-                     spread.percent ? " %"
-                     : angle        ? " deg"
+  const OwnUnit* own = find_own_unit(find_option("scatter", spread.parameter)->unit);
+  const bool in_si = own && own->name == own->si && !spread.percent;
+  const double factor = in_si ? *units_in_own(own->example, own->name, {}) : 1.0;
+  return fmt::format("{} {:.4g}{}{}", spread.law == Spread::Law::normal ? "normal" : "uniform",
+                     spread.width * factor, spread.percent || in_si ? " " : "",
+                     spread.percent ? "%"
+                     : in_si        ? own->example
                                     : "");
+}
+
+/// The scales that all manufactured hoops have in common.
+Scales scales_of_manufactured(const Spec& spec) {
+  Scales scales = nominal_scales(spec);
+  for (const Spread& spread : spec.scatter.spreads) {
+    if (is_body_mass(spread.parameter)) scales.mass = 0.0;
+    if (spread.parameter == "hoop.diameter") scales.radius = std::numeric_limits<double>::quiet_NaN();
+  }
+  return scales;
 }
 
 /// For example "jump_height { at_least = 0.8 }".
@@ -92,17 +109,24 @@ void print_spreads(const Spec& spec, const ScatterReport& report) {
                     : "No tolerance is tight enough: the nominal design misses a goal.");
 }
 
-void print_quantities(const ScatterReport& report) {
+void print_quantities(const Spec& spec, const ScatterReport& report) {
+  ShownUnits units("", scales_of_manufactured(spec));
   say("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "if it jumps", "mean", "deviation", "5 %", "50 %",
       "95 %");
   for (const MadeQuantity& told : report.quantities) {
-    const std::string_view unit = find_field(told.field)->unit;
+    const Field& field = *find_field(told.field);
+    const std::string_view unit = field.unit;
     say("{:<20}", unit == "1" ? told.field : fmt::format("{} [{}]", told.field, unit));
     for (const Estimate* estimate : {&told.mean, &told.sd, &told.q05, &told.q50, &told.q95})
       say(" {:>12.5g}", estimate->value);
     say("\n{:<20}", "  error");
     for (const Estimate* estimate : {&told.mean, &told.sd, &told.q05, &told.q50, &told.q95})
       say(" {:>12.1e}", estimate->error);
+    say("\n");
+    if (!spec.hoop || units.beside(told.mean.value, field).empty()) continue;
+    say("{:<20}", "");
+    for (const Estimate* estimate : {&told.mean, &told.sd, &told.q05, &told.q50, &told.q95})
+      say(" {:>12}", std::string_view(units.beside(estimate->value, field)).substr(1));
     say("\n");
   }
 }
@@ -182,7 +206,7 @@ void print_scatter(const Spec& spec, const ScatterReport& report) {
   say("{:<34} {}\n", "jumps", told(report.jumps));
   if (report.unsolved > 0.0)
     say("The method failed on {:.3g} % of the hoops, which the errors include.\n", 100.0 * report.unsolved);
-  print_quantities(report);
+  print_quantities(spec, report);
   print_histogram(spec, report);
   print_importance(spec, report);
 }

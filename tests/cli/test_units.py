@@ -727,3 +727,17 @@ def test_what_a_search_was_asked_for_is_in_its_map_and_what_a_map_stores_in_a_pl
     newtons = 9.81 * alone["scene"]["mass"] * alone["max_normal_force"]
     found = next(line.split() for line in place.stdout.splitlines() if "max_normal_force" in line)
     assert float(found[1]) == pytest.approx(newtons, rel=1e-6) and found[2] == "N", place.stderr
+
+
+def test_manufactured_hoops_are_told_in_grams_and_millimetres(drawing):
+    tolerances = ("--set", 'tolerances.hoop.slug.mass={normal="2 g"}', "--set",
+                  'tolerances.hoop.slug.at={uniform="0.5 mm"}', "--set", 'tolerances.slope={normal="1 deg"}',
+                  "--set", "tolerances.samples=64")
+    hop = ("hop", drawing, "--slope", "30deg", *tolerances, "--scatter")
+    shown = leapmap(*hop).stdout
+    for words in ("normal 2 g ", "uniform 0.5 mm ", "normal 1 deg "):
+        assert words in shown, shown
+    mean = json.loads(leapmap(*hop, "--json").stdout)["scatter"]["quantities"]["jump_height"]["mean"]["value"]
+    assert f"({120 * mean:.4g} mm)" in shown, shown
+    of_each = leapmap(*hop, "--set", 'tolerances.hoop.diameter={normal="1 mm"}').stdout
+    assert "normal 1 mm " in of_each and " mm)" not in of_each.split("if it jumps")[1], of_each
