@@ -126,6 +126,7 @@ class Problem {
       if (!is_free && !follows && !std::isnan(value) && has(scene.friction, parameter.only_of))
         numbers[py::str(std::string(parameter.name))] = value;
     }
+    if (scene.clear_height_in_metres) numbers["clear_height"] = fmt::format("{} m", scene.clear_height);
     if (!scene.motor_in_flight) numbers[py::str(std::string(motor_switch))] = false;
     for (const auto& [key, member] : whole_numbers)
       if (scene.*member != Scene{}.*member) numbers[py::str(std::string(key))] = scene.*member;

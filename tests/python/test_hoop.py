@@ -102,6 +102,10 @@ def test_specs_take_hoops_with_axes_free_numbers_and_tolerances():
     found = leapmap.design(hoop=drawing(slug), slope="30 deg", maximize="jump_height", sample=512, most=1,
                            **asked, **{"hoop.slug.mass": {"from": "70 g", "to": "85 g"}})
     assert found.objectives["jump_height"][0] >= one.jump_height * (1 - 1e-12)
+    sizes = {"hoop.diameter": {"from": "100 mm", "to": "150 mm"}}
+    walled = leapmap.DesignProblem(hoop=drawing(slug), clear_height="8 mm", slope="30 deg",
+                                   minimize="jump_time", **sizes)
+    assert walled.fixed["clear_height"] == "0.008 m", "whatever the diameter"
     spread = leapmap.scatter({"hoop": drawing(), "design": {"slope": "30 deg"}, "scene": asked},
                              scatter={"hoop.weight1.mass": {"normal": "1 g"}})
     assert 0 < spread["jump_height"]["sd"].value < 0.05
