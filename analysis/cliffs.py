@@ -35,13 +35,16 @@ def add_options(parser):
         "beside MAP.h5, if it is there); 'none': draw cells, with stairs")
 
 
-def run(doc, example, suffix, chart):
-    """The main of a script whose chart(grid, curves) is one figure of a map over two axes."""
+def run(doc, example, suffix, chart, units=False):
+    """The main of a script whose chart(grid, curves) is one figure of a map over two axes. units: whether it
+    draws quantities that --units converts."""
     p = style.parser(doc, f"a map over two axes or more, for example {example}", suffix)
     planes.add_options(p)
     add_options(p)
+    if units:
+        planes.add_units(p)
     arguments = p.parse_args()
-    m = read_map(arguments.source)
+    m = planes.in_units(read_map(arguments.source), arguments.units if units else "")
     grid = planes.Planes(m, arguments.x, arguments.y, arguments.at)
     style.save(chart(grid, read_cliffs(m, arguments.cliffs)), arguments.output)
 

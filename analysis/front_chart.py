@@ -75,9 +75,9 @@ def searched(path, problem, seed):
                  found.outcomes.candidates, found.outcomes.jump_height, problem.fixed, problem.bounds)
 
 
-def stored(path):
-    """The front that leapmap design -o wrote."""
-    m = read_map(path)
+def stored(path, units):
+    """The front that leapmap design -o wrote, its objectives in these units."""
+    m = planes.in_units(read_map(path), units)
     spec, design = m.spec(), m.fields
     goal, scene = spec.get("goal", {}), spec["scene"]
     objectives = [*goal.get("maximize", ()), *goal.get("minimize", ())]
@@ -157,10 +157,10 @@ def answers(problem, front):
         front.fixed.get(n, v) == v for n, v in problem.fixed.items()))
 
 
-def front_and_cloud(path, question, seed):
+def front_and_cloud(path, question, seed, units):
     """The front of a file, and the cloud around it, which needs the bounds of a question."""
     from_map = h5py.is_hdf5(path)
-    front = stored(path) if from_map else None
+    front = stored(path, units) if from_map else None
     question = question if from_map else path
     if question is None:
         return front, np.empty((0, 2))
@@ -174,9 +174,9 @@ def front_and_cloud(path, question, seed):
     return front, cloud_of(problem, front)
 
 
-def chart(path, question, seed):
+def chart(path, question, seed, units):
     leapmap = style.leapmap_module()
-    front, cloud = front_and_cloud(path, question, seed)
+    front, cloud = front_and_cloud(path, question, seed, units)
     first, second = front.objectives
     x, y = shown(second, front.values[second]), shown(first, front.values[first])
     figure = plt.figure(figsize=(9.6, 5.6), layout="constrained")
@@ -219,11 +219,15 @@ def main():
         "for example sweeps/questions/height_against_time.toml", "_front")
     p.add_argument("--question", metavar="SPEC", help="the spec that a map answers: for the cloud of designs")
     p.add_argument("--seed", type=int, default=1, help="of the search (default: 1)")
+    planes.add_units(p)
     arguments = p.parse_args()
     if arguments.question and not h5py.is_hdf5(arguments.source):
         raise NotAMap(f"--question {arguments.question}: has no effect beside a spec; allowed: beside a map")
+    if arguments.units and (arguments.question or not h5py.is_hdf5(arguments.source)):
+        raise NotAMap(f"--units {arguments.units}: goes with a map alone, as designs by chance are in the "
+                      "map's own units; allowed: a map that leapmap design -o wrote, without --question")
     try:
-        figure = chart(arguments.source, arguments.question, arguments.seed)
+        figure = chart(arguments.source, arguments.question, arguments.seed, arguments.units)
     except ValueError as error:
         raise NotAMap(str(error)) from None
     style.save(figure, arguments.output)

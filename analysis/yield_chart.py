@@ -52,6 +52,11 @@ def at(grid, place):
     return "at " + ", ".join(told(name, value) for name, value in zip((grid.x, grid.y), place))
 
 
+def height(value):
+    """A height with its unit as drawn."""
+    return f"{value:.3g} {looks.LOOKS['jump_height'].unit}".replace("hoop diameters", "diameters")
+
+
 def marks_of(grid, yields, heights):
     """The designs to point out: (symbol, colour, words, place). heights: nominal; None: not stored."""
     m = grid.map
@@ -63,13 +68,13 @@ def marks_of(grid, yields, heights):
     else:
         safe = np.where(surely >= YIELDS[-1], heights, np.nan)
         place = best(grid, safe)
-        words = (f"highest nominal jump with a yield of 99 %: {np.nanmax(safe):.3g} diameters "
+        words = (f"highest nominal jump with a yield of 99 %: {height(np.nanmax(safe))} "
                  f"{at(grid, place)}")
     marks = [("P", "#d62728", words, place)]
     if heights is not None:
         place = best(grid, heights)
         share = yields[np.unravel_index(np.nanargmax(heights), heights.shape)]
-        words = (f"highest nominal jump: {np.nanmax(heights):.3g} diameters {at(grid, place)}, yield "
+        words = (f"highest nominal jump: {height(np.nanmax(heights))} {at(grid, place)}, yield "
                  f"{100 * share:.0f} %")
         marks.append(("^", "#ff7f0e", words, place))
     return marks
@@ -127,4 +132,5 @@ def chart(grid, curves):
 
 
 if __name__ == "__main__":
-    style.run(lambda: cliffs.run(__doc__, "maps/made_hoops.h5", "_yield", chart), NotAMap, OSError)
+    style.run(lambda: cliffs.run(__doc__, "maps/made_hoops.h5", "_yield", chart, units=True), NotAMap,
+              OSError)

@@ -5,21 +5,26 @@ const RING = [["diameter", "outer diameter [mm]", 1e-3], ["mass", "mass of the r
   ["inertia", "its moment of inertia [kg m²]; empty: a thin ring", 1]];
 const WEIGHT = [["mass", "mass [g]", 1e-3], ["at", "from the axis [mm]", 1e-3],
   ["angle", "angle [°]", Math.PI / 180], ["inertia", "own inertia [kg m²]", 1]];
-const RATIOS = ["mass_ratio", "offset_ratio", "inertia_factor"];
 const NEW_WEIGHT = { mass: 0.02, at: 0, angle: 0, inertia: 0 };
 
-/** In words: "0.12:0.061:0.00019;0.085:0.047:0:0": the ring's numbers, then each mass's, in SI. */
+/** The usual name of a mass, by its place. */
+const usualName = (k) => `mass${k + 1}`;
+
+/** In words: "0.12:0.061:0.00019;0.085:0.047:0:0:slug": the ring's numbers, then each mass's, in SI, and its
+    name if that is not the usual one. */
 const drawingWord = ({ ring, weights }) => [[RING, ring], ...weights.map((weight) => [WEIGHT, weight])]
-  .map(([rows, part]) => rows.map(([name]) => (Number.isFinite(part[name]) ? part[name] : "")).join(":"))
-  .join(";");
+  .map(([rows, part], k) => [...rows.map(([name]) => (Number.isFinite(part[name]) ? part[name] : "")),
+    ...(k > 0 && part.name !== usualName(k - 1) ? [part.name] : [])].join(":")).join(";");
 
 /** And back; null if it is none. */
 function drawingOf(word) {
-  const [ring, ...weights] = (word ?? "").split(";").map((part) => part.split(":")
-    .map((text) => (text === "" ? NaN : Number(text))));
-  const named = (rows, values) => Object.fromEntries(rows.map(([name], k) => [name, values[k]]));
-  const fits = ring.length === RING.length && weights.every((values) => values.length === WEIGHT.length);
-  const drawing = fits && { ring: named(RING, ring), weights: weights.map((v) => named(WEIGHT, v)) };
+  const [ring, ...weights] = (word ?? "").split(";").map((part) => part.split(":"));
+  const numbers = (rows, texts) => Object.fromEntries(rows.map(([name], k) =>
+    [name, texts[k] === "" ? NaN : Number(texts[k])]));
+  const fits = ring.length === RING.length
+    && weights.every(({ length }) => [WEIGHT.length, WEIGHT.length + 1].includes(length));
+  const drawing = fits && { ring: numbers(RING, ring), weights: weights.map((texts, k) =>
+    ({ name: texts[WEIGHT.length] ?? usualName(k), ...numbers(WEIGHT, texts) })) };
   return drawing && wrongIn(drawing) === null ? drawing : null;
 }
 
@@ -29,7 +34,9 @@ function wrongIn({ ring, weights }) {
   if (!(ring.mass > 1e-9 && ring.mass <= 1e6)) return "The mass of the ring must be above 0.";
   if (!(Number.isNaN(ring.inertia) || ring.inertia >= 0))
     return "The ring's moment of inertia must be empty, 0 or more.";
-  for (const [k, { mass, at, angle, inertia }] of weights.entries()) {
+  for (const [k, { name, mass, at, angle, inertia }] of weights.entries()) {
+    if (!/^[\w-]+$/.test(name) || weights.findIndex((other) => other.name === name) !== k)
+      return `Mass ${k + 1} must have a name of its own, of letters and digits.`;
     if (!(mass >= 0)) return `Mass ${k + 1} must be 0 g or more.`;
     if (!(at >= 0 && at <= ring.diameter / 2))
       return `Mass ${k + 1} must be 0 to ${short(500 * ring.diameter)} mm from the axis, up to the radius.`;
@@ -43,15 +50,15 @@ function wrongIn({ ring, weights }) {
 const specOf = ({ ring, weights }) => ["[hoop]", `diameter = "${short(1000 * ring.diameter, 12)} mm"`,
   `mass = "${short(1000 * ring.mass, 12)} g"`,
   ...(Number.isNaN(ring.inertia) ? [] : [`inertia = "${ring.inertia} kg m2"`]),
-  ...weights.flatMap(({ mass, at, angle, inertia }, k) => ["[[hoop.weight]]", `name = "mass${k + 1}"`,
+  ...weights.flatMap(({ name, mass, at, angle, inertia }) => ["[[hoop.weight]]", `name = "${name}"`,
     `mass = "${short(1000 * mass, 12)} g"`, `at = "${short(1000 * at, 12)} mm"`,
     `angle = "${short(angle * 180 / Math.PI, 12)} deg"`, `inertia = "${inertia} kg m2"`])].join("\n");
 
-/** changed(body): the drawing is another; body: what it comes to, with its radius. */
-function drawingPart(solver, changed) {
+/** changed(body, drawing): the drawing is another; body: what it comes to, with its radius. */
+function drawingPart(map, solver, changed) {
   const box = element("drawing-numbers"), now = { drawing: null };
   const paperHoop = () => ({ ring: { diameter: 0.082, mass: 0.0082, inertia: NaN },
-    weights: [{ mass: 0.02, at: 0.041, angle: 0, inertia: 0 }] });
+    weights: [{ name: usualName(0), mass: 0.02, at: 0.041, angle: 0, inertia: 0 }] });
 
   /** Takes what is typed, and says what is wrong with it. */
   function take(drawing) {
@@ -63,7 +70,7 @@ function drawingPart(solver, changed) {
     if (wrong || beyond) return;
     now.drawing = drawing;
     tell(body);
-    changed({ ...body, radius: drawing.ring.diameter / 2 });
+    changed({ ...body, radius: drawing.ring.diameter / 2 }, drawing);
     noteAddress();
   }
 
@@ -112,26 +119,41 @@ function drawingPart(solver, changed) {
       Object.assign(remove, { type: "button", textContent: "remove" });
       remove.setAttribute("aria-label", `remove mass ${k + 1}`);
       remove.addEventListener("click", () => { drawing.weights.splice(k, 1); show(drawing); take(drawing); });
-      return row(`mass ${k + 1}`, WEIGHT, weight, remove);
+      return row(weight.name.replace(/^mass(\d+)$/, "mass $1"), WEIGHT, weight, remove);
     }));
   }
   element("drawing-add").addEventListener("click", () => {
-    now.typed.weights.push({ ...NEW_WEIGHT });
+    const names = now.typed.weights.map(({ name }) => name);
+    const free = [...names, ""].map((_, k) => usualName(k)).find((name) => !names.includes(name));
+    now.typed.weights.push({ name: free, ...NEW_WEIGHT });
     show(now.typed);
     take(now.typed);
   });
   show(paperHoop());
 
   return {
-    /** The hoop shown is another: the drawing is none of it any more. */
+    /** The drawing of the hoop shown; null: there is none. */
+    drawn: () => now.drawing,
+    /** The hoop shown is another: of the map's drawing with numbers of its own, or the drawing is none of it
+        any more. */
     follow(design) {
-      if (!now.drawing) return;
-      const body = solver.reduce(now.drawing);
+      const drawing = map.drawing && Object.keys(design).some(isDrawn) ? drawingAt(map.drawing, design)
+        : now.drawing;
+      if (!drawing) return;
+      const body = solver.reduce(drawing);
       const same = RATIOS.every((name) => design[name] === body[name])
-        && Math.abs(design.radius / now.drawing.ring.diameter * 2 - 1) < 1e-9;
+        && Math.abs(design.radius / drawing.ring.diameter * 2 - 1) < 1e-9;
       if (!same) forget();
+      if (!same || drawing === now.drawing) return;
+      now.drawing = drawing;
+      show(drawing);
+      tell(body);
     },
-    write(words) { if (now.drawing) words.set("drawing", drawingWord(now.drawing)); },
+    write(words) {
+      // That of a map's hoop follows from the map's own, by the hoop's place.
+      const drawing = (map.live ? map.drawing : null) ?? now.drawing;
+      if (drawing) words.set("drawing", drawingWord(drawing));
+    },
     /** The hoop itself is told by other words. */
     read(words) {
       forget();

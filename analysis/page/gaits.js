@@ -29,7 +29,7 @@ function gaitsPart(map, solver, choose) {
   names.forEach((name) => option(over, name, map.parameters[name].label));
 
   const unit = () => map.parameters[over.value];
-  const factor = () => (unit().unit === "°" ? 180 / Math.PI : 1);
+  const factor = () => perUnit(unit().unit);
   const bounds = () =>
     [inputs.from, inputs.to].map((input) => (input.value === "" ? NaN : Number(input.value) / factor()));
   function setBounds() {

@@ -20,8 +20,7 @@ const DIFFERENTIATED = [["jump_height", "jump height", "diameters"], ["jump_time
 /** changed(design): the hoop typed. Returns show(design). */
 function hoopInputs(map, solver, changed) {
   const box = element("hoop-inputs"), now = { design: null }, inputs = new Map();
-  const unitOf = (name) => map.parameters[name].unit, factor = (name) =>
-    (unitOf(name) === "°" ? 180 / Math.PI : 1);
+  const factor = (name) => perUnit(map.parameters[name].unit);
   const wanted = () => Object.keys(map.parameters)
     .filter((name) => name in solver.defaults && name !== "radius"
     && (map.slips || !SLIPPING.includes(name)));

@@ -33,15 +33,15 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     const { label, unit } = map.parameters[name];
     typed({ ...now.design, [name]: value },
       `One hoop: ${label.toLowerCase()} ` +
-      `${withUnit(short(unit === "°" ? value * 180 / Math.PI : value), unit)}`);
+      `${withUnit(short(value * perUnit(unit)), unit)}`);
   });
   const showInputs = hoopInputs(map, solver, (design) => typed(design)),
     showGradient = gradientPart(map, solver);
-  const drawing = drawingPart(solver, (body) => {
+  const drawing = drawingPart(map, solver, (body, drawn) => {
     const { radius: R, total_mass: kg, mass_ratio, offset_ratio, inertia_factor } = body;
     mass.value = Number((1000 * kg).toPrecision(12));
     chosen.mass = units.mass = kg;
-    if (map.live) map.reshape({ radius: R, offset_ratio, inertia_factor });
+    if (map.live) map.redraw(drawn, { radius: R, mass_ratio, offset_ratio, inertia_factor });
     else { chosen.radius = R; radius.value = Number((1000 * R).toPrecision(12)); }
     typed({ ...(now.design ?? { ...map.fixed, ...map.paper }), mass_ratio, offset_ratio, inertia_factor },
       "One hoop: from a drawing");
@@ -130,9 +130,10 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   function tellAsMade(design) {
     const { made } = map.asked;
     if (!made || !toldFields(map).some((field) => field.made)) return;
-    const places = Float64Array.of(design.slope, design.mass_ratio);
-    teller.tell({ design, slips: map.slips, tolerance: map.tolerance, first: "slope", second: "mass_ratio",
-      places, made }, (row) => {
+    const places = Float64Array.of(design.slope, design.release_angle), drawn = drawing.drawn();
+    if (!drawn && map.spreads.some(({ name }) => isDrawn(name))) return;
+    teller.tell({ design: { ...design, drawing: drawn }, slips: map.slips, tolerance: map.tolerance,
+      first: "slope", second: "release_angle", places, made }, (row) => {
       now.asMade = Object.fromEntries(made.fields.map((name, k) => [name, row ? row[k] : NaN]));
       toldMore(ownOutcome());
     });
@@ -145,7 +146,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   }
   function solved() {
     const { design } = now;
-    if (map.live) chosen.radius = map.fixed.radius;
+    if (map.live && !differInSize(map)) chosen.radius = map.fixed.radius;
     design.radius = chosen.radius;
     element("radius-note").textContent = design.radius === map.fixed.radius ? ""
       : `(the map's: ${short(1000 * map.fixed.radius)} mm)`;
@@ -153,6 +154,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     now.story = solver.solve(design, map.slips, map.tolerance, 0,
       { ...now.asked, settle: now.asked.settle || STEADY_AFTER });
     now.asMade = {};
+    drawing.follow(design);
     teller.drop();
     if (now.source[0] !== "design") { tellOwn(); tellAsMade(design); }
     now.time = 0;
@@ -161,7 +163,6 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     showGaits(design);
     showInputs(design);
     showGradient(design);
-    drawing.follow(design);
   }
 
   const goalsOfHoops = () => (map.live ? map.hoopGoals() : map.goals);
@@ -190,7 +191,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
       jump. A slice at a time, as friction takes its time. */
   async function haunt() {
     const mine = ++now.haunting, made = ghosts.checked
-      ? madeAfter(now.design, map.spreads, solver.ranges, GHOSTS) : [];
+      ? madeAfter(solver, now.design, drawing.drawn(), map.spreads, GHOSTS) : [];
     const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin }))
       : []), ...made.map((design) => ({ design }))], found = [];
     now.ghosts = [];
@@ -336,7 +337,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     if (byHand && part.getBoundingClientRect().top > 0.9 * window.innerHeight)
       part.scrollIntoView({ behavior: still ? "auto" : "smooth" });
     const design = designAt(map, index);
-    if (map.hoop) {
+    if (map.drawing && choicesOf(map).some(({ name }) => isDrawn(name))) {
       Object.assign(chosen, { radius: design.radius, mass: design.mass });
       units.mass = chosen.mass;
       for (const [input, value] of [[radius, chosen.radius], [mass, chosen.mass]])

@@ -31,9 +31,9 @@ function listView(canvas, map, onPoint, onPick) {
 
   function paintOn(context) {
     const column = map.columns[view.x], { log } = view.field, { font, ratio } = frame;
-    const [factor] = shownIn(view.field.unit, map.fixed),
+    const [factor] = shownIn(view.field.unit, scaleOf(map)),
       values = Float64Array.from(view.field.values, (v) => v * factor), [across, acrossUnit] = column.quantity
-      ? shownIn(column.unit, map.fixed) : [1, column.unit];
+      ? shownIn(column.unit, scaleOf(map)) : [1, column.unit];
     const shown = column.values.map((v) =>
       (v === null ? NaN : column.quantity ? v * across : inShownUnit(column, v)));
     const sx = scale(shown, column.log, frame.left, frame.right),
@@ -56,7 +56,7 @@ function listView(canvas, map, onPoint, onPick) {
       context.stroke();
     });
     paintAxes(context, frame, sx, sy, labelOf({ ...column, unit: acrossUnit }),
-      fieldLabel(view.field, map.fixed));
+      fieldLabel(view.field, scaleOf(map)));
   }
 
   function paintCursor() {

@@ -37,8 +37,8 @@ function liveMap(given, solver, state) {
   const map = {
     ...given, live: true, name: "leapmap", title: "Jumps of hoops, computed while you explore", designs: n,
     computed: 1, slips: state.slips, method: "exact", tolerance: 1e-10,
-    axes: [state.x, state.y].map((axis) => liveAxis(given, axis)),
-    fixed: { ...solver.defaults, ...state.fixed },
+    parameters: { ...given.parameters, ...drawnParameters(state.drawing) },
+    fixed: { ...solver.defaults, ...state.fixed }, drawing: state.drawing,
     fields, curves: [], goals: [], objectives: [], left_out: [], about: [], jumps: 1, settle: 100,
     samples: 256, seed: 1, spreads: USUAL_SPREADS,
     solver, asked: { jumps: 1, settle: 0, growth: false, made: null }, wanted: () => [], hoopGoals: () => [],
@@ -48,6 +48,7 @@ function liveMap(given, solver, state) {
       cliffs: { values: new Uint8Array(n) },
     },
   };
+  map.axes = [state.x, state.y].map((axis) => liveAxis(map, axis));
   return map;
 }
 
@@ -93,11 +94,17 @@ function liveAxis(given, { name, from, to, count }) {
     values: Array.from({ length: count }, (_, i) => from + (to - from) * i / (count - 1)) };
 }
 
+/** The radius of a live map's hoop. */
+function radiusAt(map, ...place) {
+  const k = map.axes.findIndex(({ name }) => name === "hoop.diameter");
+  return k < 0 ? map.fixed.radius : map.axes[k].values[place[k]] / 2;
+}
+
 /** Puts what rows tell of designs, cell by cell, into all fields: each in a block of `side` cells, but for
     cells that know better. */
 function putRows(map, rows, cells, side, level) {
   const [nx, ny] = LIVE_SHAPE, names = [...map.solver.rowNames, ...(map.asked.made?.fields ?? [])],
-    wide = names.length, column = (name) => names.indexOf(name), radius = map.fixed.radius;
+    wide = names.length, column = (name) => names.indexOf(name);
   const [height, time, apex] = ["jump_height", "jump_time", "apex_time"].map(column),
     fields = map.fields.filter((field) => isAsked(map, field)),
     columns = fields.map((field) => column(field.name));
@@ -109,7 +116,7 @@ function putRows(map, rows, cells, side, level) {
     const at = cells[n], row = n * wide, i0 = Math.floor(at / ny), j0 = at % ny;
     for (let f = 0; f < told.length; ++f)
       told[f] = columns[f] >= 0 ? rows[row + columns[f]]
-        : 2 * radius * rows[row + height] / (rows[row + time] + rows[row + apex]);
+        : 2 * radiusAt(map, i0, j0) * rows[row + height] / (rows[row + time] + rows[row + apex]);
     for (let i = i0; i < Math.min(nx, i0 + side); ++i)
       for (let j = j0; j < Math.min(ny, j0 + side); ++j) {
         const k = i * ny + j;
@@ -308,8 +315,9 @@ function liveEngine(map, module, workerText, onPicture, onProgress) {
     }
     onPicture(clears ? "cleared" : "none");
     // One picture is of one set of numbers, whatever is turned meanwhile.
-    now.order = { generation: ++now.generation, design: { ...map.fixed }, slips: map.slips,
-      tolerance: map.tolerance, asked: map.asked, first: map.axes[0].name, second: map.axes[1].name };
+    now.order = { generation: ++now.generation, design: { ...map.fixed, drawing: map.drawing },
+      slips: map.slips, tolerance: map.tolerance, asked: map.asked, first: map.axes[0].name,
+      second: map.axes[1].name };
     now.values = map.axes.map((axis) => axis.values);
     clearTimeout(now.resting);
     now.queue = [];

@@ -4,13 +4,16 @@
 /** State as the address has it, x=slope:0.1:0.8&y=mass_ratio:0.5:10&friction=coulomb&mu_static=0.4, with what
     is missing by default. */
 function liveState(words, solver) {
-  const state = { slips: words.get("friction") === "coulomb", fixed: {} };
+  const state = { slips: words.get("friction") === "coulomb", fixed: {},
+    drawing: drawingOf(words.get("drawing")) };
+  const drawn = drawnNames(state.drawing);
   const numbers = (text) => (text ?? "").split(":").map((word, i) => (i === 0 ? word : Number(word)));
   const refuse = (key) =>
     notice(`The address asks for ${key}=${words.get(key)}, which is not possible and is ignored.`);
   const axis = (key, fallback, count) => {
-    const [name, from, to] = numbers(words.get(key)), known = name in LIVE_RANGES
-      && !NO_LIVE_AXIS.includes(name), [least, most] = known ? solver.ranges[name] : [NaN, NaN];
+    const [name, from, to] = numbers(words.get(key)),
+      known = drawn.includes(name) || (name in LIVE_RANGES && !NO_LIVE_AXIS.includes(name)),
+      [least, most] = known ? rangeOf({ ...state, solver }, name) : [NaN, NaN];
     const good = known && from >= least && to <= most && from < to;
     if (!good && words.has(key)) refuse(key);
     return good ? { name, from, to, count } : { ...fallback, count };
@@ -21,6 +24,14 @@ function liveState(words, solver) {
   if (state.x.name === state.y.name)
     state.y = { name: state.x.name === "slope" ? "mass_ratio" : "slope", from: 0.1, to: 0.8,
       count: LIVE_SHAPE[1] };
+  if (isDrawn(state.x.name) && RATIOS.includes(state.y.name)) {
+    if (words.has("y")) refuse("y");
+    state.y = { name: "slope", from: 0.1, to: 0.8, count: LIVE_SHAPE[1] };
+  }
+  if (RATIOS.includes(state.x.name) && isDrawn(state.y.name)) {
+    refuse("x");
+    state.x = { name: "slope", from: 0.1, to: 0.8, count: LIVE_SHAPE[0] };
+  }
   for (const name of Object.keys(solver.defaults)) {
     if (!words.has(name)) continue;
     const value = Number(words.get(name)), [least, most] = solver.ranges[name];
@@ -46,6 +57,13 @@ function writeLive(words, map, defaults) {
 const liveParameters = (map) => Object.keys(LIVE_RANGES)
   .filter((name) => name in map.parameters && (map.slips || !SLIPPING.includes(name)));
 const designParameters = (map) => liveParameters(map).filter((name) => !NO_LIVE_AXIS.includes(name));
+/** What may vary along an axis, where the other is of that name: a hoop has a drawing's numbers or ratios. */
+const axisNames = (map, other) => {
+  const scatters = map.spreads.some(({ name }) => isDrawn(name));
+  return [...designParameters(map).filter((name) =>
+    !((isDrawn(other) || scatters) && RATIOS.includes(name))),
+  ...(RATIOS.includes(other) ? [] : drawnNames(map.drawing))];
+};
 
 /** Builds the controls. changed(what): "map" if the map is another, "model" if the model is. Returns what the
     address wants of them. */
@@ -54,18 +72,19 @@ function liveControls(map, solver, changed) {
   const axisInputs = ["x", "y"].map((key) =>
     ({ name: element(`live-${key}`), from: element(`live-${key}-from`), to: element(`live-${key}-to`) }));
   box.hidden = false;
-  const unitOf = (name) => map.parameters[name].unit, factor = (name) =>
-    (unitOf(name) === "°" ? 180 / Math.PI : 1);
+  const factor = (name) => perUnit(map.parameters[name].unit);
 
   function showAxes() {
     axisInputs.forEach((inputs, k) => {
       const axis = map.axes[k];
       inputs.name.replaceChildren();
-      designParameters(map).forEach((name) => option(inputs.name, name, map.parameters[name].label));
+      axisNames(map, map.axes[1 - k].name).forEach((name) =>
+        option(inputs.name, name, map.parameters[name].label));
       inputs.name.value = axis.name;
       inputs.from.value = Number((axis.from * factor(axis.name)).toPrecision(6));
       inputs.to.value = Number((axis.to * factor(axis.name)).toPrecision(6));
     });
+    map.showSpreads?.();  // what may scatter hangs on the axes
   }
 
   /** Takes the axes as they stand in the inputs; says so if they cannot be. */
@@ -73,7 +92,7 @@ function liveControls(map, solver, changed) {
     const inputs = axisInputs[k], name = inputs.name.value,
       [from, to] = [inputs.from, inputs.to].map((input) =>
       (input.value === "" ? NaN : Number(input.value) / factor(name)));
-    const [least, most] = solver.ranges[name], good = from < to && from >= least && to <= most;
+    const [least, most] = rangeOf(map, name), good = from < to && from >= least && to <= most;
     for (const input of [inputs.from, inputs.to]) input.setAttribute("aria-invalid", String(!good));
     notice(good ? "" : `${map.parameters[name].label}: from must be below to, both between ` +
       `${short(least * factor(name))} and ${short(most * factor(name))}.`);
@@ -86,9 +105,10 @@ function liveControls(map, solver, changed) {
       const other = map.axes[1 - k], before = { ...map.axes[k] }, name = inputs.name.value;
       if (name === other.name)
         Object.assign(map.axes[1 - k], liveAxis(map, { ...before, count: LIVE_SHAPE[1 - k] }));
-      else map.fixed[before.name] = (before.from + before.to) / 2;
-      const [from, to] = name === other.name ? [other.from, other.to] : LIVE_RANGES[name];
+      else if (!isDrawn(before.name)) map.fixed[before.name] = (before.from + before.to) / 2;
+      const [from, to] = name === other.name ? [other.from, other.to] : spanOf(map, name);
       Object.assign(map.axes[k], liveAxis(map, { name, from, to, count: LIVE_SHAPE[k] }));
+      followDrawing();
       showAxes();
       showSliders();
       changed("map");
@@ -96,13 +116,15 @@ function liveControls(map, solver, changed) {
     for (const input of [inputs.from, inputs.to]) {
       input.addEventListener("change", () => takeAxes(k));
       stepsOf(input, () =>
-        { const name = inputs.name.value, [low, high] = LIVE_RANGES[name]; return (high - low) * factor(name);
+        { const name = inputs.name.value, [low, high] = spanOf(map, name); return (high - low) * factor(name);
         });
     }
   });
 
   function showSliders() {
-    const rows = liveParameters(map).filter((name) => !map.axes.some((axis) => axis.name === name))
+    const follows = (name) => usesDrawing(map) && (RATIOS.includes(name) || name === "radius");
+    const rows = liveParameters(map)
+      .filter((name) => !follows(name) && !map.axes.some((axis) => axis.name === name))
       .map((name) => {
       const { label, unit } = map.parameters[name], [low, high] = LIVE_RANGES[name];
       const row = document.createElement("label"), words = document.createElement("span"),
@@ -151,10 +173,7 @@ function liveControls(map, solver, changed) {
     map.slips = model.value === "coulomb";
     map.axes.forEach((axis, k) => {
       if (map.slips || !SLIPPING.includes(axis.name)) return;
-      const free = ["slope", "mass_ratio", "offset_ratio"].find((name) =>
-        !map.axes.some((a) => a.name === name));
-      const [from, to] = LIVE_RANGES[free];
-      Object.assign(axis, liveAxis(map, { name: free, from, to, count: LIVE_SHAPE[k] }));
+      freeAxis(k);
     });
     showAxes();
     showSliders();
@@ -162,19 +181,50 @@ function liveControls(map, solver, changed) {
   });
   showAxes();
   showSliders();
-  /** A hoop from a drawing: the map is of its kind. */
-  map.reshape = (values) => {
+  /** Gives an axis another name, as what it had is no more to be had. */
+  function freeAxis(k, name = ["slope", "mass_ratio", "offset_ratio"].find((each) =>
+    each !== map.axes[1 - k].name)) {
+    const [from, to] = spanOf(map, name);
+    Object.assign(map.axes[k], liveAxis(map, { name, from, to, count: LIVE_SHAPE[k] }));
+  }
+  /** What follows from the drawing does so where hoops differ in its numbers. */
+  function followDrawing() {
+    if (!map.drawing || !usesDrawing(map)) return;
+    const body = solver.reduce(map.drawing);
+    for (const name of RATIOS) map.fixed[name] = body[name];
+    map.fixed.radius = map.drawing.ring.diameter / 2;
+  }
+  function takeDrawing(drawing) {
+    map.drawing = drawing;
+    for (const name of Object.keys(map.parameters)) if (isDrawn(name)) delete map.parameters[name];
+    Object.assign(map.parameters, drawnParameters(drawing));
+    const names = drawnNames(drawing);
+    map.axes.forEach(({ name }, k) => { if (isDrawn(name) && !names.includes(name)) freeAxis(k); });
+    map.dropSpreads?.(({ name }) => isDrawn(name) && !names.includes(name));
+  }
+  /** The drawing is another: the map is of its kind. values: what it comes to. The first one's mass takes the
+      place of a ratio along an axis. */
+  map.redraw = (drawing, values) => {
+    const isFirst = map.drawing === null, [weight] = drawing.weights;
+    takeDrawing(drawing);
+    const ratio = map.axes.findIndex(({ name }) => RATIOS.includes(name));
+    if (isFirst && weight && ratio >= 0 && !RATIOS.includes(map.axes[1 - ratio].name))
+      freeAxis(ratio, `hoop.${weight.name}.mass`);
     for (const [name, value] of Object.entries(values))
       if (!map.axes.some((axis) => axis.name === name)) map.fixed[name] = value;
+    showAxes();
     showSliders();
     changed("map");
   };
+  /** Other tolerances: what may be turned may be others. */
+  map.respread = () => { followDrawing(); showAxes(); showSliders(); };
   return {
     write: (words) => writeLive(words, map, solver.defaults),
     read(words, first) {
       if (first) return;
       const state = liveState(words, solver);
       Object.assign(map, { slips: state.slips, fixed: { ...solver.defaults, ...state.fixed } });
+      takeDrawing(state.drawing);
       [state.x, state.y].forEach((axis, k) => Object.assign(map.axes[k], liveAxis(map, axis)));
       model.value = map.slips ? "coulomb" : "sticking";
       showAxes();

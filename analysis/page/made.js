@@ -12,23 +12,29 @@ function randomNumbers(seed) {
   };
 }
 
-/** Designs that were made after one, by scatter: [{name, law, width, percent}]. ranges: {name: [least,
-    most]}, in which they lie. */
-function madeAfter(design, scatter, ranges, count, seed = 1) {
+/** Designs that were made after one, by scatter: [{name, law, width, percent}]. drawing: that it follows
+    from, or null: then numbers of a drawing do not scatter. */
+function madeAfter(solver, design, drawing, scatter, count, seed = 1) {
   const random = randomNumbers(seed), made = [];
   const normal = () => Math.sqrt(-2 * Math.log(random())) * Math.cos(2 * Math.PI * random());
-  const drawn = (name) => (Number.isFinite(design[name]) ? design[name] : design.mu_static);
+  const drawn = (name) => {
+    if (!isDrawn(name)) return Number.isFinite(design[name]) ? design[name] : design.mu_static;
+    const [part, key] = partOf(drawing, name);
+    return part[key];
+  };
+  const some = drawing ? scatter : scatter.filter(({ name }) => !isDrawn(name));
   for (let i = 0; i < count; ++i) {
-    const hoop = { ...design };
-    for (const { name, law, width, percent } of scatter) {
-      const [least, most] = ranges[name], about = drawn(name), scale = percent
-        ? 0.01 * width * Math.abs(about) : width;
+    const hoop = { ...design }, numbers = {};
+    for (const { name, law, width, percent } of some) {
+      const [least, most] = isDrawn(name) ? drawnRange(drawing, name) : solver.ranges[name],
+        about = drawn(name), scale = percent ? 0.01 * width * Math.abs(about) : width;
       for (let tries = 0; tries < 1000; ++tries) {
         const value = about + scale * (law === "normal" ? normal() : 2 * random() - 1);
-        if (value >= least && value <= most) { hoop[name] = value; break; }
+        if (value >= least && value <= most) { (isDrawn(name) ? numbers : hoop)[name] = value; break; }
       }
     }
-    made.push(hoop);
+    made.push(Object.keys(numbers).length > 0
+      ? madeBy(solver, hoop, drawing, drawingAt(drawing, numbers)) : hoop);
   }
   return made;
 }

@@ -63,7 +63,7 @@ function mapView(canvas, map, onPoint, onPick) {
       for along, or a gait is shown, which has none of them. */
   function chainsHere() {
     if (view.field.gait) return undefined;
-    const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1), chains = [];
+    const unit = (axis) => perUnit(axis.unit), chains = [];
     let looked = false;
     for (const curve of map.curves) {
       const [a, b] = curve.axes, swapped = a === view.y && b === view.x;
@@ -167,7 +167,7 @@ function mapView(canvas, map, onPoint, onPick) {
     context.textAlign = "center";
     context.textBaseline = "middle";
     const labels = [], linesAt = isolinesHere();  // where there is text already
-    for (const { value, text } of shownLevels(view.field, map.fixed))
+    for (const { value, text } of shownLevels(view.field, scaleOf(map)))
       for (const chain of linesAt(value)) {
         const room = context.measureText(text).width + 0.4 * font;
         let length = 0;
@@ -246,9 +246,9 @@ function mapView(canvas, map, onPoint, onPick) {
       context.stroke();
       context.fillText(text, x + w + 0.3 * font, p);
     };
-    const [factor, unit] = shownIn(field.unit, map.fixed), told = (value, digits = 3) =>
+    const [factor, unit] = shownIn(field.unit, scaleOf(map)), told = (value, digits = 3) =>
       ({ value, text: short(value * factor, digits) });
-    const marks = field.levels.length > 0 ? shownLevels(field, map.fixed)
+    const marks = field.levels.length > 0 ? shownLevels(field, scaleOf(map))
       : linearTicks(field.low * factor, field.high * factor).map((v) => told(v / factor, 4));
     for (const { value, text } of [told(field.low),
         ...marks.filter((m) => m.value > field.low && m.value < field.high), told(field.high)]) {
@@ -282,7 +282,7 @@ function mapView(canvas, map, onPoint, onPick) {
       .filter(([name]) => name === "radius" || values[name] !== map.defaults[name])
       .filter(([name]) => map.slips || !SLIPPING.includes(name))
       .map(([name, tell]) => tell(short(values[name])));
-    const text = `${fieldLabel(view.field, map.fixed)}: ` +
+    const text = `${fieldLabel(view.field, scaleOf(map))}: ` +
       `${[...told, ...scene, map.slips ? "Coulomb friction" : "no slip"].join(", ")}`, size = (part) =>
       `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
     context.fillStyle = tones.ink;
@@ -301,7 +301,7 @@ function mapView(canvas, map, onPoint, onPick) {
     const here = designAt(map, view.index), drawn = [map.axes[view.x].name, map.axes[view.y].name];
     if (!drawn.every((name) => name in map.paper) || Object.entries(map.paper)
         .some(([k, v]) => !drawn.includes(k) && !near(here[k], v))) return null;
-    const unit = (axis) => (axis.unit === "°" ? 180 / Math.PI : 1);
+    const unit = (axis) => perUnit(axis.unit);
     const x = sx.pixel(map.paper[drawn[0]] * unit(map.axes[view.x])),
       y = sy.pixel(map.paper[drawn[1]] * unit(map.axes[view.y]));
     return x > frame.left && x < frame.right && y > frame.top && y < frame.bottom ? [x, y] : null;
@@ -327,7 +327,7 @@ function mapView(canvas, map, onPoint, onPick) {
   /** Pinned designs with their numbers; faint where anything but the two axes drawn is another. */
   function paintPins(context) {
     const { font, ratio } = frame, drawn = [map.axes[view.x], map.axes[view.y]], unit = (axis) =>
-      (axis.unit === "°" ? 180 / Math.PI : 1), here = designAt(map, view.index);
+      perUnit(axis.unit), here = designAt(map, view.index);
     map.pins?.forEach((design, i) => {
       const [x, y] = [sx, sy].map((scale, k) => scale.pixel(design[drawn[k].name] * unit(drawn[k])));
       if (!(x >= frame.left && x <= frame.right && y >= frame.top && y <= frame.bottom)) return;

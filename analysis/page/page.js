@@ -35,6 +35,7 @@ async function readMap() {
       if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
     scaleField(field, low, high, field.levels);
   }
+  map.drawing &&= wholeDrawing(map.drawing);
   for (const code of Object.values(map.codes)) code.values = await codes(code, shape);
   if (map.codes.status)
     map.codes.status.rgb = map.codes.status.shown.map(({ colour }) => rgbOf(colour));
@@ -56,26 +57,10 @@ const parametersAt = (map, index) =>
 const designAt = (map, index) => shapedBy(map,
   { ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value])) });
 
-/** A design of a map over numbers of [hoop], such as "hoop.slug.mass", with what they come to, its radius and
-    its mass among it. */
-function shapedBy(map, design) {
-  if (!map.hoop) return design;
-  const ring = { ...map.hoop.ring }, weights = map.hoop.weights.map((weight) => ({ ...weight }));
-  for (const [key, value] of Object.entries(design)) {
-    const [section, ...path] = key.split(".");
-    if (section !== "hoop") continue;
-    const part = path.length === 1 ? ring : weights.find(({ name }) => name === path[0]);
-    part[path.at(-1)] = value;
-  }
-  ring.inertia ??= NaN;
-  const { total_mass, mass_ratio, offset_ratio, inertia_factor } = map.solver.reduce({ ring,
-    weights: weights.map((w) => ({ ...w, angle: w.angle ?? 0, inertia: w.inertia ?? 0 })) });
-  return { ...design, mass_ratio, offset_ratio, inertia_factor, radius: ring.diameter / 2, mass: total_mass };
-}
 const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : "") +
   parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1)
     .map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");
-const inShownUnit = (axis, value) => (axis.unit === "°" ? value * 180 / Math.PI : value);
+const inShownUnit = (axis, value) => value * perUnit(axis.unit);
 
 /** Quantities that only hoops that may slip have, or only those that never do. */
 const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
@@ -211,11 +196,11 @@ function start(map, solver, teller) {
       ? (map.live && f.log ? short(f.values[at], 6) : f.values[at].toFixed(decimalsOf(f.step))) : "");
     const isSolving = (f) => map.live && costOf(f) && !number(f) && canvas.dataset.coarse !== "true";
     const text = (f) =>
-      (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], map.fixed) : isSolving(f)
+      (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], scaleOf(map)) : isSolving(f)
       ? "being solved" : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious
-      ? [`no jump: all lift-offs below ${toldIn(map.fixed.hop_height, "diameters", map.fixed)}`]
+      ? [`no jump: all lift-offs below ${toldIn(map.fixed.hop_height, "diameters", scaleOf(map))}`]
       : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "),
         spurious ? "the first lift-off is below the threshold" : ""];
     element("place").textContent = placeText(map, index);
@@ -224,7 +209,7 @@ function start(map, solver, teller) {
     const steady = chosen.isOf(index) ? steadyNote(chosen.hoop()) : "";
     element("value").textContent = [`${shown.label}: ${text(shown)}`, steady, ...notesSaid].filter(Boolean)
       .join("; ");
-    tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], map.fixed).slice(3) || text(f) : ""));
+    tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], scaleOf(map)).slice(3) || text(f) : ""));
     speak();
     const { dataset } = element("readout");
     dataset.index = index.join(",");
@@ -237,7 +222,7 @@ function start(map, solver, teller) {
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value
   // if there are others.
-  const choices = map.columns ?? map.axes;  // of what may be drawn to the right
+  const choices = choicesOf(map);
   const liked = (axis, k) =>
     [axis.values.length > 1 ? 0 : 1, ["slope", "mass_ratio"].includes(axis.name) ? 0 : 1,
     axis.name === "slope" ? 0 : 1, k];
@@ -256,7 +241,7 @@ function start(map, solver, teller) {
     : { x: element("x-axis"), y: element("y-axis") };
   element("y-axis").parentElement.hidden = Boolean(map.columns) || Boolean(map.live);
   element("x-axis").parentElement.hidden = Boolean(map.live);
-  map.fields.forEach((f, k) => option(fieldSelect, k, fieldLabel(f, map.fixed)));
+  map.fields.forEach((f, k) => option(fieldSelect, k, fieldLabel(f, scaleOf(map))));
   fieldSelect.value = map.fields.indexOf(view.view.field);
   /** Offers what the model has. */
   const offerFields = () => {
@@ -367,7 +352,7 @@ function start(map, solver, teller) {
   if (filters) addressPart(filters);
   const tellUnits = () => {
     said = "";
-    map.fields.forEach((f, k) => { fieldSelect.options[k].textContent = fieldLabel(f, map.fixed); });
+    map.fields.forEach((f, k) => { fieldSelect.options[k].textContent = fieldLabel(f, scaleOf(map)); });
     view.paint();
     filters?.tell();
     drawCuts();
@@ -470,15 +455,18 @@ function askedOfFile(map) {
 
 /** The address of the live map that a file's map begins at: its two longest axes, the rest as it stands. */
 function liveFrom(map) {
-  const words = new URLSearchParams(), fit = (axis) => axis.name in LIVE_RANGES
-    && !NO_LIVE_AXIS.includes(axis.name) && axis.values.length > 1;
+  const words = new URLSearchParams(), fit = (axis) => axis.values.length > 1
+    && (isDrawn(axis.name) || (axis.name in LIVE_RANGES && !NO_LIVE_AXIS.includes(axis.name)));
   const axes = map.columns ? [] : map.axes.filter(fit)
     .sort((a, b) => b.values.length - a.values.length).slice(0, 2)
     .sort((a, b) => (b.name === "slope") - (a.name === "slope"));
   axes.forEach((axis, k) =>
     words.set(k === 0 ? "x" : "y", `${axis.name}:${axis.values[0]}:${axis.values.at(-1)}`));
-  for (const axis of map.columns ? [] : map.axes) if (!axes.includes(axis))
-    words.set(axis.name, axis.values[Math.floor(axis.values.length / 2)]);
+  const rest = (map.columns ? [] : map.axes).filter((axis) => !axes.includes(axis))
+    .map((axis) => [axis.name, axis.values[Math.floor(axis.values.length / 2)]]);
+  for (const [name, value] of rest) if (!isDrawn(name)) words.set(name, value);
+  if (map.drawing)
+    words.set("drawing", drawingWord(drawingAt(wholeDrawing(map.drawing), Object.fromEntries(rest))));
   for (const [name, value] of Object.entries(map.fixed)) if (Number.isFinite(value)) words.set(name, value);
   if (map.slips) words.set("friction", "coulomb");
   if (map.settle > 0) words.set("settle", Math.min(map.settle, element("settle").max));

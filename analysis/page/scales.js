@@ -2,8 +2,7 @@
 
 /** An axis of the map on the screen: its cells are around its values, halfway to the neighbours. */
 function axisScale(axis, from, to) {
-  const degrees = axis.unit === "°" ? 180 / Math.PI : 1;
-  const shown = axis.values.map((v) => v * degrees);
+  const shown = axis.values.map((v) => v * perUnit(axis.unit));
   const at = axis.log ? Math.log : (v) => v;
   let places = shown.map(at);
   const n = places.length;

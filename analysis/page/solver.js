@@ -1,5 +1,8 @@
 // leapmap itself, compiled to WebAssembly (src/web).
 
+/** The numbers of a drawing's ring, and of each of its weights, in the solver's order. */
+const RING_NUMBERS = ["diameter", "mass", "inertia"], WEIGHT_NUMBERS = ["mass", "at", "angle", "inertia"];
+
 const loadModule = async (text) => WebAssembly.compile(await unpacked(text));
 
 async function solverOf(module) {
@@ -38,8 +41,26 @@ async function solverOf(module) {
   const codes = Object.fromEntries(fields.map((name, i) =>
     [name, namesBy((code) => leapmap.code_name(i, code))]));
   const reducedNames = namesBy(leapmap.reduced_name);
-  const give = (design) => doubles(leapmap.parameter_values(), parameters.length)
-    .set(parameters.map((name) => design[name] ?? defaults[name] ?? (name === "mass" ? unknown : noWall)));
+  const putDrawing = ({ ring, weights }) => {
+    const numbers = [...RING_NUMBERS.map((key) => ring[key]),
+      ...weights.flatMap((weight) => WEIGHT_NUMBERS.map((key) => weight[key]))];
+    doubles(leapmap.body_numbers(weights.length), numbers.length).set(numbers);
+  };
+  /** The design that the solver has from now on, with the `drawing` that it follows from, if it has one. */
+  const give = (design) => {
+    doubles(leapmap.parameter_values(), parameters.length)
+      .set(parameters.map((name) => design[name] ?? defaults[name] ?? (name === "mass" ? unknown : noWall)));
+    if (design.drawing) putDrawing(design.drawing);
+    leapmap.take_drawing(design.drawing ? 1 : 0);
+  };
+  /** The solver's number of a parameter or, as "hoop.slug.mass", of a number of a design's drawing. */
+  const numberOf = (name, design) => {
+    const [section, ...path] = name.split("."), after = parameters.length + RING_NUMBERS.length;
+    if (section !== "hoop") return parameters.indexOf(name);
+    if (path.length === 1) return parameters.length + RING_NUMBERS.indexOf(path[0]);
+    const weight = design.drawing.weights.findIndex((each) => each.name === path[0]);
+    return after + weight * WEIGHT_NUMBERS.length + WEIGHT_NUMBERS.indexOf(path[1]);
+  };
   const ask = ({ jumps = 1, settle = 0, growth = false }) => leapmap.ask(jumps, settle, Number(growth));
   return {
     defaults, ranges, codes,
@@ -71,17 +92,16 @@ async function solverOf(module) {
     },
     /** What a hoop from a drawing comes to, {total_mass, mass_ratio, ...}: {ring: {diameter, mass, inertia},
         weights: [{mass, at, angle, inertia}]}, in SI; an inertia of NaN: a thin ring's. */
-    reduce({ ring, weights }) {
-      const numbers = [ring.diameter, ring.mass, ring.inertia,
-        ...weights.flatMap(({ mass, at, angle, inertia }) => [mass, at, angle, inertia])];
-      doubles(leapmap.body_numbers(weights.length), numbers.length).set(numbers);
+    reduce(drawing) {
+      putDrawing(drawing);
       const values = doubles(leapmap.reduce_body(), reducedNames.length);
       return Object.fromEntries(reducedNames.map((name, k) => [name, values[k]]));
     },
     /** What solvePlaces tells of a design, in order. */
     rowNames,
     /**
-     * Designs that differ in two parameters, in full: rows of numbers and codes of each, one after the other.
+     * Designs that differ in two numbers, parameters or of the drawing, in full: rows of numbers and codes of
+     * each, one after the other.
      * places: the two numbers of each by turns. asked: as of solve.
      */
     solvePlaces(design, slips, tolerance, first, second, places, asked = {}) {
@@ -89,7 +109,7 @@ async function solverOf(module) {
       ask(asked);
       const count = places.length / 2;
       doubles(leapmap.places(count), places.length).set(places);
-      leapmap.solve_places(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second),
+      leapmap.solve_places(slips ? 1 : 0, tolerance, numberOf(first, design), numberOf(second, design),
         count);
       return doubles(leapmap.rows(), count * rowNames.length).slice();
     },
@@ -103,13 +123,13 @@ async function solverOf(module) {
       ask(asked);
       leapmap.ask_made(asked.samples, asked.seed);
       for (const { name, law, width, percent } of asked.spreads)
-        leapmap.ask_spread(parameters.indexOf(name), law === "uniform" ? 1 : 0, width, Number(percent));
+        leapmap.ask_spread(numberOf(name, design), law === "uniform" ? 1 : 0, width, Number(percent));
       for (const { field, least, most } of asked.goals)
         leapmap.ask_goal(fields.indexOf(field), least ?? -Infinity, most ?? Infinity);
       for (const name of asked.fields) leapmap.ask_field(madeNames.indexOf(name));
       const count = places.length / 2;
       doubles(leapmap.places(count), places.length).set(places);
-      leapmap.solve_made(slips ? 1 : 0, tolerance, parameters.indexOf(first), parameters.indexOf(second),
+      leapmap.solve_made(slips ? 1 : 0, tolerance, numberOf(first, design), numberOf(second, design),
         count);
       return doubles(leapmap.rows(), count * asked.fields.length).slice();
     },

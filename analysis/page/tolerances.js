@@ -72,17 +72,44 @@ function madeTeller(module, workerText) {
 function tolerancesPart(map, changed) {
   const part = element("tolerances"), list = element("spreads"), rows = [];
   part.hidden = false;
-  const factor = ({ name, percent }) => (!percent && map.parameters[name].unit === "°" ? 180 / Math.PI : 1);
+  /** What may scatter beside those others: a hoop has a drawing's numbers or ratios. */
+  const spreadNames = (others) => [
+    ...designParameters(map).filter((name) => !(others.some(isDrawn) && RATIOS.includes(name))),
+    ...(map.axes.some(({ name }) => RATIOS.includes(name)) ? [] : drawnNames(map.drawing))];
+  const freeNames = (others) => spreadNames(others).filter((name) => !others.includes(name));
+  const ownValue = (name) => {
+    if (!isDrawn(name)) return map.fixed[name];
+    const [part, key] = partOf(map.drawing, name);
+    return part[key];
+  };
+  const factor = ({ name, percent }) => (percent ? 1 : perUnit(map.parameters[name].unit));
 
   function take() {
     map.spreads = rows.map(({ spread }) => spread);
     const nothing = map.spreads.find(({ name, width, percent }) => percent && width > 0
-      && map.fixed[name] === 0 && !map.axes.some((axis) => axis.name === name));
+      && ownValue(name) === 0 && !map.axes.some((axis) => axis.name === name));
     notice(nothing ? `${map.parameters[nothing.name].label} is 0, and ${short(nothing.width)} % of it is ` +
       `0: give the tolerance in its own unit.` : "");
+    map.respread?.();
     changed();
     noteAddress();
   }
+
+  /** Takes away what cannot stand beside the rest, and says so. Returns what it said, or "". */
+  function drop(isWrong, why) {
+    const dropped = rows.filter(({ spread }) => isWrong(spread)).map(({ spread }) => spread);
+    if (dropped.length === 0) return "";
+    begin(rows.map(({ spread }) => spread).filter((spread) => !dropped.includes(spread)));
+    map.spreads = rows.map(({ spread }) => spread);
+    const said = `${why}: ${dropped.map(({ name }) => map.parameters[name]?.label ?? name).join(", ")}`;
+    notice(said);
+    return said;
+  }
+  map.showSpreads = () => showAll();
+  map.dropSpreads = (isWrong) => drop(isWrong, "No tolerance any more of");
+  /** A drawing's number scatters: ratios, which follow from the drawing, do not. */
+  const dropRatios = () => (rows.some(({ spread }) => isDrawn(spread.name))
+    ? drop(({ name }) => RATIOS.includes(name), "Tolerances of the drawing take the place of those of") : "");
 
   function row(asked) {
     const spread = { ...asked }, item = document.createElement("li"),
@@ -90,10 +117,10 @@ function tolerancesPart(map, changed) {
     const number = document.createElement("input"), away = document.createElement("button"),
       each = { spread, away };
     const show = () => {
-      const taken = rows.map((other) => other.spread.name), own = map.parameters[spread.name].unit;
+      const others = rows.filter((other) => other !== each).map((other) => other.spread.name),
+        own = map.parameters[spread.name].unit;
       name.replaceChildren();
-      designParameters(map).filter((other) => other === spread.name || !taken.includes(other))
-        .forEach((other) => option(name, other, map.parameters[other].label.split(" [")[0]));
+      freeNames(others).forEach((other) => option(name, other, map.parameters[other].label.split(" [")[0]));
       unit.replaceChildren();
       option(unit, "%", "%");
       option(unit, "own", own || "of its own");
@@ -120,8 +147,10 @@ function tolerancesPart(map, changed) {
       const shown = spread.width * factor(spread);
       Object.assign(spread, what);
       spread.width = shown / factor(spread);
+      const said = dropRatios();
       showAll();
       take();
+      if (said) notice(said);
     };
     name.addEventListener("change", () => change({ name: name.value }));
     law.addEventListener("change", () => change({ law: law.value }));
@@ -151,7 +180,7 @@ function tolerancesPart(map, changed) {
   const add = element("spread-add");
   function showAll() {
     for (const { show } of rows) show();
-    add.disabled = rows.length >= designParameters(map).length;
+    add.disabled = freeNames(rows.map(({ spread }) => spread.name)).length === 0;
   }
   function begin(spreads) {
     rows.length = 0;
@@ -160,9 +189,9 @@ function tolerancesPart(map, changed) {
     showAll();
   }
   add.addEventListener("click", () => {
-    const name = designParameters(map).find((other) => !rows.some(({ spread }) => spread.name === other)),
+    const [name] = freeNames(rows.map(({ spread }) => spread.name)),
       angle = map.parameters[name].unit === "°";
-    row({ name, law: "normal", width: angle ? Math.PI / 180 : 1, percent: !angle && map.fixed[name] !== 0 });
+    row({ name, law: "normal", width: angle ? Math.PI / 180 : 1, percent: !angle && ownValue(name) !== 0 });
     showAll();
     rows.at(-1).focus();
     take();
@@ -173,20 +202,15 @@ function tolerancesPart(map, changed) {
   const usual = USUAL_SPREADS.map(spreadWord).join();
   function spreadOf(word) {
     const [name, law, width, percent] = word.split(":");
-    return designParameters(map).includes(name) && LAWS.includes(law) && width !== "" && Number(width) >= 0
+    return spreadNames([]).includes(name) && LAWS.includes(law) && width !== "" && Number(width) >= 0
       && Number.isFinite(Number(width)) && [undefined, "percent"].includes(percent)
       ? { name, law, width: Number(width), percent: percent === "percent" } : null;
   }
   return {
     /** Another model: other parameters may scatter. */
     remodel() {
-      const all = rows.map(({ spread }) => spread),
-        dropped = all.filter(({ name }) => !designParameters(map).includes(name));
-      if (dropped.length > 0)
-        notice(`Without slip there is no tolerance of: ` +
-          `${dropped.map(({ name }) => map.parameters[name].label).join(", ")}`);
-      begin(all.filter((spread) => !dropped.includes(spread)));
-      map.spreads = rows.map(({ spread }) => spread);
+      drop(({ name }) => !isDrawn(name) && !designParameters(map).includes(name),
+        "Without slip there is no tolerance of");
     },
     write(words) {
       const told = map.spreads.map(spreadWord);
@@ -205,7 +229,9 @@ function tolerancesPart(map, changed) {
       const sigma = Number(words.get("sigma"));  // as addresses had it before each tolerance had its own word
       begin(asked.length > 0 ? spreads
         : USUAL_SPREADS.map((spread) => (sigma > 0 ? { ...spread, width: sigma } : spread)));
+      dropRatios();
       map.spreads = rows.map(({ spread }) => spread);
+      map.respread?.();
       samples.read(words);
       map.seed = /^\d{1,15}$/.test(words.get("seed") ?? "1") ? Number(words.get("seed") ?? 1) : 1;
       if (words.has("seed") && String(map.seed) !== words.get("seed"))

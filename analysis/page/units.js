@@ -27,15 +27,20 @@ function measuresOf(design, kg) {
   };
 }
 
+/** How many of a parameter's unit as shown are one of the solver's. */
+const perUnit = (unit) => ({ "°": 180 / Math.PI, mm: 1e3, g: 1e3, "kg mm²": 1e6 })[unit] ?? 1;
+
 /** What values of a unit are shown in: [factor, unit], in SI or as pure numbers. scene: with the radius and
-    gravity they belong to. */
-function shownIn(unit, { radius: R, gravity: g }) {
+    gravity they belong to, and the mass if that is another than the hoop's shown; a radius or mass of NaN:
+    they have none in common. */
+function shownIn(unit, { radius: R, gravity: g, mass = units.mass }) {
   const second = Math.sqrt(R / g), rows = units.pure
-    ? { s: [1 / second, "√(R/g)"], "m/s": [second / R, "√(g R)"] }
+    ? (R > 0 ? { s: [1 / second, "√(R/g)"], "m/s": [second / R, "√(g R)"] } : {})
+    : !(R > 0) ? { rad: [180 / Math.PI, "°"] }
     : { "hoop diameters": [2000 * R, "mm"], diameters: [2000 * R, "mm"], R: [1000 * R, "mm"],
       "√(g/R)": [1 / second, "rad/s"], rad: [180 / Math.PI, "°"], "√(g R)": [R / second, "m/s"],
-      ...(units.mass > 0 ? { "(m + mₚ) √(g R)": [1000 * units.mass * R / second, "mN s"],
-        "(m + mₚ) g R": [1000 * units.mass * g * R, "mJ"] } : {}) };
+      ...(mass > 0 ? { "(m + mₚ) √(g R)": [1000 * mass * R / second, "mN s"],
+        "(m + mₚ) g R": [1000 * mass * g * R, "mJ"] } : {}) };
   return rows[unit] ?? [1, unit];
 }
 

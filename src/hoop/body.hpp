@@ -95,4 +95,12 @@ inline void apply_ratios(const ReducedBody& reduced, Design& design) {
   design.inertia_factor = reduced.inertia_factor;
 }
 
+/// Gives a design all that follows from a body: the ratios, and its size and mass in those of the nominal
+/// one.
+inline void follow_body(const Body& body, double nominal_diameter, double nominal_mass, Design& design) {
+  const ReducedBody reduced = reduce_checked(body);
+  apply_ratios(reduced, design);
+  design.size = body.diameter / nominal_diameter, design.mass = reduced.total_mass / nominal_mass;
+}
+
 }  // namespace leapmap

@@ -16,6 +16,7 @@
 #include "leapmap/fit.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "model/variable.hpp"
 #include "python/arguments.hpp"
 #include "python/calls.hpp"
 #include "python/results.hpp"
@@ -53,12 +54,16 @@ py::dict dict_of(const FoundDesigns& found, const Spec& spec) {
     missed[py::str(spec.goals[k].field)] = found.missed[k];
   py::list binds;
   std::vector<Outcome> outcomes;
-  for (const FoundDesign& one : found.designs)
-    binds.append(py::cast(one.binds)), outcomes.push_back(one.outcome);
+  std::vector<Design> designs;
+  for (const FoundDesign& one : found.designs) {
+    binds.append(py::cast(one.binds));
+    outcomes.push_back(one.outcome), designs.push_back(one.design);
+  }
   Columns columns({}, spec.scene, {static_cast<py::ssize_t>(outcomes.size())});
   columns.take(0, outcomes);
   told["reached"] = found.reached, told["parameters"] = parameters, told["objectives"] = objectives;
-  told["outcomes"] = columns.arrays(), told["gradients"] = gradients, told["binds"] = binds;
+  told["outcomes"] = columns.arrays(), told["scales"] = scales_of_each(spec, designs);
+  told["gradients"] = gradients, told["binds"] = binds;
   told["cliff_distance"] = column_of(found, [](const FoundDesign& one) {
     return one.cliff.empty() ? std::numeric_limits<double>::quiet_NaN() : one.cliff[0].distance;
   });
@@ -110,6 +115,13 @@ class Problem {
     for (const FreeParameter& parameter : question_.free) names.push_back(parameter.name);
     return names;
   }
+  /// Whether a number of the scene is another for each design: the size or the mass of a hoop.
+  bool of_each_hoop(std::string_view number) const {
+    return std::ranges::any_of(question_.free, [number](const FreeParameter& free) {
+      return (number == "radius" && free.name == "hoop.diameter") ||
+             (number == "mass" && is_body_mass(free.name));
+    });
+  }
   std::size_t evaluations() const { return judge_.evaluations(); }
   /// What is not free, as leapmap.solve takes it: all but gait.tolerance.
   py::dict fixed() const {
@@ -123,7 +135,8 @@ class Problem {
       const bool follows = of_design && question_.designs.varies_body() && follows_from_body(*of_design);
       const double value =
           of_design ? question_.one.design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
-      if (!is_free && !follows && !std::isnan(value) && has(scene.friction, parameter.only_of))
+      if (!is_free && !follows && !of_each_hoop(parameter.name) && !std::isnan(value) &&
+          has(scene.friction, parameter.only_of))
         numbers[py::str(std::string(parameter.name))] = value;
     }
     if (scene.clear_height_in_metres) numbers["clear_height"] = fmt::format("{} m", scene.clear_height);

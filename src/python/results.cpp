@@ -10,6 +10,7 @@
 #include "leapmap/errors.hpp"
 #include "model/model.hpp"
 #include "model/parameters.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/closest.hpp"
 
 namespace py = pybind11;
@@ -95,6 +96,19 @@ py::tuple pair_of(const Estimate& estimate) { return py::make_tuple(estimate.val
 
 }  // namespace
 
+py::dict scales_of_each(const Spec& spec, std::span<const Design> designs) {
+  py::array_t<double> radius(static_cast<py::ssize_t>(designs.size())), mass(radius.size());
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    const Scales own = scales_of(spec, designs[i]);
+    radius.mutable_data()[i] = own.radius, mass.mutable_data()[i] = own.mass;
+  }
+  const Scales nominal = nominal_scales(spec);
+  py::dict scales;
+  scales["gravity"] = nominal.gravity, scales["radius"] = radius;
+  if (nominal.mass > 0.0) scales["mass"] = mass;
+  return scales;
+}
+
 py::dict dict_of(const ScatterReport& report, const Spec& spec) {
   const auto by_spread = [&](const auto& values, const auto& told) {
     py::dict dict;
@@ -133,7 +147,7 @@ py::dict dict_of(const ScatterReport& report, const Spec& spec) {
   Columns outcomes({"jump_height", "jump_time", "spurious_first_jump", "status"}, spec.scene,
                    {static_cast<py::ssize_t>(report.samples)});
   outcomes.take(0, report.outcomes);
-  told["outcomes"] = outcomes.arrays();
+  told["outcomes"] = outcomes.arrays(), told["scales"] = scales_of_each(spec, report.made);
   return told;
 }
 

@@ -42,6 +42,9 @@ class Columns {
 
 pybind11::dict dict_of(const Motion& motion, const Scene& scene);
 
+/// The gravity, and the radius and mass of each design's hoop; no mass if nobody weighed it.
+pybind11::dict scales_of_each(const Spec& spec, std::span<const Design> designs);
+
 /// Estimates as pairs of value and error; what is of spreads and goals by their names.
 pybind11::dict dict_of(const ScatterReport& report, const Spec& spec);
 

@@ -57,11 +57,7 @@ Design VariedDesigns::at(std::span<const double> values, Body* wanted) const {
   Body& body = wanted ? *wanted : own;
   if (wanted || varies_body_) body = body_;
   for (std::size_t k = 0; k < values.size(); ++k) variables_[k].in(design, body) = values[k];
-  if (varies_body_) {
-    const ReducedBody reduced = reduce_checked(body);
-    apply_ratios(reduced, design);
-    design.size = body.diameter / body_.diameter, design.mass = reduced.total_mass / mass_;
-  }
+  if (varies_body_) follow_body(body, body_.diameter, mass_, design);
   return design;
 }
 

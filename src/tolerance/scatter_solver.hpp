@@ -43,7 +43,9 @@ class ScatterSolver {
   ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop,
                 std::shared_ptr<const SobolPoints> points, const std::vector<Goal>& goals,
                 const std::vector<const Field*>& quantities, Solver solver);
-  bool can_make(const Design& drawn) const { return hoops_.can_make(drawn); }
+  bool can_make(const Design& drawn, const Body* body = nullptr) const {
+    return hoops_.can_make(drawn, body);
+  }
   /// Fills in the columns of designs.size() designs. bodies: one for each, or none, where all have the
   /// nominal one.
   void solve(std::span<const Design> designs, MadeColumns& columns, std::span<const Body> bodies = {});

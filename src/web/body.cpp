@@ -3,6 +3,7 @@
 #include "hoop/body.hpp"
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "web/page.hpp"
@@ -17,6 +18,14 @@ std::vector<double> numbers(of_ring);
 constexpr std::array reduced_names{"total_mass",   "eccentricity",   "inertia",  "mass_ratio",
                                    "offset_ratio", "inertia_factor", "direction"};
 std::array<double, reduced_names.size()> reduced_numbers;
+
+Body body_of_numbers() {
+  Body body{numbers[0], numbers[1], numbers[2], {}};
+  for (std::size_t at = of_ring; at < numbers.size(); at += of_weight)
+    body.weights.push_back({std::to_string(body.weights.size()), numbers[at], numbers[at + 1],
+                            numbers[at + 2], numbers[at + 3]});
+  return body;
+}
 
 }  // namespace
 
@@ -35,13 +44,16 @@ LEAPMAP_EXPORT double* body_numbers(int weights) {
 
 /// Reduces it; the page has checked its numbers.
 LEAPMAP_EXPORT const double* reduce_body() {
-  Body body{numbers[0], numbers[1], numbers[2], {}};
-  for (std::size_t at = of_ring; at < numbers.size(); at += of_weight)
-    body.weights.push_back({"", numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]});
-  const ReducedBody found = reduce_checked(body);
+  const ReducedBody found = reduce_checked(body_of_numbers());
   reduced_numbers = {found.total_mass,   found.eccentricity,   found.inertia,  found.mass_ratio,
                      found.offset_ratio, found.inertia_factor, found.direction};
   return reduced_numbers.data();
+}
+
+/// From now on the page's hoop is drawn so, or by no drawing.
+LEAPMAP_EXPORT void take_drawing(int given) {
+  page.drawing.reset();
+  if (given) page.drawing = body_of_numbers();
 }
 
 }  // namespace leapmap::web

@@ -27,16 +27,16 @@ LEAPMAP_EXPORT int bifurcate(int friction, double tolerance, int parameter, doub
                              int settle, int keep) {
   Scene scene = page.scene(friction);
   scene.jumps = 1;
-  const auto member = member_of_design(parameter);
+  const auto variable = variable_of(parameter);
   heights_told.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(keep), Outcome::none);
-  if (!member) return 0;
+  if (!variable || variable->of_body()) return 0;
   const JumpSolver<double> solve = jump_solver(scene, tolerance, untimed);
   std::vector<Design> designs;
   std::vector<ContactState<double>> states;
   std::vector<std::size_t> which;
   for (int i = 0; i < count; ++i) {
     designs.push_back(page.design());
-    designs.back().*member = count > 1 ? from + (to - from) * i / (count - 1) : from;
+    designs.back().*variable->parameter() = count > 1 ? from + (to - from) * i / (count - 1) : from;
     states.push_back(released<double>(designs.back()));
     which.push_back(static_cast<std::size_t>(i));
   }
@@ -76,16 +76,16 @@ LEAPMAP_EXPORT double* places(int count) {
   return page.places.data();
 }
 
-/// Solves so many designs, the page's own but for two parameters, whose values are in places(): of each
-/// design a row of rows(), as the map stores it; NaN: does not apply. A design that nothing can be with is
-/// not_computed.
+/// Solves so many designs, the page's own but for two numbers of variable_key, whose values are in places():
+/// of each design a row of rows(), as the map stores it; NaN: does not apply. A design that nothing can be
+/// with is not_computed.
 LEAPMAP_EXPORT void solve_places(int friction, double tolerance, int first, int second, int count) {
   const Scene scene = page.scene(friction);
   const std::size_t wide = row_fields().size();
   page.rows.assign(static_cast<std::size_t>(count) * wide, Outcome::none);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
     page.rows[i * wide + status_row()] = static_cast<double>(Status::not_computed);
-  const auto [designs, which] = placed_designs(first, second);
+  const auto [designs, bodies, which] = placed_designs(first, second);
   std::vector<Outcome> outcomes(designs.size());
   solver_of(scene, tolerance)(designs, outcomes);
   tell_more(scene, tolerance, designs, outcomes);

@@ -33,10 +33,9 @@ LEAPMAP_EXPORT void ask_made(int samples, double seed) {
   asked.scatter.samples =
       static_cast<long>(SobolPoints::whole(static_cast<std::size_t>(std::max(samples, 1))));
 }
-/// A parameter of a design scatters. law: a Spread::Law's number; percent: the width is in per cent.
-LEAPMAP_EXPORT void ask_spread(int parameter, int law, double width, int percent) {
-  asked.scatter.spreads.push_back(
-      {std::string(parameter_of(parameter).name), static_cast<Spread::Law>(law), width, percent != 0});
+/// A number of variable_key scatters. law: a Spread::Law's number; percent: the width is in per cent.
+LEAPMAP_EXPORT void ask_spread(int number, int law, double width, int percent) {
+  asked.scatter.spreads.push_back({variable_key(number), static_cast<Spread::Law>(law), width, percent != 0});
 }
 LEAPMAP_EXPORT void ask_goal(int field, double at_least, double at_most) {
   asked.goals.push_back({std::string(field_of(field).name), at_least, at_most});
@@ -52,10 +51,10 @@ LEAPMAP_EXPORT void solve_made(int friction, double tolerance, int first, int se
   const Scene scene = page.scene(friction);
   const std::size_t wide = asked.fields.size();
   page.rows.assign(static_cast<std::size_t>(count) * wide, Outcome::none);
-  const auto [designs, which] = placed_designs(first, second);
+  const auto [designs, bodies, which] = placed_designs(first, second);
   const auto points = std::make_shared<const SobolPoints>(
       asked.scatter.spreads.size(), static_cast<std::size_t>(asked.scatter.samples), asked.seed);
-  ScatterSolver solver(asked.scatter, {}, points, asked.goals, quantities_of(asked.fields),
+  ScatterSolver solver(asked.scatter, page.drawing, points, asked.goals, quantities_of(asked.fields),
                        [scene, tolerance, jumps = solver_of(scene, tolerance)](std::span<const Design> some,
                                                                                std::span<Outcome> outcomes) {
                          jumps(some, outcomes);
@@ -63,8 +62,9 @@ LEAPMAP_EXPORT void solve_made(int friction, double tolerance, int first, int se
                        });
   MadeColumns columns(asked.fields);
   for (std::size_t k = 0; k < which.size(); ++k) {
-    if (!solver.can_make(designs[k])) continue;
-    solver.solve({&designs[k], 1}, columns);
+    const Body* body = bodies.empty() ? nullptr : &bodies[k];
+    if (!solver.can_make(designs[k], body)) continue;
+    solver.solve({&designs[k], 1}, columns, {body, body ? 1u : 0u});
     for (std::size_t f = 0; f < wide; ++f)
       page.rows[which[k] * wide + f] = columns.column(*asked.fields[f])[0];
   }

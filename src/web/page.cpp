@@ -9,6 +9,7 @@
 #include "friction/model.hpp"
 #include "gaits/error_growth.hpp"
 #include "gaits/settle.hpp"
+#include "hoop/body.hpp"
 #include "noslip/exact.hpp"
 #include "noslip/model.hpp"
 
@@ -68,9 +69,22 @@ Scene Page::scene(int friction) const {
 
 const Parameter& parameter_of(int number) { return leapmap::parameters()[static_cast<std::size_t>(number)]; }
 
-double Design::*member_of_design(int parameter) {
-  const auto* member = std::get_if<double Design::*>(&parameter_of(parameter).member);
-  return member ? *member : nullptr;
+std::string variable_key(int number) {
+  const auto all = leapmap::parameters();
+  auto at = static_cast<std::size_t>(number);
+  if (at < all.size()) return std::string(all[at].name);
+  at -= all.size();
+  const auto rows = leapmap::body_numbers();
+  const auto of_ring = static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [](const BodyNumber& row) { return !row.of_weight(); }));
+  if (at < of_ring) return "hoop." + std::string(rows[at].name);
+  at -= of_ring;
+  const std::size_t of_weight = rows.size() - of_ring;
+  return "hoop." + std::to_string(at / of_weight) + "." + std::string(rows[of_ring + at % of_weight].name);
+}
+
+std::optional<Variable> variable_of(int number) {
+  return find_variable(variable_key(number), page.drawing ? &*page.drawing : nullptr);
 }
 
 const Field& field_of(int number) { return map_fields()[static_cast<std::size_t>(number)]; }
@@ -87,13 +101,23 @@ const std::vector<const Field*>& row_fields() {
 
 PlacedDesigns placed_designs(int first, int second) {
   PlacedDesigns placed;
-  const auto x = member_of_design(first), y = member_of_design(second);
+  const auto x = variable_of(first), y = variable_of(second);
   if (!x || !y) return placed;
+  const Body drawn = page.drawing.value_or(Body{});
+  const double drawn_mass = page.drawing ? reduce_checked(drawn).total_mass : 0.0;
   for (std::size_t i = 0; 2 * i < page.places.size(); ++i) {
     const double a = page.places[2 * i], b = page.places[2 * i + 1];
-    if (!parameter_of(first).range.holds(a) || !parameter_of(second).range.holds(b)) continue;
-    placed.designs.push_back(page.design());
-    placed.designs.back().*x = a, placed.designs.back().*y = b;
+    if (!x->range.holds(a) || !y->range.holds(b)) continue;
+    Design design = page.design();
+    Body body = drawn;
+    x->in(design, body) = a, y->in(design, body) = b;
+    const double radius = 0.5 * body.diameter;
+    if (std::any_of(body.weights.begin(), body.weights.end(),
+                    [radius](const Weight& weight) { return weight.at > radius; }))
+      continue;
+    if (x->of_body() || y->of_body()) follow_body(body, drawn.diameter, drawn_mass, design);
+    placed.designs.push_back(design);
+    if (page.drawing) placed.bodies.push_back(body);
     placed.which.push_back(i);
   }
   return placed;

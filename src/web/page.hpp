@@ -7,14 +7,18 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "leapmap/body.hpp"
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
 #include "model/fields.hpp"
 #include "model/parameters.hpp"
+#include "model/variable.hpp"
 #include "trajectory/sequence.hpp"
 #include "trajectory/solver.hpp"
 
@@ -31,6 +35,7 @@ struct Page {
   Scene scene(int friction) const;
 
   std::vector<double> parameters;
+  std::optional<Body> drawing;  // from which the parameters follow
   long jumps = 1, settle = 0;
   bool tells_growth = false;
   std::vector<double> places;  // of a map: two parameters of each design
@@ -41,8 +46,11 @@ extern Page page;
 /// The parameter of a number.
 const Parameter& parameter_of(int number);
 
-/// The member that the page's parameter of that number is; nullptr: it is none of a design.
-double Design::*member_of_design(int parameter);
+/// The key of a number that may vary: first the parameters, then those of the drawing's ring and of each of
+/// its weights.
+std::string variable_key(int number);
+/// Nothing: it is the same for all designs, or the page has no drawing.
+std::optional<Variable> variable_of(int number);
 
 /// The field of a number among map_fields().
 const Field& field_of(int number);
@@ -57,12 +65,13 @@ const char* name_at(std::span<const Row> rows, int i) {
 /// What a map computed on the page tells of each design: all numbers and codes.
 const std::vector<const Field*>& row_fields();
 
-/// Designs that differ from the page's in two parameters, and the number of each among the page's places.
+/// Designs that differ from the page's in two numbers, and the number of each among the page's places.
 struct PlacedDesigns {
   std::vector<Design> designs;
+  std::vector<Body> bodies;  // from which they follow; none without a drawing
   std::vector<std::size_t> which;
 };
-/// Those of the page's places, but for what no design can have. first, second: parameters.
+/// Those of the page's places, but for what no design can have. first, second: of variable_of.
 PlacedDesigns placed_designs(int first, int second);
 
 JumpSolver<double> jump_solver(const Scene& scene, double tolerance, const Wanted& wanted = {});

@@ -77,8 +77,9 @@ slope = SLOPE
 """
 
 
-def test_tolerances_and_goals_of_a_drawing_are_charted_and_left_out_of_the_page(monkeypatch, tmp_path):
-    """The page's solver takes neither: its own yields would be of other hoops."""
+def test_tolerances_and_goals_of_a_drawing_are_charted_and_goals_in_mm_left_out_of_the_page(monkeypatch,
+                                                                                            tmp_path):
+    """The page's solver takes no goals in millimetres of hoops of several sizes."""
     monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
     slopes = '{ from = "20 deg", to = "34 deg", count = 4 }'
     spec = BODY.replace("SLUG", '"85 g"').replace("SLOPE", slopes) + """
@@ -94,6 +95,16 @@ jump_height = { at_least = "50 mm" }
     done = draw("yield_chart.py", path, "-o", tmp_path / "yield")
     assert done.returncode == 0, done.stderr
     words = " ".join(texts(tmp_path / "yield.svg"))
+    assert "highest nominal jump: " in done.stdout and " diameters at slope" in done.stdout
+    shown = draw("yield_chart.py", path, "--units", "mm", "-o", tmp_path / "mm")
+    assert shown.returncode == 0, shown.stderr
+    height = lambda text: float(text.split("highest nominal jump: ")[1].split()[0])
+    with h5py.File(path) as m:
+        along = [dim[0].name.strip("/") for dim in m["jump_height"].dims]
+        heights = np.moveaxis(m["jump_height"][:], along.index("hoop.diameter"), -1)
+        highest = np.nanmax(1000 * m["hoop.diameter"][:] * heights)
+    assert height(shown.stdout) == pytest.approx(highest, rel=0.01), "three digits are shown"
+    assert "jump height [mm]" in " ".join(texts(tmp_path / "mm.svg"))
     for word in ("jump height at least 0.05 m", "diameter of hoop [mm]", "mass of slug σ = 2 g",
                  "diameter of hoop ± 1 mm"):
         assert word in words, word
@@ -102,7 +113,7 @@ jump_height = { at_least = "50 mm" }
     assert made.returncode == 0, made.stderr
     data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>',
                                 (tmp_path / "page.html").read_text(), re.S)[1])
-    assert data["beyond_page"] == ["tolerances of [hoop]", "goals in units of the SI"]
+    assert data["beyond_page"] == ["goals in units of the SI"]
     assert data["spreads"] == data["goals"] == []
 
 
@@ -130,6 +141,12 @@ def test_designs_found_for_a_drawing_are_charted_by_its_numbers(monkeypatch, tmp
     assert front.returncode == 0, front.stderr
     words = texts(tmp_path / "front.svg")
     assert "mass of slug [g]" in words and any("diameter of hoop [mm]" in word for word in words), words
+    front = draw("front_chart.py", best, "--units", "mm", "-o", tmp_path / "mm")
+    assert front.returncode == 0, front.stderr
+    assert "jump height [mm]" in texts(tmp_path / "mm.svg")
+    for asked in ((best, "--question", question), (question, )):
+        refused = draw("front_chart.py", *asked, "--units", "mm", "-o", tmp_path / "x")
+        assert refused.returncode == 2 and "--units mm" in refused.stderr and refused.stderr.count("\n") == 1
     listed = draw("list_chart.py", best, "-x", "hoop.slug.mass", "--units", "mm ms", "-o", tmp_path / "list")
     assert listed.returncode == 0, listed.stderr
     words = " ".join(texts(tmp_path / "list.svg"))

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
-from support.browser import agrees, opened, settled, told_by_leapmap, waited
-from support.program import leapmap, scripted, sweep
+from support.browser import agrees, numbers, opened, settled, told_by_leapmap, waited
+from support.program import TOP, leapmap, scripted, sweep
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
 TOLD = ("jump_height", "jump_time", "first_jump_height", "first_jump_time", "jump_angle", "jump_spin",
@@ -637,3 +637,60 @@ def test_a_file_s_map_goes_live_where_it_is_and_back(browser, tmp_path):
     browser.find_element("id", "live-toggle").click()
     waited(browser, lambda b: b.execute_script("return window.explorer && !window.explorer.map.live"))
     assert browser.execute_script("return window.explorer.map.axes[0].values.length") == 20
+
+
+def test_numbers_of_a_drawing_are_axes_and_tolerances_of_a_live_map(browser, tmp_path):
+    """Begun from a file's map, whose weight has a name; what follows from the drawing cannot be turned."""
+    laws = ('slope={normal="1 deg"}', 'hoop.slug.at={normal="0.5 mm"}', 'hoop.diameter={uniform="1 mm"}',
+            'hoop.battery.angle={normal="5 deg"}')
+    settings = [w for each in (*(f"tolerances.{law}" for law in laws), "tolerances.samples=32",
+                               "friction=sticking", "goal.jump_height={at_least=0.2}",
+                               'output.fields=["jump_height", "jump_time", "status", "yield"]')
+                for w in ("--set", each)]
+    spec = TOP / "sweeps" / "drawing.toml"
+    axes = ("--set", 'slope={from="15 deg",to="40 deg",count=4}', "--set",
+            'hoop.slug.mass={from="40 g",to="160 g",count=5}')
+    done = leapmap("sweep", spec, *axes, *settings, "-o", tmp_path / "m.h5", "--quiet")
+    assert done.returncode == 0, done.stderr
+    browser.get("about:blank")
+    opened(browser, page_at(tmp_path, tmp_path / "m.h5"))
+    browser.find_element("id", "live-toggle").click()
+    waited(browser, lambda b: b.execute_script("return !!window.explorer?.map.live"))
+    show(browser, "yield")
+    settled(browser, 120)
+    assert browser.find_element("id", "message").text == ""
+    assert browser.execute_script("""const { map } = window.explorer;
+        return [...map.axes.map(({ name }) => name), ...map.spreads.map(({ name }) => name)]""") == [
+            "slope", "hoop.slug.mass", "slope", "hoop.slug.at", "hoop.diameter", "hoop.battery.angle"]
+    assert not browser.find_elements("css selector", "#live-sliders [data-parameter=mass_ratio]")
+    cells = [150 * i + j for i in range(5, 200, 24) for j in (5, 60, 110)]
+    told = browser.execute_script("""const { map } = window.explorer, [x, y] = map.axes;
+        const of = (name) => map.fields.find((f) => f.name === name).values;
+        return arguments[0].map((k) => ({ slope: x.values[Math.floor(k / 150)], mass: y.values[k % 150],
+          jump_height: of("jump_height")[k], jump_time: of("jump_time")[k], yield: of("yield")[k] }))""",
+                                  cells)
+    (tmp_path / "cells.csv").write_text("slope,hoop.slug.mass\n" + "".join(
+        f"{cell['slope']!r},{cell['mass']!r}\n" for cell in told))
+    done = leapmap("sweep", spec, "--points", tmp_path / "cells.csv", *settings, "-o", tmp_path / "cells.h5",
+                   "--quiet")
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "cells.h5") as m:
+        for name in ("jump_height", "jump_time", "yield"):
+            page = np.array([np.nan if cell[name] is None else cell[name] for cell in told])
+            np.testing.assert_allclose(page, m[name][...], rtol=1e-9, atol=1e-9, err_msg=name)
+        assert np.sum((m["yield"][...] > 0.02) & (m["yield"][...] < 0.98)) >= 3
+    browser.execute_script("const { view, pick } = window.explorer.view; view.index = [100, 75]; pick()")
+    grams = browser.execute_script("return 1000 * window.explorer.map.axes[1].values[75]")
+    shown = browser.execute_script("return document.querySelector(\"[data-drawn='slug.mass']\").value")
+    assert float(shown) == pytest.approx(grams, rel=1e-9), "the drawing is that of the hoop picked"
+    assert told_by_leapmap(browser)["jump_height"] == pytest.approx(
+        float(numbers(browser)["jump_height"]), rel=1e-9)
+    address = browser.execute_script("return location.hash")
+    browser.get("about:blank")
+    browser.get(page_at(tmp_path).as_uri() + address)
+    settled(browser, 120)
+    assert browser.execute_script("return location.hash") == address
+    # A ratio is not offered beside numbers of the drawing; without them it is.
+    offered = lambda: browser.execute_script(
+        "return [...document.getElementById('live-x').options].map(({ value }) => value)")
+    assert "hoop.battery.mass" in offered() and "mass_ratio" not in offered()

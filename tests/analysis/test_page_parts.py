@@ -167,6 +167,30 @@ def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(pag
     assert "steady jump" not in page.find_element("id", "value").text, "of a hoop that is not shown"
 
 
+def test_a_drawing_typed_in_gives_the_map_its_first_mass_and_tolerances_in_grams(page):
+    page.execute_script("document.getElementById('drawing').open = true; "
+                        "document.getElementById('tolerances').open = true")
+    give(page, "[data-drawn='mass 1.mass']", "30")
+    settled(page)
+    axes = page.execute_script("return ['x', 'y'].map((k) => document.getElementById(`live-${k}`).value)")
+    assert axes == ["slope", "hoop.mass1.mass"], "in place of the mass ratio"
+    bounds = [page.find_element("id", f"live-y-{end}").get_attribute("value") for end in ("from", "to")]
+    assert bounds == ["7.5", "60"], "g: a quarter to twice as much"
+    assert not page.find_elements("css selector", "#live-sliders [data-parameter=offset_ratio]")
+    spreads = "return window.explorer.map.spreads.map(({ name, width, percent }) => [name, width, percent])"
+    select = Select(page.find_element("css selector", "#spreads select"))
+    select.select_by_value("hoop.mass1.at")
+    assert page.execute_script(spreads) == [["hoop.mass1.at", 1, True]], "ratios follow from the drawing"
+    assert "offset ratio" in page.find_element("id", "message").text
+    Select(page.find_element("css selector", "#spreads li select:nth-of-type(3)")).select_by_value("own")
+    give(page, "#spreads input", "0.5")
+    assert page.execute_script(spreads) == [["hoop.mass1.at", pytest.approx(5e-4), False]], "0.5 mm"
+    show(page, [87, 75])
+    page.find_element("id", "ghosts").click()
+    waited(page, lambda b: "of 20 jump" in b.find_element("id", "ghosts-told").text)
+    assert "hoop.mass1.at:normal:0.0005" in page.execute_script("return decodeURIComponent(location.hash)")
+
+
 @pytest.mark.parametrize(("name", "value", "words"), [("ring.diameter", "-1", "diameter"),
                                                       ("mass 1.at", "42", "41 mm"),
                                                       ("mass 1.mass", "-2", "Mass 1"),

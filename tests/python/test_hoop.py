@@ -106,9 +106,29 @@ def test_specs_take_hoops_with_axes_free_numbers_and_tolerances():
     walled = leapmap.DesignProblem(hoop=drawing(slug), clear_height="8 mm", slope="30 deg",
                                    minimize="jump_time", **sizes)
     assert walled.fixed["clear_height"] == "0.008 m", "whatever the diameter"
+    assert "radius" not in walled.fixed and walled.fixed["mass"] == pytest.approx(0.158), "one is free"
     spread = leapmap.scatter({"hoop": drawing(), "design": {"slope": "30 deg"}, "scene": asked},
                              scatter={"hoop.weight1.mass": {"normal": "1 g"}})
     assert 0 < spread["jump_height"]["sd"].value < 0.05
+
+
+def test_outcomes_of_searches_and_of_manufactured_hoops_are_shown_by_each_hoop_s_size_and_mass():
+    slug = leapmap.Weight("85 g", at="47 mm", name="slug")
+    free = {"hoop.slug.mass": {"from": "70 g", "to": "85 g"},
+            "hoop.diameter": {"from": "100 mm", "to": "150 mm"}}
+    found = leapmap.design(hoop=drawing(slug), slope="30 deg", maximize=["jump_height", "hoop.diameter"],
+                           sample=512, most=8, **free)
+    shown, sizes = found.outcomes.to("mm N.s"), found.parameters["hoop.diameter"]
+    assert len(found) > 1 and np.ptp(sizes) > 0.01
+    assert shown.jump_height == pytest.approx(1000 * sizes * found.outcomes.jump_height, rel=1e-12)
+    of_one = leapmap.solve(hoop=drawing(slug), slope="30 deg").to("mm N.s")
+    made = leapmap.scatter({"hoop": drawing(slug), "design": {"slope": "30 deg"}},
+                           scatter={"hoop.diameter": {"uniform": "1 mm"}, "samples": 64})
+    heights = made["outcomes"].to("mm").jump_height / made["outcomes"].jump_height
+    assert 119 <= np.nanmin(heights) < 119.2 and 120.8 < np.nanmax(heights) <= 121
+    one = leapmap.design(hoop=drawing(slug), slope="30 deg", maximize="jump_height", sample=64, most=1,
+                         **{"hoop.slug.mass": {"from": "84.9999999 g", "to": "85 g"}})
+    assert one.outcomes.to("mm").jump_height[0] == pytest.approx(of_one.jump_height, rel=1e-6)
 
 
 @pytest.mark.parametrize(("make", "says"), [
@@ -133,7 +153,7 @@ def test_specs_take_hoops_with_axes_free_numbers_and_tolerances():
     (lambda: leapmap.Weight("8 5 g", at=0), "the unit '5 g' is unknown"),
     (lambda: leapmap.solve().to(5), "units = 5 is not a text"),
     (lambda: leapmap.design(slope={"from": 0.1, "to": 0.5}, maximize="jump_height", sample=64, most=1).
-     outcomes.to("mm"), "do not know their scene"),
+     outcomes.to("N.s"), "newtons and joules need the parameter mass"),
     (lambda: leapmap.solve().to("mmm"), "the unit 'mmm' is unknown"),
     (lambda: leapmap.solve().to("N.s"), "newtons and joules need the parameter mass"),
     (lambda: leapmap.solve(mass=1).to("kg"), "no field can be given in kg; allowed: "),

@@ -102,7 +102,8 @@ def design(spec=None, *, goal=None, maximize=(), minimize=(), scatter=None, seed
     told = _core.design(*_question(spec, goal, maximize, minimize, scatter, overrides), whole(
         "seed", seed, 0), whole("most", most, 0, 10**5), whole("sample", sample, 0, 2**27),
                         whole("threads", threads, 0, 4096))
-    return Found(**told | {"outcomes": Outcomes(told["outcomes"], {"friction": "any"})})
+    outcomes = Outcomes(told.pop("outcomes"), {"friction": "any"} | told.pop("scales"))
+    return Found(**told | {"outcomes": outcomes})
 
 
 class DesignProblem:

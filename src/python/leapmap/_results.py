@@ -104,8 +104,6 @@ class Outcomes:
         >>> round(float(o.to("mm").jump_height), 2)
         117.94
         """
-        if self._given.get("friction") == "any":
-            raise ValueError("units: outcomes of a search do not know their scene; allowed: those of solve")
         given = {name: self._given[name] for name in _SCALES if name in self._given}
         mass = self._mass if "mass" not in given else None
         wanted, fitting, chosen = text("units", units).split(), set(), {}
@@ -127,7 +125,12 @@ class Outcomes:
 
     @staticmethod
     def _factor(unit, name, given, mass):
-        """From the field's own unit; of designs with masses of their own an array."""
+        """From the field's own unit; of designs with sizes or masses of their own an array."""
+        each = {key: value for key, value in given.items() if np.ndim(value) > 0}
+        if each:  # of a search or of manufactured hoops
+            rows = (given | dict(zip(each, map(float, row))) for row in zip(*each.values()))
+            factors = [_core.units_in_own(unit, name, row) for row in rows]
+            return None if None in factors else np.array(factors, float)
         factor = _core.units_in_own(unit, name, given)
         if factor is None and mass is not None:
             of_a_kilogram = _core.units_in_own(unit, name, given | {"mass": 1.0})

@@ -65,7 +65,7 @@ def scatter(spec=None, *, scatter=None, goal=None, threads=0, **overrides):
     """
     text, origin, changes = _question(spec, goal, (), (), scatter, overrides)
     told = _core.scatter(text, origin, changes, whole("threads", threads, 0, 4096))
-    outcomes = Outcomes(told.pop("outcomes"), {"friction": "any"})
+    outcomes = Outcomes(told.pop("outcomes"), {"friction": "any"} | told.pop("scales"))
     return _estimates(told) | {"outcomes": outcomes}
 
 

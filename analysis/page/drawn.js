@@ -1,0 +1,96 @@
+// The numbers of the drawing that hoops of a map are of, such as "hoop.slug.mass": what they are called,
+// where they may lie, and what hoops they come to. All in SI; the solver's own list of them is in solver.js.
+
+/** What a number is called, and its unit as shown. */
+const DRAWN_WORDS = { diameter: ["diameter", "mm"], mass: ["mass", "g"],
+  inertia: ["moment of inertia", "kg mm²"], at: ["distance from the axis", "mm"], angle: ["direction", "°"] };
+/** What follows from a drawing. */
+const RATIOS = ["mass_ratio", "offset_ratio", "inertia_factor"];
+
+const isDrawn = (name) => name.startsWith("hoop.");
+/** The part of a drawing that a number is of, and its name there. */
+function partOf(drawing, name) {
+  const [, ...path] = name.split(".");
+  return [path.length === 1 ? drawing.ring : drawing.weights.find((weight) => weight.name === path[0]),
+    path.at(-1)];
+}
+
+/** A drawing with all its numbers, from one of which some are null, as the explorer writes it. */
+const wholeDrawing = ({ ring, weights }) => ({ ring: { ...ring, inertia: ring.inertia ?? NaN },
+  weights: weights.map((weight) =>
+    ({ ...weight, angle: weight.angle ?? 0, inertia: weight.inertia ?? 0 })) });
+
+/** The drawing with the numbers that a design has of its own. */
+function drawingAt(drawing, design) {
+  const own = { ring: { ...drawing.ring }, weights: drawing.weights.map((weight) => ({ ...weight })) };
+  for (const [name, value] of Object.entries(design)) {
+    if (!isDrawn(name)) continue;
+    const [part, key] = partOf(own, name);
+    if (part) part[key] = value;
+  }
+  return own;
+}
+
+/** The names of all numbers that a drawing gives. */
+const drawnNames = (drawing) => (drawing === null ? [] : [
+  ...RING_NUMBERS.filter((key) => Number.isFinite(drawing.ring[key])).map((key) => `hoop.${key}`),
+  ...drawing.weights.flatMap(({ name }) => WEIGHT_NUMBERS.map((key) => `hoop.${name}.${key}`))]);
+
+/** How each of them is called and shown, as parameters are. */
+const drawnParameters = (drawing) => Object.fromEntries(drawnNames(drawing).map((name) => {
+  const [, ...path] = name.split("."), [words, unit] = DRAWN_WORDS[path.at(-1)],
+    label = `${words} of ${path.length > 1 ? path[0] : path[0] === "diameter" ? "hoop" : "ring"}`;
+  return [name, { label, symbol: label, unit }];
+}));
+
+/** Between what a number may lie. */
+function drawnRange(drawing, name) {
+  const [, key] = partOf(drawing, name), isOfRing = name.split(".").length === 2;
+  return { diameter: [2e-9, 200], mass: [isOfRing ? 1e-9 : 0, 1e6], inertia: [0, 1e6],
+    at: [0, drawing.ring.diameter / 2], angle: [-2 * Math.PI, 2 * Math.PI] }[key];
+}
+
+/** Between what it is moved at first. */
+function drawnSpan(drawing, name) {
+  const [part, key] = partOf(drawing, name), value = part[key], { ring, weights } = drawing;
+  if (key === "diameter") return [Math.max(value / 2, ...weights.map(({ at }) => 2 * at)), 2 * value];
+  if (key === "at") return [0, ring.diameter / 2];
+  if (key === "angle") return [-Math.PI, Math.PI];
+  const most = { mass: ring.mass, inertia: ring.mass * ring.diameter ** 2 / 4 }[key];
+  return value > 0 ? [value / 4, 2 * value] : [0, most];
+}
+
+const rangeOf = (map, name) => (isDrawn(name) ? drawnRange(map.drawing, name) : map.solver.ranges[name]);
+const spanOf = (map, name) => (isDrawn(name) ? drawnSpan(map.drawing, name) : LIVE_RANGES[name]);
+
+/** Whether hoops of the map differ in a number of the drawing, or are made so. */
+const usesDrawing = (map) => [...map.axes, ...map.spreads].some(({ name }) => isDrawn(name));
+/** What may be drawn to the right: the columns of a list, the axes of a grid. */
+const choicesOf = (map) => map.columns ?? map.axes;
+/** Whether hoops of the map differ in mass, and in size. */
+const differInMass = (map) => choicesOf(map).some(({ name }) => isDrawn(name) && name.endsWith(".mass"));
+const differInSize = (map) => choicesOf(map).some(({ name }) => name === "hoop.diameter");
+/** By what quantities of the whole map are shown in SI: NaN where its hoops have none in common. */
+const scaleOf = (map) => ({ gravity: map.fixed.gravity,
+  radius: differInSize(map) ? NaN : map.fixed.radius, mass: differInMass(map) ? NaN : units.mass });
+
+/** A design of a map over numbers of the drawing with what they come to, its radius and its mass among it. */
+function shapedBy(map, design) {
+  if (!map.drawing || !Object.keys(design).some(isDrawn)) return design;
+  const drawing = drawingAt(map.drawing, design),
+    { total_mass, mass_ratio, offset_ratio, inertia_factor } = map.solver.reduce(drawing);
+  return { ...design, mass_ratio, offset_ratio, inertia_factor, radius: drawing.ring.diameter / 2,
+    mass: total_mass };
+}
+
+/** A hoop as made after another drawing than its own: as leapmap's MadeHoops::take_body. */
+function madeBy(solver, hoop, drawing, made) {
+  const nominal = solver.reduce(drawing), body = solver.reduce(made), balanced = 1e-12,
+    turn = body.direction - nominal.direction, larger = made.ring.diameter / drawing.ring.diameter;
+  const turns = nominal.eccentricity > balanced && body.eccentricity > balanced;
+  return { ...hoop, mass_ratio: body.mass_ratio, offset_ratio: body.offset_ratio,
+    inertia_factor: body.inertia_factor,
+    release_angle: hoop.release_angle + (turns ? turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI)) : 0),
+    radius: hoop.radius * larger, release_spin: hoop.release_spin * Math.sqrt(larger),
+    drive_torque: hoop.drive_torque * nominal.total_mass / (body.total_mass * larger) };
+}
