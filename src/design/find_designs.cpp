@@ -153,7 +153,9 @@ std::vector<Place> best_places(Judge& judge, const Effort& effort, const FindOpt
       descend(*own, places[i]);
       improve(*own, places[i],
               {.most_rounds = 40,
-               .a_round = std::size_t{own->makes_hoops() ? 8u : 128u},
+               .a_round = std::size_t{!own->makes_hoops()      ? 128u
+                                      : own->dimensions() == 1 ? 4u
+                                                               : 8u},
                .seed = options.seed * 1000 + i,
                .widest = 0.03});
       return true;

@@ -67,7 +67,8 @@ bool is_gain(const Verdict& before, const Verdict& after) {
 void improve(Judge& judge, Place& place, const ImproveOptions& options) {
   RandomSteps steps(judge.dimensions(), options);
   Cloud cloud(judge, options.a_round);
-  constexpr int patience = 12;
+  // A yield is a count: what a few rounds do not better is as good as it can be told.
+  const int patience = judge.makes_hoops() ? 4 : 12;
   constexpr std::size_t most_learnt = 8, leaps = 8;
   Vector last = Vector::Zero(static_cast<Eigen::Index>(judge.dimensions()));
   int idle = 0;
