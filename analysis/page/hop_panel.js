@@ -109,6 +109,14 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
 
   function tell() {
     table.replaceChildren(...numberRows(now.story, now.design, chosen, map.slips));
+    element("tiles").replaceChildren(...tilesOf(now.story, now.design, chosen).map(([name, text]) => {
+      const tile = document.createElement("div"), term = document.createElement("dt"),
+        value = document.createElement("dd");
+      term.textContent = name;
+      value.textContent = text;
+      tile.append(term, value);
+      return tile;
+    }));
     // Each flag with its value in a piece, which lines do not break.
     command.replaceChildren(...commandPieces(now.design).flatMap((text, k) => {
       const piece = document.createElement("span");

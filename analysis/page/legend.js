@@ -1,5 +1,9 @@
 // What the map's signs and colours mean.
 
+/** A quantity's colours as they are below the threshold, from left to right. */
+const mutedScale = ({ table }) => `linear-gradient(90deg, ${[20, 128, 235].map((c) =>
+  `rgb(${muted([...table.subarray(3 * c, 3 * c + 3)]).join()})`).join()})`;
+
 /** Lists the signs and colours that the map has now. */
 function showLegend(map, view) {
   const entry = (words, colour, image) => {
@@ -13,8 +17,7 @@ function showLegend(map, view) {
   const { field } = view.view, showsSpurious = isOfFirstJump(field)
     && map.codes.spurious_first_jump?.values.includes(1);
   if (showsSpurious && !map.columns)
-    items.push(entry("first lift-off below the threshold", "",
-      `repeating-linear-gradient(135deg, #555 0 1px, #fff 1px 5px)`));
+    items.push(entry("first lift-off below the threshold", "", mutedScale(field)));
   // Of hoops as made a number stands wherever there are some.
   const bare = field.made
     && new Set(map.codes.status?.values.filter((_, k) => Number.isNaN(field.values[k])));

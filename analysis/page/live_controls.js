@@ -53,6 +53,12 @@ function writeLive(words, map, defaults) {
       words.set(name, String(value));
 }
 
+/** What belongs together, as the page has it. */
+const GROUPS = [["Hoop", ["mass_ratio", "offset_ratio", "inertia_factor", "radius"]],
+  ["Ground", ["slope", "mu_static", "mu_kinetic", "restitution", "rest_speed", "gravity"]],
+  ["Release", ["release_angle", "release_spin", "runway", "hop_height"]],
+  ["Motor", ["drive_torque", "resisting_torque"]]];
+
 /** The parameters that a live map's model has, and those of them that are of the design itself. */
 const liveParameters = (map) => Object.keys(LIVE_RANGES)
   .filter((name) => name in map.parameters && (map.slips || !SLIPPING.includes(name)));
@@ -123,9 +129,9 @@ function liveControls(map, solver, changed) {
 
   function showSliders() {
     const follows = (name) => usesDrawing(map) && (RATIOS.includes(name) || name === "radius");
-    const rows = liveParameters(map)
-      .filter((name) => !follows(name) && !map.axes.some((axis) => axis.name === name))
-      .map((name) => {
+    const shown = liveParameters(map)
+      .filter((name) => !follows(name) && !map.axes.some((axis) => axis.name === name));
+    const rowOf = (name) => {
       const { label, unit } = map.parameters[name], [low, high] = LIVE_RANGES[name];
       const row = document.createElement("label"), words = document.createElement("span"),
         slider = document.createElement("input"), number = document.createElement("input");
@@ -162,10 +168,17 @@ function liveControls(map, solver, changed) {
         () => { take(number.value === "" ? NaN : Number(number.value) / factor(name));
         if (number.getAttribute("aria-invalid") !== "true") show(); });
       show();
-      row.append(words, slider, number);
+      row.append(words, number, slider);
       return row;
-    });
-    sliders.replaceChildren(...rows);
+    };
+    sliders.replaceChildren(...GROUPS.flatMap(([title, names]) => {
+      const some = names.filter((name) => shown.includes(name));
+      if (some.length === 0) return [];
+      const group = document.createElement("fieldset"), legend = document.createElement("legend");
+      legend.textContent = title;
+      group.append(legend, ...some.map(rowOf));
+      return [group];
+    }));
   }
 
   model.value = map.slips ? "coulomb" : "sticking";

@@ -1,4 +1,4 @@
-// The map as an image: cells, hatching, isolines, cliffs, axes, and a cursor on the design pointed at.
+// The map as an image: cells, isolines, cliffs, axes, and a cursor on the design pointed at.
 
 /** What a scene is told by. */
 const SCENE_WORDS = {
@@ -78,24 +78,23 @@ function mapView(canvas, map, onPoint, onPick) {
     return looked ? chains : undefined;
   }
 
-  /** What tells colours as canvases store them, red first in memory: (value, design, hatched), hatched where
-      the lines of sub-threshold lift-offs run. */
+  /** What tells colours as canvases store them, red first in memory: (value, design). Where the first lift-off
+      is below the threshold they are nearly grey. */
   function colouring() {
     // What fails is dimmed towards the ground.
     const { table, place } = view.field, own = isOfFirstJump(view.field), back = rgbOf(tones.ground);
-    const word = (rgb, dark, dim) => rgb.map((v, at) => back[at] + (v * dark - back[at]) * dim)
+    const word = (rgb, dim) => rgb.map((v, at) => back[at] + (v - back[at]) * dim)
       .reduceRight((all, v) => all << 8 | v, 255) >>> 0;
     const shades = [1, 0.2].map((dim) =>
-      [1, 0.45].map((dark) =>
-      Uint32Array.from({ length: 256 }, (_, c) => word([...table.subarray(3 * c, 3 * c + 3)], dark, dim))));
+      [(rgb) => rgb, muted].map((tone) =>
+      Uint32Array.from({ length: 256 }, (_, c) => word(tone([...table.subarray(3 * c, 3 * c + 3)]), dim))));
     const others = [1, 0.2].map((dim) =>
-      ({ grey: word([217, 217, 217], 1, dim), white: word([255, 255, 255], 1, dim),
-      statuses: status?.rgb.map((rgb) => word(rgb, 1, dim)) }));
-    return (value, k, hatched) => {
+      ({ grey: word([217, 217, 217], dim), white: word([255, 255, 255], dim),
+      statuses: status?.rgb.map((rgb) => word(rgb, dim)) }));
+    return (value, k) => {
       const dimmed = map.keeps && !map.keeps(k) ? 1 : 0;
       if (value === value)
-        return shades[dimmed][hatched && flags && own && flags.values[k] === 1 ? 1
-          : 0][Math.round(255 * place(value))];
+        return shades[dimmed][flags && own && flags.values[k] === 1 ? 1 : 0][Math.round(255 * place(value))];
       return status ? others[dimmed].statuses[status.values[k]] ?? others[dimmed].white : others[dimmed].grey;
     };
   }
@@ -105,34 +104,33 @@ function mapView(canvas, map, onPoint, onPick) {
     const { x0, y0, w, h } = box, image = context.createImageData(w, h),
       data = new Uint32Array(image.data.buffer), { values } = view.field;
     const colourOf = colouring();
-    const period = Math.round(9 * frame.ratio), line = Math.max(1, Math.round(frame.ratio * 0.8));
     if (isCrisp) {
       // Of hoops as made values are smooth across the cliffs of hoops as drawn.
       pixels = crispPlane(values, offset, sx, sy, box, view.field.made ? []
         : chains.map((chain) => chain.places));
-      for (let q = 0, pixel = 0; q < h; ++q)
-        for (let p = 0; p < w; ++p, ++pixel)
-          data[pixel] = colourOf(pixels.value[pixel], pixels.design[pixel], (p + q) % period < line);
+      for (let pixel = 0; pixel < w * h; ++pixel)
+        data[pixel] = colourOf(pixels.value[pixel], pixels.design[pixel]);
     } else {
       // One colour a design, of which there are fewer than pixels.
       const design = new Int32Array(w * h),
         columns = Int32Array.from({ length: w }, (_, p) => sx.index(x0 + p + 0.5)),
-        plain = new Uint32Array(sx.n), hatched = new Uint32Array(sx.n);
+        colours = new Uint32Array(sx.n);
       const at = new Int32Array(sx.n), [r, g, b] = rgbOf(tones.ground),
         none = (255 << 24 | b << 16 | g << 8 | r) >>> 0;
       let done = -1;
       for (let q = 0, pixel = 0; q < h; ++q) {
         const j = sy.index(y0 + q + 0.5);
         if (j >= 0 && j !== done) {
-          for (let i = 0; i < sx.n; ++i) { at[i] = offset(i, j);
-              plain[i] = colourOf(values[at[i]], at[i], false);
-              hatched[i] = colourOf(values[at[i]], at[i], true); }
+          for (let i = 0; i < sx.n; ++i) {
+            at[i] = offset(i, j);
+            colours[i] = colourOf(values[at[i]], at[i]);
+          }
           done = j;
         }
         for (let p = 0; p < w; ++p, ++pixel) {
           const i = columns[p];
           design[pixel] = i >= 0 && j >= 0 ? at[i] : -1;
-          data[pixel] = design[pixel] < 0 ? none : (p + q) % period < line ? hatched[i] : plain[i];
+          data[pixel] = design[pixel] < 0 ? none : colours[i];
         }
       }
       pixels = { design };
@@ -276,6 +274,7 @@ function mapView(canvas, map, onPoint, onPick) {
     const values = designAt(map, view.index);
     const told = Object.entries(map.parameters)
       .filter(([name]) => !drawn.includes(name) && Number.isFinite(values[name])
+      && !(map.axes.some((axis) => isDrawn(axis.name)) && RATIOS.includes(name))
       && (map.slips || !SLIPPING.includes(name)) && !NO_LIVE_AXIS.includes(name))
       .map(([name, row]) => `${row.symbol} ${withUnit(short(inShownUnit(row, values[name])), row.unit)}`);
     const scene = Object.entries(SCENE_WORDS)

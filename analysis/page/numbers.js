@@ -15,6 +15,18 @@ function numberRow(name, words, text, value) {
 /** Whether the jumps of a hoop become the same, one by one or some in turn. */
 const isSteady = ({ gait_period: period }) => period > 0 && period < 255;
 
+/** What most people want to know of a hoop, as [name, value] in the units shown; empty: it does not jump. */
+function tilesOf({ outcome }, design, chosen) {
+  if (outcome.status !== "jumped") return [];
+  const R = design.radius, speed = Math.sqrt(design.gravity * R), measure = measuresOf(design, chosen.mass);
+  const { jump_height: height, jump_range: range, landing_normal_speed: normal, landing_energy_lost: lost,
+    landing_tangential_speed: along, max_normal_force: force } = outcome;
+  return [["height", measure.length(2 * R * height, 3)], ["range", measure.length(R * range, 3)],
+    ["landing speed", measure.speed(speed * Math.hypot(normal, along))],
+    ["lost in landing", measure.energy(lost)], ["hardest force", measure.force(force)]]
+    .filter(([, text]) => !text.startsWith("none"));
+}
+
 /** Rows of what a story of a design tells; chosen: {mass, jumps}. */
 function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
   const R = design.radius, second = Math.sqrt(R / design.gravity), measure = measuresOf(design, chosen.mass),

@@ -49,6 +49,19 @@ function option(select, value, text) {
   select.append(made);
 }
 
+/** Quantities by what they are of, as an option each, whose number is that of the quantity. */
+const KINDS = [["Jump", ({ name, made, gait }) => !made && !gait && !/^landing|^(slip|energy|dip)/.test(name)],
+  ["Way and landing", ({ made, gait }) => !made && !gait], ["Gait: jump after jump", ({ gait }) => gait],
+  ["Manufactured hoops", ({ made }) => made]];
+function offerGrouped(map, select) {
+  const groups = KINDS.map(([label]) => Object.assign(document.createElement("optgroup"), { label }));
+  map.fields.forEach((f, k) =>
+    option(groups[KINDS.findIndex(([, has]) => has(f))], k, fieldLabel(f, scaleOf(map))));
+  select.append(...groups.filter((group) => group.children.length > 0));
+}
+/** The option of a quantity, whatever group it is in. */
+const optionOf = (select, k) => select.querySelector(`option[value="${k}"]`);
+
 const withUnit = (text, unit) => (unit === "°" ? `${text}°` : unit ? `${text} ${unit}` : text);
 /** A design's parameters that vary over the map: their rows, each with the value. */
 const parametersAt = (map, index) =>
@@ -71,6 +84,18 @@ const LIVE_SUBTITLE =
   "Change any parameter: the map follows. Click a design to see it jump. The address stores the view.";
 
 const NOTHING_YET = { coarse: "false", whole: "false", cliffs: "false" };
+
+/** On a small screen the inputs are a sheet from below. */
+function sheetPart() {
+  const toggle = element("inputs-toggle");
+  const open = (isOpen) => {
+    document.body.classList.toggle("inputs-open", isOpen);
+    toggle.setAttribute("aria-expanded", String(isOpen));
+    toggle.textContent = isOpen ? "Close" : "Inputs and goals";
+  };
+  toggle.addEventListener("click", () => open(!document.body.classList.contains("inputs-open")));
+  document.addEventListener("keydown", (event) => { if (event.key === "Escape") open(false); });
+}
 
 /** Starts with a map that is solved as one looks. */
 function startLive(given, module, solver) {
@@ -241,12 +266,14 @@ function start(map, solver, teller) {
     : { x: element("x-axis"), y: element("y-axis") };
   element("y-axis").parentElement.hidden = Boolean(map.columns) || Boolean(map.live);
   element("x-axis").parentElement.hidden = Boolean(map.live);
-  map.fields.forEach((f, k) => option(fieldSelect, k, fieldLabel(f, scaleOf(map))));
+  offerGrouped(map, fieldSelect);
   fieldSelect.value = map.fields.indexOf(view.view.field);
   /** Offers what the model has. */
   const offerFields = () => {
-    map.fields.forEach((f, k) =>
-      { fieldSelect.options[k].hidden = fieldSelect.options[k].disabled = !applies(map, f); });
+    map.fields.forEach((f, k) => {
+      const offered = optionOf(fieldSelect, k);
+      offered.hidden = offered.disabled = !applies(map, f);
+    });
     if (!applies(map, view.view.field)) { fieldSelect.value = 0; view.view.field = map.fields[0]; }
   };
   offerFields();
@@ -352,7 +379,7 @@ function start(map, solver, teller) {
   if (filters) addressPart(filters);
   const tellUnits = () => {
     said = "";
-    map.fields.forEach((f, k) => { fieldSelect.options[k].textContent = fieldLabel(f, scaleOf(map)); });
+    map.fields.forEach((f, k) => { optionOf(fieldSelect, k).textContent = fieldLabel(f, scaleOf(map)); });
     view.paint();
     filters?.tell();
     drawCuts();
@@ -511,6 +538,7 @@ function addressed(map, words) {
     const live = data.only_live || addressWords().has("live");
     Object.assign(address, { live: Boolean(live), others: !data.only_live });
     tonesPart();
+    sheetPart();
     const toggle = element("live-toggle");
     toggle.hidden = Boolean(data.only_live);
     toggle.textContent = live ? "back to the map in the file"

@@ -1,5 +1,11 @@
 // From values to places and colours.
 
+/** A colour with a third of its chroma, for what is there but is not what one looks for. */
+function muted(rgb) {
+  const grey = 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2];
+  return rgb.map((v) => Math.round(grey + 0.33 * (v - grey)));
+}
+
 /** An axis of the map on the screen: its cells are around its values, halfway to the neighbours. */
 function axisScale(axis, from, to) {
   const shown = axis.values.map((v) => v * perUnit(axis.unit));
