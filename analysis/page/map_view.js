@@ -78,8 +78,8 @@ function mapView(canvas, map, onPoint, onPick) {
     return looked ? chains : undefined;
   }
 
-  /** What tells colours as canvases store them, red first in memory: (value, design). Where the first lift-off
-      is below the threshold they are nearly grey. */
+  /** What tells colours as canvases store them, red first in memory: (value, design). Where the first
+      lift-off is below the threshold they are nearly grey. */
   function colouring() {
     // What fails is dimmed towards the ground.
     const { table, place } = view.field, own = isOfFirstJump(view.field), back = rgbOf(tones.ground);

@@ -50,7 +50,8 @@ function option(select, value, text) {
 }
 
 /** Quantities by what they are of, as an option each, whose number is that of the quantity. */
-const KINDS = [["Jump", ({ name, made, gait }) => !made && !gait && !/^landing|^(slip|energy|dip)/.test(name)],
+const KINDS = [
+  ["Jump", ({ name, made, gait }) => !made && !gait && !/^landing|^(slip|energy|dip)/.test(name)],
   ["Way and landing", ({ made, gait }) => !made && !gait], ["Gait: jump after jump", ({ gait }) => gait],
   ["Manufactured hoops", ({ made }) => made]];
 function offerGrouped(map, select) {
