@@ -120,8 +120,8 @@ const std::array fields{
                "kinetic energy lost in the landing, in (m + m_p) g R"),
     of_wall("clears_from", &Outcome::clears_from,
             "first place along the plane, from the lift-off of the jump, at which the hoop flies over a thin "
-            "wall of scene.clear_height, in R"),
-    of_wall("clears_to", &Outcome::clears_to, "last such place, in R"),
+            "wall of scene.clear_height, in R; of several stretches, that of the highest place"),
+    of_wall("clears_to", &Outcome::clears_to, "last place of that stretch, in R"),
     of_way("max_normal_force", &Outcome::max_normal_force,
            "largest normal force from release to the lift-off of the jump, in (m + m_p) g"),
     of_way("motor_energy", &Outcome::motor_energy,
