@@ -187,6 +187,22 @@ std::string how_near(const Outcome& outcome, const Scene& scene) {
                      outcome.first_jump_height, scene.hop_height);
 }
 
+/// What a goal asks for and what became of it, in the units shown.
+std::string told_miss(Report& report, const Goal& goal, double value) {
+  const Field& field = *find_field(goal.field);
+  const bool is_number = goal.unit_of_nominal == 0.0 && !std::holds_alternative<Code>(field.source);
+  std::vector<std::string> limits;
+  if (!is_number) limits.push_back(text_of(goal));
+  if (is_number && std::isfinite(goal.at_least))
+    limits.push_back("at least " + report.units.told(goal.at_least, field));
+  if (is_number && std::isfinite(goal.at_most))
+    limits.push_back("at most " + report.units.told(goal.at_most, field));
+  const std::string told = std::isnan(value) ? "does not apply"
+                           : is_number       ? report.units.told(value, field)
+                                             : fmt::format("{:.10g}", value);
+  return fmt::format("{} {}: {}", goal.field, fmt::join(limits, ", "), told);
+}
+
 /// The best that there is where no design does it.
 void print_miss(const Spec& spec, Report& report, const FoundDesigns& found) {
   const Question& question = report.question;
@@ -198,8 +214,7 @@ void print_miss(const Spec& spec, Report& report, const FoundDesigns& found) {
   if (nearest.outcome.status != Status::jumped)
     say("     {}\n", how_near(nearest.outcome, question.one.scene));
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
-    say("     {} {}: {}\n", spec.goals[k].field, text_of(spec.goals[k]),
-        std::isnan(found.missed[k]) ? "does not apply" : fmt::format("{:.10g}", found.missed[k]));
+    say("     {}\n", told_miss(report, spec.goals[k], found.missed[k]));
   say("     {}\n", command_of(question, nearest));
 }
 

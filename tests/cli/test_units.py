@@ -4,6 +4,7 @@ import csv
 import itertools
 import json
 import math
+import re
 
 import h5py
 import numpy as np
@@ -741,3 +742,12 @@ def test_manufactured_hoops_are_told_in_grams_and_millimetres(drawing):
     assert f"({120 * mean:.4g} mm)" in shown, shown
     of_each = leapmap(*hop, "--set", 'tolerances.hoop.diameter={normal="1 mm"}').stdout
     assert "normal 1 mm " in of_each and " mm)" not in of_each.split("if it jumps")[1], of_each
+
+
+def test_the_goals_of_a_nearest_miss_are_told_in_a_drawing_s_units(drawing):
+    missed = leapmap("design", drawing, "--set", 'slope={from="5 deg",to="30 deg"}', "--set",
+                     'goal.jump_height={at_least="100 mm"}', "--set", 'goal.minimize=["slope"]', "--sample", 512)
+    assert missed.returncode == 1, missed.stderr
+    [line] = [line for line in missed.stdout.splitlines() if "at least" in line]
+    limit, value = re.fullmatch(r" +jump_height at least 0.833333 \((.*) mm\): \S+ \((.*) mm\)", line).groups()
+    assert float(limit) == 100 and 20 < float(value) < 100, line
