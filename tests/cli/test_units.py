@@ -746,8 +746,10 @@ def test_manufactured_hoops_are_told_in_grams_and_millimetres(drawing):
 
 def test_the_goals_of_a_nearest_miss_are_told_in_a_drawing_s_units(drawing):
     missed = leapmap("design", drawing, "--set", 'slope={from="5 deg",to="30 deg"}', "--set",
-                     'goal.jump_height={at_least="100 mm"}', "--set", 'goal.minimize=["slope"]', "--sample", 512)
+                     'goal.jump_height={at_least="100 mm"}', "--set", 'goal.minimize=["slope"]', "--sample",
+                     512)
     assert missed.returncode == 1, missed.stderr
     [line] = [line for line in missed.stdout.splitlines() if "at least" in line]
-    limit, value = re.fullmatch(r" +jump_height at least 0.833333 \((.*) mm\): \S+ \((.*) mm\)", line).groups()
+    told = re.fullmatch(r" +jump_height at least 0.833333 \((.*) mm\): \S+ \((.*) mm\)", line)
+    limit, value = told.groups()
     assert float(limit) == 100 and 20 < float(value) < 100, line
