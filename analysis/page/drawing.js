@@ -10,20 +10,24 @@ const NEW_WEIGHT = { mass: 0.02, at: 0, angle: 0, inertia: 0 };
 /** The usual name of a mass, by its place. */
 const usualName = (k) => `mass${k + 1}`;
 
-/** In words: "0.12:0.061:0.00019;0.085:0.047:0:0:slug": the ring's numbers, then each mass's, in SI, and its
-    name if that is not the usual one. */
-const drawingWord = ({ ring, weights }) => [[RING, ring], ...weights.map((weight) => [WEIGHT, weight])]
-  .map(([rows, part], k) => [...rows.map(([name]) => (Number.isFinite(part[name]) ? part[name] : "")),
-    ...(k > 0 && part.name !== usualName(k - 1) ? [part.name] : [])].join(":")).join(";");
+/** In words: "0.12:0.061:0.00019;0.085:0.047:0:0:slug;=drive_torque": the ring's numbers, then each mass's, in
+    SI, and its name if that is not the usual one, then the parameters in the units of this hoop. */
+const drawingWord = ({ ring, weights, held = [] }) => [
+  ...[[RING, ring], ...weights.map((weight) => [WEIGHT, weight])]
+    .map(([rows, part], k) => [...rows.map(([name]) => (Number.isFinite(part[name]) ? part[name] : "")),
+      ...(k > 0 && part.name !== usualName(k - 1) ? [part.name] : [])].join(":")),
+  ...(held.length > 0 ? [`=${held.join(",")}`] : [])].join(";");
 
 /** And back; null if it is none. */
 function drawingOf(word) {
-  const [ring, ...weights] = (word ?? "").split(";").map((part) => part.split(":"));
+  const words = (word ?? "").split(";"), isHeld = (part) => part.startsWith("="),
+    held = words.filter(isHeld).flatMap((part) => part.slice(1).split(",")),
+    [ring, ...weights] = words.filter((part) => !isHeld(part)).map((part) => part.split(":"));
   const numbers = (rows, texts) => Object.fromEntries(rows.map(([name], k) =>
     [name, texts[k] === "" ? NaN : Number(texts[k])]));
-  const fits = ring.length === RING.length
+  const fits = ring?.length === RING.length && held.every((name) => Object.hasOwn(SAME_IN_SI, name))
     && weights.every(({ length }) => [WEIGHT.length, WEIGHT.length + 1].includes(length));
-  const drawing = fits && { ring: numbers(RING, ring), weights: weights.map((texts, k) =>
+  const drawing = fits && { held, ring: numbers(RING, ring), weights: weights.map((texts, k) =>
     ({ name: texts[WEIGHT.length] ?? usualName(k), ...numbers(WEIGHT, texts) })) };
   return drawing && wrongIn(drawing) === null ? drawing : null;
 }

@@ -16,13 +16,13 @@ function partOf(drawing, name) {
 }
 
 /** A drawing with all its numbers, from one of which some are null, as the explorer writes it. */
-const wholeDrawing = ({ ring, weights }) => ({ ring: { ...ring, inertia: ring.inertia ?? NaN },
+const wholeDrawing = ({ ring, weights, held = [] }) => ({ held, ring: { ...ring, inertia: ring.inertia ?? NaN },
   weights: weights.map((weight) =>
     ({ ...weight, angle: weight.angle ?? 0, inertia: weight.inertia ?? 0 })) });
 
 /** The drawing with the numbers that a design has of its own. */
 function drawingAt(drawing, design) {
-  const own = { ring: { ...drawing.ring }, weights: drawing.weights.map((weight) => ({ ...weight })) };
+  const own = { ...drawing, ring: { ...drawing.ring }, weights: drawing.weights.map((weight) => ({ ...weight })) };
   for (const [name, value] of Object.entries(design)) {
     if (!isDrawn(name)) continue;
     const [part, key] = partOf(own, name);
@@ -74,13 +74,21 @@ const differInSize = (map) => choicesOf(map).some(({ name }) => name === "hoop.d
 const scaleOf = (map) => ({ gravity: map.fixed.gravity,
   radius: differInSize(map) ? NaN : map.fixed.radius, mass: differInMass(map) ? NaN : units.mass });
 
+/** Parameters that hoops may have the same of in the SI, and the powers of a hoop's mass and size as which it
+    has them in its own units: as leapmap's same_in_si. */
+const SAME_IN_SI = { drive_torque: [-1, -1], resisting_torque: [-1, -1], release_spin: [0, 0.5] };
+const inOwnUnits = (design, names, heavier, larger) =>
+  Object.fromEntries(names.filter((name) => name in design).map((name) =>
+    [name, design[name] * heavier ** SAME_IN_SI[name][0] * larger ** SAME_IN_SI[name][1]]));
+
 /** A design of a map over numbers of the drawing with what they come to, its radius and its mass among it. */
 function shapedBy(map, design) {
   if (!map.drawing || !Object.keys(design).some(isDrawn)) return design;
-  const drawing = drawingAt(map.drawing, design),
+  const drawing = drawingAt(map.drawing, design), nominal = map.solver.reduce(map.drawing).total_mass,
     { total_mass, mass_ratio, offset_ratio, inertia_factor } = map.solver.reduce(drawing);
   return { ...design, mass_ratio, offset_ratio, inertia_factor, radius: drawing.ring.diameter / 2,
-    mass: total_mass };
+    mass: total_mass, ...inOwnUnits(design, map.drawing.held ?? [], total_mass / nominal,
+      drawing.ring.diameter / map.drawing.ring.diameter) };
 }
 
 /** A hoop as made after another drawing than its own: as leapmap's MadeHoops::take_body. */
@@ -91,6 +99,6 @@ function madeBy(solver, hoop, drawing, made) {
   return { ...hoop, mass_ratio: body.mass_ratio, offset_ratio: body.offset_ratio,
     inertia_factor: body.inertia_factor,
     release_angle: hoop.release_angle + (turns ? turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI)) : 0),
-    radius: hoop.radius * larger, release_spin: hoop.release_spin * Math.sqrt(larger),
-    drive_torque: hoop.drive_torque * nominal.total_mass / (body.total_mass * larger) };
+    radius: hoop.radius * larger,
+    ...inOwnUnits(hoop, Object.keys(SAME_IN_SI), body.total_mass / nominal.total_mass, larger) };
 }

@@ -488,14 +488,17 @@ function liveFrom(map) {
   const axes = map.columns ? [] : map.axes.filter(fit)
     .sort((a, b) => b.values.length - a.values.length).slice(0, 2)
     .sort((a, b) => (b.name === "slope") - (a.name === "slope"));
-  axes.forEach((axis, k) =>
-    words.set(k === 0 ? "x" : "y", `${axis.name}:${axis.values[0]}:${axis.values.at(-1)}`));
   const rest = (map.columns ? [] : map.axes).filter((axis) => !axes.includes(axis))
     .map((axis) => [axis.name, axis.values[Math.floor(axis.values.length / 2)]]);
-  for (const [name, value] of rest) if (!isDrawn(name)) words.set(name, value);
+  const here = shapedBy(map, { ...map.fixed, ...Object.fromEntries(rest) });
+  const unit = (name) => (map.drawing?.held?.includes(name)
+    ? shapedBy(map, { ...Object.fromEntries(rest), [name]: 1 })[name] : 1);
+  axes.forEach(({ name, values }, k) => words.set(k === 0 ? "x" : "y",
+    `${name}:${values[0] * unit(name)}:${values.at(-1) * unit(name)}`));
+  for (const [name] of rest) if (!isDrawn(name)) words.set(name, here[name]);
   if (map.drawing)
     words.set("drawing", drawingWord(drawingAt(wholeDrawing(map.drawing), Object.fromEntries(rest))));
-  for (const [name, value] of Object.entries(map.fixed)) if (Number.isFinite(value)) words.set(name, value);
+  for (const name of Object.keys(map.fixed)) if (Number.isFinite(here[name])) words.set(name, here[name]);
   if (map.slips) words.set("friction", "coulomb");
   if (map.settle > 0) words.set("settle", Math.min(map.settle, element("settle").max));
   for (const spread of map.spreads) words.append("made", spreadWord(spread));

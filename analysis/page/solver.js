@@ -52,6 +52,7 @@ async function solverOf(module) {
       .set(parameters.map((name) => design[name] ?? defaults[name] ?? (name === "mass" ? unknown : noWall)));
     if (design.drawing) putDrawing(design.drawing);
     leapmap.take_drawing(design.drawing ? 1 : 0);
+    for (const name of design.drawing?.held ?? []) leapmap.hold(parameters.indexOf(name));
   };
   /** The solver's number of a parameter or, as "hoop.slug.mass", of a number of a design's drawing. */
   const numberOf = (name, design) => {

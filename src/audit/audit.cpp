@@ -145,10 +145,10 @@ void derive_by_ratios(const MapReader& map, const Request& request, const Tile& 
     const Variable variable = *find_variable(derivative->hoop, &bodies[0]);
     const std::vector<double> stored = map.read(std::string(column->name), tile);
     for (std::size_t i = 0; i < drawn.size(); ++i) {
-      Design by;
-      for (double Design::*ratio : body_ratios) by.*ratio = solved.column(derivative->of, ratio)[i];
-      const double value = derivative->of.of(outcomes[i]),
-                   right = variable.derivative(by, bodies[i], grows_with_size(derivative->of) ? value : 0.0);
+      const Design by = solved.of_design(derivative->of, i);
+      const double right = variable.derivative(
+          by, bodies[i],
+          ByScale::of(designs[i], by, in_seconds(derivative->of, outcomes[i]), request.held));
       const double single = stored[drawn[i]] == static_cast<float>(stored[drawn[i]]) ? 1e-6 : 0.0;
       if (std::abs(stored[drawn[i]] - right) <= (near + single) * (1.0 + std::abs(right))) continue;
       if (std::isnan(stored[drawn[i]]) && std::isnan(right)) continue;

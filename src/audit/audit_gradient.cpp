@@ -15,6 +15,7 @@
 #include "request/request.hpp"
 #include "request/solver.hpp"
 #include "spec/designs.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap {
 namespace {
@@ -89,6 +90,7 @@ Solver follow_up_of(const Spec& spec, const GradientWanted& wanted) {
 GradientAuditor::GradientAuditor(const Spec& spec)
     : spec_(spec),
       wanted_(derivatives_of(request_of(spec))),
+      held_(held_in_si(spec)),
       follow_up_(follow_up_of(spec, wanted_)),
       parameters_each_(parameters_of_each(spec, wanted_.by.size())),
       rounding_(spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0) {}
@@ -104,15 +106,18 @@ void GradientAuditor::look_at(std::size_t number, const Design& design, const Ou
     if (std::isnan(design.*parameter)) continue;
     if (parameter == &Design::mu_kinetic && kinetic_follows(design)) continue;  // it is not free
     applies = true;
+    double unit = 1.0;  // of the parameter, in the hoop's own
+    for (const SameInSi& held : held_)
+      if (held.parameter == parameter) unit = held.of_hoop(design.mass, design.size);
     Beside beside, closer;
     if (!look_beside(design, spec_.scene, parameter, ours, step, follow_up_, beside)) continue;
     decided = true;
     for (std::size_t i = 0; i < wanted_.of.size(); ++i) {
-      auto error = error_of(gradient[i * parameters + j], wanted_.of[i], beside);
+      auto error = error_of(gradient[i * parameters + j] / unit, wanted_.of[i], beside);
       // Phases that no flag shows may change within the steps, not within finer ones.
       if (error && *error > allowed + rounding_ &&
           look_beside(design, spec_.scene, parameter, ours, fine_step, follow_up_, closer))
-        error = error_of(gradient[i * parameters + j], wanted_.of[i], closer);
+        error = error_of(gradient[i * parameters + j] / unit, wanted_.of[i], closer);
       if (!error) continue;
       if (std::isfinite(*error)) report.gradient_max_error = std::max(report.gradient_max_error, *error);
       wrong = wrong || *error > allowed + rounding_;

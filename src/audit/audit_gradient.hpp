@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "hoop/body.hpp"
 #include "leapmap/audit.hpp"
 #include "leapmap/spec.hpp"
 #include "trajectory/gradient.hpp"
@@ -27,6 +28,7 @@ class GradientAuditor {
  private:
   const Spec& spec_;
   GradientWanted wanted_;
+  std::vector<SameInSi> held_;
   Solver follow_up_;
   std::size_t parameters_each_;  ///< compared of each design
   double rounding_;              ///< of what is stored, relative

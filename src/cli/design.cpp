@@ -58,13 +58,22 @@ struct Report {
   void scale_to(std::span<const double> free) {
     units.scale(scales_of(question.one, question.designs.at(free)));
   }
+  /// The same, for a parameter, which may be in the units of the nominal hoop.
+  void scale_for(const std::string& parameter, std::span<const double> free) {
+    const std::vector<std::string>& held = question.one.nominal_units;
+    if (std::ranges::find(held, parameter) == held.end()) return scale_to(free);
+    units.scale(nominal_scales(question.one));
+  }
 };
 
 std::string told_parameters(Report& report, const FoundDesign& found) {
   const std::vector<FreeParameter>& free = report.question.free;
   std::vector<std::string> told;
-  for (std::size_t k = 0; k < free.size(); ++k)
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    report.scale_for(free[k].name, found.free);
     told.push_back(fmt::format("{} {}", free[k].name, report.units.told(found.free[k], free[k].name)));
+  }
+  report.scale_to(found.free);
   return fmt::format("{}", fmt::join(told, ", "));
 }
 

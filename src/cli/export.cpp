@@ -39,6 +39,7 @@ struct Column {
   const Field* field = nullptr;        ///< none: a parameter
   std::optional<std::size_t> along{};  ///< the axis whose values it has; none: a dataset
   ShownUnit shown{};
+  bool held = false;     ///< in the unit of the nominal hoop
   bool by_hoop = false;  ///< the factor is another for each design's mass and radius
 };
 
@@ -76,15 +77,17 @@ ShownUnit shown_by(ShownUnits& units, const Column& column, const Scales& scales
   return column.field ? units.of(*column.field) : units.of(column.name);
 }
 
-/// varies: whether designs differ in mass or size.
-void choose_units(std::vector<Column>& columns, ShownUnits& units, Scales scales, bool varies) {
-  if (varies && !(scales.mass > 0.0)) scales.mass = 1.0;
-  for (Column& column : columns) column.shown = shown_by(units, column, scales);
+void choose_units(std::vector<Column>& columns, ShownUnits& units, const Spec& spec) {
+  Scales scales = nominal_scales(spec);
+  for (Column& column : columns) {
+    column.shown = shown_by(units, column, scales);
+    column.held = std::ranges::find(spec.nominal_units, column.name) != spec.nominal_units.end();
+  }
   units.refuse_unused();
-  if (!varies) return;
+  if (!mass_varies(spec) && !find_varying(spec, "hoop.diameter")) return;
   scales.mass *= 2.0, scales.radius *= 3.0;
   for (Column& column : columns)
-    column.by_hoop = shown_by(units, column, scales).factor != column.shown.factor;
+    column.by_hoop = !column.held && shown_by(units, column, scales).factor != column.shown.factor;
 }
 
 /// The sizes and total masses of a block's designs.
@@ -114,11 +117,15 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
   }
   const auto* code = column.field ? std::get_if<Code>(&column.field->source) : nullptr;
   const std::vector<double> values = column.along ? std::vector<double>{} : map.read(column.name, block);
+  const auto told = [&](double value, std::size_t i) {
+    const bool own = column.by_hoop && !hoops.empty();
+    return text_of(value, own ? shown_by(units, column, hoops[i]).factor : column.shown.factor);
+  };
   for (std::size_t i = 0; i < block.count; ++i) {
     if (column.along) {
       const std::size_t k = *column.along;
       const std::size_t place = block.start[k] + place_along(block.extent, i, k);
-      texts[i] = text_of(map.dimensions()[k].values[place], column.shown.factor);
+      texts[i] = told(map.dimensions()[k].values[place], i);
     } else if (code) {
       const auto number = static_cast<std::size_t>(values[i]);
       if (number < code->names.size())
@@ -126,8 +133,7 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
       else if (code->names.empty() && number != code->fill)
         texts[i] = fmt::format("{}", number);
     } else if (std::isfinite(values[i])) {
-      const bool own = column.by_hoop && !hoops.empty();
-      texts[i] = text_of(values[i], own ? shown_by(units, column, hoops[i]).factor : column.shown.factor);
+      texts[i] = told(values[i], i);
     }
   }
   return texts;
@@ -189,9 +195,8 @@ int run(const ExportArguments& arguments) {
                     arguments.map, grouped(designs), grouped(most_rows)));
   const Spec spec = spec_of(map, arguments.map);
   std::vector<Column> columns = columns_of(map, arguments);
-  const Scales scales = leapmap::scales_of(spec.scene);
-  ShownUnits units(arguments.units, scales);
-  choose_units(columns, units, scales, mass_varies(spec) || find_varying(spec, "hoop.diameter"));
+  ShownUnits units(arguments.units, nominal_scales(spec));
+  choose_units(columns, units, spec);
   if (!map.is_whole()) tell(arguments.map + ": is INCOMPLETE: designs not computed have empty cells");
   TextOutput file("-o", arguments.output, {}, arguments.overwrite);
   note_signals();

@@ -99,7 +99,8 @@ Table table_of(const std::vector<PrecisionRow>& rows) {
 /// The designs of a CSV list, as sweeps read it.
 std::vector<Design> read_designs(const std::string& path) {
   Spec spec;
-  spec.list = read_points(path, "leapmap precision");
+  std::vector<std::string> none;
+  spec.list = read_points(path, "leapmap precision", {}, {}, none);
   std::vector<Design> designs;
   for (std::size_t i = 0; i < spec.list.count; ++i) designs.push_back(DesignSpace(spec).at(i));
   return designs;

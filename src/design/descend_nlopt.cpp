@@ -33,11 +33,13 @@ class Slope {
         if (std::isfinite(tight.at_most)) bounds_.push_back({quantity->member, tight.at_most, 1.0});
       }
     if (of.empty()) return;
-    parameters_ = parameters_of(question.designs.variables());
     std::vector<std::string> by;
-    for (const Variable& parameter : parameters_) by.push_back(parameter.key);
+    for (const Variable& parameter : parameters_of(question.designs.variables())) by.push_back(parameter.key);
+    for (const std::string& held : question.one.nominal_units)
+      if (std::ranges::find(by, held) == by.end()) by.push_back(held);
     std::ranges::copy(derivative_columns(question.one.scene, of, by), std::back_inserter(columns));
     const Request request = request_of(question.one, columns);
+    held_ = request.held;
     solver_ = make_gradient_solver(request);
     gradients_ = Gradients(derivatives_of(request));
   }
@@ -74,8 +76,8 @@ class Slope {
     for (const double coordinate : at)
       if (!std::isfinite(coordinate)) throw nlopt::forced_stop();
     values_ = judge_.question().values(at);
-    const Design design = judge_.question().designs.at(values_, &body_);
-    if (solver_) gradients_.begin(1), solver_({&design, 1}, {&outcome_, 1}, gradients_);
+    design_ = judge_.question().designs.at(values_, &body_);
+    if (solver_) gradients_.begin(1), solver_({&design_, 1}, {&outcome_, 1}, gradients_);
     Place here{at, judge_.judge(at)};
     if (better(here.verdict, best.verdict)) best = std::move(here);
   }
@@ -85,12 +87,10 @@ class Slope {
     return side.log ? values_[k] * std::log(side.high / side.low) : side.high - side.low;
   }
   double value(double Outcome::*of, double sign, std::vector<double>& slope) {
-    Design by;
-    for (const Variable& parameter : parameters_)
-      by.*parameter.parameter() = gradients_.column(of, parameter.parameter())[0];
-    const double in_seconds = grows_with_size(of) ? outcome_.*of : 0.0;
+    const Design by = gradients_.of_design(of, 0);
+    const ByScale by_scale = ByScale::of(design_, by, in_seconds(of, outcome_), held_);
     for (std::size_t k = 0; k < slope.size(); ++k)
-      slope[k] = sign * per_place(k) * judge_.question().free[k].variable.derivative(by, body_, in_seconds);
+      slope[k] = sign * per_place(k) * judge_.question().free[k].variable.derivative(by, body_, by_scale);
     const double value = sign * outcome_.*of;
     for (const double part : slope)
       if (!std::isfinite(part)) throw nlopt::forced_stop();  // out of the branch, or on its edge
@@ -103,8 +103,9 @@ class Slope {
   Gradients gradients_;
   std::vector<Bound> bounds_;
   std::vector<double> at_;
-  std::vector<Variable> parameters_;  // by which there are derivatives
+  std::vector<SameInSi> held_;
   std::vector<double> values_;
+  Design design_;
   Body body_;
   Outcome outcome_;
 };

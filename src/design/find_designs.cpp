@@ -21,6 +21,7 @@
 #include "numerics/sobol_points.hpp"
 #include "request/solver.hpp"
 #include "spec/options.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/stop.hpp"
 
 namespace leapmap {
@@ -302,9 +303,13 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
           slope.of = field->name;
           const auto of = std::get<Quantity>(field->source).member;
           slope.by = gradient(one.design, of, question.one.scene, how);
-          const double in_seconds = grows_with_size(of) ? one.outcome.*of : 0.0;
+          const std::vector<SameInSi> held = held_in_si(question.one);
+          Design by = slope.by;
+          for (const SameInSi& each : held)
+            by.*each.parameter *= each.of_hoop(one.design.mass, one.design.size);
+          const ByScale by_scale = ByScale::of(one.design, by, in_seconds(of, one.outcome), held);
           for (const FreeParameter& parameter : question.free)
-            slope.by_free.push_back(parameter.variable.derivative(slope.by, body, in_seconds));
+            slope.by_free.push_back(parameter.variable.derivative(by, body, by_scale));
         }
       if (judge.makes_hoops()) put_statistics(question, body, one);
       one.binds = binding(question, places[i], one);

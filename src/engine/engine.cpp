@@ -47,6 +47,7 @@ BlockSolver::BlockSolver(const Request& request, std::size_t most_in_block,
       gradients_(derivatives_of(request)),
       made_(statistics_of(request)),
       nominal_(request.hoop.value_or(Body{})),
+      held_(request.held),
       outcomes_(most_in_block) {
   for (const Field* column : request.columns)
     if (const auto* derivative = std::get_if<Derivative>(&column->source); derivative && !derivative->by)
@@ -58,22 +59,19 @@ Solved BlockSolver::solve(std::span<const Design> designs, std::span<const Body>
   const std::span outcomes = std::span(outcomes_).first(designs.size());
   solver_(designs, outcomes, gradients_);
   if (scatter_) scatter_->solve(designs, made_, bodies);
-  derive_by_body(designs.size(), bodies);
+  derive_by_body(designs, bodies);
   return {outcomes, gradients_, made_, by_body_};
 }
 
-/// From those by the ratios.
-void BlockSolver::derive_by_body(std::size_t designs, std::span<const Body> bodies) {
+void BlockSolver::derive_by_body(std::span<const Design> designs, std::span<const Body> bodies) {
   for (BodyColumn& column : by_body_) {
     const OutcomeNumber& of = std::get<Derivative>(column.field->source).of;
-    std::array<std::span<const double>, body_ratios.size()> by_ratio;
-    for (std::size_t k = 0; k < by_ratio.size(); ++k) by_ratio[k] = gradients_.column(of, body_ratios[k]);
-    column.values.resize(designs);
-    Design by;
-    for (std::size_t i = 0; i < designs; ++i) {
-      for (std::size_t k = 0; k < by_ratio.size(); ++k) by.*body_ratios[k] = by_ratio[k][i];
-      column.values[i] = column.variable.derivative(by, bodies.empty() ? nominal_ : bodies[i],
-                                                    grows_with_size(of) ? of.of(outcomes_[i]) : 0.0);
+    column.values.resize(designs.size());
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      const Design by = gradients_.of_design(of, i);
+      column.values[i] =
+          column.variable.derivative(by, bodies.empty() ? nominal_ : bodies[i],
+                                     ByScale::of(designs[i], by, in_seconds(of, outcomes_[i]), held_));
     }
   }
 }

@@ -66,13 +66,14 @@ class BlockSolver {
   Solved solve(std::span<const Design> designs, std::span<const Body> bodies = {});
 
  private:
-  void derive_by_body(std::size_t designs, std::span<const Body> bodies);
+  void derive_by_body(std::span<const Design> designs, std::span<const Body> bodies);
 
   GradientSolver solver_;
   Gradients gradients_;
   std::optional<ScatterSolver> scatter_;
   MadeColumns made_;
   Body nominal_;
+  std::vector<SameInSi> held_;
   std::vector<BodyColumn> by_body_;
   std::vector<Outcome> outcomes_;
 };

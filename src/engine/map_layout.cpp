@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "request/request.hpp"
 #include "spec/designs.hpp"
 
@@ -10,27 +12,29 @@ namespace leapmap {
 namespace {
 
 /// Units that are products of the hoop's own are numbers to other programs, and told in words.
-MapAxis describe(const Axis& axis) {
+MapAxis describe(const Spec& spec, const Axis& axis) {
   const Option& option = *find_option("", axis.key);
   const BodyNumber* of_body = find_body_number(axis.key);
   const OwnUnit* unit = find_own_unit(option.unit);
   const bool own = unit && unit->name != unit->si;
   const std::string meaning =
       of_body ? of_body->meaning_of(weight_of(axis.key)) : std::string(option.meaning);
+  const bool held = std::ranges::find(spec.nominal_units, axis.key) != spec.nominal_units.end();
   return {axis.key, std::string(own ? "1" : option.unit),
-          own ? fmt::format("{}, in {}", meaning, option.unit) : meaning, axis.values};
+          own ? fmt::format("{}, in {}{}", meaning, option.unit, held ? " of the nominal hoop" : "") : meaning,
+          axis.values};
 }
 
 }  // namespace
 
 MapLayout layout_of(const Spec& spec) {
   MapLayout layout;
-  for (const Axis& axis : spec.axes) layout.axes.push_back(describe(axis));
+  for (const Axis& axis : spec.axes) layout.axes.push_back(describe(spec, axis));
   if (spec.axes.empty()) {
     for (const Axis& column : spec.list.columns)
-      if (find_body_number(column.key)) layout.columns.push_back(describe(column));
+      if (find_body_number(column.key)) layout.columns.push_back(describe(spec, column));
     for (const Option* parameter : design_parameters(spec))
-      layout.columns.push_back(describe({std::string(parameter->key), list_values(spec, *parameter)}));
+      layout.columns.push_back(describe(spec, {std::string(parameter->key), list_values(spec, *parameter)}));
   }
   layout.labels = spec.list.labels;
   layout.fields = columns_of(spec);

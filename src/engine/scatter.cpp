@@ -13,6 +13,7 @@
 #include "numerics/nan.hpp"
 #include "numerics/sobol_indices.hpp"
 #include "request/solver.hpp"
+#include "spec/spec_hoop.hpp"
 #include "spec/spec.hpp"
 
 namespace leapmap {
@@ -44,7 +45,7 @@ class Workshop {
   void make(const Scatter& scatter, std::span<const std::size_t> dimensions, const Take& take) const {
     parallel_for_each(
         (samples() + made_at_once - 1) / made_at_once, options_.threads, options_.stop_requested, [&] {
-          MadeHoops hoops(scatter, spec_.hoop, points_);
+          MadeHoops hoops(scatter, spec_.hoop, held_in_si(spec_), points_);
           hoops.draw(spec_.design, nullptr, dimensions);
           return [&, hoops = std::move(hoops), solve = make_solver(asked_),
                   made = std::vector<Design>(made_at_once),
@@ -185,7 +186,7 @@ ScatterReport scatter(const Spec& spec, const ScatterOptions& asked) {
     report.quantities.push_back({std::string(field->name), tell(Statistic::mean), tell(Statistic::sd),
                                  tell(Statistic::q05), tell(Statistic::q50), tell(Statistic::q95)});
   }
-  const MadeHoops hoops(spec.scatter, spec.hoop,
+  const MadeHoops hoops(spec.scatter, spec.hoop, held_in_si(spec),
                         points_of({spec.scatter.spreads, SobolPoints::replicates, 0}));
   for (std::size_t k = 0; k < hoops.spreads(); ++k)
     report.cut_off.push_back(1.0 - hoops.law(k, spec.design).left);

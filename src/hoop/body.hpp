@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "leapmap/body.hpp"
 #include "numerics/dual.hpp"
@@ -86,6 +88,25 @@ inline ReducedBody reduce_checked(const Body& body) {
           .mass_ratio = sums.mass_ratio,
           .offset_ratio = sums.offset_ratio,
           .inertia_factor = sums.inertia_factor};
+}
+
+/// A parameter whose unit is made of the hoop's mass and size. Where hoops have the same of it in the SI, it
+/// is, in their own units, as these powers of their mass and size.
+struct SameInSi {
+  double Design::*parameter;
+  double with_mass, with_size;
+
+  double of_hoop(double heavier, double larger) const {
+    return std::pow(heavier, with_mass) * std::pow(larger, with_size);
+  }
+};
+inline constexpr std::array same_in_si{SameInSi{&Design::drive_torque, -1.0, -1.0},
+                                       SameInSi{&Design::resisting_torque, -1.0, -1.0},
+                                       SameInSi{&Design::release_spin, 0.0, 0.5}};
+
+/// From the units of the nominal hoop to those of the design, by its mass and size.
+inline void hold_in_si(std::span<const SameInSi> held, Design& design) {
+  for (const SameInSi& one : held) design.*one.parameter *= one.of_hoop(design.mass, design.size);
 }
 
 /// Gives a design the three ratios.

@@ -37,6 +37,11 @@ constexpr bool grows_with_size(const OutcomeNumber& number) {
   return false;
 }
 
+/// The quantity of an outcome if it is one of them, else 0.
+inline double in_seconds(const OutcomeNumber& number, const Outcome& outcome) {
+  return grows_with_size(number) ? number.of(outcome) : 0.0;
+}
+
 /// From a hoop of Scene::radius to one of the design's size.
 inline void resize(const Design& design, Outcome& outcome) {
   if (design.size == 1.0) return;

@@ -91,7 +91,7 @@ double Variable::of(const Design& design, const Body& body) const {
   return ring_ ? body.*ring_ : body.weights[weight_].*of_weight_;
 }
 
-double Variable::derivative(const Design& by, const Body& body, double in_seconds) const {
+double Variable::derivative(const Design& by, const Body& body, const ByScale& by_scale) const {
   if (parameter_) return by.*parameter_;
   using Number = Dual<double, 1>;
   const void* const here =
@@ -102,7 +102,8 @@ double Variable::derivative(const Design& by, const Body& body, double in_second
   });
   return by.mass_ratio * ratios.mass_ratio.by[0] + by.offset_ratio * ratios.offset_ratio.by[0] +
          by.inertia_factor * ratios.inertia_factor.by[0] +
-         (ring_ == &Body::diameter ? 0.5 * in_seconds / body.diameter : 0.0);
+         by_scale.mass * ratios.total_mass.by[0] / ratios.total_mass.value +
+         (ring_ == &Body::diameter ? by_scale.size / body.diameter : 0.0);
 }
 
 std::vector<Variable> variables_of(const Body& body) {

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "hoop/body.hpp"
 #include "leapmap/body.hpp"
 #include "model/parameters.hpp"
 
@@ -51,6 +52,26 @@ std::string_view weight_of(std::string_view key);
 /// Whether a key is the mass of the ring or of a weight.
 bool is_body_mass(std::string_view key);
 
+/// The derivatives by the logarithms of the hoop's mass and size [the quantity's unit].
+struct ByScale {
+  double mass = 0.0, size = 0.0;
+
+  /// in_seconds: the quantity itself, if it is a time or a speed, which grows with the root of the size; else
+  /// 0. held: parameters that are the same in the SI, the derivatives `by` which are in the units of the
+  /// nominal hoop.
+  static ByScale of(const Design& design, const Design& by, double in_seconds,
+                    std::span<const SameInSi> held) {
+    ByScale found{0.0, 0.5 * in_seconds};
+    for (const SameInSi& one : held) {
+      if (design.*one.parameter == 0.0) continue;  // its derivative may be infinite
+      const double by_logarithm =
+          by.*one.parameter * design.*one.parameter / one.of_hoop(design.mass, design.size);
+      found.mass += one.with_mass * by_logarithm, found.size += one.with_size * by_logarithm;
+    }
+    return found;
+  }
+};
+
 /// A number that may vary, and where a design or its body keeps it.
 class Variable {
  public:
@@ -65,9 +86,9 @@ class Variable {
   double Design::*parameter() const { return parameter_; }
   double& in(Design& design, Body& body) const;
   double of(const Design& design, const Body& body) const;
-  /// The derivative by it, from those by the parameters: of a number of the body, by way of the three ratios.
-  /// in_seconds: the value itself, if it is a time or a speed, which grows with the root of the diameter.
-  double derivative(const Design& by, const Body& body, double in_seconds = 0.0) const;
+  /// The derivative by it, from those by the parameters: of a number of the body, by way of the three ratios
+  /// and of the hoop's mass and size.
+  double derivative(const Design& by, const Body& body, const ByScale& by_scale = {}) const;
 
  private:
   friend std::optional<Variable> find_variable(std::string_view key, const Body* body);

@@ -5,7 +5,10 @@
 #include <span>
 
 #include "leapmap/body.hpp"
+#include "hoop/body.hpp"
 #include "model/variable.hpp"
+#include "spec/options.hpp"
+#include "spec/quantity.hpp"
 
 namespace py = pybind11;
 
@@ -51,8 +54,8 @@ py::dict reduce_hoops(const Rows& hoops, const std::vector<std::string>& weights
   return arrays;
 }
 
-py::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>& weights, const Rows& by,
-                               const Rows& values) {
+py::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>& weights,
+                               const Rows& by) {
   const py::ssize_t count = hoops.shape(0);
   const std::vector<double> none(static_cast<std::size_t>(hoops.shape(1)),
                                  1.0);  // an empty batch has names, too
@@ -65,13 +68,23 @@ py::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>
     Design by_ratios;
     for (std::size_t k = 0; k < body_ratios.size(); ++k)
       by_ratios.*body_ratios[k] = by.at(i, static_cast<py::ssize_t>(k));
-    const double in_seconds = values.size() > 0 ? values.at(i) : 0.0;
+    constexpr py::ssize_t after = body_ratios.size();
+    const ByScale by_scale{by.at(i, after), by.at(i, after + 1)};
     for (std::size_t k = 0; k < variables.size(); ++k)
-      columns[k].mutable_at(i) = variables[k].derivative(by_ratios, body, in_seconds);
+      columns[k].mutable_at(i) = variables[k].derivative(by_ratios, body, by_scale);
   }
   py::dict arrays;
   for (std::size_t k = 0; k < variables.size(); ++k) arrays[py::str(variables[k].key)] = columns[k];
   return arrays;
+}
+
+py::object powers_in_si(const std::string& parameter, const std::string& text) {
+  const Option* option = find_option("design", parameter);
+  const auto* slot = option ? std::get_if<ParameterSlot>(&option->slot) : nullptr;
+  for (const SameInSi& one : same_in_si)
+    if (slot && slot->member == one.parameter && number_in_si(text, *find_own_unit(option->unit)))
+      return py::make_tuple(one.with_mass, one.with_size);
+  return py::none();
 }
 
 }  // namespace leapmap::python

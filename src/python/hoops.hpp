@@ -17,10 +17,13 @@ using Rows = pybind11::array_t<double, pybind11::array::c_style | pybind11::arra
 pybind11::dict reduce_hoops(const Rows& hoops, const std::vector<std::string>& weights);
 
 /// The derivatives of one quantity by each number of the hoops, by key, from those by their ratios.
-/// by: a row a hoop, with the derivatives by mass_ratio, offset_ratio and inertia_factor.
-/// values: the quantity itself, if it is a time or a speed, which grows with the root of the diameter; else
-/// empty.
+/// by: a row a hoop, with the derivatives by mass_ratio, offset_ratio and inertia_factor, and by the
+/// logarithms of the hoop's mass and size.
 pybind11::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>& weights,
-                                     const Rows& by, const Rows& values);
+                                     const Rows& by);
+
+/// The powers of a hoop's mass and size as which a parameter is in its own units, if `text` gives it with a
+/// unit of the SI; None: it is without, or does not depend on them.
+pybind11::object powers_in_si(const std::string& parameter, const std::string& text);
 
 }  // namespace leapmap::python

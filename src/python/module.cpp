@@ -291,6 +291,7 @@ PYBIND11_MODULE(_core, module) {
   });
   module.def("reduce_hoops", &python::reduce_hoops);
   module.def("differentiate_by_hoop", &python::differentiate_by_hoop);
+  module.def("powers_in_si", &python::powers_in_si);
   module.def("grows_with_size", [](const std::string& field) {
     const auto number = number_of(*find_field(field));
     return number && grows_with_size(*number);

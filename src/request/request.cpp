@@ -10,6 +10,7 @@
 #include "model/parameters.hpp"
 #include "model/variable.hpp"
 #include "spec/spec.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap {
 namespace {
@@ -89,7 +90,8 @@ Request request_of(const Spec& spec, std::vector<const Field*> columns) {
           .columns = std::move(columns),
           .scatter = spec.scatter,
           .goals = spec.goals,
-          .hoop = spec.hoop};
+          .hoop = spec.hoop,
+          .held = held_in_si(spec)};
 }
 
 Request request_of_outcomes(const Spec& spec) {
@@ -158,14 +160,15 @@ GradientWanted derivatives_of(const Request& request) {
     if (!derivative) continue;
     if (!wanted.wants(derivative->of)) wanted.of.push_back(derivative->of);
     const auto add = [&](double Design::*by) {
-      const auto place =
-          static_cast<std::size_t>(std::ranges::find(differentiable, by) - differentiable.begin());
+      const std::size_t place = place_of(by);
       if (std::ranges::find(wanted.by, place) == wanted.by.end()) wanted.by.push_back(place);
     };
     if (derivative->by)
       add(derivative->by);
-    else
-      for (double Design::*ratio : body_ratios) add(ratio);  // by way of them
+    else {  // by way of these
+      for (double Design::*ratio : body_ratios) add(ratio);
+      for (const SameInSi& held : request.held) add(held.parameter);
+    }
   }
   return wanted;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hoop/body.hpp"
 #include "leapmap/scene.hpp"
 #include "leapmap/spec.hpp"
 #include "model/fields.hpp"
@@ -23,6 +24,7 @@ struct Request {
   Scatter scatter{};           ///< the tolerances of manufactured hoops
   std::vector<Goal> goals{};   ///< what counts as their yield
   std::optional<Body> hoop{};  ///< the nominal body, if the spec has [hoop]
+  std::vector<SameInSi> held{};  ///< parameters in the units of the nominal hoop
 };
 
 /// The columns of the spec's map, in the order of the file: those that it names; by default all that its

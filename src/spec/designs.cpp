@@ -42,7 +42,7 @@ const Axis* find_varying(const Spec& spec, std::string_view key) {
 }
 
 VariedDesigns::VariedDesigns(const Spec& spec, const std::vector<Axis>& axes)
-    : design_(spec.design), body_(spec.hoop.value_or(Body{})) {
+    : design_(spec.design), body_(spec.hoop.value_or(Body{})), held_(held_in_si(spec)) {
   for (const Axis& axis : axes) {
     variables_.push_back(*find_variable(axis.key, spec.hoop ? &*spec.hoop : nullptr));
     varies_body_ = varies_body_ || variables_.back().of_body();
@@ -57,7 +57,9 @@ Design VariedDesigns::at(std::span<const double> values, Body* wanted) const {
   Body& body = wanted ? *wanted : own;
   if (wanted || varies_body_) body = body_;
   for (std::size_t k = 0; k < values.size(); ++k) variables_[k].in(design, body) = values[k];
-  if (varies_body_) follow_body(body, body_.diameter, mass_, design);
+  if (!varies_body_) return design;
+  follow_body(body, body_.diameter, mass_, design);
+  hold_in_si(held_, design);
   return design;
 }
 
@@ -71,6 +73,8 @@ std::vector<double> list_values(const Spec& spec, const Option& parameter) {
   if (!space.varies_body()) return std::vector(spec.list.count, value_of(parameter, spec.design));
   std::vector<double> values;
   for (std::size_t i = 0; i < spec.list.count; ++i) values.push_back(value_of(parameter, space.at(i)));
+  for (const SameInSi& held : held_in_si(spec))
+    if (held.parameter == member_of(parameter)) values.assign(spec.list.count, value_of(parameter, spec.design));
   return values;
 }
 

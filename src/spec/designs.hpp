@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hoop/body.hpp"
 #include "map/tile.hpp"
 #include "model/variable.hpp"
 #include "spec/options.hpp"
@@ -38,11 +39,12 @@ class VariedDesigns {
   Design design_;
   Body body_;
   double mass_ = 1.0;  // of the nominal body, if it varies
+  std::vector<SameInSi> held_;
   std::vector<Variable> variables_;
   bool varies_body_ = false;
 };
 
-/// The values of a parameter along a spec's list of designs.
+/// The values of a parameter along a spec's list of designs: of one in the units of the nominal hoop in those.
 std::vector<double> list_values(const Spec& spec, const Option& parameter);
 
 /// The designs of a tile, in its order.

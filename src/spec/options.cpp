@@ -15,6 +15,7 @@
 #include "model/variable.hpp"
 #include "numerics/gsl_integrator.hpp"
 #include "spec/quantity.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/closest.hpp"
 #include "support/number.hpp"
 
@@ -28,6 +29,15 @@ std::vector<std::string_view> methods() {
 }
 
 std::vector<std::string_view> switch_words() { return {"true", "false"}; }
+
+std::vector<std::string_view> names_same_in_si() {
+  std::vector<std::string_view> names;
+  for (const Parameter& parameter : parameters())
+    if (const auto* member = std::get_if<double Design::*>(&parameter.member);
+        member && may_be_held(*member))
+      names.push_back(parameter.name);
+  return names;
+}
 
 std::vector<std::string_view> precisions() { return {"f8", "f4"}; }
 
@@ -145,6 +155,14 @@ const std::array other_keys{
            "1",
            "distance of landings that count as equal, in rad and sqrt(g/R)",
            {0.0, 1.0, false, true}},
+    Option{"design",
+           "nominal_units",
+           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.nominal_units; }},
+           "",
+           "with [hoop]: parameters in the units of the nominal hoop, so that hoops of every size and mass have "
+           "the same in N m or rpm; one that is given with such a unit is always among them",
+           {},
+           names_same_in_si},
     Option{"output", "file", TextSlot{[](Spec& s) -> std::string& { return s.output.file; }}, "",
            "the map to write; the option -o overrides it"},
     Option{

@@ -11,6 +11,8 @@
 #include "map/layout.hpp"
 #include "model/variable.hpp"
 #include "spec/options.hpp"
+#include "spec/quantity.hpp"
+#include "spec/spec_hoop.hpp"
 #include "support/csv.hpp"
 
 namespace leapmap {
@@ -39,9 +41,16 @@ std::pair<std::string, std::string> name_and_unit(const std::string& header) {
           header.substr(open + 1, header.size() - open - 2)};
 }
 
+/// Whether hoops have a parameter in the SI, whatever their mass and size.
+bool is_in_si(const Option& option, const std::string& text) {
+  const auto* slot = std::get_if<ParameterSlot>(&option.slot);
+  return slot && may_be_held(slot->member) && number_in_si(text, *find_own_unit(option.unit));
+}
+
 }  // namespace
 
-PointList read_points(const std::string& path, const std::string& origin, Scales scales) {
+PointList read_points(const std::string& path, const std::string& origin, Scales scales,
+                      const std::optional<Scales>& nominal, std::vector<std::string>& in_si) {
   CsvFile file(path, fmt::format("a CSV file as design.points of {}", origin));
   PointList list;
   list.path = path;
@@ -68,7 +77,10 @@ PointList read_points(const std::string& path, const std::string& origin, Scales
         continue;
       }
       try {
-        (column++)->values.push_back(parse_number(*columns[i], cells[i] + units[i], scales));
+        const std::string text = cells[i] + units[i];
+        const bool held = nominal && is_in_si(*columns[i], text);
+        if (held && std::ranges::find(in_si, column->key) == in_si.end()) in_si.push_back(column->key);
+        (column++)->values.push_back(parse_number(*columns[i], text, held ? *nominal : scales));
       } catch (const InputError& error) {
         throw InputError(fmt::format("{}: column {} = {}", place, (column - 1)->key, error.what()));
       }

@@ -62,7 +62,7 @@ void check_spread(const Spec& spec, const Spread& spread) {
     refuse(spec, "scatter", spread.parameter, "has no tolerance, because it scales the whole map",
            "other numbers of [hoop]");
   }
-  const MadeHoops hoops({{spread}, SobolPoints::replicates, 0}, spec.hoop,
+  const MadeHoops hoops({{spread}, SobolPoints::replicates, 0}, spec.hoop, held_in_si(spec),
                         std::make_shared<const SobolPoints>(1, SobolPoints::replicates, 0));
   const std::vector<double> values = values_of(spec, *variable);
   refuse_percent_of_nothing(spec, spread, values);

@@ -278,7 +278,10 @@ void read_points_of(Spec& spec) {
   if (spec.points.empty()) return;
   spec.points =
       std::filesystem::absolute(find_points(spec)).string();  // so that the resolved spec holds anywhere
-  spec.list = read_points(spec.points, origin_of(spec), common_scales(spec));
+  std::vector<std::string> in_si;
+  spec.list = read_points(spec.points, origin_of(spec), common_scales(spec),
+                          spec.hoop ? std::optional(nominal_scales(spec)) : std::nullopt, in_si);
+  for (const std::string& name : in_si) hold(name, spec);
   for (const Axis& column : spec.list.columns) {
     if (find_body_number(column.key)) continue;  // check_hoop's
     const Option& option = *find_option("design", column.key);
@@ -348,6 +351,20 @@ bool sets_scale(const Entry& entry) {
                    slot->member == &Scene::mass));
 }
 
+constexpr std::string_view nominal_units = "nominal_units";
+
+/// Fills in spec.nominal_units: what is named there, and what is given with a unit of the SI.
+void hold_in_si(const std::vector<Entry>& entries, Spec& spec) {
+  for (const Entry& entry : entries) {
+    if (entry.key != nominal_units) continue;
+    if (!spec.hoop) refuse(entry, "has no effect, because there is no [hoop]", "with [hoop] in the spec");
+    std::visit(Assign{entry, spec}, entry.option->slot);
+  }
+  for (const Entry& entry : entries)
+    if (const auto* slot = std::get_if<ParameterSlot>(&entry.option->slot))
+      if (spec.hoop && may_be_held(slot->member) && has_unit(entry)) hold(entry.key, spec);
+}
+
 /// Puts every entry's value where it belongs. of_map: a resolved spec has units only where hoops differ in
 /// size or mass, as those of a list may whose numbers stand in the map alone.
 void assign(std::vector<Entry>& entries, Spec& spec, bool of_map) {
@@ -358,6 +375,7 @@ void assign(std::vector<Entry>& entries, Spec& spec, bool of_map) {
     check_hoop(spec);
     apply_hoop(spec);
   }
+  hold_in_si(entries, spec);
   const auto any = [&](const auto& holds) { return std::ranges::any_of(entries, holds); };
   // Manufactured hoops differ in mass or size, and the designs of a list may: none is right for all of them.
   const bool made = any([](const Entry& entry) {
@@ -369,13 +387,15 @@ void assign(std::vector<Entry>& entries, Spec& spec, bool of_map) {
   const bool listed =
       spec.hoop && (of_map || any([](const Entry& entry) { return entry.option->key == "points"; }));
   for (Entry& entry : entries) {
-    if (sets_scale(entry)) continue;
+    if (sets_scale(entry) || entry.key == nominal_units) continue;
     entry.scales = common_scales(spec);
     entry.nominal = nominal_scales(spec);
     const bool of_made = std::holds_alternative<GoalSlot>(entry.option->slot) ||
                          std::holds_alternative<SceneSlot>(entry.option->slot);
     if (listed || (made && of_made)) entry.scales.mass = 0.0;
     if (listed || (sized && of_made)) entry.scales.radius = std::numeric_limits<double>::quiet_NaN();
+    if (std::ranges::find(spec.nominal_units, entry.key) != spec.nominal_units.end())
+      entry.scales = entry.nominal;
     std::visit(Assign{entry, spec}, entry.option->slot);
   }
   put_axes_in_order(entries, spec);

@@ -68,6 +68,32 @@ std::optional<double> to_si(const Entry& entry, const toml::node& node) {
   }
 }
 
+namespace {
+
+bool has_unit(const OwnUnit& own, const toml::node& node) {
+  const auto any = [&](const auto& nodes, const auto& part) {
+    return std::any_of(nodes.begin(), nodes.end(), [&](auto&& one) { return has_unit(own, part(one)); });
+  };
+  if (const auto* table = node.as_table())
+    return any(*table, [](auto&& pair) -> const toml::node& { return pair.second; });
+  if (const auto* array = node.as_array())
+    return any(*array, [](const toml::node& one) -> const toml::node& { return one; });
+  const auto* text = node.as_string();
+  if (!text) return false;
+  try {
+    return number_in_si(text->get(), own).has_value();
+  } catch (const InputError&) {
+    return false;  // it is refused where it is read
+  }
+}
+
+}  // namespace
+
+bool has_unit(const Entry& entry) {
+  const OwnUnit* own = find_own_unit(entry.option->unit);
+  return own && has_unit(*own, *entry.node);
+}
+
 std::optional<std::int64_t> to_whole(const toml::node& node) {
   if (node.is_integer()) return node.value<std::int64_t>();
   const auto value = node.is_floating_point() ? node.value<double>() : std::nullopt;

@@ -218,6 +218,24 @@ Scales scales_of(const Spec& spec, const Design& design) {
   return {nominal.radius * design.size, nominal.gravity, nominal.mass * design.mass};
 }
 
+bool may_be_held(double Design::*parameter) {
+  return std::ranges::find(same_in_si, parameter, &SameInSi::parameter) != same_in_si.end();
+}
+
+void hold(const std::string& parameter, Spec& spec) {
+  std::vector<std::string>& held = spec.nominal_units;
+  if (std::ranges::find(held, parameter) == held.end()) held.push_back(parameter);
+}
+
+std::vector<SameInSi> held_in_si(const Spec& spec) {
+  std::vector<SameInSi> held;
+  for (const SameInSi& one : same_in_si)
+    if (std::ranges::any_of(spec.nominal_units,
+                            [&](const std::string& name) { return member_of(name) == one.parameter; }))
+      held.push_back(one);
+  return held;
+}
+
 bool mass_varies(const Spec& spec) {
   const auto is_mass = [](const Axis& axis) { return is_body_mass(axis.key); };
   return std::ranges::any_of(spec.axes, is_mass) || std::ranges::any_of(spec.list.columns, is_mass);

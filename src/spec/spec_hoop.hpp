@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hoop/body.hpp"
 #include "spec/spec.hpp"
 #include "spec/spec_entry.hpp"
 
@@ -36,6 +37,12 @@ Scales common_scales(const Spec& spec);
 Scales nominal_scales(const Spec& spec);
 /// Those of the hoop that one of the spec's designs is.
 Scales scales_of(const Spec& spec, const Design& design);
+/// Whether hoops that differ in mass or size may have the same of a parameter in the SI.
+bool may_be_held(double Design::*parameter);
+/// Has the spec's hoops share a parameter in the SI, that of the nominal one.
+void hold(const std::string& parameter, Spec& spec);
+/// The parameters that are the same.
+std::vector<SameInSi> held_in_si(const Spec& spec);
 /// Whether masses of the body differ from design to design.
 bool mass_varies(const Spec& spec);
 /// Where masses of the body vary, no total mass is known.

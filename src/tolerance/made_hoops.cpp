@@ -25,9 +25,9 @@ double inside(const Range& range, double value) {
 
 }  // namespace
 
-MadeHoops::MadeHoops(const Scatter& scatter, const std::optional<Body>& hoop,
+MadeHoops::MadeHoops(const Scatter& scatter, const std::optional<Body>& hoop, std::vector<SameInSi> held,
                      std::shared_ptr<const SobolPoints> points)
-    : points_(std::move(points)), nominal_(hoop.value_or(Body{})) {
+    : points_(std::move(points)), nominal_(hoop.value_or(Body{})), held_(std::move(held)) {
   assert(points_->dimensions() >= scatter.spreads.size());
   for (const Spread& spread : scatter.spreads) {
     spreads_.push_back(
@@ -50,7 +50,11 @@ double MadeHoops::value_drawn(const Made& spread, const Design& drawn, const Bod
 }
 
 double MadeHoops::width_of(const Made& spread, const Design& drawn, const Body& body) const {
-  return spread.percent ? 0.01 * spread.width * std::abs(value_drawn(spread, drawn, body)) : spread.width;
+  if (spread.percent) return 0.01 * spread.width * std::abs(value_drawn(spread, drawn, body));
+  const auto held = std::find_if(held_.begin(), held_.end(), [&](const SameInSi& one) {
+    return one.parameter == spread.variable.parameter();
+  });
+  return held == held_.end() ? spread.width : spread.width * held->of_hoop(drawn.mass, drawn.size);
 }
 
 CutLaw MadeHoops::law(std::size_t k, const Design& drawn, const Body* given) const {
@@ -106,15 +110,16 @@ double MadeHoops::draw(const Design& drawn, const Body* body, std::span<const st
 void MadeHoops::take_body(const Body& made, const ReducedBody& nominal, Design& design) const {
   const ReducedBody reduced = reduce_checked(made);
   apply_ratios(reduced, design);
-  // The release is that of the drawing: it counts from where the centre of mass should be. The motor is too.
+  // The release is that of the drawing: it counts from where the centre of mass should be. The torques are too.
   // Weights that balance have no direction but that of a rounding.
   constexpr double balanced = 1e-12;
   if (nominal.eccentricity > balanced && reduced.eccentricity > balanced)
     design.release_angle += std::remainder(reduced.direction - nominal.direction, 2.0 * std::numbers::pi);
   const double larger = made.diameter / body_.diameter;
-  design.size *= larger, design.mass *= reduced.total_mass / nominal.total_mass;
-  design.release_spin *= std::sqrt(larger);
-  design.drive_torque *= nominal.total_mass / (reduced.total_mass * larger);
+  const double heavier = reduced.total_mass / nominal.total_mass;
+  design.size *= larger, design.mass *= heavier;
+  for (const SameInSi& one : same_in_si)
+    design.*one.parameter *= one.of_hoop(heavier, larger);
 }
 
 void MadeHoops::fill(std::size_t first, std::span<Design> made) const {

@@ -29,8 +29,8 @@ inline constexpr double least_left = 0.499;
 /// One a thread. Needs points of at least as many dimensions as the scatter has spreads.
 class MadeHoops {
  public:
-  /// hoop: the nominal body, if the spec has [hoop].
-  MadeHoops(const Scatter& scatter, const std::optional<Body>& hoop,
+  /// hoop: the nominal body, if the spec has [hoop]. held: parameters in its units, and their widths.
+  MadeHoops(const Scatter& scatter, const std::optional<Body>& hoop, std::vector<SameInSi> held,
             std::shared_ptr<const SobolPoints> points);
 
   std::size_t samples() const { return points_->samples(); }
@@ -74,6 +74,7 @@ class MadeHoops {
   std::vector<Made> spreads_;
   std::vector<std::vector<Column>> columns_;  // of each spread along each dimension
   Body nominal_;
+  std::vector<SameInSi> held_;
   bool makes_bodies_ = false;
   Design drawn_;
   Body body_;  // of what is drawn

@@ -30,9 +30,10 @@ std::shared_ptr<const SobolPoints> points_of(const Scatter& scatter, std::size_t
 }
 
 ScatterSolver::ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop,
-                             std::shared_ptr<const SobolPoints> points, const std::vector<Goal>& goals,
-                             const std::vector<const Field*>& quantities, Solver solver)
-    : hoops_(scatter, hoop, std::move(points)),
+                             std::vector<SameInSi> held, std::shared_ptr<const SobolPoints> points,
+                             const std::vector<Goal>& goals, const std::vector<const Field*>& quantities,
+                             Solver solver)
+    : hoops_(scatter, hoop, std::move(held), std::move(points)),
       solver_(std::move(solver)),
       tally_(goals, quantities, hoops_.samples()),
       made_(std::min(made_at_once, hoops_.samples())),

@@ -40,7 +40,7 @@ class MadeColumns {
 class ScatterSolver {
  public:
   /// quantities: of which the columns are, besides shares; solver: tells these and what the goals are of.
-  ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop,
+  ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop, std::vector<SameInSi> held,
                 std::shared_ptr<const SobolPoints> points, const std::vector<Goal>& goals,
                 const std::vector<const Field*>& quantities, Solver solver);
   bool can_make(const Design& drawn, const Body* body = nullptr) const {

@@ -28,6 +28,11 @@ inline constexpr std::size_t by_slope = 0, by_offset_ratio = 2, by_release_angle
                              by_resisting_torque = 7, by_mu_static = 8, by_mu_kinetic = 9,
                              by_restitution = 10;  ///< places among them
 
+inline std::size_t place_of(double Design::*parameter) {
+  return static_cast<std::size_t>(std::find(differentiable.begin(), differentiable.end(), parameter) -
+                                  differentiable.begin());
+}
+
 /// A number with its derivatives by every parameter of one design.
 using DesignDual = Dual<double, differentiable.size()>;
 /// The same without friction's, of one design and of as many as the machine has lanes.
@@ -101,13 +106,24 @@ class Gradients {
     return column(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
   }
   const GradientWanted& wanted() const { return wanted_; }
+  /// The derivatives of one quantity of one design, in the members of their parameters; else NaN.
+  Design of_design(const OutcomeNumber& of, std::size_t design) const {
+    Design by;
+    for (double Design::*parameter : differentiable) by.*parameter = std::numeric_limits<double>::quiet_NaN();
+    for (const std::size_t j : wanted_.by) by.*differentiable[j] = column(of, differentiable[j])[design];
+    return by;
+  }
 
   /// Of one design: there are no derivatives by a parameter, of whatever quantity.
   void forget(std::size_t by, std::size_t design) {
+    scale_by(by, design, std::numeric_limits<double>::quiet_NaN());
+  }
+  /// Multiplies the derivatives of one design by a parameter.
+  void scale_by(std::size_t by, std::size_t design, double factor) {
     for (std::size_t j = 0; j < wanted_.by.size(); ++j)
       if (wanted_.by[j] == by)
         for (std::size_t i = 0; i < wanted_.of.size(); ++i)
-          columns_[i * wanted_.by.size() + j][design] = std::numeric_limits<double>::quiet_NaN();
+          columns_[i * wanted_.by.size() + j][design] *= factor;
   }
 
   /// The derivatives of one quantity of one design, in `unit` of the solver's own. Does nothing if they are

@@ -53,7 +53,15 @@ LEAPMAP_EXPORT const double* reduce_body() {
 /// From now on the page's hoop is drawn so, or by no drawing.
 LEAPMAP_EXPORT void take_drawing(int given) {
   page.drawing.reset();
+  page.held.clear();
   if (given) page.drawing = body_of_numbers();
+}
+
+/// Hoops that differ in the drawing's numbers have the same of this parameter in the SI.
+LEAPMAP_EXPORT void hold(int parameter) {
+  const auto* member = std::get_if<double Design::*>(&parameter_of(parameter).member);
+  for (const SameInSi& one : same_in_si)
+    if (member && one.parameter == *member) page.held.push_back(one);
 }
 
 }  // namespace leapmap::web

@@ -115,7 +115,10 @@ PlacedDesigns placed_designs(int first, int second) {
     if (std::any_of(body.weights.begin(), body.weights.end(),
                     [radius](const Weight& weight) { return weight.at > radius; }))
       continue;
-    if (x->of_body() || y->of_body()) follow_body(body, drawn.diameter, drawn_mass, design);
+    if (x->of_body() || y->of_body()) {
+      follow_body(body, drawn.diameter, drawn_mass, design);
+      hold_in_si(page.held, design);
+    }
     placed.designs.push_back(design);
     if (page.drawing) placed.bodies.push_back(body);
     placed.which.push_back(i);

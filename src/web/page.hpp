@@ -36,6 +36,7 @@ struct Page {
 
   std::vector<double> parameters;
   std::optional<Body> drawing;  // from which the parameters follow
+  std::vector<SameInSi> held;   // parameters in the units of its hoop
   long jumps = 1, settle = 0;
   bool tells_growth = false;
   std::vector<double> places;  // of a map: two parameters of each design

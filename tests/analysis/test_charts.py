@@ -128,7 +128,8 @@ def units_of(path, field, unit):
     return np.array(done.stdout.split(), float)
 
 
-def test_designs_found_for_a_drawing_are_charted_by_its_numbers(monkeypatch, tmp_path):
+@pytest.mark.parametrize("sample", [128, pytest.param(1024, marks=pytest.mark.slow)])
+def test_designs_found_for_a_drawing_are_charted_by_its_numbers(sample, monkeypatch, tmp_path):
     monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
     question = (tmp_path / "q.toml")
     question.write_text(
@@ -136,7 +137,7 @@ def test_designs_found_for_a_drawing_are_charted_by_its_numbers(monkeypatch, tmp
             ", count = 3", "") + '[goal]\nmaximize = ["jump_height"]\nminimize = ["hoop.slug.mass"]\n'
         'max_normal_force = { at_most = "30 N" }\n')
     best = tmp_path / "best.h5"
-    assert leapmap("design", question, "--most", 60, "--sample", 1024, "-o", best).returncode == 0
+    assert leapmap("design", question, "--most", 60, "--sample", sample, "-o", best).returncode == 0
     front = draw("front_chart.py", best, "--question", question, "-o", tmp_path / "front")
     assert front.returncode == 0, front.stderr
     words = texts(tmp_path / "front.svg")

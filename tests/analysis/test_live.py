@@ -644,6 +644,7 @@ def test_numbers_of_a_drawing_are_axes_and_tolerances_of_a_live_map(browser, tmp
     laws = ('slope={normal="1 deg"}', 'hoop.slug.at={normal="0.5 mm"}', 'hoop.diameter={uniform="1 mm"}',
             'hoop.battery.angle={normal="5 deg"}')
     settings = [w for each in (*(f"tolerances.{law}" for law in laws), "tolerances.samples=32",
+                               'drive_torque="-0.004 N m"', 'tolerances.drive_torque={normal="0.002 N m"}',
                                "friction=sticking", "goal.jump_height={at_least=0.2}",
                                'output.fields=["jump_height", "jump_time", "status", "yield"]')
                 for w in ("--set", each)]
@@ -661,7 +662,8 @@ def test_numbers_of_a_drawing_are_axes_and_tolerances_of_a_live_map(browser, tmp
     assert browser.find_element("id", "message").text == ""
     assert browser.execute_script("""const { map } = window.explorer;
         return [...map.axes.map(({ name }) => name), ...map.spreads.map(({ name }) => name)]""") == [
-            "slope", "hoop.slug.mass", "slope", "hoop.slug.at", "hoop.diameter", "hoop.battery.angle"]
+            "slope", "hoop.slug.mass", "slope", "drive_torque", "hoop.slug.at", "hoop.diameter",
+            "hoop.battery.angle"]
     assert not browser.find_elements("css selector", "#live-sliders [data-parameter=mass_ratio]")
     cells = [150 * i + j for i in range(5, 200, 24) for j in (5, 60, 110)]
     told = browser.execute_script("""const { map } = window.explorer, [x, y] = map.axes;

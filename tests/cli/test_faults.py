@@ -14,7 +14,8 @@ import walk  # noqa: E402
 
 @pytest.mark.parametrize("command,every", [("sweep", 47), ("overwrite", 97), ("resume", 61), ("retry", 97),
                                            ("trace", 23), ("info", 29), ("check", 211), ("list", 71),
-                                           ("explorer", 131)])
+                                           ("explorer", 197),
+                                           pytest.param("explorer", 131, marks=pytest.mark.slow)])
 def test_whatever_call_fails_nothing_is_lost(command, every):
     runs, findings = walk.walk([command], ["EIO", "ENOSPC"], (False, True), every)
     assert runs > 4 and findings == []
@@ -25,7 +26,9 @@ def test_interrupted_short_and_empty_transfers_are_made_again_or_told():
     assert runs > 25 and findings == []
 
 
-@pytest.mark.parametrize("memory, every", [("new", 397), ("malloc", 997)])
+@pytest.mark.parametrize("memory, every", [("new", 1193), ("malloc", 1999),
+                                           pytest.param("new", 397, marks=pytest.mark.slow),
+                                           pytest.param("malloc", 997, marks=pytest.mark.slow)])
 def test_a_lack_of_memory_is_a_line_and_loses_nothing(memory, every):
     runs, findings = walk.walk(["sweep", "trace"], ["ENOMEM"], (False, True), every, memory)
     assert runs > 15 and findings == []

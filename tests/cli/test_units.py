@@ -101,6 +101,88 @@ def test_newtons_need_a_mass():
     assert "With --mass: torque, power and energy" in leapmap("hop", "--drive-torque", "0.1").stdout
 
 
+MOTOR_MAP = """
+[scene]
+friction = "coulomb"
+mu_static = 0.6
+[design]
+slope = 0
+drive_torque = "0.04 N m"
+[output]
+fields = ["jump_height", "jump_time", "status", "motor_energy"]
+gradients = ["jump_height", "jump_time"]
+gradients_by = ["hoop.slug.mass", "hoop.diameter", "drive_torque"]
+[numerics]
+audit = 1.0
+""" + HOOP
+
+
+def test_a_torque_in_newton_metres_is_the_same_for_hoops_that_differ_in_mass_and_size(tmp_path):
+    (tmp_path / "motor.toml").write_text(
+        MOTOR_MAP.replace('"85 g"', "{ values = [0.04, 0.085, 0.16] }").replace(
+            '"120 mm"', "{ values = [0.11, 0.12] }"))
+    done = leapmap("sweep", tmp_path / "motor.toml", "-o", tmp_path / "m.h5")
+    assert done.returncode == 0 and done.stdout.count(" 0 wrong") == 2, done.stdout
+    (tmp_path / "one.toml").write_text(HOOP)
+    with h5py.File(tmp_path / "m.h5") as m:
+        names = [dimension[0].name.strip("/") for dimension in m["jump_height"].dims]
+        for place in np.ndindex(m["jump_height"].shape):
+            at = {name: float(m[name][k]) for name, k in zip(names, place)}
+            alone = told(tmp_path / "one.toml", "--slope", 0, "--friction", "coulomb", "--mu-static", 0.6,
+                         "--drive-torque", "0.04 N m", "--set", f"hoop.slug.mass={at['hoop.slug.mass']!r}",
+                         "--set", f"hoop.diameter={at['hoop.diameter']!r}")
+            assert alone["motor"]["torque"] == pytest.approx(0.04, rel=1e-12)
+            for name in ("jump_height", "jump_time"):
+                assert m[name][place] == pytest.approx(alone[name], rel=1e-11), at
+
+
+def test_derivatives_by_masses_and_diameters_hold_a_torque_in_newton_metres(tmp_path):
+    """Against differences of maps: an error of the step's square, 1e-6 of the values."""
+    for key, unit, value, step in (("hoop.slug.mass", "85 g", 0.085, 1e-5), ("hoop.diameter", "120 mm", 0.12, 1e-5)):
+        values = f"{{ values = [{value - step}, {value}, {value + step}] }}"
+        (tmp_path / "motor.toml").write_text(MOTOR_MAP.replace(f'"{unit}"', values))
+        assert leapmap("sweep", tmp_path / "motor.toml", "-o", tmp_path / "m.h5", "--overwrite").returncode == 0
+        with h5py.File(tmp_path / "m.h5") as m:
+            for name in ("jump_height", "jump_time"):
+                low, _, high = m[name][()]
+                assert m[f"{name}_by_{key}"][1] == pytest.approx((high - low) / (2 * step), rel=1e-5), (name, key)
+
+
+def test_lists_tolerances_and_tables_have_a_torque_in_newton_metres(tmp_path):
+    (tmp_path / "motor.toml").write_text(
+        MOTOR_MAP.replace('drive_torque = "0.04 N m"', 'nominal_units = ["drive_torque"]'))
+    (tmp_path / "list.csv").write_text("hoop.slug.mass [g],drive_torque [N m],release_spin [rpm]\n"
+                                       "40,0.04,0\n160,0.04,0\n160,0.03,20\n")
+    made = ("--set", 'tolerances.drive_torque={normal="1 mN.m"}', "--set", "tolerances.samples=64",
+            "--set", "goal.jump_height={at_least=0.2}", "--set",
+            'output.fields=["jump_height", "motor_energy", "yield", "jump_height_sd"]', "--set", "audit=0")
+    done = leapmap("sweep", tmp_path / "motor.toml", "--points", tmp_path / "list.csv", "-o", tmp_path / "m.h5", *made)
+    assert done.returncode == 0, done.stderr
+    (tmp_path / "one.toml").write_text(HOOP)
+    with h5py.File(tmp_path / "m.h5") as m:
+        for k, (grams, torque, rpm) in enumerate(((40, 0.04, 0), (160, 0.04, 0), (160, 0.03, 20))):
+            words = (tmp_path / "one.toml", "--slope", 0, "--friction", "coulomb", "--mu-static", 0.6,
+                     "--drive-torque", f"{torque} N m", "--set", f'hoop.slug.mass="{grams} g"', "--set",
+                     f'release_spin="{rpm} rpm"')
+            assert m["jump_height"][k] == pytest.approx(told(*words)["jump_height"], rel=1e-11), k
+            alone = told(*words, "--scatter", *made[:6])["scatter"]["quantities"]["jump_height"]
+            assert m["jump_height_sd"][k] == pytest.approx(alone["sd"]["value"], rel=1e-9), k
+    done = leapmap("export", tmp_path / "m.h5", "-o", tmp_path / "t.csv", "--units", "g N.m rpm")
+    assert done.returncode == 0, done.stderr
+    rows = list(csv.DictReader((tmp_path / "t.csv").read_text().splitlines()))
+    for name, values in (("drive_torque [N.m]", (0.04, 0.04, 0.03)), ("release_spin [rpm]", (0, 0, 20))):
+        assert [float(row[name]) for row in rows] == pytest.approx(values, rel=1e-12)
+
+
+def test_units_of_the_nominal_hoop_need_one(tmp_path):
+    refused = leapmap("hop", "--set", 'nominal_units=["drive_torque"]')
+    assert refused.returncode == 2
+    assert "nominal_units" in refused.stderr and "there is no [hoop]; allowed: with [hoop]" in refused.stderr
+    (tmp_path / "one.toml").write_text(HOOP)
+    refused = leapmap("hop", tmp_path / "one.toml", "--set", 'nominal_units=["slope"]')
+    assert refused.returncode == 2 and "drive_torque, resisting_torque" in refused.stderr
+
+
 def test_tolerances_goals_axes_and_lists_have_units_too(tmp_path):
     spec = """
 [scene]
@@ -462,11 +544,12 @@ def test_reports_show_numbers_in_the_units_asked_for(drawing, tmp_path):
         assert done.returncode == 2 and "--units" in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_a_search_may_have_goals_that_have_no_derivatives(drawing):
+@pytest.mark.parametrize("sample", [128, pytest.param(1024, marks=pytest.mark.slow)])
+def test_a_search_may_have_goals_that_have_no_derivatives(sample, drawing):
     """The least slope whose jump clears 20 mm over a box of 30 mm, with no more than 12 N on the plane."""
     done = leapmap("design", drawing, "--set", 'slope={from="10 deg",to="45 deg"}', "--set",
                    'clear_height="20 mm"', "--set", 'goal.max_normal_force={at_most="12 N"}', "--set",
-                   'goal.clears_to={at_least="60 mm"}', "--set", "minimize=slope", "--sample", 1024, "--json",
+                   'goal.clears_to={at_least="60 mm"}', "--set", "minimize=slope", "--sample", sample, "--json",
                    "--quiet")
     assert done.returncode == 0, done.stderr
     best = json.loads(done.stdout)["designs"][0]
@@ -657,13 +740,14 @@ def test_hoops_of_every_size_clear_the_same_wall(drawing, tmp_path):
     assert refused.returncode == 2 and "hoops of several sizes clear one wall" in refused.stderr
 
 
-def test_goals_in_mm_and_newtons_hold_for_hoops_of_every_size_and_mass(drawing, tmp_path):
+@pytest.mark.parametrize("sample", [256, pytest.param(2048, marks=pytest.mark.slow)])
+def test_goals_in_mm_and_newtons_hold_for_hoops_of_every_size_and_mass(sample, drawing, tmp_path):
     """The lightest slug with which a hoop of some diameter does what is asked in mm and N."""
     asked = ("--set", 'goal.jump_height={at_least="50 mm"}', "--set", 'goal.max_normal_force={at_most="9 N"}',
              "--set", 'goal.clears_to={at_least="150 mm"}')
     done = leapmap("design", drawing, *WALLED, "--hoop.diameter", '{from="100 mm",to="150 mm"}', "--set",
                    'hoop.slug.mass={from="60 g",to="120 g"}', *asked, "--set", "minimize=hoop.slug.mass",
-                   "--json", "--sample", 2048)
+                   "--json", "--sample", sample)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)["designs"][0]
     sizes = ("--set", f"hoop.diameter={found['parameters']['hoop.diameter']!r}", "--set",

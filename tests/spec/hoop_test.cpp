@@ -94,7 +94,7 @@ TEST(HoopNumbers, OfMadeHoopsTurnTheCentreOfMassWhileTheReleaseStays) {
                               "scatter.hoop.battery.angle={uniform=\"90 deg\"}",
                               "scatter.hoop.battery.mass={uniform=\"6 g\"}", "samples=64"});
   check_spec(spec);
-  MadeHoops made(spec.scatter, spec.hoop, points_of(spec.scatter));
+  MadeHoops made(spec.scatter, spec.hoop, {}, points_of(spec.scatter));
   made.draw(spec.design);
   std::vector<Design> hoops(made.samples());
   made.fill(0, hoops);

@@ -18,7 +18,7 @@ namespace {
 using testing::plausible;
 
 std::vector<Design> hoops(const Scatter& scatter, const Design& drawn) {
-  MadeHoops made(scatter, {}, points_of(scatter));
+  MadeHoops made(scatter, {}, {}, points_of(scatter));
   made.draw(drawn);
   std::vector<Design> designs(made.samples());
   made.fill(0, designs);
@@ -59,7 +59,7 @@ TEST(Scatter, LawsAreCutOffWhereAParameterMayNotBeAndTheShareIsTold) {
     ratios.push_back(made.offset_ratio);
   }
   EXPECT_NEAR(mean_of(ratios), 1.0 - 0.01 * std::sqrt(2.0 / std::numbers::pi), 1e-5);
-  MadeHoops made(scatter, {}, points_of(scatter));
+  MadeHoops made(scatter, {}, {}, points_of(scatter));
   EXPECT_NEAR(made.draw({}), 0.5, 1e-12);
   EXPECT_NEAR(made.draw({.offset_ratio = 0.98}), 0.5 * std::erfc(std::sqrt(2.0)), 1e-12);
   EXPECT_EQ(made.draw({.offset_ratio = 0.5}), 0.0);

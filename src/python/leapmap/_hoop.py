@@ -143,17 +143,36 @@ class Hoop:
         ring = {"diameter": diameter, "mass": mass} | ({} if np.isnan(inertia) else {"inertia": inertia})
         return ring | ({"weight": weights} if weights else {})
 
-    def _differentiate(self, by, values):
+    def _differentiate(self, by, values, given):
         """Derivatives by the hoop's own numbers, in place of those by its ratios.
 
-        values: the quantity itself, if it is a time or a speed; else None.
+        values: the quantity itself, if it is a time or a speed; else 0.
+        given: the parameters of the call; what of them has a unit of the SI is held there.
         """
-        ratios = [by.pop(name) for name in _RATIOS]
-        shape = np.shape(ratios[0])
+        columns = [by.pop(name) for name in _RATIOS]
+        by_mass, by_size = 0.0, 0.5 * values
+        for name, (with_mass, with_size) in _held(given).items():
+            by_logarithm = by[name] * self._in_own_units(name, given)
+            by_mass, by_size = by_mass + with_mass * by_logarithm, by_size + with_size * by_logarithm
+        shape = np.shape(columns[0])
         numbers = np.broadcast_to(self._numbers, (*shape, self._numbers.shape[-1]))
-        found = _core.differentiate_by_hoop(_rows(numbers), self._names, _rows(np.stack(ratios, axis=-1)),
-                                            np.empty(0) if values is None else np.ravel(values))
+        columns = np.stack([np.broadcast_to(column, shape) for column in (*columns, by_mass, by_size)], axis=-1)
+        found = _core.differentiate_by_hoop(_rows(numbers), self._names, _rows(columns))
         return by | {name: column.reshape(shape)[()] for name, column in found.items()}
+
+
+    def _in_own_units(self, name, given):
+        """A parameter that is given with a unit of the SI, in the units of each hoop."""
+        with_mass, _ = _held(given)[name]
+        scales = {"radius": self.parameters["radius"], "mass": 1.0} | (
+            {"gravity": given["gravity"]} if "gravity" in given else {})
+        return _core.number(name, given[name], scales) * self.total_mass**with_mass
+
+
+def _held(given):
+    """The parameters that hoops share in the SI, and as what powers of mass and size each hoop has them."""
+    powers = {name: _core.powers_in_si(name, value) for name, value in given.items() if isinstance(value, str)}
+    return {name: power for name, power in powers.items() if power is not None}
 
 
 def _rows(numbers):
@@ -170,4 +189,5 @@ def with_hoop(hoop, parameters):
         if name in parameters:
             raise ValueError(
                 f"{name} = {shown(parameters[name])} has no effect beside hoop; allowed: one of the two")
-    return parameters | hoop.parameters
+    held = {name: hoop._in_own_units(name, parameters) for name in _held(parameters)}
+    return parameters | held | hoop.parameters

@@ -120,12 +120,12 @@ def gradient(*, hoop=None, of="jump_height", friction="sticking", tolerance=1e-1
     by = {name: column[()] for name, column in columns.items()}
     if hoop is None:
         return by
-    values = None
+    values = 0.0
     if _core.grows_with_size(of):
         values = getattr(
             solve(hoop=hoop, friction=friction, fields=[of], tolerance=tolerance, threads=threads,
                   **parameters), of)
-    return hoop._differentiate(by, values)
+    return hoop._differentiate(by, values, parameters)
 
 
 def trace(*, hoop=None, interval=1e-3, friction="sticking", method="auto", tolerance=1e-10,
