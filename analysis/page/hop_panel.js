@@ -76,7 +76,7 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
       clock.textContent = "it does not move";
       return;
     }
-    drawHoop(scene, now.design, now.story.motion, now.time, element("follow").checked, now.ghosts,
+    drawHoop(scene, now.design, now.story, now.time, element("follow").checked, now.ghosts,
       element("forces").checked);
     now.timeAt = plotOn(plots);
     const measured = measuresOf(now.design, chosen.mass).plots.t;

@@ -91,12 +91,30 @@ function drawForces(context, design, motion, time, turned, px, scale) {
     [length * Math.sin(design.slope), -length * Math.cos(design.slope)], "ink", "W");
 }
 
+/** The wall to clear: in the middle of where it may stand, else dashed in the middle of the jump. */
+function drawWall(context, design, { outcome, motion, liftOffs }, turned, px, scale) {
+  const k = [...liftOffs.is_jump].indexOf(1);
+  if (!(design.clear_height > 0) || k < 0) return;
+  const R = design.radius, isCleared = Number.isFinite(outcome.clears_from),
+    [from, to] = isCleared ? [outcome.clears_from, outcome.clears_to] : [0, outcome.jump_range],
+    at = valueAt(motion, "x", liftOffs.time[k]) + R * (from + to) / 2;
+  context.beginPath();
+  context.moveTo(...px(turned(at, 0)));
+  context.lineTo(...px(turned(at, 2 * R * design.clear_height)));
+  context.lineWidth = Math.max(3, 0.06 * R * scale);
+  context.strokeStyle = tones.ink;
+  context.setLineDash(isCleared ? [] : [0.12 * R * scale, 0.12 * R * scale]);
+  context.stroke();
+  context.setLineDash([]);
+}
+
 /**
  * Draws the hoop at a time, with ghosts beside it. design: {slope, offset_ratio, mass_ratio, radius};
  * closeUp: follows the hoop; forces: with arrows of them. x goes down the slope and y away from it, on the
  * screen turned by the slope; the point mass is at angle phi from the line to the plane, clockwise.
  */
-function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = false) {
+function drawHoop(canvas, design, story, time, closeUp, ghosts = [], forces = false) {
+  const { motion } = story;
   const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
   canvas.width = Math.max(1, Math.round(box.width * ratio));
   canvas.height = Math.max(1, Math.round(box.height * ratio));
@@ -146,6 +164,7 @@ function drawHoop(canvas, design, motion, time, closeUp, ghosts = [], forces = f
   context.lineWidth = ratio;
   context.stroke();
 
+  drawWall(context, design, story, turned, px, scale);
   // The centre's path so far, coloured by phase; a mark wherever a phase begins.
   const { low } = sampleAt(motion, time);
   context.lineWidth = 2.5 * ratio;

@@ -12,7 +12,7 @@ const LIVE_RANGES = {
   drive_torque: [-0.2, 0.5], resisting_torque: [0, 0.3],
   mu_static: [0.05, 1.5], mu_kinetic: [0.05, 1.5], restitution: [0, 0.9],
   rest_speed: [0, 0.1], runway: [0.5, 10], hop_height: [0, 0.5], radius: [0.01, 0.5],
-  gravity: [0.5, 25],
+  gravity: [0.5, 25], clear_height: [0, 1],
 };
 /** What tells one course of events from another, each with what stands where there is none. */
 const OUTCOME_CODES = [["status", 0], ["spurious_first_jump", 255], ["candidates", 0]];
@@ -21,7 +21,8 @@ const OUTCOME_CODES = [["status", 0], ["spurious_first_jump", 255], ["candidates
 const costOf = (field) =>
   (field.made ? "made" : field.gait ? "settle" : field.name === "sequence_condition" ? "growth" : null);
 const SLIPPING = ["mu_static", "mu_kinetic", "restitution", "rest_speed"];
-const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity"];  // none of the design's own
+/** None of the design's own. */
+const NO_LIVE_AXIS = ["rest_speed", "runway", "hop_height", "radius", "gravity", "clear_height"];
 
 /** A map as the explorer writes them, without a number yet. given: {looks, statuses, parameters, ...}; state:
     {x, y, slips, fixed}. */

@@ -56,7 +56,7 @@ function writeLive(words, map, defaults) {
 /** What belongs together, as the page has it. */
 const GROUPS = [["Hoop", ["mass_ratio", "offset_ratio", "inertia_factor", "radius"]],
   ["Ground", ["slope", "mu_static", "mu_kinetic", "restitution", "rest_speed", "gravity"]],
-  ["Release", ["release_angle", "release_spin", "runway", "hop_height"]],
+  ["Release", ["release_angle", "release_spin", "runway", "hop_height", "clear_height"]],
   ["Motor", ["drive_torque", "resisting_torque"]]];
 
 /** The parameters that a live map's model has, and those of them that are of the design itself. */
@@ -158,7 +158,7 @@ function liveControls(map, solver, changed) {
           `${short(most * factor(name))}.`);
         if (!good) return;
         map.fixed[name] = follows ? NaN : value;
-        changed("map");
+        changed(name === "clear_height" ? "model" : "map");  // where there is no wall, none is cleared
       };
       slider.addEventListener("input",
         () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6));

@@ -46,6 +46,11 @@ function numberRows({ outcome, motion, liftOffs }, design, chosen, slips) {
     add("jump_distance", slips ? "travelled until lift-off" : "rolled until lift-off",
       measure.length(outcome.jump_distance * R));
     add("jump_range", "range of the jump", measure.length(outcome.jump_range * R));
+    if (design.clear_height > 0) {
+      const [from, to] = [outcome.clears_from, outcome.clears_to].map((at) => measure.length(at * R));
+      add("clears_from", `clears a wall of ${measure.length(2 * R * design.clear_height)}`,
+        Number.isFinite(outcome.clears_from) ? `that stands ${from} to ${to} after the lift-off` : "nowhere");
+    }
     const unit = Math.sqrt(design.gravity * R);
     add("landing_normal_speed", "lands with", measure.speed(outcome.landing_normal_speed * unit));
     if (!slips) add("dip", "penetration depth", measure.length(-2 * R * outcome.dip, 3));
@@ -93,8 +98,8 @@ function hopCommand(design, map, defaults, jumps) {
   const words = ["leapmap hop", ...flags.filter((k) => Number.isFinite(design[k]))
     .map((k) => `--${k.replaceAll("_", "-")} ${design[k]}`)];
   if (map.slips) words.push("--set friction=coulomb", `--set rest_speed=${design.rest_speed}`);
-  for (const key of ["runway", "hop_height", "radius", "gravity"])
-    if (design[key] !== defaults[key]) words.push(`--set ${key}=${design[key]}`);
+  for (const key of ["runway", "hop_height", "clear_height", "radius", "gravity"])
+    if (design[key] !== undefined && design[key] !== defaults[key]) words.push(`--set ${key}=${design[key]}`);
   if (jumps > 1) words.push(`--jumps ${jumps}`);
   if (map.asked?.settle > 0) words.push(`--set settle=${map.asked.settle}`);
   if (map.tolerance !== 1e-10) words.push(`--set tolerance=${map.tolerance}`);

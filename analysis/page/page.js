@@ -79,7 +79,8 @@ const inShownUnit = (axis, value) => value * perUnit(axis.unit);
 /** Quantities that only hoops that may slip have, or only those that never do. */
 const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
 const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name)
-  && !(["jumps", "sequence_condition"].includes(name) && map.live && map.jumps === 1);
+  && !(["jumps", "sequence_condition"].includes(name) && map.live && map.jumps === 1)
+  && !(/^clears_/.test(name) && map.live && !(map.fixed.clear_height > 0));
 
 const LIVE_SUBTITLE =
   "Change any parameter: the map follows. Click a design to see it jump. The address stores the view.";

@@ -28,8 +28,8 @@ async function solverOf(module) {
   const fields = namesBy(leapmap.field_name), liftOffColumns = namesBy(leapmap.lift_off_name),
     rowNames = namesBy(leapmap.row_name), madeNames = namesBy(leapmap.made_name);
   const doubles = (pointer, n) => new Float64Array(leapmap.memory.buffer, pointer, n);
-  // The mass is the page's own: it changes no motion. Walls are not for the page yet.
-  const { mass: unknown, clear_height: noWall, ...defaults } = Object.fromEntries(parameters.map((name, i) =>
+  // The mass is the page's own: it changes no motion.
+  const { mass: unknown, ...defaults } = Object.fromEntries(parameters.map((name, i) =>
     [name, doubles(leapmap.parameter_values(), parameters.length)[i]]));
   const rows = (names, pointer, n) => {
     const values = doubles(pointer, n * names.length).slice();
@@ -49,7 +49,7 @@ async function solverOf(module) {
   /** The design that the solver has from now on, with the `drawing` that it follows from, if it has one. */
   const give = (design) => {
     doubles(leapmap.parameter_values(), parameters.length)
-      .set(parameters.map((name) => design[name] ?? defaults[name] ?? (name === "mass" ? unknown : noWall)));
+      .set(parameters.map((name) => design[name] ?? defaults[name] ?? unknown));
     if (design.drawing) putDrawing(design.drawing);
     leapmap.take_drawing(design.drawing ? 1 : 0);
     for (const name of design.drawing?.held ?? []) leapmap.hold(parameters.indexOf(name));

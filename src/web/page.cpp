@@ -12,6 +12,7 @@
 #include "hoop/body.hpp"
 #include "noslip/exact.hpp"
 #include "noslip/model.hpp"
+#include "trajectory/clearance.hpp"
 
 namespace leapmap::web {
 namespace {
@@ -141,6 +142,7 @@ Solver solver_of(const Scene& scene, double tolerance) {
 
 void tell_more(const Scene& scene, double tolerance, std::span<const Design> designs,
                std::span<Outcome> outcomes) {
+  if (scene.clear_height > 0.0) find_clearances(scene, designs, outcomes);
   const Scene alone = each_jump_alone(scene);
   if (page.tells_growth && scene.jumps > 1)
     ErrorGrowth(scene, dual_solver(alone, tolerance)).tell(designs, outcomes);
