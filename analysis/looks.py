@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names, units and colours of a map's quantities and outcomes, on charts and on the page."""
 import math
+import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -158,7 +159,11 @@ def use_units(m, text, units_in_own):
         power = lambda size: np.log(size / one) / np.log(4)
         return one * radii**power(larger) * (1.0 if masses is None else masses)**power(heavier)
     agility, used = quantity(m, "agility"), set()
+    # What is told of hoops as made has no other unit where these differ in what it is made of.
+    differ = any(name == "hoop.diameter" or re.fullmatch(r"hoop\.(.+\.)?mass", name) for name in m.scatter())
     for name in set(m.fields) & set(LOOKS):
+        if differ and is_of_made(name) and LOOKS[name].unit not in ("s", "°", ""):
+            continue
         for word in text.split():
             if (size := size_of(word, name)) is None:
                 continue

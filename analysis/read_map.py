@@ -183,8 +183,12 @@ class Map:
         if hoop is None:
             return self.numbers().get("mass") or None
         total = 0.0
-        for key, value in (("hoop.mass", hoop["mass"]),
-                           *((f"hoop.{w['name']}.mass", w["mass"]) for w in hoop.get("weight", []))):
+        try:
+            given = [("hoop.mass", hoop["mass"]),
+                     *((f"hoop.{w['name']}.mass", w["mass"]) for w in hoop.get("weight", []))]
+        except (AttributeError, KeyError, TypeError):
+            raise NotAMap(f"{self.path}: is damaged: its spec says hoop = {hoop}") from None
+        for key, value in given:
             if key in self.fields:  # of a list
                 total = total + np.asarray(self.fields[key], float)
             elif key in self.dims:

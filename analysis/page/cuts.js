@@ -3,7 +3,7 @@
 
 /** Draws one cut. offset(index): a design's place among the values; axis: along which. */
 function drawCut(canvas, map, view, axis, offset) {
-  const frame = fitted(canvas, 1), [factor] = shownIn(view.field.unit, scaleOf(map));
+  const frame = fitted(canvas, 1), [factor] = shownIn(view.field.unit, scaleOf(map, view.field));
   if (!frame) return;
   const context = canvas.getContext("2d"), { left, right, top, bottom, ratio } = frame, { field } = view,
     row = map.axes[axis];
@@ -35,7 +35,7 @@ function drawCut(canvas, map, view, axis, offset) {
   }
   context.setLineDash([]);
   paintAxes(context, frame, sx, shownY, labelOf(row),
-    fieldLabel(field, scaleOf(map), field.label.split(":")[0].split(" of the ")[0]));
+    fieldLabel(field, scaleOf(map, field), field.label.split(":")[0].split(" of the ")[0]));
   const here = sx.centre(view.index[axis]), value = field.values[places[view.index[axis]]];
   context.strokeStyle = tones.mark;
   context.lineWidth = 1.2 * ratio;

@@ -10,8 +10,8 @@ const NEW_WEIGHT = { mass: 0.02, at: 0, angle: 0, inertia: 0 };
 /** The usual name of a mass, by its place. */
 const usualName = (k) => `mass${k + 1}`;
 
-/** In words: "0.12:0.061:0.00019;0.085:0.047:0:0:slug;=drive_torque": the ring's numbers, then each mass's, in
-    SI, and its name if that is not the usual one, then the parameters in the units of this hoop. */
+/** In words: "0.12:0.061:0.00019;0.085:0.047:0:0:slug;=drive_torque": the ring's numbers, then each mass's,
+    in SI, and its name if that is not the usual one, then the parameters in the units of this hoop. */
 const drawingWord = ({ ring, weights, held = [] }) => [
   ...[[RING, ring], ...weights.map((weight) => [WEIGHT, weight])]
     .map(([rows, part], k) => [...rows.map(([name]) => (Number.isFinite(part[name]) ? part[name] : "")),
@@ -39,7 +39,7 @@ function wrongIn({ ring, weights }) {
   if (!(Number.isNaN(ring.inertia) || ring.inertia >= 0))
     return "The ring's moment of inertia must be empty, 0 or more.";
   for (const [k, { name, mass, at, angle, inertia }] of weights.entries()) {
-    if (!/^[\w-]+$/.test(name) || weights.findIndex((other) => other.name === name) !== k)
+    if (!/^[\p{L}\p{N}_-]+$/u.test(name) || weights.findIndex((other) => other.name === name) !== k)
       return `Mass ${k + 1} must have a name of its own, of letters and digits.`;
     if (!(mass >= 0)) return `Mass ${k + 1} must be 0 g or more.`;
     if (!(at >= 0 && at <= ring.diameter / 2))
@@ -141,17 +141,19 @@ function drawingPart(map, solver, changed) {
     /** The hoop shown is another: of the map's drawing with numbers of its own, or the drawing is none of it
         any more. */
     follow(design) {
-      const drawing = map.drawing && Object.keys(design).some(isDrawn) ? drawingAt(map.drawing, design)
-        : now.drawing;
-      if (!drawing) return;
-      const body = solver.reduce(drawing);
-      const same = RATIOS.every((name) => design[name] === body[name])
-        && Math.abs(design.radius / drawing.ring.diameter * 2 - 1) < 1e-9;
-      if (!same) forget();
-      if (!same || drawing === now.drawing) return;
+      const ofMap = map.drawing && (Object.keys(design).some(isDrawn) || usesDrawing(map))
+        ? drawingAt(map.drawing, design) : null;
+      const fits = (drawing) => {
+        const body = drawing && solver.reduce(drawing), near = (a, b) => Math.abs(a - b) <= 1e-9 * b;
+        return drawing && RATIOS.every((name) => near(design[name], body[name]))
+          && near(design.radius, drawing.ring.diameter / 2);
+      };
+      const drawing = [now.drawing, ofMap].find(fits);
+      if (!drawing) { forget(); return; }
+      if (drawing === now.drawing) return;
       now.drawing = drawing;
       show(drawing);
-      tell(body);
+      tell(solver.reduce(drawing));
     },
     write(words) {
       // That of a map's hoop follows from the map's own, by the hoop's place.

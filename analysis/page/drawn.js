@@ -16,13 +16,15 @@ function partOf(drawing, name) {
 }
 
 /** A drawing with all its numbers, from one of which some are null, as the explorer writes it. */
-const wholeDrawing = ({ ring, weights, held = [] }) => ({ held, ring: { ...ring, inertia: ring.inertia ?? NaN },
+const wholeDrawing = ({ ring, weights, held = [] }) => ({ held,
+  ring: { ...ring, inertia: ring.inertia ?? NaN },
   weights: weights.map((weight) =>
     ({ ...weight, angle: weight.angle ?? 0, inertia: weight.inertia ?? 0 })) });
 
 /** The drawing with the numbers that a design has of its own. */
 function drawingAt(drawing, design) {
-  const own = { ...drawing, ring: { ...drawing.ring }, weights: drawing.weights.map((weight) => ({ ...weight })) };
+  const own = { ...drawing, ring: { ...drawing.ring },
+    weights: drawing.weights.map((weight) => ({ ...weight })) };
   for (const [name, value] of Object.entries(design)) {
     if (!isDrawn(name)) continue;
     const [part, key] = partOf(own, name);
@@ -70,9 +72,19 @@ const choicesOf = (map) => map.columns ?? map.axes;
 /** Whether hoops of the map differ in mass, and in size. */
 const differInMass = (map) => choicesOf(map).some(({ name }) => isDrawn(name) && name.endsWith(".mass"));
 const differInSize = (map) => choicesOf(map).some(({ name }) => name === "hoop.diameter");
-/** By what quantities of the whole map are shown in SI: NaN where its hoops have none in common. */
-const scaleOf = (map) => ({ gravity: map.fixed.gravity,
-  radius: differInSize(map) ? NaN : map.fixed.radius, mass: differInMass(map) ? NaN : units.mass });
+/** Whether hoops as made differ in size, or in a mass. */
+const scatterIn = (map, fits) => map.spreads.some(({ name }) => isDrawn(name) && fits(name));
+/** By what a quantity of the whole map is shown in SI: NaN where its hoops have none in common. */
+const scaleOf = (map, field = null) => ({ gravity: map.fixed.gravity,
+  radius: differInSize(map) || (field?.made && scatterIn(map, (name) => name === "hoop.diameter")) ? NaN
+    : map.fixed.radius,
+  mass: differInMass(map) || (field?.made && scatterIn(map, (name) => name.endsWith(".mass"))) ? NaN
+    : units.mass });
+/** The tolerances of a map that are of numbers which a drawing lacks. */
+const lackedBy = (drawing, spreads) => {
+  const names = drawnNames(drawing);
+  return spreads.filter(({ name }) => isDrawn(name) && !names.includes(name)).map(({ name }) => name);
+};
 
 /** Parameters that hoops may have the same of in the SI, and the powers of a hoop's mass and size as which it
     has them in its own units: as leapmap's same_in_si. */

@@ -66,10 +66,11 @@ function filtersPart(map, view, changed, best) {
       goal = { field: view.view.field, sign: "least", bound: NaN, ...asked };
     map.fields.forEach((field, k) => option(select, k, ""));
     select.value = map.fields.indexOf(goal.field);
-    const factor = () => shownIn(goal.field.unit, scaleOf(map))[0];
+    const factor = () => shownIn(goal.field.unit, scaleOf(map, goal.field))[0];
     /** In the units shown, but for a number that is being typed. */
     goal.show = () => {
-      map.fields.forEach((field, k) => { select.options[k].textContent = fieldLabel(field, scaleOf(map)); });
+      map.fields.forEach((field, k) =>
+        { select.options[k].textContent = fieldLabel(field, scaleOf(map, field)); });
       if (document.activeElement !== number) number.value = Number((goal.bound * factor()).toPrecision(6));
     };
     option(sign, "least", "at least");

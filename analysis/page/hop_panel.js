@@ -41,9 +41,12 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     const { radius: R, total_mass: kg, mass_ratio, offset_ratio, inertia_factor } = body;
     mass.value = Number((1000 * kg).toPrecision(12));
     chosen.mass = units.mass = kg;
+    chosen.radius = R;
     if (map.live) map.redraw(drawn, { radius: R, mass_ratio, offset_ratio, inertia_factor });
-    else { chosen.radius = R; radius.value = Number((1000 * R).toPrecision(12)); }
-    typed({ ...(now.design ?? { ...map.fixed, ...map.paper }), mass_ratio, offset_ratio, inertia_factor },
+    else radius.value = Number((1000 * R).toPrecision(12));
+    const before = Object.entries(now.design ?? { ...map.fixed, ...map.paper })
+      .filter(([name]) => !isDrawn(name));
+    typed({ ...Object.fromEntries(before), mass_ratio, offset_ratio, inertia_factor },
       "One hoop: from a drawing");
     otherUnits();
   });
@@ -139,7 +142,11 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
     const { made } = map.asked;
     if (!made || !toldFields(map).some((field) => field.made)) return;
     const places = Float64Array.of(design.slope, design.release_angle), drawn = drawing.drawn();
-    if (!drawn && map.spreads.some(({ name }) => isDrawn(name))) return;
+    if (lackedBy(drawn, map.spreads).length > 0) {
+      now.asMade = Object.fromEntries(made.fields.map((name) => [name, NaN]));
+      toldMore(ownOutcome());
+      return;
+    }
     teller.tell({ design: { ...design, drawing: drawn }, slips: map.slips, tolerance: map.tolerance,
       first: "slope", second: "release_angle", places, made }, (row) => {
       now.asMade = Object.fromEntries(made.fields.map((name, k) => [name, row ? row[k] : NaN]));
@@ -198,13 +205,15 @@ function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, teller,
   /** Draws the hoop, and solves those that jump along: those pinned, and as made, of which it says how many
       jump. A slice at a time, as friction takes its time. */
   async function haunt() {
-    const mine = ++now.haunting, made = ghosts.checked
-      ? madeAfter(solver, now.design, drawing.drawn(), map.spreads, GHOSTS) : [];
+    const mine = ++now.haunting, lacked = lackedBy(drawing.drawn(), map.spreads),
+      made = ghosts.checked && lacked.length === 0
+        ? madeAfter(solver, now.design, drawing.drawn(), map.spreads, GHOSTS) : [];
     const wanted = [...(element("pins-along").checked ? pins.designs().map((design, pin) => ({ design, pin }))
       : []), ...made.map((design) => ({ design }))], found = [];
     now.ghosts = [];
     now.ghostsKey = ghostsKey();
-    element("ghosts-told").textContent = made.length > 0 ? ": solving" : "";
+    element("ghosts-told").textContent = made.length > 0 ? ": solving"
+      : ghosts.checked && lacked.length > 0 ? `: this hoop's drawing lacks ${lacked.join(", ")}` : "";
     scrub.max = end();
     draw();
     if (wanted.length === 0) return;

@@ -31,7 +31,7 @@ function listView(canvas, map, onPoint, onPick) {
 
   function paintOn(context) {
     const column = map.columns[view.x], { log } = view.field, { font, ratio } = frame;
-    const [factor] = shownIn(view.field.unit, scaleOf(map)),
+    const [factor] = shownIn(view.field.unit, scaleOf(map, view.field)),
       values = Float64Array.from(view.field.values, (v) => v * factor), [across, acrossUnit] = column.quantity
       ? shownIn(column.unit, scaleOf(map)) : [1, column.unit];
     const shown = column.values.map((v) =>
@@ -56,7 +56,7 @@ function listView(canvas, map, onPoint, onPick) {
       context.stroke();
     });
     paintAxes(context, frame, sx, sy, labelOf({ ...column, unit: acrossUnit }),
-      fieldLabel(view.field, scaleOf(map)));
+      fieldLabel(view.field, scaleOf(map, view.field)));
   }
 
   function paintCursor() {

@@ -165,7 +165,7 @@ function mapView(canvas, map, onPoint, onPick) {
     context.textAlign = "center";
     context.textBaseline = "middle";
     const labels = [], linesAt = isolinesHere();  // where there is text already
-    for (const { value, text } of shownLevels(view.field, scaleOf(map)))
+    for (const { value, text } of shownLevels(view.field, scaleOf(map, view.field)))
       for (const chain of linesAt(value)) {
         const room = context.measureText(text).width + 0.4 * font;
         let length = 0;
@@ -244,9 +244,9 @@ function mapView(canvas, map, onPoint, onPick) {
       context.stroke();
       context.fillText(text, x + w + 0.3 * font, p);
     };
-    const [factor, unit] = shownIn(field.unit, scaleOf(map)), told = (value, digits = 3) =>
+    const [factor, unit] = shownIn(field.unit, scaleOf(map, field)), told = (value, digits = 3) =>
       ({ value, text: short(value * factor, digits) });
-    const marks = field.levels.length > 0 ? shownLevels(field, scaleOf(map))
+    const marks = field.levels.length > 0 ? shownLevels(field, scaleOf(map, field))
       : linearTicks(field.low * factor, field.high * factor).map((v) => told(v / factor, 4));
     for (const { value, text } of [told(field.low),
         ...marks.filter((m) => m.value > field.low && m.value < field.high), told(field.high)]) {
@@ -281,7 +281,7 @@ function mapView(canvas, map, onPoint, onPick) {
       .filter(([name]) => name === "radius" || values[name] !== map.defaults[name])
       .filter(([name]) => map.slips || !SLIPPING.includes(name))
       .map(([name, tell]) => tell(short(values[name])));
-    const text = `${fieldLabel(view.field, scaleOf(map))}: ` +
+    const text = `${fieldLabel(view.field, scaleOf(map, view.field))}: ` +
       `${[...told, ...scene, map.slips ? "Coulomb friction" : "no slip"].join(", ")}`, size = (part) =>
       `${part * font}px system-ui, "DejaVu Sans", sans-serif`;
     context.fillStyle = tones.ink;

@@ -57,7 +57,7 @@ const KINDS = [
 function offerGrouped(map, select) {
   const groups = KINDS.map(([label]) => Object.assign(document.createElement("optgroup"), { label }));
   map.fields.forEach((f, k) =>
-    option(groups[KINDS.findIndex(([, has]) => has(f))], k, fieldLabel(f, scaleOf(map))));
+    option(groups[KINDS.findIndex(([, has]) => has(f))], k, fieldLabel(f, scaleOf(map, f))));
   select.append(...groups.filter((group) => group.children.length > 0));
 }
 /** The option of a quantity, whatever group it is in. */
@@ -223,7 +223,7 @@ function start(map, solver, teller) {
       ? (map.live && f.log ? short(f.values[at], 6) : f.values[at].toFixed(decimalsOf(f.step))) : "");
     const isSolving = (f) => map.live && costOf(f) && !number(f) && canvas.dataset.coarse !== "true";
     const text = (f) =>
-      (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], scaleOf(map)) : isSolving(f)
+      (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], scaleOf(map, f)) : isSolving(f)
       ? "being solved" : "none");
     const spurious = map.codes.spurious_first_jump?.values[at] === 1;
     const notes = status === "no_jump" && spurious
@@ -236,7 +236,7 @@ function start(map, solver, teller) {
     const steady = chosen.isOf(index) ? steadyNote(chosen.hoop()) : "";
     element("value").textContent = [`${shown.label}: ${text(shown)}`, steady, ...notesSaid].filter(Boolean)
       .join("; ");
-    tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], scaleOf(map)).slice(3) || text(f) : ""));
+    tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], scaleOf(map, f)).slice(3) || text(f) : ""));
     speak();
     const { dataset } = element("readout");
     dataset.index = index.join(",");
@@ -381,7 +381,7 @@ function start(map, solver, teller) {
   if (filters) addressPart(filters);
   const tellUnits = () => {
     said = "";
-    map.fields.forEach((f, k) => { optionOf(fieldSelect, k).textContent = fieldLabel(f, scaleOf(map)); });
+    map.fields.forEach((f, k) => { optionOf(fieldSelect, k).textContent = fieldLabel(f, scaleOf(map, f)); });
     view.paint();
     filters?.tell();
     drawCuts();

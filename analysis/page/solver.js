@@ -60,6 +60,7 @@ async function solverOf(module) {
     if (section !== "hoop") return parameters.indexOf(name);
     if (path.length === 1) return parameters.length + RING_NUMBERS.indexOf(path[0]);
     const weight = design.drawing.weights.findIndex((each) => each.name === path[0]);
+    if (weight < 0) throw new RangeError(`its drawing has no ${name}`);
     return after + weight * WEIGHT_NUMBERS.length + WEIGHT_NUMBERS.indexOf(path[1]);
   };
   const ask = ({ jumps = 1, settle = 0, growth = false }) => leapmap.ask(jumps, settle, Number(growth));

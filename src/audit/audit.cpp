@@ -147,8 +147,7 @@ void derive_by_ratios(const MapReader& map, const Request& request, const Tile& 
     for (std::size_t i = 0; i < drawn.size(); ++i) {
       const Design by = solved.of_design(derivative->of, i);
       const double right = variable.derivative(
-          by, bodies[i],
-          ByScale::of(designs[i], by, in_seconds(derivative->of, outcomes[i]), request.held));
+          by, bodies[i], ByScale::of(designs[i], by, in_seconds(derivative->of, outcomes[i]), request.held));
       const double single = stored[drawn[i]] == static_cast<float>(stored[drawn[i]]) ? 1e-6 : 0.0;
       if (std::abs(stored[drawn[i]] - right) <= (near + single) * (1.0 + std::abs(right))) continue;
       if (std::isnan(stored[drawn[i]]) && std::isnan(right)) continue;

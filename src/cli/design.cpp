@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -23,6 +24,7 @@
 #include "engine/parallel.hpp"
 #include "leapmap/find_designs.hpp"
 #include "leapmap/sweep.hpp"
+#include "leapmap/trace.hpp"
 #include "map/hdf5_driver.hpp"
 #include "map/reader.hpp"
 #include "model/model.hpp"
@@ -105,6 +107,12 @@ std::pair<double, std::string_view> step_of(const Variable& variable) {
   return {1.0, "a unit"};
 }
 
+/// Whether a field's unit changes with a number of [hoop], so that its derivative is one of the pure number.
+bool changes_unit(const std::string& parameter, const Field& field) {
+  const OwnUnit* own = find_own_unit(own_unit(field));
+  return (is_body_mass(parameter) || parameter == "hoop.diameter") && own && own->name != own->si;
+}
+
 void print_gradients(Report& report, const FoundDesign& found) {
   for (const FieldGradient& gradient : found.gradients) {
     std::vector<std::string> parts;
@@ -112,10 +120,13 @@ void print_gradients(Report& report, const FoundDesign& found) {
       const FreeParameter& parameter = report.question.free[k];
       const auto [step, name] = step_of(parameter.variable);
       const double change = gradient.by_free[k] * step;
+      const Field& field = *find_field(gradient.of);
       if (!std::isnan(change))
         parts.push_back(fmt::format("{}{} {} of {}", change < 0.0 ? "" : "+",
-                                    report.units.told(change, *find_field(gradient.of)), name,
-                                    parameter.name));
+                                    changes_unit(parameter.name, field)
+                                        ? fmt::format("{:.6g} {}", change, own_unit(field))
+                                        : report.units.told(change, field),
+                                    name, parameter.name));
     }
     if (!parts.empty()) say("     {} changes by {}\n", gradient.of, fmt::join(parts, ", "));
   }
@@ -189,11 +200,17 @@ void print_found(Report& report, const FoundDesigns& found) {
 }
 
 /// How near a hoop came to a jump.
-std::string how_near(const Outcome& outcome, const Scene& scene) {
-  if (outcome.candidates == 0) return "it never lifts off";
+std::string how_near(const FoundDesign& found, const Spec& spec) {
+  const Outcome& outcome = found.outcome;
+  if (outcome.candidates == 0) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const MotionPoint& point : trace(found.design, spec.scene, {.interval = 1e-3}).points)
+      if (point.phase != Phase::flight) least = std::min(least, point.normal_force);
+    return fmt::format("it never lifts off; the normal force falls to {:.3g} weights", least);
+  }
   return fmt::format("its {} to {:.4g} diameters; a jump is {:g} or more",
                      outcome.candidates == 1 ? "lift-off rises" : "first lift-off rises",
-                     outcome.first_jump_height, scene.hop_height);
+                     outcome.first_jump_height, spec.scene.hop_height);
 }
 
 /// What a goal asks for and what became of it, in the units shown.
@@ -208,7 +225,9 @@ std::string told_miss(Report& report, const Goal& goal, double value) {
     limits.push_back("at most " + report.units.told(goal.at_most, field));
   const std::string told = std::isnan(value) ? "does not apply"
                            : is_number       ? report.units.told(value, field)
-                                             : fmt::format("{:.10g}", value);
+                           : goal.unit_of_nominal > 0.0
+                               ? fmt::format("{:.6g} {}", value, find_own_unit(own_unit(field))->si)
+                               : fmt::format("{:.10g}", value);
   return fmt::format("{} {}: {}", goal.field, fmt::join(limits, ", "), told);
 }
 
@@ -220,8 +239,7 @@ void print_miss(const Spec& spec, Report& report, const FoundDesigns& found) {
   const FoundDesign& nearest = found.designs[0];
   report.scale_to(nearest.free);
   say("     {}\n     {}\n", told_parameters(report, nearest), name_of(nearest.outcome.status));
-  if (nearest.outcome.status != Status::jumped)
-    say("     {}\n", how_near(nearest.outcome, question.one.scene));
+  if (nearest.outcome.status != Status::jumped) say("     {}\n", how_near(nearest, question.one));
   for (std::size_t k = 0; k < spec.goals.size(); ++k)
     say("     {}\n", told_miss(report, spec.goals[k], found.missed[k]));
   say("     {}\n", command_of(question, nearest));

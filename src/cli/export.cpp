@@ -72,22 +72,23 @@ std::vector<Column> columns_of(const MapReader& map, const ExportArguments& argu
 }
 
 /// Of a column, where the hoop is of that size and mass.
-ShownUnit shown_by(ShownUnits& units, const Column& column, const Scales& scales) {
-  units.scale(scales);
+ShownUnit shown_by(ShownUnits& units, const Column& column, const Spec& spec, const Scales& scales) {
+  const bool of_made = column.field && std::holds_alternative<OfMade>(column.field->source);
+  units.scale(of_made ? scales_of_manufactured(spec, scales) : scales);
   return column.field ? units.of(*column.field) : units.of(column.name);
 }
 
 void choose_units(std::vector<Column>& columns, ShownUnits& units, const Spec& spec) {
   Scales scales = nominal_scales(spec);
   for (Column& column : columns) {
-    column.shown = shown_by(units, column, scales);
+    column.shown = shown_by(units, column, spec, scales);
     column.held = std::ranges::find(spec.nominal_units, column.name) != spec.nominal_units.end();
   }
   units.refuse_unused();
   if (!mass_varies(spec) && !find_varying(spec, "hoop.diameter")) return;
   scales.mass *= 2.0, scales.radius *= 3.0;
   for (Column& column : columns)
-    column.by_hoop = !column.held && shown_by(units, column, scales).factor != column.shown.factor;
+    column.by_hoop = !column.held && shown_by(units, column, spec, scales).factor != column.shown.factor;
 }
 
 /// The sizes and total masses of a block's designs.
@@ -107,7 +108,7 @@ std::string text_of(double value, double factor) {
 /// A column's texts for the designs of a block.
 /// hoops: of the block's designs, where their scales differ.
 std::vector<std::string> texts_of(const MapReader& map, const Column& column, const Tile& block,
-                                  ShownUnits& units, const std::vector<Scales>& hoops) {
+                                  ShownUnits& units, const Spec& spec, const std::vector<Scales>& hoops) {
   std::vector<std::string> texts(block.count);
   if (column.field && std::holds_alternative<Word>(column.field->source)) {
     const std::vector<std::uint64_t> words = map.read_words(column.name, block);
@@ -119,7 +120,7 @@ std::vector<std::string> texts_of(const MapReader& map, const Column& column, co
   const std::vector<double> values = column.along ? std::vector<double>{} : map.read(column.name, block);
   const auto told = [&](double value, std::size_t i) {
     const bool own = column.by_hoop && !hoops.empty();
-    return text_of(value, own ? shown_by(units, column, hoops[i]).factor : column.shown.factor);
+    return text_of(value, own ? shown_by(units, column, spec, hoops[i]).factor : column.shown.factor);
   };
   for (std::size_t i = 0; i < block.count; ++i) {
     if (column.along) {
@@ -165,7 +166,7 @@ std::string table_of(const MapReader& map, const Spec& spec, const std::vector<C
   for_each_block(map.shape(), rows, [&](const Tile& block) {
     std::vector<std::vector<std::string>> cells;
     const auto hoops = differ ? scales_of(space, spec, block) : std::vector<Scales>{};
-    for (const Column& column : columns) cells.push_back(texts_of(map, column, block, units, hoops));
+    for (const Column& column : columns) cells.push_back(texts_of(map, column, block, units, spec, hoops));
     for (std::size_t i = 0; i < block.count; ++i) {
       if (!labels.empty()) text += csv_quoted(labels[block.start[0] + i]) + ",";
       for (std::size_t k = 0; k < cells.size(); ++k) (text += k > 0 ? "," : "") += cells[k][i];

@@ -59,8 +59,7 @@ Table table_of(const Spec& original) {
     if (std::isnan(wanted.of[i].of(outcome))) continue;
     Row row{find_field(spec.output.gradients[i]), {}};
     const Design by = gradients.of_design(wanted.of[i], 0);
-    const ByScale by_scale =
-        ByScale::of(spec.design, by, in_seconds(wanted.of[i], outcome), request.held);
+    const ByScale by_scale = ByScale::of(spec.design, by, in_seconds(wanted.of[i], outcome), request.held);
     for (const Variable& variable : table.variables)
       row.by.push_back(variable.derivative(by, spec.hoop.value_or(Body{}), by_scale));
     table.rows.push_back(row);
@@ -91,10 +90,9 @@ void print_gradient(const Spec& spec) {
   }
   if (spec.hoop)
     say("By numbers of [hoop], torques and spins are held in {}, and walls in hoop diameters.\n",
-        spec.nominal_units.empty()
-            ? "(m + m_p) g R and sqrt(g/R)"
-            : fmt::format("the unit in which they are given: in N m or rad/s {}",
-                          fmt::join(spec.nominal_units, ", ")));
+        spec.nominal_units.empty() ? "(m + m_p) g R and sqrt(g/R)"
+                                   : fmt::format("the unit in which they are given: in N m or rad/s {}",
+                                                 fmt::join(spec.nominal_units, ", ")));
   if (infinite)
     say("nan: infinite, as on a fold, at which a lift-off appears, or known to fewer than six digits. If\n"
         "mu_kinetic follows mu_static, the column mu_static is the derivative by both.\n");

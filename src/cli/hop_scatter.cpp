@@ -69,16 +69,6 @@ std::string law_of(const Spread& spread) {
                                     : "");
 }
 
-/// The scales that all manufactured hoops have in common.
-Scales scales_of_manufactured(const Spec& spec) {
-  Scales scales = nominal_scales(spec);
-  for (const Spread& spread : spec.scatter.spreads) {
-    if (is_body_mass(spread.parameter)) scales.mass = 0.0;
-    if (spread.parameter == "hoop.diameter") scales.radius = std::numeric_limits<double>::quiet_NaN();
-  }
-  return scales;
-}
-
 /// For example "jump_height { at_least = 0.8 }".
 std::string goal_of(const Goal& goal) { return goal.field + " " + text_of(goal); }
 
@@ -110,7 +100,7 @@ void print_spreads(const Spec& spec, const ScatterReport& report) {
 }
 
 void print_quantities(const Spec& spec, const ScatterReport& report) {
-  ShownUnits units("", scales_of_manufactured(spec));
+  ShownUnits units("", scales_of_manufactured(spec, nominal_scales(spec)));
   say("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "if it jumps", "mean", "deviation", "5 %", "50 %",
       "95 %");
   for (const MadeQuantity& told : report.quantities) {
@@ -136,7 +126,11 @@ void print_histogram(const Spec& spec, const ScatterReport& report) {
   constexpr double widest = 50.0;
   const Histogram histogram = histogram_of(report, &Outcome::jump_height, bins);
   if (histogram.counts.empty()) return;
-  const auto goal = std::ranges::find(spec.goals, "jump_height", &Goal::field);
+  auto goal = std::ranges::find(spec.goals, "jump_height", &Goal::field);
+  // In mm it is at another place for hoops of every size.
+  if (goal != spec.goals.end() && goal->unit_of_nominal > 0.0 &&
+      std::isnan(scales_of_manufactured(spec, nominal_scales(spec)).radius))
+    goal = spec.goals.end();
   const double unit = goal != spec.goals.end() && goal->unit_of_nominal > 0.0 ? goal->unit_of_nominal : 1.0;
   const double most = static_cast<double>(std::ranges::max(histogram.counts));
   const double width = (histogram.to - histogram.from) / static_cast<double>(bins);

@@ -227,7 +227,11 @@ void print_dimensions(const MapReader& map, ShownUnits& units) {
   }
 }
 
-void print_fields(const MapReader& map, ShownUnits& units) {
+struct SharedScales {
+  Scales designs, manufactured;
+};
+
+void print_fields(const MapReader& map, ShownUnits& units, const SharedScales& scales) {
   const std::size_t designs = designs_of(map.shape());
   say("\nfields, {} designs\n", designs);
   if (!map.has("status") && hdf5::has_attribute(map.file(), "status_counts")) {
@@ -240,6 +244,8 @@ void print_fields(const MapReader& map, ShownUnits& units) {
   for (const std::string& name : map.fields()) {
     const Field* field = find_field(name);
     const Summary summary = summarise(map, name);
+    units.scale(field && std::holds_alternative<OfMade>(field->source) ? scales.manufactured
+                                                                       : scales.designs);
     say("{}\n", printable(name));
     if (field && std::holds_alternative<Code>(field->source)) {
       print_counts(std::get<Code>(field->source), summary, designs);
@@ -263,14 +269,17 @@ void print_fields(const MapReader& map, ShownUnits& units) {
   }
 }
 
-/// Of all designs. Of a map whose spec cannot be read nothing is known, which matters where units are asked
-/// for.
-Scales scales_of(const MapReader& map, const InfoArguments& arguments) {
+/// What the map's designs share, and what their manufactured hoops do. Of a map whose spec cannot be read
+/// nothing is known, which matters where units are asked for.
+SharedScales scales_of(const MapReader& map, const InfoArguments& arguments) {
   try {
-    return common_scales(spec_of(map, arguments.path));
+    const Spec spec = spec_of(map, arguments.path);
+    const Scales common = common_scales(spec);
+    return {common, scales_of_manufactured(spec, common)};
   } catch (const std::exception&) {
     if (!arguments.units.empty()) throw;
-    return {.radius = Outcome::none, .gravity = Outcome::none, .mass = 0.0};
+    const Scales unknown{.radius = Outcome::none, .gravity = Outcome::none, .mass = 0.0};
+    return {unknown, unknown};
   }
 }
 
@@ -291,11 +300,12 @@ int run(const InfoArguments& arguments) {
     print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at, arguments.units);
     return 0;
   }
-  ShownUnits units(arguments.units, scales_of(map, arguments));
+  const SharedScales scales = scales_of(map, arguments);
+  ShownUnits units(arguments.units, scales.designs);
   print_origin(map, arguments.path);
   print_audit(map);
   print_dimensions(map, units);
-  print_fields(map, units);
+  print_fields(map, units, scales);
   units.refuse_unused();
   return 0;
 }

@@ -55,6 +55,7 @@ std::vector<double> values_at(const Spec& spec, const std::string& at) {
 
 void print_number(const Field& field, double value, ShownUnits& units) {
   const ShownUnit shown = units.of(field);
+  if (std::isnan(value)) return say("  {:<24} none\n", field.name);
   const std::string text = fmt::format("  {:<24} {:<14.8g} {}{}", field.name, value * shown.factor,
                                        shown.unit, units.beside(value, field));
   say("{}\n", text.substr(0, text.find_last_not_of(' ') + 1));
@@ -75,6 +76,7 @@ void print_made(const Spec& spec, ShownUnits& units) {
   MadeColumns columns(statistics_of(request));
   scatter_solver_of(request, points_of(spec.scatter)).solve({&spec.design, 1}, columns);
   say("manufactured, {} hoops\n", spec.scatter.samples);
+  units.scale(scales_of_manufactured(spec, scales_of(spec, spec.design)));
   for (const Field* field : columns.fields()) print_number(*field, columns.column(*field)[0], units);
 }
 

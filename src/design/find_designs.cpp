@@ -336,7 +336,7 @@ Spec list_of(const Spec& spec, const FoundDesigns& found) {
   std::vector<const Field*> stored = columns_of(list);
   const std::size_t before = stored.size();
   for (const Field* field : quantities_of(question)) add_column(stored, field);
-  if (stored.size() > before && list.scatter.spreads.empty()) {
+  if (stored.size() > before) {
     list.output.fields.clear();
     for (const Field* field : stored)
       if (!std::holds_alternative<Derivative>(field->source)) list.output.fields.emplace_back(field->name);
@@ -373,7 +373,7 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
     for (const Goal& goal : spec.goals)
       found.missed.push_back(goal.field == "yield"
                                  ? found.designs[0].yield.value
-                                 : stored_number(*find_field(goal.field), found.designs[0].outcome));
+                                 : goal_check(goal).value(found.designs[0].design, found.designs[0].outcome));
   }
   found.evaluations = judge.evaluations();
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -20,9 +20,10 @@ MapAxis describe(const Spec& spec, const Axis& axis) {
   const std::string meaning =
       of_body ? of_body->meaning_of(weight_of(axis.key)) : std::string(option.meaning);
   const bool held = std::ranges::find(spec.nominal_units, axis.key) != spec.nominal_units.end();
-  return {axis.key, std::string(own ? "1" : option.unit),
-          own ? fmt::format("{}, in {}{}", meaning, option.unit, held ? " of the nominal hoop" : "") : meaning,
-          axis.values};
+  return {
+      axis.key, std::string(own ? "1" : option.unit),
+      own ? fmt::format("{}, in {}{}", meaning, option.unit, held ? " of the nominal hoop" : "") : meaning,
+      axis.values};
 }
 
 }  // namespace

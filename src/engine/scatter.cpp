@@ -13,8 +13,8 @@
 #include "numerics/nan.hpp"
 #include "numerics/sobol_indices.hpp"
 #include "request/solver.hpp"
-#include "spec/spec_hoop.hpp"
 #include "spec/spec.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap {
 namespace {
@@ -82,7 +82,9 @@ double yield_at(const Workshop& workshop, const MadeTally& goals, const Scatter&
     if (!k || i == *k) smaller.spreads[i].width *= share;
   std::atomic<std::size_t> reached{0};
   workshop.make(smaller, {}, [&](std::size_t, std::span<const Design> made, std::span<const Outcome> some) {
-    for (std::size_t i = 0; i < some.size(); ++i) reached += goals.reaches_all(made[i], some[i]);
+    std::size_t here = 0;
+    for (std::size_t i = 0; i < some.size(); ++i) here += goals.reaches_all(made[i], some[i]);
+    reached += here;
   });
   return static_cast<double>(reached) / static_cast<double>(workshop.samples());
 }

@@ -44,8 +44,8 @@ struct FoundDesigns {
   /// the order of the first objective.
   std::vector<FoundDesign> designs{};
   bool reached = false;  ///< false: no design reaches every goal, and `designs` holds the nearest miss
-  std::vector<double> missed{};  ///< values of the goals' fields at the nearest miss, in the fields' units
-                                 ///< and the order of goals
+  std::vector<double> missed{};  ///< values of the goals' fields at the nearest miss, in the units of their
+                                 ///< limits and the order of goals
   std::size_t evaluations = 0;   ///< number of designs solved
   double seconds = 0.0;          ///< duration [s]
   /// With two objectives: fraction of the rectangle between the front's ends that the front dominates.

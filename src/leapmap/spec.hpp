@@ -97,8 +97,8 @@ struct Spec {
   std::vector<std::string> maximize{};  ///< find_designs: fields or parameters to maximize
   std::vector<std::string> minimize{};  ///< and to minimize; one or two objectives in all
   std::vector<std::string> notes{};     ///< to be shown, a line each: keys that are not used
-  /// Parameters in the units of the nominal hoop of [hoop], so that hoops of every size and mass have the same
-  /// in the SI: torques, spins. read_spec adds those that are given with a unit.
+  /// Parameters in the units of the nominal hoop of [hoop], so that hoops of every size and mass have the
+  /// same in the SI: torques, spins. read_spec adds those that are given with a unit.
   std::vector<std::string> nominal_units{};
   /// Of [hoop]; `design` and `scene` hold what it comes to. Numbers that vary have their first values.
   std::optional<Body> hoop{};

@@ -4,8 +4,8 @@
 #include <array>
 #include <span>
 
-#include "leapmap/body.hpp"
 #include "hoop/body.hpp"
+#include "leapmap/body.hpp"
 #include "model/variable.hpp"
 #include "spec/options.hpp"
 #include "spec/quantity.hpp"
@@ -54,8 +54,7 @@ py::dict reduce_hoops(const Rows& hoops, const std::vector<std::string>& weights
   return arrays;
 }
 
-py::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>& weights,
-                               const Rows& by) {
+py::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>& weights, const Rows& by) {
   const py::ssize_t count = hoops.shape(0);
   const std::vector<double> none(static_cast<std::size_t>(hoops.shape(1)),
                                  1.0);  // an empty batch has names, too

@@ -97,14 +97,20 @@ py::tuple pair_of(const Estimate& estimate) { return py::make_tuple(estimate.val
 }  // namespace
 
 py::dict scales_of_each(const Spec& spec, std::span<const Design> designs) {
+  const Scales nominal = nominal_scales(spec);
+  py::dict scales;
+  scales["gravity"] = nominal.gravity;
+  if (std::ranges::all_of(designs, [](const Design& d) { return d.size == 1.0 && d.mass == 1.0; })) {
+    scales["radius"] = nominal.radius;
+    if (nominal.mass > 0.0) scales["mass"] = nominal.mass;
+    return scales;
+  }
   py::array_t<double> radius(static_cast<py::ssize_t>(designs.size())), mass(radius.size());
   for (std::size_t i = 0; i < designs.size(); ++i) {
     const Scales own = scales_of(spec, designs[i]);
     radius.mutable_data()[i] = own.radius, mass.mutable_data()[i] = own.mass;
   }
-  const Scales nominal = nominal_scales(spec);
-  py::dict scales;
-  scales["gravity"] = nominal.gravity, scales["radius"] = radius;
+  scales["radius"] = radius;
   if (nominal.mass > 0.0) scales["mass"] = mass;
   return scales;
 }

@@ -21,9 +21,9 @@ struct Request {
   /// The wanted quantities, derivatives and statistics of manufactured hoops, in order. The rest need not be
   /// computed, and may be NaN.
   std::vector<const Field*> columns{};
-  Scatter scatter{};           ///< the tolerances of manufactured hoops
-  std::vector<Goal> goals{};   ///< what counts as their yield
-  std::optional<Body> hoop{};  ///< the nominal body, if the spec has [hoop]
+  Scatter scatter{};             ///< the tolerances of manufactured hoops
+  std::vector<Goal> goals{};     ///< what counts as their yield
+  std::optional<Body> hoop{};    ///< the nominal body, if the spec has [hoop]
   std::vector<SameInSi> held{};  ///< parameters in the units of the nominal hoop
 };
 

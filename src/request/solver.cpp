@@ -200,18 +200,19 @@ Solver make_solver(const Request& request) {
 }
 
 GradientSolver make_gradient_solver(const Request& request) {
-  return [solver = with_small_resistance(gradient_solver_at_unit_size(request), request), held = request.held](
-             std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
-    solver(designs, outcomes, gradients);
-    resize(designs, outcomes);
-    for (std::size_t i = 0; i < designs.size(); ++i)
-      if (designs[i].size != 1.0)
-        for (const OutcomeNumber& of : gradients.wanted().of)
-          if (grows_with_size(of)) gradients.scale(of, i, std::sqrt(designs[i].size));
-    for (const SameInSi& one : held)
-      for (std::size_t i = 0; i < designs.size(); ++i)
-        gradients.scale_by(place_of(one.parameter), i, one.of_hoop(designs[i].mass, designs[i].size));
-  };
+  return
+      [solver = with_small_resistance(gradient_solver_at_unit_size(request), request), held = request.held](
+          std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
+        solver(designs, outcomes, gradients);
+        resize(designs, outcomes);
+        for (std::size_t i = 0; i < designs.size(); ++i)
+          if (designs[i].size != 1.0)
+            for (const OutcomeNumber& of : gradients.wanted().of)
+              if (grows_with_size(of)) gradients.scale(of, i, std::sqrt(designs[i].size));
+        for (const SameInSi& one : held)
+          for (std::size_t i = 0; i < designs.size(); ++i)
+            gradients.scale_by(place_of(one.parameter), i, one.of_hoop(designs[i].mass, designs[i].size));
+      };
 }
 
 ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points) {

@@ -74,7 +74,8 @@ std::vector<double> list_values(const Spec& spec, const Option& parameter) {
   std::vector<double> values;
   for (std::size_t i = 0; i < spec.list.count; ++i) values.push_back(value_of(parameter, space.at(i)));
   for (const SameInSi& held : held_in_si(spec))
-    if (held.parameter == member_of(parameter)) values.assign(spec.list.count, value_of(parameter, spec.design));
+    if (held.parameter == member_of(parameter))
+      values.assign(spec.list.count, value_of(parameter, spec.design));
   return values;
 }
 

@@ -33,8 +33,7 @@ std::vector<std::string_view> switch_words() { return {"true", "false"}; }
 std::vector<std::string_view> names_same_in_si() {
   std::vector<std::string_view> names;
   for (const Parameter& parameter : parameters())
-    if (const auto* member = std::get_if<double Design::*>(&parameter.member);
-        member && may_be_held(*member))
+    if (const auto* member = std::get_if<double Design::*>(&parameter.member); member && may_be_held(*member))
       names.push_back(parameter.name);
   return names;
 }
@@ -155,14 +154,15 @@ const std::array other_keys{
            "1",
            "distance of landings that count as equal, in rad and sqrt(g/R)",
            {0.0, 1.0, false, true}},
-    Option{"design",
-           "nominal_units",
-           TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.nominal_units; }},
-           "",
-           "with [hoop]: parameters in the units of the nominal hoop, so that hoops of every size and mass have "
-           "the same in N m or rpm; one that is given with such a unit is always among them",
-           {},
-           names_same_in_si},
+    Option{
+        "design",
+        "nominal_units",
+        TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.nominal_units; }},
+        "",
+        "with [hoop]: parameters in the units of the nominal hoop, so that hoops of every size and mass have "
+        "the same in N m or rpm; one that is given with such a unit is always among them",
+        {},
+        names_same_in_si},
     Option{"output", "file", TextSlot{[](Spec& s) -> std::string& { return s.output.file; }}, "",
            "the map to write; the option -o overrides it"},
     Option{
@@ -417,7 +417,10 @@ double parse_number(const Option& option, std::string_view text, const Scales& s
   try {
     value = number_in_own_unit(text, option.unit, scales);
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}; allowed: {}", error.what(), allowed_values(option)));
+    std::string allowed = allowed_values(option);
+    const OwnUnit* own = find_own_unit(option.unit);
+    if (own && !(own->size(scales) > 0.0)) allowed.resize(std::min(allowed.find(" or as "), allowed.size()));
+    throw InputError(fmt::format("{}; allowed: {}", error.what(), allowed));
   }
   if (!in_range(option, value))
     throw InputError(fmt::format("'{}' is out of range{}; allowed: {}", text,

@@ -218,6 +218,14 @@ Scales scales_of(const Spec& spec, const Design& design) {
   return {nominal.radius * design.size, nominal.gravity, nominal.mass * design.mass};
 }
 
+Scales scales_of_manufactured(const Spec& spec, Scales scales) {
+  for (const Spread& spread : spec.scatter.spreads) {
+    if (is_body_mass(spread.parameter)) scales.mass = 0.0;
+    if (spread.parameter == "hoop.diameter") scales.radius = std::numeric_limits<double>::quiet_NaN();
+  }
+  return scales;
+}
+
 bool may_be_held(double Design::*parameter) {
   return std::ranges::find(same_in_si, parameter, &SameInSi::parameter) != same_in_si.end();
 }

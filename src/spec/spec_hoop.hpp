@@ -37,6 +37,8 @@ Scales common_scales(const Spec& spec);
 Scales nominal_scales(const Spec& spec);
 /// Those of the hoop that one of the spec's designs is.
 Scales scales_of(const Spec& spec, const Design& design);
+/// The same as far as hoops that are made after the design with the spec's tolerances share it.
+Scales scales_of_manufactured(const Spec& spec, Scales scales);
 /// Whether hoops that differ in mass or size may have the same of a parameter in the SI.
 bool may_be_held(double Design::*parameter);
 /// Has the spec's hoops share a parameter in the SI, that of the nominal one.

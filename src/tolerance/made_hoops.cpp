@@ -110,16 +110,15 @@ double MadeHoops::draw(const Design& drawn, const Body* body, std::span<const st
 void MadeHoops::take_body(const Body& made, const ReducedBody& nominal, Design& design) const {
   const ReducedBody reduced = reduce_checked(made);
   apply_ratios(reduced, design);
-  // The release is that of the drawing: it counts from where the centre of mass should be. The torques are too.
-  // Weights that balance have no direction but that of a rounding.
+  // The release is that of the drawing: it counts from where the centre of mass should be. The torques are
+  // too. Weights that balance have no direction but that of a rounding.
   constexpr double balanced = 1e-12;
   if (nominal.eccentricity > balanced && reduced.eccentricity > balanced)
     design.release_angle += std::remainder(reduced.direction - nominal.direction, 2.0 * std::numbers::pi);
   const double larger = made.diameter / body_.diameter;
   const double heavier = reduced.total_mass / nominal.total_mass;
   design.size *= larger, design.mass *= heavier;
-  for (const SameInSi& one : same_in_si)
-    design.*one.parameter *= one.of_hoop(heavier, larger);
+  for (const SameInSi& one : same_in_si) design.*one.parameter *= one.of_hoop(heavier, larger);
 }
 
 void MadeHoops::fill(std::size_t first, std::span<Design> made) const {

@@ -54,7 +54,8 @@ LEAPMAP_EXPORT void solve_made(int friction, double tolerance, int first, int se
   const auto [designs, bodies, which] = placed_designs(first, second);
   const auto points = std::make_shared<const SobolPoints>(
       asked.scatter.spreads.size(), static_cast<std::size_t>(asked.scatter.samples), asked.seed);
-  ScatterSolver solver(asked.scatter, page.drawing, page.held, points, asked.goals, quantities_of(asked.fields),
+  ScatterSolver solver(asked.scatter, page.drawing, page.held, points, asked.goals,
+                       quantities_of(asked.fields),
                        [scene, tolerance, jumps = solver_of(scene, tolerance)](std::span<const Design> some,
                                                                                std::span<Outcome> outcomes) {
                          jumps(some, outcomes);

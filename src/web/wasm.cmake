@@ -19,7 +19,8 @@ if(LEAPMAP_EMCC AND BOOST_INCLUDE_DIR)
   set(parts
     web/body web/hoop web/hoops web/made web/page web/without_gsl web/without_stop model/fields
     model/parameters model/variable friction/coulomb friction/exact_motion friction/gradient
-    friction/recorded_way friction/way noslip/way trajectory/way trajectory/clearance friction/rolling_leg friction/sliding_leg
+    friction/recorded_way friction/way noslip/way trajectory/way trajectory/clearance
+    friction/rolling_leg friction/sliding_leg
     friction/sliding_panel noslip/clock noslip/dual_time noslip/exact noslip/exact_motion
     noslip/dual_jump noslip/find noslip/gradient noslip/halved_time noslip/leg noslip/prepare
     noslip/rolling_motion noslip/rolling_time noslip/take_off leapmap/outcome gaits/error_growth

@@ -768,3 +768,45 @@ def test_a_design_of_a_map_over_the_hoop_jumps_as_leapmap_tells(key, values, bro
         1000 * told["scene"]["mass"], rel=1e-9)
     assert float(browser.find_element("id", "radius").get_attribute("value")) == pytest.approx(
         1000 * told["scene"]["radius"], rel=1e-9)
+
+
+def test_tolerances_of_a_drawing_go_with_it(browser, tmp_path):
+    """A hoop of other numbers has its yield; one of another drawing, which lacks what scatters, has none."""
+    path = sweep(
+        tmp_path, """
+[design]
+slope = { from = "25 deg", to = "35 deg", count = 3 }
+[hoop]
+diameter = "120 mm"
+mass = "61 g"
+[[hoop.weight]]
+name = "slug"
+mass = "85 g"
+at = "47 mm"
+[tolerances]
+hoop.slug.mass = { normal = "4 g" }
+samples = 64
+[goal]
+jump_height = { at_least = 0.56 }
+""")
+    done = scripted("explorer", path, "--module", MODULE, "-o", tmp_path / "page.html")
+    assert done.returncode == 0, done.stderr
+    opened(browser, tmp_path / "page.html")
+    give = lambda where, value: browser.execute_script(
+        """const field = document.querySelector(arguments[0]);
+        field.value = arguments[1];
+        field.dispatchEvent(new Event("change"))""", where, value)
+    browser.execute_script("""document.getElementById('drawing').open = true;
+        const { view, pick } = window.explorer.view; view.index = [1]; pick()""")
+    browser.find_element("id", "ghosts").click()
+    waited(browser, lambda b: "reach every" in b.find_element("id", "ghosts-told").text)
+    reach = lambda: int(browser.find_element("id", "ghosts-told").text.split("jump, ")[1].split()[0])
+    counted = lambda b: "reach every" in b.find_element("id", "ghosts-told").text
+    assert 0 < reach() < 20, "each has a slug of its own"
+    give("#hoop-inputs input[data-parameter=offset_ratio]", "0.7")  # a hoop of no drawing that is known
+    assert "this hoop's drawing lacks hoop.slug.mass" in browser.find_element("id", "ghosts-told").text
+    browser.execute_script("const { view, pick } = window.explorer.view; view.index = [1]; pick()")
+    give("[data-drawn='ring.mass']", "62")
+    waited(browser, counted)
+    assert 0 < reach() < 20
+    assert "mass" in browser.find_element("id", "drawing-spec").get_property("textContent")

@@ -699,24 +699,27 @@ def test_numbers_of_a_drawing_are_axes_and_tolerances_of_a_live_map(browser, tmp
 
 
 def test_a_wall_is_cleared_where_leapmap_tells(live):
-    """In the table, on the map, and on the stage, where it is drawn; without a wall no such quantity is offered."""
-    offered = lambda: live.execute_script("""return [...document.getElementById('field').querySelectorAll('option')]
-        .filter((each) => !each.disabled).map((each) => window.explorer.map.fields[each.value].name)""")
+    """In the table and on the map; without a wall no such quantity is offered."""
+    offered = lambda: live.execute_script("""
+        return [...document.querySelectorAll('#field option')].filter((each) => !each.disabled)
+            .map((each) => window.explorer.map.fields[each.value].name)""")
     assert "clears_from" not in offered()
     type_in(live, "clear_height", "0.3")
     settled(live)
     assert "clears_from" in offered()
     show(live, "clears_to")
     settled(live)
-    cells = live.execute_script("""const [f] = window.explorer.map.fields.filter(({ name }) => name === "clears_to");
-        return [...f.values.keys()].filter((k) => Number.isFinite(f.values[k])).filter((_, i) => i % 999 === 0)""")
+    cells = live.execute_script("""
+        const { values } = window.explorer.map.fields.find(({ name }) => name === "clears_to");
+        return [...values.keys()].filter((k) => Number.isFinite(values[k]))
+            .filter((_, i) => i % 999 === 0)""")
     assert len(cells) > 5
     for k in cells[::2]:
         live.execute_script("""const { view, pick } = window.explorer.view;
             view.index = [Math.floor(arguments[0] / 150), arguments[0] % 150]; pick()""", k)
         hop = told_by_leapmap(live)
-        on_map = live.execute_script("""return window.explorer.map.fields.find(({ name }) => name === "clears_to")
-            .values[arguments[0]]""", k)
+        on_map = live.execute_script("""return window.explorer.map.fields
+            .find(({ name }) => name === "clears_to").values[arguments[0]]""", k)
         assert on_map == pytest.approx(hop["clears_to"], rel=1e-9)
         assert float(numbers(live)["clears_from"]) == pytest.approx(hop["clears_from"], rel=1e-9)
         assert "clears a wall of" in live.find_element("id", "numbers").text

@@ -138,14 +138,17 @@ def test_a_torque_in_newton_metres_is_the_same_for_hoops_that_differ_in_mass_and
 
 def test_derivatives_by_masses_and_diameters_hold_a_torque_in_newton_metres(tmp_path):
     """Against differences of maps: an error of the step's square, 1e-6 of the values."""
-    for key, unit, value, step in (("hoop.slug.mass", "85 g", 0.085, 1e-5), ("hoop.diameter", "120 mm", 0.12, 1e-5)):
+    step = 1e-5
+    for key, unit, value in (("hoop.slug.mass", "85 g", 0.085), ("hoop.diameter", "120 mm", 0.12)):
         values = f"{{ values = [{value - step}, {value}, {value + step}] }}"
         (tmp_path / "motor.toml").write_text(MOTOR_MAP.replace(f'"{unit}"', values))
-        assert leapmap("sweep", tmp_path / "motor.toml", "-o", tmp_path / "m.h5", "--overwrite").returncode == 0
+        assert leapmap("sweep", tmp_path / "motor.toml", "-o", tmp_path / "m.h5",
+                       "--overwrite").returncode == 0
         with h5py.File(tmp_path / "m.h5") as m:
             for name in ("jump_height", "jump_time"):
                 low, _, high = m[name][()]
-                assert m[f"{name}_by_{key}"][1] == pytest.approx((high - low) / (2 * step), rel=1e-5), (name, key)
+                difference = (high - low) / (2 * step)
+                assert m[f"{name}_by_{key}"][1] == pytest.approx(difference, rel=1e-5), (name, key)
 
 
 def test_lists_tolerances_and_tables_have_a_torque_in_newton_metres(tmp_path):
@@ -156,7 +159,8 @@ def test_lists_tolerances_and_tables_have_a_torque_in_newton_metres(tmp_path):
     made = ("--set", 'tolerances.drive_torque={normal="1 mN.m"}', "--set", "tolerances.samples=64",
             "--set", "goal.jump_height={at_least=0.2}", "--set",
             'output.fields=["jump_height", "motor_energy", "yield", "jump_height_sd"]', "--set", "audit=0")
-    done = leapmap("sweep", tmp_path / "motor.toml", "--points", tmp_path / "list.csv", "-o", tmp_path / "m.h5", *made)
+    done = leapmap("sweep", tmp_path / "motor.toml", "--points", tmp_path / "list.csv", "-o",
+                   tmp_path / "m.h5", *made)
     assert done.returncode == 0, done.stderr
     (tmp_path / "one.toml").write_text(HOOP)
     with h5py.File(tmp_path / "m.h5") as m:
@@ -172,6 +176,39 @@ def test_lists_tolerances_and_tables_have_a_torque_in_newton_metres(tmp_path):
     rows = list(csv.DictReader((tmp_path / "t.csv").read_text().splitlines()))
     for name, values in (("drive_torque [N.m]", (0.04, 0.04, 0.03)), ("release_spin [rpm]", (0, 0, 20))):
         assert [float(row[name]) for row in rows] == pytest.approx(values, rel=1e-12)
+
+
+def test_a_miss_is_told_in_the_unit_of_its_limit_where_hoops_differ_in_size(drawing):
+    done = leapmap("design", drawing, "--set", 'slope="30 deg"', "--hoop.diameter",
+                   '{from="100 mm",to="140 mm"}', "--set", 'goal.jump_height={at_least="300 mm"}', "--set",
+                   "minimize=hoop.diameter", "--sample", 64)
+    assert done.returncode == 1
+    height = re.search(r'at_least = "0.3 m" }: ([\d.]+) m$', done.stdout, re.M)
+    diameter = re.search(r"hoop.diameter ([\d.]+) m", done.stdout)
+    alone = told(drawing, "--slope", "30 deg", "--set", f"hoop.diameter={diameter[1]}")
+    assert float(height[1]) == pytest.approx(alone["jump_height"] * float(diameter[1]), rel=1e-4)
+
+
+def test_derivatives_by_masses_and_sizes_are_of_the_number_they_are_told_in(drawing):
+    """The newtons of a force change with the mass, too, so that its derivative is told in weights."""
+    done = leapmap("design", drawing, "--set", 'slope="30 deg"', "--hoop.slug.mass",
+                   '{from="60 g",to="90 g"}', "--set", "maximize=jump_range", "--sample", 64)
+    line = next(line for line in done.stdout.splitlines() if "jump_range changes by" in line)
+    assert " R a gram of hoop.slug.mass" in line and "mm" not in line, line
+
+
+def test_statistics_of_hoops_that_scatter_in_size_have_no_millimetres(drawing, tmp_path):
+    made = ("--set", 'tolerances.hoop.diameter={normal="3 mm"}', "--set", "tolerances.samples=64", "--set",
+            'slope={from="25 deg",to="35 deg",count=3}', "--set", "audit=0")
+    path = tmp_path / "m.h5"
+    assert leapmap("sweep", drawing, *made, "-o", path).returncode == 0
+    at = leapmap("info", path, "--at", "slope=30deg").stdout
+    lines = {line.split()[0]: line for line in at.splitlines() if line.startswith("  jump_")}
+    assert "mm)" in lines["jump_height"] and "mm" not in lines["jump_height_q05"], at
+    done = leapmap("export", path, "-o", tmp_path / "t.csv", "--units", "mm ms")
+    header = (tmp_path / "t.csv").read_text().splitlines()[0]
+    assert "jump_height [mm]" in header and "jump_time_q05 [ms]" in header, header
+    assert "jump_height_q05 [hoop diameters]" in header, header
 
 
 def test_units_of_the_nominal_hoop_need_one(tmp_path):
@@ -549,8 +586,8 @@ def test_a_search_may_have_goals_that_have_no_derivatives(sample, drawing):
     """The least slope whose jump clears 20 mm over a box of 30 mm, with no more than 12 N on the plane."""
     done = leapmap("design", drawing, "--set", 'slope={from="10 deg",to="45 deg"}', "--set",
                    'clear_height="20 mm"', "--set", 'goal.max_normal_force={at_most="12 N"}', "--set",
-                   'goal.clears_to={at_least="60 mm"}', "--set", "minimize=slope", "--sample", sample, "--json",
-                   "--quiet")
+                   'goal.clears_to={at_least="60 mm"}', "--set", "minimize=slope", "--sample", sample,
+                   "--json", "--quiet")
     assert done.returncode == 0, done.stderr
     best = json.loads(done.stdout)["designs"][0]
     assert best["fields"]["max_normal_force"] * 0.158 * 9.81 <= 12 and best["fields"]["clears_to"] >= 1

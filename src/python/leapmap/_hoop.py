@@ -156,7 +156,7 @@ class Hoop:
             by_mass, by_size = by_mass + with_mass * by_logarithm, by_size + with_size * by_logarithm
         shape = np.shape(columns[0])
         numbers = np.broadcast_to(self._numbers, (*shape, self._numbers.shape[-1]))
-        columns = np.stack([np.broadcast_to(column, shape) for column in (*columns, by_mass, by_size)], axis=-1)
+        columns = np.stack(np.broadcast_arrays(*columns, by_mass, by_size), axis=-1)
         found = _core.differentiate_by_hoop(_rows(numbers), self._names, _rows(columns))
         return by | {name: column.reshape(shape)[()] for name, column in found.items()}
 
@@ -171,7 +171,8 @@ class Hoop:
 
 def _held(given):
     """The parameters that hoops share in the SI, and as what powers of mass and size each hoop has them."""
-    powers = {name: _core.powers_in_si(name, value) for name, value in given.items() if isinstance(value, str)}
+    texts = {name: value for name, value in given.items() if isinstance(value, str)}
+    powers = {name: _core.powers_in_si(name, value) for name, value in texts.items()}
     return {name: power for name, power in powers.items() if power is not None}
 
 
