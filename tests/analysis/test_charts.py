@@ -128,16 +128,17 @@ def units_of(path, field, unit):
     return np.array(done.stdout.split(), float)
 
 
-@pytest.mark.parametrize("sample", [128, pytest.param(1024, marks=pytest.mark.slow)])
-def test_designs_found_for_a_drawing_are_charted_by_its_numbers(sample, monkeypatch, tmp_path):
+@pytest.mark.parametrize("goal", ['landing_impulse = { at_most = "1 N s" }', pytest.param(
+    'max_normal_force = { at_most = "30 N" }', marks=pytest.mark.slow)])
+def test_designs_found_for_a_drawing_are_charted_by_its_numbers(goal, monkeypatch, tmp_path):
     monkeypatch.setenv("PYTHONPATH", f"{os.environ['LEAPMAP_BUILD']}/python")
     question = (tmp_path / "q.toml")
     question.write_text(
         BODY.replace("SLUG", '{ from = "40 g", to = "120 g" }').replace("SLOPE", '"30 deg"').replace(
-            ", count = 3", "") + '[goal]\nmaximize = ["jump_height"]\nminimize = ["hoop.slug.mass"]\n'
-        'max_normal_force = { at_most = "30 N" }\n')
+            ", count = 3", "") + '[goal]\nmaximize = ["jump_height"]\nminimize = ["hoop.slug.mass"]\n' +
+        goal + "\n")
     best = tmp_path / "best.h5"
-    assert leapmap("design", question, "--most", 60, "--sample", sample, "-o", best).returncode == 0
+    assert leapmap("design", question, "--most", 60, "--sample", 1024, "-o", best).returncode == 0
     front = draw("front_chart.py", best, "--question", question, "-o", tmp_path / "front")
     assert front.returncode == 0, front.stderr
     words = texts(tmp_path / "front.svg")
@@ -152,11 +153,15 @@ def test_designs_found_for_a_drawing_are_charted_by_its_numbers(sample, monkeypa
     assert listed.returncode == 0, listed.stderr
     words = " ".join(texts(tmp_path / "list.svg"))
     assert "mass of slug [g]" in words and "[mm]" in words and "[ms]" in words, words
-    newtons = units_of(best, "max_normal_force", "N")
     with h5py.File(best) as m:
         masses = 0.061 + m["hoop.slug.mass"][:]
         assert np.ptp(masses) > 0.01, "each design has its own"
-        np.testing.assert_allclose(newtons, 9.81 * masses * m["max_normal_force"][:], rtol=1e-12)
+        sizes = {"max_normal_force": ("N", 9.81 * masses), "landing_impulse": (
+            "N.s", masses * np.sqrt(9.81 * m["hoop.diameter"][:] / 2))}
+        for name in sizes.keys() & m.keys():
+            unit, size = sizes[name]
+            np.testing.assert_allclose(units_of(best, name, unit), size * m[name][:], rtol=1e-12)
+        assert sizes.keys() & m.keys()
     refused = draw("front_chart.py", question, "-o", tmp_path / "x")
     assert refused.returncode == 2 and "-o MAP.h5" in refused.stderr and refused.stderr.count("\n") == 1
     for asked in (("-x", "hoop.slg.mass"), ("--units", "furlongg")):
@@ -255,6 +260,7 @@ def colours_of(png, colour):
     return (np.abs(image.imread(png)[..., :3] - to_rgb(colour)) < 0.02).all(axis=-1).mean()
 
 
+@pytest.mark.slow  # its twin draws any two axes of any map
 def test_a_coarse_logarithmic_axis_fills_its_panel_row_by_row(tmp_path):
     path = sweep(
         tmp_path,
@@ -528,8 +534,9 @@ def with_cliffs(tmp_path_factory):
 
 @pytest.mark.parametrize(
     "script, words",
-    [("design_chart.py",
-      ["discontinuity: a lift-off crosses the jump threshold", "discontinuity: a lift-off appears (fold)"]),
+    [pytest.param("design_chart.py", [
+        "discontinuity: a lift-off crosses the jump threshold", "discontinuity: a lift-off appears (fold)"
+    ], marks=pytest.mark.slow),
      ("status_chart.py", ["discontinuity: a lift-off crosses the jump threshold"]),
      ("phase_diagram.py", [
          "jumps on the 1st lift-off", "jumps on the 2nd lift-off", "1st", "2nd", "no jump", "the paper's hoop"

@@ -335,7 +335,7 @@ MADE = ("yield", *(f"{q}_{s}" for q in ("jump_height", "jump_time")
 
 def told_as_made(cells, folder, *settings):
     """What leapmap sweep tells of hoops made after some cells' designs, by field."""
-    scene = ("runway", "hop_height", "rest_speed", "radius", "gravity")
+    scene = ("runway", "hop_height", "clear_height", "rest_speed", "radius", "gravity")
     contact = ("mu_static", "mu_kinetic", "restitution")
     names = [
         n for n in cells[0]["design"]

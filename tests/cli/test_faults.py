@@ -14,8 +14,7 @@ import walk  # noqa: E402
 
 @pytest.mark.parametrize("command,every", [("sweep", 47), ("overwrite", 97), ("resume", 61), ("retry", 97),
                                            ("trace", 23), ("info", 29), ("check", 211), ("list", 71),
-                                           ("explorer", 197),
-                                           pytest.param("explorer", 131, marks=pytest.mark.slow)])
+                                           ("explorer", 131)])
 def test_whatever_call_fails_nothing_is_lost(command, every):
     runs, findings = walk.walk([command], ["EIO", "ENOSPC"], (False, True), every)
     assert runs > 4 and findings == []

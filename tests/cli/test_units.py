@@ -581,16 +581,17 @@ def test_reports_show_numbers_in_the_units_asked_for(drawing, tmp_path):
         assert done.returncode == 2 and "--units" in done.stderr and done.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("sample", [128, pytest.param(1024, marks=pytest.mark.slow)])
-def test_a_search_may_have_goals_that_have_no_derivatives(sample, drawing):
+@pytest.mark.parametrize("newtons", [None, pytest.param(12, marks=pytest.mark.slow)])
+def test_a_search_may_have_goals_that_have_no_derivatives(newtons, drawing):
     """The least slope whose jump clears 20 mm over a box of 30 mm, with no more than 12 N on the plane."""
+    most = ("--set", f'goal.max_normal_force={{at_most="{newtons} N"}}') if newtons else ()
     done = leapmap("design", drawing, "--set", 'slope={from="10 deg",to="45 deg"}', "--set",
-                   'clear_height="20 mm"', "--set", 'goal.max_normal_force={at_most="12 N"}', "--set",
-                   'goal.clears_to={at_least="60 mm"}', "--set", "minimize=slope", "--sample", sample,
-                   "--json", "--quiet")
+                   'clear_height="20 mm"', *most, "--set", 'goal.clears_to={at_least="60 mm"}', "--set",
+                   "minimize=slope", "--sample", 1024, "--json", "--quiet")
     assert done.returncode == 0, done.stderr
     best = json.loads(done.stdout)["designs"][0]
-    assert best["fields"]["max_normal_force"] * 0.158 * 9.81 <= 12 and best["fields"]["clears_to"] >= 1
+    assert best["fields"]["clears_to"] >= 1
+    assert not newtons or best["fields"]["max_normal_force"] * 0.158 * 9.81 <= newtons
 
 
 def test_a_miss_says_how_near_it_came(drawing):
@@ -736,9 +737,6 @@ def test_the_diameter_is_an_axis_a_tolerance_and_free_as_any_number(drawing, tmp
         refused = leapmap("sweep", drawing, *varied, "--set", 'hop_height="6 mm"', "--dry-run")
         assert refused.returncode == 2 and "each hoop has its own" in refused.stderr
     listed = tmp_path / "list.csv"
-    listed.write_text("hoop.diameter [mm],release_spin [rpm]\n120,10\n160,10\n")
-    refused = leapmap("sweep", drawing, "--points", listed, "-o", tmp_path / "l.h5")
-    assert refused.returncode == 2 and "each hoop has its own" in refused.stderr
     listed.write_text("hoop.diameter [mm]\n120\n160\n")
     refused = leapmap("sweep", drawing, "--points", listed, "--set", 'hop_height="6 mm"', "-o",
                       tmp_path / "l.h5")
@@ -777,14 +775,14 @@ def test_hoops_of_every_size_clear_the_same_wall(drawing, tmp_path):
     assert refused.returncode == 2 and "hoops of several sizes clear one wall" in refused.stderr
 
 
-@pytest.mark.parametrize("sample", [256, pytest.param(2048, marks=pytest.mark.slow)])
-def test_goals_in_mm_and_newtons_hold_for_hoops_of_every_size_and_mass(sample, drawing, tmp_path):
+@pytest.mark.slow  # its twins are of made hoops, in C++, and of a list of found designs, below
+def test_goals_in_mm_and_newtons_hold_for_hoops_of_every_size_and_mass(drawing, tmp_path):
     """The lightest slug with which a hoop of some diameter does what is asked in mm and N."""
     asked = ("--set", 'goal.jump_height={at_least="50 mm"}', "--set", 'goal.max_normal_force={at_most="9 N"}',
              "--set", 'goal.clears_to={at_least="150 mm"}')
     done = leapmap("design", drawing, *WALLED, "--hoop.diameter", '{from="100 mm",to="150 mm"}', "--set",
                    'hoop.slug.mass={from="60 g",to="120 g"}', *asked, "--set", "minimize=hoop.slug.mass",
-                   "--json", "--sample", sample)
+                   "--json", "--sample", 2048)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)["designs"][0]
     sizes = ("--set", f"hoop.diameter={found['parameters']['hoop.diameter']!r}", "--set",
