@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <sstream>
 
@@ -374,6 +375,7 @@ void assign(std::vector<Entry>& entries, Spec& spec, bool of_map) {
     refuse_beside_hoop(entries);
     check_hoop(spec);
     apply_hoop(spec);
+    if (!of_map) std::ranges::move(doubts_of_hoop(spec), std::back_inserter(spec.notes));
   }
   hold_in_si(entries, spec);
   const auto any = [&](const auto& holds) { return std::ranges::any_of(entries, holds); };

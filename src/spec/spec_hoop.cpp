@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "hoop/body.hpp"
@@ -198,6 +199,26 @@ void check_hoop(const Spec& spec) {
     throw InputError(fmt::format("{}: {}", origin_of(spec), error.what()));
   }
   check_ratios(spec);
+}
+
+std::vector<std::string> doubts_of_hoop(const Spec& spec) {
+  const Body& body = *spec.hoop;
+  const double radius = 0.5 * body.diameter, square = radius * radius;
+  std::vector<std::string> doubts;
+  // Of a sphere of osmium.
+  constexpr double most_density = 22'600.0 * 4.0 / 3.0 * std::numbers::pi;
+  if (const double mass = reduce_checked(body).total_mass; mass > most_density * square * radius)
+    doubts.push_back(
+        fmt::format("{}: [hoop]: {:.4g} kg in a hoop of {:.4g} m is denser than any metal; grams "
+                    "are written \"... g\"",
+                    origin_of(spec), mass, body.diameter));
+  constexpr double rounding = 1e-6;  // of what a drawing states
+  if (body.inertia > (1.0 + rounding) * body.mass * square)
+    doubts.push_back(
+        fmt::format("{}: hoop.inertia = {:.4g} kg m2 is larger than that of a thin ring of this "
+                    "mass, {:.4g} kg m2",
+                    origin_of(spec), body.inertia, body.mass * square));
+  return doubts;
 }
 
 Scales common_scales(const Spec& spec) {

@@ -30,6 +30,9 @@ void assign_to_hoop(const Entry& entry, Spec& spec);
 /// Throws InputError for a body that cannot be, nominal or along the axes.
 void check_hoop(const Spec& spec);
 
+/// What is possible but most likely a slip of units, in words for spec.notes.
+std::vector<std::string> doubts_of_hoop(const Spec& spec);
+
 /// What units of the spec's numbers are converted by: without the mass, or the radius, of which each design
 /// has its own.
 Scales common_scales(const Spec& spec);

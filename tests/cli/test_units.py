@@ -91,6 +91,15 @@ def test_a_wall_that_is_cleared_is_told_in_the_hoop_s_size(drawing):
     assert refused.returncode == 2 and "scene.clear_height" in refused.stderr
 
 
+def test_what_is_likely_a_slip_of_units_is_noted(drawing):
+    fine = leapmap("hop", drawing, "--slope", "30deg")
+    assert fine.returncode == 0 and fine.stderr == ""
+    for given, words in (("hoop.slug.mass=85", "85.07 kg in a hoop of 0.12 m is denser than any metal"),
+                         ("hoop.inertia=1.9", "1.9 kg m2 is larger than that of a thin ring of this mass")):
+        noted = leapmap("hop", drawing, "--slope", "30deg", "--set", given)
+        assert noted.returncode == 0 and words in noted.stderr and noted.stderr.count("\n") == 1, noted.stderr
+
+
 def test_newtons_need_a_mass():
     refused = leapmap("hop", "--drive-torque", "0.04 N m")
     assert refused.returncode == 2
