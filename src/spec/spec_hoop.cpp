@@ -213,7 +213,7 @@ std::vector<std::string> doubts_of_hoop(const Spec& spec) {
                     "are written \"... g\"",
                     origin_of(spec), mass, body.diameter));
   constexpr double rounding = 1e-6;  // of what a drawing states
-  if (body.inertia > (1.0 + rounding) * body.mass * square)
+  if (body.inertia > (1.0 + rounding) * body.mass * square && !find_varying(spec, "hoop.inertia"))
     doubts.push_back(
         fmt::format("{}: hoop.inertia = {:.4g} kg m2 is larger than that of a thin ring of this "
                     "mass, {:.4g} kg m2",
