@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "audit/audit_report.hpp"
 #include "cli/audit_lines.hpp"
@@ -87,23 +88,62 @@ Summary summarise(const MapReader& map, const std::string& name) {
   return summary;
 }
 
+/// By what a map's numbers are converted: what its designs share, what manufactured hoops do, and of each
+/// design its own. Of a map whose spec cannot be read nothing is known, which matters where units are asked
+/// for.
+class MapScales {
+ public:
+  MapScales(const MapReader& map, const InfoArguments& arguments) {
+    try {
+      spec_ = spec_of(map, arguments.path);
+      shared = common_scales(*spec_), manufactured = scales_of_manufactured(*spec_, shared);
+    } catch (const std::exception&) {
+      if (!arguments.units.empty()) throw;
+    }
+  }
+
+  Scales of(std::size_t design) const {
+    if (!spec_ || !(mass_varies(*spec_) || find_varying(*spec_, "hoop.diameter"))) return shared;
+    return scales_of(*spec_, DesignSpace(*spec_).at(design));
+  }
+
+  /// Of a parameter, which may be in the units of the nominal hoop.
+  Scales of(const std::string& parameter, std::size_t design) const {
+    return is_held(parameter) ? nominal_scales(*spec_) : of(design);
+  }
+  Scales of_all(const std::string& parameter) const {
+    return is_held(parameter) ? nominal_scales(*spec_) : shared;
+  }
+
+  Scales shared{.radius = Outcome::none, .gravity = Outcome::none, .mass = 0.0}, manufactured = shared;
+
+ private:
+  bool is_held(const std::string& parameter) const {
+    return spec_ && std::ranges::find(spec_->nominal_units, parameter) != spec_->nominal_units.end();
+  }
+  std::optional<Spec> spec_;
+};
+
 /// A value of a dimension; a design's number whole.
-std::string coordinate(const MapReader::Dimension& dimension, std::size_t position, ShownUnits& units) {
+std::string coordinate(const MapReader::Dimension& dimension, std::size_t position, ShownUnits& units,
+                       const Scales& scales) {
   if (dimension.values.empty()) return fmt::format("{}", position);
+  units.scale(scales);
   const ShownUnit shown = units.are_asked_for() ? units.of(dimension.name) : ShownUnit{};
   return fmt::format("{:.6g}{}{}", dimension.values[position] * shown.factor, shown.unit.empty() ? "" : " ",
                      shown.unit);
 }
 
 std::string place(const MapReader& map, const std::vector<std::string>& labels, std::size_t design,
-                  ShownUnits& units) {
+                  ShownUnits& units, const MapScales& scales) {
   std::vector<std::size_t> position;
   unravel(design, map.shape(), position);
   std::vector<std::string> coordinates;
   for (std::size_t i = 0; i < position.size(); ++i) {
     const auto& dimension = map.dimensions()[i];
     coordinates.push_back(
-        fmt::format("{} {}", printable(dimension.name), coordinate(dimension, position[i], units)));
+        fmt::format("{} {}", printable(dimension.name),
+                    coordinate(dimension, position[i], units, scales.of(dimension.name, design))));
   }
   if (design < labels.size()) coordinates.back() += fmt::format(" ({})", printable(labels[design]));
   return fmt::format("{}", fmt::join(coordinates, ", "));
@@ -211,7 +251,7 @@ void print_audit(const MapReader& map) {
         attribute("retry_method"), attribute("retry_tolerance"));
 }
 
-void print_dimensions(const MapReader& map, ShownUnits& units) {
+void print_dimensions(const MapReader& map, ShownUnits& units, const MapScales& scales) {
   say("\ndimensions\n");
   for (const auto& dimension : map.dimensions()) {
     if (dimension.values.empty()) {
@@ -219,6 +259,7 @@ void print_dimensions(const MapReader& map, ShownUnits& units) {
       continue;
     }
     const auto [least, most] = std::ranges::minmax(dimension.values);
+    units.scale(scales.of_all(dimension.name));
     const ShownUnit shown = units.are_asked_for()
                                 ? units.of(dimension.name)
                                 : ShownUnit{dimension.unit == "1" ? "" : printable(dimension.unit), 1.0};
@@ -227,11 +268,7 @@ void print_dimensions(const MapReader& map, ShownUnits& units) {
   }
 }
 
-struct SharedScales {
-  Scales designs, manufactured;
-};
-
-void print_fields(const MapReader& map, ShownUnits& units, const SharedScales& scales) {
+void print_fields(const MapReader& map, ShownUnits& units, const MapScales& scales) {
   const std::size_t designs = designs_of(map.shape());
   say("\nfields, {} designs\n", designs);
   if (!map.has("status") && hdf5::has_attribute(map.file(), "status_counts")) {
@@ -244,8 +281,6 @@ void print_fields(const MapReader& map, ShownUnits& units, const SharedScales& s
   for (const std::string& name : map.fields()) {
     const Field* field = find_field(name);
     const Summary summary = summarise(map, name);
-    units.scale(field && std::holds_alternative<OfMade>(field->source) ? scales.manufactured
-                                                                       : scales.designs);
     say("{}\n", printable(name));
     if (field && std::holds_alternative<Code>(field->source)) {
       print_counts(std::get<Code>(field->source), summary, designs);
@@ -255,31 +290,20 @@ void print_fields(const MapReader& map, ShownUnits& units, const SharedScales& s
       say("  none\n");
     } else {
       const bool listed = !field && find_option("", name);  // a number that a list of designs gives
-      const ShownUnit shown = !units.are_asked_for() || (!field && !listed)
-                                  ? ShownUnit{map.unit(name) == "1" ? "" : printable(map.unit(name)), 1.0}
-                              : field ? units.of(*field)
-                                      : units.of(name);
-      const std::string unit = shown.unit.empty() ? "" : " " + shown.unit;
+      const bool of_made = field && std::holds_alternative<OfMade>(field->source);
       for (const auto& [words, extreme] :
-           {std::pair{"least", &summary.least}, std::pair{"most", &summary.most}})
-        say("  {:<5} {:<12.8g}{}{} at {}\n", words, extreme->value * shown.factor, unit,
-            field ? units.beside(extreme->value, *field) : "", place(map, labels, extreme->design, units));
+           {std::pair{"least", &summary.least}, std::pair{"most", &summary.most}}) {
+        units.scale(of_made ? scales.manufactured : scales.of(name, extreme->design));
+        const ShownUnit shown = !units.are_asked_for() || (!field && !listed)
+                                    ? ShownUnit{map.unit(name) == "1" ? "" : printable(map.unit(name)), 1.0}
+                                : field ? units.of(*field)
+                                        : units.of(name);
+        say("  {:<5} {:<12.8g}{}{}{} at {}\n", words, extreme->value * shown.factor,
+            shown.unit.empty() ? "" : " ", shown.unit, field ? units.beside(extreme->value, *field) : "",
+            place(map, labels, extreme->design, units, scales));
+      }
       if (summary.missing > 0) say("  none  in {} designs\n", summary.missing);
     }
-  }
-}
-
-/// What the map's designs share, and what their manufactured hoops do. Of a map whose spec cannot be read
-/// nothing is known, which matters where units are asked for.
-SharedScales scales_of(const MapReader& map, const InfoArguments& arguments) {
-  try {
-    const Spec spec = spec_of(map, arguments.path);
-    const Scales common = common_scales(spec);
-    return {common, scales_of_manufactured(spec, common)};
-  } catch (const std::exception&) {
-    if (!arguments.units.empty()) throw;
-    const Scales unknown{.radius = Outcome::none, .gravity = Outcome::none, .mass = 0.0};
-    return {unknown, unknown};
   }
 }
 
@@ -300,11 +324,11 @@ int run(const InfoArguments& arguments) {
     print_place(parse_map_spec(map.attribute("spec"), arguments.path), arguments.at, arguments.units);
     return 0;
   }
-  const SharedScales scales = scales_of(map, arguments);
-  ShownUnits units(arguments.units, scales.designs);
+  const MapScales scales(map, arguments);
+  ShownUnits units(arguments.units, scales.shared);
   print_origin(map, arguments.path);
   print_audit(map);
-  print_dimensions(map, units);
+  print_dimensions(map, units, scales);
   print_fields(map, units, scales);
   units.refuse_unused();
   return 0;

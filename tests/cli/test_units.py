@@ -91,6 +91,22 @@ def test_a_wall_that_is_cleared_is_told_in_the_hoop_s_size(drawing):
     assert refused.returncode == 2 and "scene.clear_height" in refused.stderr
 
 
+def test_extremes_of_hoops_of_different_masses_are_in_newtons_of_their_own(drawing, tmp_path):
+    path = tmp_path / "m.h5"
+    assert leapmap("sweep", drawing, "--hoop.slug.mass", '{from="40 g",to="160 g",count=3}', "--set",
+                   "slope=0", "--set", 'drive_torque={values=["0.04 N m"]}', "--set",
+                   'output.fields=["landing_impulse"]', "--set", "audit=0", "-o", path).returncode == 0
+    with h5py.File(path) as m:
+        impulse, masses = m["landing_impulse"][()].ravel(), m["hoop.slug.mass"][()]
+    k = np.nanargmax(impulse)
+    newton_seconds = impulse[k] * (0.073 + masses[k]) * math.sqrt(9.81 * 0.06)
+    shown = leapmap("info", path).stdout
+    assert f"({newton_seconds:.4g} N s)" in shown, shown
+    asked = leapmap("info", path, "--units", "N.s N.m g").stdout
+    assert f"{newton_seconds:.8g} N.s at" in asked and "drive_torque 0.04 N.m" in asked, asked
+    assert "values from 0.04 to 0.04 N.m" in asked, asked
+
+
 def test_what_is_likely_a_slip_of_units_is_noted(drawing):
     fine = leapmap("hop", drawing, "--slope", "30deg")
     assert fine.returncode == 0 and fine.stderr == ""
