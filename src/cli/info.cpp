@@ -298,8 +298,9 @@ void print_fields(const MapReader& map, ShownUnits& units, const MapScales& scal
                                     ? ShownUnit{map.unit(name) == "1" ? "" : printable(map.unit(name)), 1.0}
                                 : field ? units.of(*field)
                                         : units.of(name);
+        const std::string beside = field ? units.beside(extreme->value, *field) : "";
         say("  {:<5} {:<12.8g}{}{}{} at {}\n", words, extreme->value * shown.factor,
-            shown.unit.empty() ? "" : " ", shown.unit, field ? units.beside(extreme->value, *field) : "",
+            shown.unit.empty() ? "" : " ", shown.unit, beside,
             place(map, labels, extreme->design, units, scales));
       }
       if (summary.missing > 0) say("  none  in {} designs\n", summary.missing);
