@@ -126,15 +126,15 @@ class Outcomes:
     @staticmethod
     def _factor(unit, name, given, mass):
         """From the field's own unit; of designs with sizes or masses of their own an array."""
+        given = given if mass is None else given | {"mass": mass}
         each = {key: value for key, value in given.items() if np.ndim(value) > 0}
-        if each:  # of a search or of manufactured hoops
-            rows = (given | dict(zip(each, map(float, row))) for row in zip(*each.values()))
-            factors = [_core.units_in_own(unit, name, row) for row in rows]
-            return None if None in factors else np.array(factors, float)
-        factor = _core.units_in_own(unit, name, given)
-        if factor is None and mass is not None:
-            of_a_kilogram = _core.units_in_own(unit, name, given | {"mass": 1.0})
-            return None if of_a_kilogram is None else of_a_kilogram * mass
+        ones = given | dict.fromkeys(each, 1.0)
+        factor = one = _core.units_in_own(unit, name, ones)
+        if one is None:
+            return None
+        for key, values in each.items():  # own units are products of half powers of them
+            fourfold = _core.units_in_own(unit, name, ones | {key: 4.0}) / one
+            factor = factor * np.asarray(values, float)**(round(2 * np.log(fourfold) / np.log(4)) / 2)
         return factor
 
     def to_xarray(self):
