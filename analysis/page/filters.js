@@ -4,11 +4,31 @@ const LOWER_IS_BETTER = ["jump_time", "first_jump_time", "jump_distance", "energ
   "candidates", "gait_energy_lost", "sequence_condition",
   "jump_time_mean", "jump_time_q05", "jump_time_q50", "jump_time_q95", "jump_time_sd", "jump_height_sd"];
 
+/** How many designs lie between each and the nearest one without it: steps along the axes, counted from the
+    designs that are `out` and from both sides of every discontinuity. Infinity: there is none. */
+function stepsToCliffs(map, out) {
+  const lengths = map.axes.map(({ values }) => values.length), cliffs = map.codes.cliffs.values,
+    strides = lengths.map((_, axis) => lengths.slice(axis + 1).reduce((a, b) => a * b, 1)),
+    steps = Float64Array.from(cliffs, (_, k) => (out(k) ? 0 : Infinity));
+  const isAt = (k, axis, end) => Math.floor(k / strides[axis]) % lengths[axis] === end;
+  cliffs.forEach((bits, k) => strides.forEach((stride, axis) => {
+    if (bits >> axis & 1 && !isAt(k, axis, lengths[axis] - 1)) steps[k] = steps[k + stride] = 0;
+  }));
+  for (let k = 0; k < steps.length; ++k)
+    strides.forEach((stride, axis) =>
+      { if (!isAt(k, axis, 0)) steps[k] = Math.min(steps[k], steps[k - stride] + 1); });
+  for (let k = steps.length - 1; k >= 0; --k)
+    strides.forEach((stride, axis) =>
+      { if (!isAt(k, axis, lengths[axis] - 1)) steps[k] = Math.min(steps[k], steps[k + stride] + 1); });
+  return steps;
+}
+
 /** Builds the goals' part; changed(): another picture is due, best(index): the best design left is to be
     shown. */
 function filtersPart(map, view, changed, best) {
   const list = element("goals"), told = element("goals-told"), goals = [];  // bounds in the fields' own units
-  const real = element("goal-real"), find = element("goal-best");
+  const real = element("goal-real"), find = element("goal-best"), by = element("goal-by");
+  by.querySelector("[value=steadiest]").hidden = !map.codes.cliffs || map.axes.length > 8;
 
   /** Whether a hoop as made can be asked to reach a goal of it: agility is none of the solver's, and some are
       of the other model. */
@@ -29,7 +49,6 @@ function filtersPart(map, view, changed, best) {
   function update() {
     const any = real.checked || goals.length > 0;
     map.keeps = any ? keeps : null;
-    find.hidden = !any;
     tell();
     changed();
     noteAddress();
@@ -43,8 +62,8 @@ function filtersPart(map, view, changed, best) {
 
   function tell() {
     for (const { show } of goals) show();
-    find.textContent = `show the ${isMultiplier() ? "most stable" : better(0, 1) ? "lowest" : "highest"} ` +
-      `remaining design`;
+    by.options[0].textContent = `the ${isMultiplier() ? "most stable" : better(0, 1) ? "best, the lowest"
+      : "best, the highest"}`;
     if (!map.keeps) { told.textContent = ""; return; }
     const n = map.fields[0].values.length;
     let left = 0;
@@ -100,11 +119,13 @@ function filtersPart(map, view, changed, best) {
   element("goal-add").addEventListener("click", () => row());
   real.addEventListener("change", update);
   find.addEventListener("click", () => {
-    const { field } = view.view, n = field.values.length;
+    const { values } = view.view.field, has = (k) => keeps(k) && values[k] === values[k],
+      steps = by.value === "steadiest" ? stepsToCliffs(map, (k) => !has(k)) : null;
+    const beats = (a, b) =>
+      (steps && steps[a] !== steps[b] ? steps[a] > steps[b] : by.value === "highest" ? values[a] > values[b]
+      : by.value === "lowest" ? values[a] < values[b] : better(values[a], values[b]));
     let at = -1;
-    for (let k = 0; k < n; ++k)
-      if (keeps(k) && field.values[k] === field.values[k]
-        && (at < 0 || better(field.values[k], field.values[at]))) at = k;
+    for (let k = 0; k < values.length; ++k) if (has(k) && (at < 0 || beats(k, at))) at = k;
     if (at < 0) { told.textContent = "no design solved on this map reaches every goal"; return; }
     const index = [];
     for (let k = map.axes.length - 1, rest = at; k >= 0; --k) { const length = map.axes[k].values.length;

@@ -191,6 +191,27 @@ def test_goals_dim_what_fails_and_the_best_left_is_shown(live):
         live.execute_script(
             "return document.querySelector('#numbers tr[data-name=jump_height]').dataset.value")
     ) == pytest.approx(height[left].max(), rel=1e-9)
+    by = Select(live.find_element("id", "goal-by"))
+
+    def shown(how):
+        by.select_by_value(how)
+        live.find_element("id", "goal-best").click()
+        i, j = live.execute_script("return window.explorer.view.view.picked")
+        return i, j, height.reshape(200, 150)[i, j]
+    assert shown("lowest")[2] == height[left].min()
+    assert shown("highest")[2] == height[left].max()
+    settled(live, what="cliffs")
+    i, j, _ = shown("steadiest")
+    torn = live.execute_script("return [...window.explorer.map.codes.cliffs.values]")
+    torn = np.array(torn).reshape(200, 150)
+    edge = ~left.reshape(200, 150) | (torn > 0)
+    edge[1:] |= torn[:-1] & 1 > 0
+    edge[:, 1:] |= torn[:, :-1] & 2 > 0
+    rows, columns = np.nonzero(edge)
+    steps = lambda i, j: np.min(np.abs(rows - i) + np.abs(columns - j))
+    inside = np.argwhere(~edge)
+    farthest = max(steps(*inside[k]) for k in range(0, len(inside), 7))
+    assert steps(i, j) >= max(farthest, 3)
     live.find_element("css selector", "#goals button").click()
     live.find_element("id", "goal-real").click()
     assert live.find_element("id", "goals-told").text == ""
