@@ -182,7 +182,7 @@ def test_goals_dim_what_fails_and_the_best_left_is_shown(live):
         "[...map.codes.spurious_first_jump.values]]"
     ))
     left = (height >= 0.3) & (spurious == 0)
-    assert f"{left.sum():,} of 30,000" in live.find_element("id", "goals-told").text
+    waited(live, lambda b: f"{left.sum():,} of 30,000" in b.find_element("id", "goals-told").text)
     assert 0 < left.sum() < 30000
     live.find_element("id", "goal-best").click()
     picked = live.execute_script("return window.explorer.view.view.picked")
