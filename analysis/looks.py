@@ -159,7 +159,7 @@ def use_units(m, text, units_in_own):
         power = lambda size: np.log(size / one) / np.log(4)
         return one * radii**power(larger) * (1.0 if masses is None else masses)**power(heavier)
     agility, used = quantity(m, "agility"), set()
-    # What is told of hoops as made has no other unit where these differ in what it is made of.
+    # Statistics of manufactured hoops of different diameters or masses have no unit of the SI in common.
     differ = any(name == "hoop.diameter" or re.fullmatch(r"hoop\.(.+\.)?mass", name) for name in m.scatter())
     for name in set(m.fields) & set(LOOKS):
         if differ and is_of_made(name) and LOOKS[name].unit not in ("s", "°", ""):

@@ -72,7 +72,7 @@ const choicesOf = (map) => map.columns ?? map.axes;
 /** Whether hoops of the map differ in mass, and in size. */
 const differInMass = (map) => choicesOf(map).some(({ name }) => isDrawn(name) && name.endsWith(".mass"));
 const differInSize = (map) => choicesOf(map).some(({ name }) => name === "hoop.diameter");
-/** Whether hoops as made differ in size, or in a mass. */
+/** Whether a number of the drawing with such a name has a tolerance. */
 const scatterIn = (map, fits) => map.spreads.some(({ name }) => isDrawn(name) && fits(name));
 /** By what a quantity of the whole map is shown in SI: NaN where its hoops have none in common. */
 const scaleOf = (map, field = null) => ({ gravity: map.fixed.gravity,

@@ -157,8 +157,10 @@ function liveControls(map, solver, changed) {
         notice(good ? "" : `${label} must be between ${short(least * factor(name))} and ` +
           `${short(most * factor(name))}.`);
         if (!good) return;
+        // Quantities of the wall are offered where there is one.
+        const offersOthers = name === "clear_height" && (value > 0) !== (map.fixed.clear_height > 0);
         map.fixed[name] = follows ? NaN : value;
-        changed(name === "clear_height" ? "model" : "map");  // where there is no wall, none is cleared
+        changed(offersOthers ? "model" : "map");
       };
       slider.addEventListener("input",
         () => { number.value = Number((Number(slider.value) * factor(name)).toPrecision(6));

@@ -22,8 +22,8 @@ pybind11::dict reduce_hoops(const Rows& hoops, const std::vector<std::string>& w
 pybind11::dict differentiate_by_hoop(const Rows& hoops, const std::vector<std::string>& weights,
                                      const Rows& by);
 
-/// The powers of a hoop's mass and size as which a parameter is in its own units, if `text` gives it with a
-/// unit of the SI; None: it is without, or does not depend on them.
+/// The powers of mass and size to which a hoop's own value of a parameter is proportional, if `text` gives it
+/// with a unit of the SI; None: it has no unit, or does not depend on them.
 pybind11::object powers_in_si(const std::string& parameter, const std::string& text);
 
 }  // namespace leapmap::python

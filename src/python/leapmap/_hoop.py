@@ -152,7 +152,7 @@ class Hoop:
         columns = [by.pop(name) for name in _RATIOS]
         by_mass, by_size = 0.0, 0.5 * values
         for name, (with_mass, with_size) in _held(given).items():
-            by_logarithm = by[name] * self._in_own_units(name, given)
+            by_logarithm = by[name] * self._in_own_units(name, given, with_mass)
             by_mass, by_size = by_mass + with_mass * by_logarithm, by_size + with_size * by_logarithm
         shape = np.shape(columns[0])
         numbers = np.broadcast_to(self._numbers, (*shape, self._numbers.shape[-1]))
@@ -160,17 +160,15 @@ class Hoop:
         found = _core.differentiate_by_hoop(_rows(numbers), self._names, _rows(columns))
         return by | {name: column.reshape(shape)[()] for name, column in found.items()}
 
-
-    def _in_own_units(self, name, given):
-        """A parameter that is given with a unit of the SI, in the units of each hoop."""
-        with_mass, _ = _held(given)[name]
+    def _in_own_units(self, name, given, with_mass):
+        """A parameter given with a unit of the SI, in the units of each hoop: a power of the mass."""
         scales = {"radius": self.parameters["radius"], "mass": 1.0} | (
             {"gravity": given["gravity"]} if "gravity" in given else {})
         return _core.number(name, given[name], scales) * self.total_mass**with_mass
 
 
 def _held(given):
-    """The parameters that hoops share in the SI, and as what powers of mass and size each hoop has them."""
+    """The parameters given with a unit of the SI, and the powers of mass and size in their own units."""
     texts = {name: value for name, value in given.items() if isinstance(value, str)}
     powers = {name: _core.powers_in_si(name, value) for name, value in texts.items()}
     return {name: power for name, power in powers.items() if power is not None}
@@ -190,5 +188,6 @@ def with_hoop(hoop, parameters):
         if name in parameters:
             raise ValueError(
                 f"{name} = {shown(parameters[name])} has no effect beside hoop; allowed: one of the two")
-    held = {name: hoop._in_own_units(name, parameters) for name in _held(parameters)}
+    held = {name: hoop._in_own_units(name, parameters, with_mass)
+            for name, (with_mass, _) in _held(parameters).items()}
     return parameters | held | hoop.parameters
