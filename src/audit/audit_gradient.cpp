@@ -106,9 +106,7 @@ void GradientAuditor::look_at(std::size_t number, const Design& design, const Ou
     if (std::isnan(design.*parameter)) continue;
     if (parameter == &Design::mu_kinetic && kinetic_follows(design)) continue;  // it is not free
     applies = true;
-    double unit = 1.0;  // of the parameter, in the hoop's own
-    for (const SameInSi& held : held_)
-      if (held.parameter == parameter) unit = held.of_hoop(design.mass, design.size);
+    const double unit = held_unit(held_, parameter, design);
     Beside beside, closer;
     if (!look_beside(design, spec_.scene, parameter, ours, step, follow_up_, beside)) continue;
     decided = true;

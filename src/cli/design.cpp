@@ -62,8 +62,7 @@ struct Report {
   }
   /// The same, for a parameter, which may be in the units of the nominal hoop.
   void scale_for(const std::string& parameter, std::span<const double> free) {
-    const std::vector<std::string>& held = question.one.nominal_units;
-    if (std::ranges::find(held, parameter) == held.end()) return scale_to(free);
+    if (!is_held(question.one, parameter)) return scale_to(free);
     units.scale(nominal_scales(question.one));
   }
 };
@@ -204,9 +203,12 @@ std::string how_near(const FoundDesign& found, const Spec& spec) {
   const Outcome& outcome = found.outcome;
   if (outcome.candidates == 0) {
     double least = std::numeric_limits<double>::infinity();
-    for (const MotionPoint& point : trace(found.design, spec.scene, {.interval = 1e-3}).points)
+    const double interval = 0.02 * time_unit(spec.scene);
+    for (const MotionPoint& point : trace(found.design, spec.scene, {.interval = interval}).points)
       if (point.phase != Phase::flight) least = std::min(least, point.normal_force);
-    return fmt::format("it never lifts off; the normal force falls to {:.3g} weights", least);
+    return std::isfinite(least)
+               ? fmt::format("it never lifts off; the normal force falls to {:.3g} weights", least)
+               : "it never lifts off";
   }
   return fmt::format("its {} to {:.4g} diameters; a jump is {:g} or more",
                      outcome.candidates == 1 ? "lift-off rises" : "first lift-off rises",

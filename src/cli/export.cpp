@@ -82,7 +82,7 @@ void choose_units(std::vector<Column>& columns, ShownUnits& units, const Spec& s
   Scales scales = nominal_scales(spec);
   for (Column& column : columns) {
     column.shown = shown_by(units, column, spec, scales);
-    column.held = std::ranges::find(spec.nominal_units, column.name) != spec.nominal_units.end();
+    column.held = is_held(spec, column.name);
   }
   units.refuse_unused();
   if (!mass_varies(spec) && !find_varying(spec, "hoop.diameter")) return;

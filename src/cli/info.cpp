@@ -109,18 +109,15 @@ class MapScales {
 
   /// Of a parameter, which may be in the units of the nominal hoop.
   Scales of(const std::string& parameter, std::size_t design) const {
-    return is_held(parameter) ? nominal_scales(*spec_) : of(design);
+    return spec_ && is_held(*spec_, parameter) ? nominal_scales(*spec_) : of(design);
   }
   Scales of_all(const std::string& parameter) const {
-    return is_held(parameter) ? nominal_scales(*spec_) : shared;
+    return spec_ && is_held(*spec_, parameter) ? nominal_scales(*spec_) : shared;
   }
 
   Scales shared{.radius = Outcome::none, .gravity = Outcome::none, .mass = 0.0}, manufactured = shared;
 
  private:
-  bool is_held(const std::string& parameter) const {
-    return spec_ && std::ranges::find(spec_->nominal_units, parameter) != spec_->nominal_units.end();
-  }
   std::optional<Spec> spec_;
 };
 

@@ -70,13 +70,13 @@ void print_outcome(const Outcome& outcome, const Scene& scene, ShownUnits& units
   if (outcome.phase_sequence != 0) say("  {:<24} {}\n", "phases", phase_letters(outcome.phase_sequence));
 }
 
-/// As the map has it at its designs.
-void print_made(const Spec& spec, ShownUnits& units) {
+/// As the map has it at its designs. scales: of the design.
+void print_made(const Spec& spec, const Scales& scales, ShownUnits& units) {
   const Request request = request_of(spec);
   MadeColumns columns(statistics_of(request));
   scatter_solver_of(request, points_of(spec.scatter)).solve({&spec.design, 1}, columns);
   say("manufactured, {} hoops\n", spec.scatter.samples);
-  units.scale(scales_of_manufactured(spec, scales_of(spec, spec.design)));
+  units.scale(scales_of_manufactured(spec, scales));
   for (const Field* field : columns.fields()) print_number(*field, columns.column(*field)[0], units);
 }
 
@@ -126,12 +126,13 @@ void print_place(const Spec& original, const std::string& at, const std::string&
   for (const std::string& name : original.output.fields)
     if (const Field* field = find_field(name); number_of(*field)) add_column(request.columns, field);
   make_solver(request)({&one.design, 1}, {&outcome, 1});
-  ShownUnits units(unit_words, scales_of(original, one.design));
+  const Scales scales = scales_of(original, one.design);
+  ShownUnits units(unit_words, scales);
   std::vector<std::string> axes;
   for (const Axis& axis : original.axes) axes.push_back(axis.key);
   units.refuse_unusable(one.scene, axes);
   print_outcome(outcome, one.scene, units);
-  if (!original.scatter.spreads.empty()) print_made(one, units);
+  if (!original.scatter.spreads.empty()) print_made(one, scales, units);
   if (resolved_method(one.numerics) == "exact") print_gradient(one);
 
   say("\nNearest discontinuities within the map (a band narrower than a thousandth of an axis may be "

@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "request/request.hpp"
 #include "spec/designs.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap {
 namespace {
@@ -19,7 +18,7 @@ MapAxis describe(const Spec& spec, const Axis& axis) {
   const bool own = unit && unit->name != unit->si;
   const std::string meaning =
       of_body ? of_body->meaning_of(weight_of(axis.key)) : std::string(option.meaning);
-  const bool held = std::ranges::find(spec.nominal_units, axis.key) != spec.nominal_units.end();
+  const bool held = is_held(spec, axis.key);
   return {
       axis.key, std::string(own ? "1" : option.unit),
       own ? fmt::format("{}, in {}{}", meaning, option.unit, held ? " of the nominal hoop" : "") : meaning,

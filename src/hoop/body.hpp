@@ -90,8 +90,8 @@ inline ReducedBody reduce_checked(const Body& body) {
           .inertia_factor = sums.inertia_factor};
 }
 
-/// A parameter whose unit is made of the hoop's mass and size. Where hoops have the same of it in the SI, it
-/// is, in their own units, as these powers of their mass and size.
+/// A parameter whose unit depends on the hoop's mass and size. For hoops that share its value in the SI, the
+/// value in each hoop's own units is proportional to these powers of its mass and size.
 struct SameInSi {
   double Design::*parameter;
   double with_mass, with_size;
@@ -104,9 +104,17 @@ inline constexpr std::array same_in_si{SameInSi{&Design::drive_torque, -1.0, -1.
                                        SameInSi{&Design::resisting_torque, -1.0, -1.0},
                                        SameInSi{&Design::release_spin, 0.0, 0.5}};
 
-/// From the units of the nominal hoop to those of the design, by its mass and size.
-inline void hold_in_si(std::span<const SameInSi> held, Design& design) {
-  for (const SameInSi& one : held) design.*one.parameter *= one.of_hoop(design.mass, design.size);
+/// Converts parameters of a design to the units of a hoop that is `heavier` and `larger` times the one in
+/// whose units they are.
+inline void hold_in_si(std::span<const SameInSi> held, double heavier, double larger, Design& design) {
+  for (const SameInSi& one : held) design.*one.parameter *= one.of_hoop(heavier, larger);
+}
+
+/// The unit of a parameter, if it is held, in the design's own; else 1.
+inline double held_unit(std::span<const SameInSi> held, double Design::*parameter, const Design& design) {
+  for (const SameInSi& one : held)
+    if (one.parameter == parameter) return one.of_hoop(design.mass, design.size);
+  return 1.0;
 }
 
 /// Gives a design the three ratios.

@@ -57,8 +57,8 @@ struct ByScale {
   double mass = 0.0, size = 0.0;
 
   /// in_seconds: the quantity itself, if it is a time or a speed, which grows with the root of the size; else
-  /// 0. held: parameters that are the same in the SI, the derivatives `by` which are in the units of the
-  /// nominal hoop.
+  /// 0. held: parameters that hoops share in the SI; the derivatives by them are by the nominal hoop's
+  /// units.
   static ByScale of(const Design& design, const Design& by, double in_seconds,
                     std::span<const SameInSi> held) {
     ByScale found{0.0, 0.5 * in_seconds};

@@ -59,7 +59,7 @@ Design VariedDesigns::at(std::span<const double> values, Body* wanted) const {
   for (std::size_t k = 0; k < values.size(); ++k) variables_[k].in(design, body) = values[k];
   if (!varies_body_) return design;
   follow_body(body, body_.diameter, mass_, design);
-  hold_in_si(held_, design);
+  hold_in_si(held_, design.mass, design.size, design);
   return design;
 }
 

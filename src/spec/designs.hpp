@@ -44,8 +44,8 @@ class VariedDesigns {
   bool varies_body_ = false;
 };
 
-/// The values of a parameter along a spec's list of designs: of one in the units of the nominal hoop in
-/// those.
+/// The values of a parameter along a spec's list of designs; of a parameter that is held, in the units of the
+/// nominal hoop.
 std::vector<double> list_values(const Spec& spec, const Option& parameter);
 
 /// The designs of a tile, in its order.

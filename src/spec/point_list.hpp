@@ -14,9 +14,9 @@ namespace leapmap {
 /// Reads a list of designs. The header names parameters of a design; each line below holds one number for
 /// each, in the parameter's own unit, in one written after it ("23 deg") or in that of the header
 /// ("slope [deg]"); what stands in a column `label` names the design; origin, the spec's file, is for
-/// messages. nominal: of the hoop of [hoop], by whose units columns are read that hoops may share in the SI;
-/// their names are added to in_si. Throws InputError naming line and column, IoError if the file cannot be
-/// read.
+/// messages. nominal: the scales of [hoop]'s nominal hoop. By them it reads the columns that hoops may share
+/// in the SI, and adds their names to in_si. Throws InputError naming line and column, IoError if the file
+/// cannot be read.
 PointList read_points(const std::string& path, const std::string& origin, Scales scales,
                       const std::optional<Scales>& nominal, std::vector<std::string>& in_si);
 

@@ -355,7 +355,7 @@ bool sets_scale(const Entry& entry) {
 constexpr std::string_view nominal_units = "nominal_units";
 
 /// Fills in spec.nominal_units: what is named there, and what is given with a unit of the SI.
-void hold_in_si(const std::vector<Entry>& entries, Spec& spec) {
+void fill_nominal_units(const std::vector<Entry>& entries, Spec& spec) {
   for (const Entry& entry : entries) {
     if (entry.key != nominal_units) continue;
     if (!spec.hoop) refuse(entry, "has no effect, because there is no [hoop]", "with [hoop] in the spec");
@@ -377,7 +377,7 @@ void assign(std::vector<Entry>& entries, Spec& spec, bool of_map) {
     apply_hoop(spec);
     if (!of_map) std::ranges::move(doubts_of_hoop(spec), std::back_inserter(spec.notes));
   }
-  hold_in_si(entries, spec);
+  fill_nominal_units(entries, spec);
   const auto any = [&](const auto& holds) { return std::ranges::any_of(entries, holds); };
   // Manufactured hoops differ in mass or size, and the designs of a list may: none is right for all of them.
   const bool made = any([](const Entry& entry) {
@@ -396,8 +396,7 @@ void assign(std::vector<Entry>& entries, Spec& spec, bool of_map) {
                          std::holds_alternative<SceneSlot>(entry.option->slot);
     if (listed || (made && of_made)) entry.scales.mass = 0.0;
     if (listed || (sized && of_made)) entry.scales.radius = std::numeric_limits<double>::quiet_NaN();
-    if (std::ranges::find(spec.nominal_units, entry.key) != spec.nominal_units.end())
-      entry.scales = entry.nominal;
+    if (is_held(spec, entry.key)) entry.scales = entry.nominal;
     std::visit(Assign{entry, spec}, entry.option->slot);
   }
   put_axes_in_order(entries, spec);

@@ -252,8 +252,11 @@ bool may_be_held(double Design::*parameter) {
 }
 
 void hold(const std::string& parameter, Spec& spec) {
-  std::vector<std::string>& held = spec.nominal_units;
-  if (std::ranges::find(held, parameter) == held.end()) held.push_back(parameter);
+  if (!is_held(spec, parameter)) spec.nominal_units.push_back(parameter);
+}
+
+bool is_held(const Spec& spec, const std::string& parameter) {
+  return std::ranges::find(spec.nominal_units, parameter) != spec.nominal_units.end();
 }
 
 std::vector<SameInSi> held_in_si(const Spec& spec) {

@@ -46,7 +46,8 @@ Scales scales_of_manufactured(const Spec& spec, Scales scales);
 bool may_be_held(double Design::*parameter);
 /// Has the spec's hoops share a parameter in the SI, that of the nominal one.
 void hold(const std::string& parameter, Spec& spec);
-/// The parameters that are the same.
+/// Whether they do, and all the parameters that they share.
+bool is_held(const Spec& spec, const std::string& parameter);
 std::vector<SameInSi> held_in_si(const Spec& spec);
 /// Whether masses of the body differ from design to design.
 bool mass_varies(const Spec& spec);

@@ -51,10 +51,7 @@ double MadeHoops::value_drawn(const Made& spread, const Design& drawn, const Bod
 
 double MadeHoops::width_of(const Made& spread, const Design& drawn, const Body& body) const {
   if (spread.percent) return 0.01 * spread.width * std::abs(value_drawn(spread, drawn, body));
-  const auto held = std::find_if(held_.begin(), held_.end(), [&](const SameInSi& one) {
-    return one.parameter == spread.variable.parameter();
-  });
-  return held == held_.end() ? spread.width : spread.width * held->of_hoop(drawn.mass, drawn.size);
+  return spread.width * held_unit(held_, spread.variable.parameter(), drawn);
 }
 
 CutLaw MadeHoops::law(std::size_t k, const Design& drawn, const Body* given) const {
@@ -118,7 +115,7 @@ void MadeHoops::take_body(const Body& made, const ReducedBody& nominal, Design& 
   const double larger = made.diameter / body_.diameter;
   const double heavier = reduced.total_mass / nominal.total_mass;
   design.size *= larger, design.mass *= heavier;
-  for (const SameInSi& one : same_in_si) design.*one.parameter *= one.of_hoop(heavier, larger);
+  hold_in_si(same_in_si, heavier, larger, design);
 }
 
 void MadeHoops::fill(std::size_t first, std::span<Design> made) const {

@@ -29,7 +29,8 @@ inline constexpr double least_left = 0.499;
 /// One a thread. Needs points of at least as many dimensions as the scatter has spreads.
 class MadeHoops {
  public:
-  /// hoop: the nominal body, if the spec has [hoop]. held: parameters in its units, and their widths.
+  /// hoop: the nominal body, if the spec has [hoop]. held: parameters whose values and
+  /// widths are in its units.
   MadeHoops(const Scatter& scatter, const std::optional<Body>& hoop, std::vector<SameInSi> held,
             std::shared_ptr<const SobolPoints> points);
 

@@ -28,6 +28,7 @@ inline constexpr std::size_t by_slope = 0, by_offset_ratio = 2, by_release_angle
                              by_resisting_torque = 7, by_mu_static = 8, by_mu_kinetic = 9,
                              by_restitution = 10;  ///< places among them
 
+/// The place of a parameter among them.
 inline std::size_t place_of(double Design::*parameter) {
   return static_cast<std::size_t>(std::find(differentiable.begin(), differentiable.end(), parameter) -
                                   differentiable.begin());
@@ -110,7 +111,10 @@ class Gradients {
   Design of_design(const OutcomeNumber& of, std::size_t design) const {
     Design by;
     for (double Design::*parameter : differentiable) by.*parameter = std::numeric_limits<double>::quiet_NaN();
-    for (const std::size_t j : wanted_.by) by.*differentiable[j] = column(of, differentiable[j])[design];
+    const auto i =
+        static_cast<std::size_t>(std::find(wanted_.of.begin(), wanted_.of.end(), of) - wanted_.of.begin());
+    for (std::size_t j = 0; j < wanted_.by.size(); ++j)
+      by.*differentiable[wanted_.by[j]] = column(i, j)[design];
     return by;
   }
 

@@ -118,7 +118,7 @@ PlacedDesigns placed_designs(int first, int second) {
       continue;
     if (x->of_body() || y->of_body()) {
       follow_body(body, drawn.diameter, drawn_mass, design);
-      hold_in_si(page.held, design);
+      hold_in_si(page.held, design.mass, design.size, design);
     }
     placed.designs.push_back(design);
     if (page.drawing) placed.bodies.push_back(body);
