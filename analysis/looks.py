@@ -159,13 +159,18 @@ def use_units(m, text, units_in_own):
         power = lambda size: np.log(size / one) / np.log(4)
         return one * radii**power(larger) * (1.0 if masses is None else masses)**power(heavier)
     agility, used = quantity(m, "agility"), set()
-    # Statistics of manufactured hoops of different diameters or masses have no unit of the SI in common.
-    differ = any(name == "hoop.diameter" or re.fullmatch(r"hoop\.(.+\.)?mass", name) for name in m.scatter())
+    # Statistics of manufactured hoops that differ in what a unit is made of have none of the SI in common.
+    scattered = {"radius": "hoop.diameter" in m.scatter(),
+                 "mass": any(re.fullmatch(r"hoop\.(.+\.)?mass", name) for name in m.scatter())}
+
+    def differs(word, name):
+        one = {"gravity": gravity, "radius": 1.0, "mass": 1.0}
+        of_one = units_in_own(word, name, one)
+        return of_one is not None and any(units_in_own(word, name, one | {what: 2.0}) != of_one
+                                          for what, scatters in scattered.items() if scatters)
     for name in set(m.fields) & set(LOOKS):
-        if differ and is_of_made(name) and LOOKS[name].unit not in ("s", "°", ""):
-            continue
         for word in text.split():
-            if (size := size_of(word, name)) is None:
+            if is_of_made(name) and differs(word, name) or (size := size_of(word, name)) is None:
                 continue
             m.fields[name] = np.asarray(m.fields[name], float) * size
             LOOKS[name] = replace(LOOKS[name], unit=word, levels=LOOKS[name].levels and None)

@@ -182,11 +182,12 @@ class Map:
         hoop = self.spec().get("hoop")
         if hoop is None:
             return self.numbers().get("mass") or None
+        number = lambda value: float("nan") if isinstance(value, dict) else float(value)
         total = 0.0
         try:
-            given = [("hoop.mass", hoop["mass"]),
-                     *((f"hoop.{w['name']}.mass", w["mass"]) for w in hoop.get("weight", []))]
-        except (AttributeError, KeyError, TypeError):
+            given = [("hoop.mass", number(hoop["mass"])),
+                     *((f"hoop.{w['name']}.mass", number(w["mass"])) for w in hoop.get("weight", []))]
+        except (AttributeError, KeyError, TypeError, ValueError):
             raise NotAMap(f"{self.path}: is damaged: its spec says hoop = {hoop}") from None
         for key, value in given:
             if key in self.fields:  # of a list
@@ -196,7 +197,7 @@ class Map:
                 shape = [-1 if k == axis else 1 for k in range(len(self.dims))]
                 total = total + np.asarray(self.dims[key]).reshape(shape)
             else:
-                total = total + float(value)
+                total = total + value
         return total
 
     def _of_hoop(self):

@@ -1,94 +1,36 @@
 // The page: what belongs to what.
 
-const element = (id) => document.getElementById(id);
-
-function notice(text) {
-  const message = element("message");
-  message.hidden = text === "";
-  message.textContent = text;
-}
-const complain = (error) => notice(`This page cannot be shown: ${error.message ?? error}`);
-
-/** Sets a field's colours and isolines for values from low to high. A few extreme designs do not set the
-    scale: isolines that are given do. */
-function scaleField(field, low, high, levels) {
-  const most = high, given = levels.filter((l) => l >= low && l <= high);
-  if (field.log && given.length > 2) low = Math.max(low, given[0]);
-  if (!field.log && given.length > 2)
-    [low, high] = [Math.max(low, Math.min(given[0], low + 0.02 * (high - low))),
-      Math.min(high, levels.find((l) => l >= high) ?? levels.at(-1))];
-  Object.assign(field, { low, high, most, levels });
-  field.place = colourScale(field, low, high);
-}
-
-/** The map as the explorer wrote it, with its numbers unpacked. */
-async function readMap() {
-  const map = JSON.parse(element("data").textContent);
-  if (!Array.isArray(map.axes) || !Array.isArray(map.fields) || map.fields.length === 0)
-    throw new Error("it holds no map");
-  const shape = map.axes.map((a) => a.values.length);
-  for (const field of map.fields) {
-    field.values = await quantity(field, shape, map.differenced);
-    field.table = Uint8Array.from(atob(field.colours), (c) => c.charCodeAt(0));
-    let low = Infinity, high = -Infinity;
-    for (const v of field.values)
-      if (v === v && (!field.log || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
-    scaleField(field, low, high, field.levels);
-  }
-  map.drawing &&= wholeDrawing(map.drawing);
-  for (const code of Object.values(map.codes)) code.values = await codes(code, shape);
-  if (map.codes.status)
-    map.codes.status.rgb = map.codes.status.shown.map(({ colour }) => rgbOf(colour));
-  return map;
-}
-
-function option(select, value, text) {
-  const made = document.createElement("option");
-  made.value = value;
-  made.textContent = text;
-  select.append(made);
-}
-
-/** Quantities by what they are of, as an option each, whose number is that of the quantity. */
-const KINDS = [
-  ["Jump", ({ name, made, gait }) => !made && !gait && !/^landing|^(slip|energy|dip)/.test(name)],
-  ["Way and landing", ({ made, gait }) => !made && !gait], ["Gait: jump after jump", ({ gait }) => gait],
-  ["Manufactured hoops", ({ made }) => made]];
-function offerGrouped(map, select) {
-  const groups = KINDS.map(([label]) => Object.assign(document.createElement("optgroup"), { label }));
-  map.fields.forEach((f, k) =>
-    option(groups[KINDS.findIndex(([, has]) => has(f))], k, fieldLabel(f, scaleOf(map, f))));
-  select.append(...groups.filter((group) => group.children.length > 0));
-}
-/** The option of a quantity, whatever group it is in. */
-const optionOf = (select, k) => select.querySelector(`option[value="${k}"]`);
-
-const withUnit = (text, unit) => (unit === "°" ? `${text}°` : unit ? `${text} ${unit}` : text);
-/** A design's parameters that vary over the map: their rows, each with the value. */
-const parametersAt = (map, index) =>
-  (map.columns ? map.columns.filter((c) => c.name !== "design" && !c.quantity)
-  .map((c) => [c, c.values[index[0]]]) : map.axes.map((axis, k) => [axis, axis.values[index[k]]]));
-const designAt = (map, index) => shapedBy(map,
-  { ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value])) });
-
-const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : "") +
-  parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1)
-    .map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");
-const inShownUnit = (axis, value) => value * perUnit(axis.unit);
-
-/** Quantities that only hoops that may slip have, or only those that never do. */
-const OF_SLIPPING = ["slip_distance", "landing_spin", "energy_lost"], OF_STICKING = ["dip"];
-const applies = (map, { name }) => !(map.slips ? OF_STICKING : OF_SLIPPING).includes(name)
-  && !(["jumps", "sequence_condition"].includes(name) && map.live && map.jumps === 1)
-  && !(/^clears_/.test(name) && map.live && !(map.fixed.clear_height > 0));
-
+import { addressButtons, addressPart, addressWords, noteAddress, readAddress } from "./state/address.js";
+import { cutsPart } from "./map/cuts.js";
+import { decimalsOf } from "./solver/decode.js";
+import { applies, offerGrouped, optionOf, placeText } from "./map/described.js";
+import { element, notice, option } from "./dom.js";
+import { choicesOf, scaleOf } from "./state/drawn.js";
+import { saveButtons } from "./export/export.js";
+import { barBrush } from "./goals/bar_brush.js";
+import { filtersPart } from "./goals/filters.js";
+import { linesPart } from "./goals/lines.js";
+import { hopPanel } from "./hoop/hop_panel.js";
+import { showLegend } from "./map/legend.js";
+import { addressed, askedOfFile } from "./links.js";
+import { listView } from "./map/list_view.js";
+import {
+  costEach, costOf, isAsMade, isCostly, liveEngine, liveMap, settleMap, toAsk, toldFields,
+} from "./solver/live.js";
+import { liveControls, liveState, settlePart } from "./inputs/live_controls.js";
+import { madeTeller } from "./solver/made.js";
+import { mapView } from "./map/map_view.js";
+import { isSteady } from "./results/numbers.js";
+import { tolerancesPart } from "./inputs/tolerances.js";
+import { onTones } from "./state/tones.js";
+import { alsoAs, fieldLabel, inShownUnit, short, toldIn, unitsPart, withUnit } from "./state/units.js";
 const LIVE_SUBTITLE =
   "Change any parameter: the map follows. Click a design to see it jump. The address stores the view.";
 
 const NOTHING_YET = { coarse: "false", whole: "false", cliffs: "false" };
 
 /** On a small screen the inputs are a sheet from below. */
-function sheetPart() {
+export function sheetPart() {
   const toggle = element("inputs-toggle");
   const open = (isOpen) => {
     document.body.classList.toggle("inputs-open", isOpen);
@@ -100,7 +42,7 @@ function sheetPart() {
 }
 
 /** Starts with a map that is solved as one looks. */
-function startLive(given, module, solver) {
+export function startLive(given, module, solver) {
   const map = liveMap(given, solver, liveState(addressWords(), solver));
   const teller = madeTeller(module, element("worker").textContent);
   let page = null, settled = 0, again = false;
@@ -139,7 +81,7 @@ function startLive(given, module, solver) {
   begin();
 }
 
-function start(map, solver, teller) {
+export function start(map, solver, teller) {
   Object.assign(map, { solver, defaults: solver.defaults });
   // Of a file's map a hoop of one's own is told what the map's designs are.
   map.settle = Math.min(map.settle, element("settle").max);
@@ -159,6 +101,7 @@ function start(map, solver, teller) {
     (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
     (map.beyond_page?.length ? `; in the map's numbers, not in this page's: ${map.beyond_page.join(", ")}`
     : "") +
+    (map.wall ? `; a wall of ${map.wall}, which the page's hoops do not have, is in the map's numbers` : "") +
     (map.fields.some((f) => f.name === "agility")
       ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "")
       + ".";
@@ -211,12 +154,13 @@ function start(map, solver, teller) {
     teller,
     toldMore(outcome) { if (own) own.outcome = outcome; if (own && !points) tellOwn(); },
   });
-  let drawCuts = () => {}, filters = null;
+  let drawCuts = () => {}, filters = null, lines = null, bar = () => {};
   const told = (index) => {
     const at = view.offset(index), shown = view.view.field, key = `${index} ${shown.name}`;
     if (key === said) return;  // the pointer moved inside a cell
     said = key;
     drawCuts();
+    lines?.point();
     const status = map.codes.status?.meanings[map.codes.status.values[at]];
     const number = (f) =>
       (f.values[at] === f.values[at]
@@ -281,7 +225,7 @@ function start(map, solver, teller) {
   offerFields();
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
   const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
-  map.wanted = () => [view.view.field, ...(filters?.fields() ?? [])];
+  map.wanted = () => [view.view.field, ...(filters?.fields() ?? []), ...(lines?.fields() ?? [])];
   map.hoopGoals = () => filters?.ofHoops() ?? [];
   /** Solves a live map anew if it has not the numbers of all that is wanted, or is still after some that are
       not. */
@@ -337,8 +281,8 @@ function start(map, solver, teller) {
       const label = document.createElement("label"), slider = document.createElement("input"),
         value = document.createElement("output");
       slider.type = "range";
-      slider.min = 0;
-      slider.max = axis.values.length - 1;
+      slider.min = "0";
+      slider.max = String(axis.values.length - 1);
       slider.value = view.view.index[k];
       slider.dataset.axis = axis.name;
       const tell = () => { value.textContent =
@@ -353,7 +297,7 @@ function start(map, solver, teller) {
     }));
   }
 
-  const legend = () => showLegend(map, view);
+  const legend = () => { showLegend(map, view); bar(); lines?.show(); };
 
   // Begin where the paper's hoop is, if it is on the map, else in the middle.
   if (!map.columns) map.axes.forEach((axis, k) => {
@@ -371,14 +315,21 @@ function start(map, solver, teller) {
   element("cuts").hidden = Boolean(map.columns);
   if (!map.columns) drawCuts = cutsPart(map, view);
   filters = map.columns ? null
-    : filtersPart(map, view, () => { tellWanted(); view.paint(); chosen.recount(); }, (index) =>
-    { view.view.index = index; arrange(); view.paint(); view.pick(); });
+    : filtersPart(map, view,
+      () => { tellWanted(); view.paint(); chosen.recount(); bar(); lines?.show(); }, (index) =>
+      { view.view.index = index; arrange(); view.paint(); view.pick(); });
+  element("lines-part").hidden = Boolean(map.columns);
+  if (filters) {
+    bar = barBrush(view, filters);
+    lines = linesPart(map, view, filters);
+    new ResizeObserver(bar).observe(canvas);
+  }
   element("filters").hidden = Boolean(map.columns);
   const tolerances = map.live
     ? tolerancesPart(map, () => { tellWanted(); filters.tell(); said = ""; tellShown(); chosen.haunt(); })
     : null;
   if (tolerances) addressPart(tolerances);
-  if (filters) addressPart(filters);
+  if (filters) { addressPart(filters); addressPart(lines); }
   const tellUnits = () => {
     said = "";
     map.fields.forEach((f, k) => { optionOf(fieldSelect, k).textContent = fieldLabel(f, scaleOf(map, f)); });
@@ -472,85 +423,3 @@ function start(map, solver, teller) {
       legend(); },
   };
 }
-
-/** What the solver is to be asked of a hoop of one's own beside a file's map, so that all its fields are
-    told. */
-function askedOfFile(map) {
-  const has = (cost) => map.fields.some((f) => costOf(f) === cost), { beyond_page: beyond = [] } = map;
-  const goals = has("made") && beyond.length === 0 ? numberedGoals(map.goals, map.solver.codes) : null;
-  return { jumps: map.jumps, settle: has("settle") ? map.settle : 0, growth: has("growth"), made: goals
-    && madeAsked(map, goals) };
-}
-
-/** The address of the live map that a file's map begins at: its two longest axes, the rest as it stands. */
-function liveFrom(map) {
-  const words = new URLSearchParams(), fit = (axis) => axis.values.length > 1
-    && (isDrawn(axis.name) || (axis.name in LIVE_RANGES && !NO_LIVE_AXIS.includes(axis.name)));
-  const axes = map.columns ? [] : map.axes.filter(fit)
-    .sort((a, b) => b.values.length - a.values.length).slice(0, 2)
-    .sort((a, b) => (b.name === "slope") - (a.name === "slope"));
-  const rest = (map.columns ? [] : map.axes).filter((axis) => !axes.includes(axis))
-    .map((axis) => [axis.name, axis.values[Math.floor(axis.values.length / 2)]]);
-  const here = shapedBy(map, { ...map.fixed, ...Object.fromEntries(rest) });
-  const unit = (name) => (map.drawing?.held?.includes(name)
-    ? shapedBy(map, { ...Object.fromEntries(rest), [name]: 1 })[name] : 1);
-  axes.forEach(({ name, values }, k) => words.set(k === 0 ? "x" : "y",
-    `${name}:${values[0] * unit(name)}:${values.at(-1) * unit(name)}`));
-  for (const [name] of rest) if (!isDrawn(name)) words.set(name, here[name]);
-  if (map.drawing)
-    words.set("drawing", drawingWord(drawingAt(wholeDrawing(map.drawing), Object.fromEntries(rest))));
-  for (const name of Object.keys(map.fixed)) if (Number.isFinite(here[name])) words.set(name, here[name]);
-  if (map.slips) words.set("friction", "coulomb");
-  if (map.settle > 0) words.set("settle", Math.min(map.settle, element("settle").max));
-  for (const spread of map.spreads) words.append("made", spreadWord(spread));
-  if (map.beyond_page?.length) words.append("made", "none");  // others than the map's would mislead
-  if (map.spreads.length > 0) words.set("samples", Math.min(map.samples, element("samples").max));
-  if (map.spreads.length > 0 && map.seed !== 1) words.set("seed", map.seed);
-  for (const { field, least, most } of map.goals) {
-    if (field === "spurious_first_jump" && least === "first_lift_off_is_the_jump") words.set("real", "");
-    // What any other goal takes, and what counts where there is none.
-    else if (field === "status" && least === "jumped") continue;
-    // A live map says that it leaves such a goal out.
-    else if (typeof (least ?? most) === "string") words.append("goal", `${field}:is:${least}`);
-    else for (const [sign, bound] of [["least", least], ["most", most]]) if (bound !== null)
-      words.append("goal", `${field}:${sign}:${bound}`);
-  }
-  return `live&${words.toString().replaceAll("%3A", ":")}`;
-}
-
-/** What the address asks for, as #design=20,30,1&time=0.5: a design by its place along each axis, and a
-    moment to stop at [s]. */
-function addressed(map, words) {
-  const asked = {}, index = (words.get("design") ?? "").split(",")
-    .map((word) => (/^\d+$/.test(word) ? Number(word) : -1));
-  if (words.has("design")
-      && !(index.length === map.axes.length
-      && map.axes.every((axis, k) => index[k] >= 0 && index[k] < axis.values.length)))
-    notice(`The address asks for a design that is not on this map; there are ` +
-      `${map.axes.map((axis) => axis.values.length).join(" x ")}.`);
-  else if (words.has("design"))
-    asked.index = index;
-  if (words.get("time") && Number.isFinite(Number(words.get("time")))) asked.time = Number(words.get("time"));
-  return asked;
-}
-
-(async () => {
-  try {
-    if (typeof DecompressionStream === "undefined" || typeof WebAssembly === "undefined")
-      throw new Error("this page needs Chrome 97, Firefox 113, Safari 16.4 or newer");
-    const module = await loadModule(element("module").textContent), solver = await solverOf(module),
-      data = JSON.parse(element("data").textContent);
-    const live = data.only_live || addressWords().has("live");
-    Object.assign(address, { live: Boolean(live), others: !data.only_live });
-    tonesPart();
-    sheetPart();
-    const toggle = element("live-toggle");
-    toggle.hidden = Boolean(data.only_live);
-    toggle.textContent = live ? "back to the map in the file"
-      : "compute the map here: every parameter a slider";
-    toggle.addEventListener("click",
-      () => { location.hash = live ? "" : liveFrom(data); location.reload(); });
-    if (live) startLive(data.for_live, module, solver);
-    else start(await readMap(), solver, madeTeller(module, element("worker").textContent));
-  } catch (error) { complain(error); }
-})();

@@ -3,6 +3,7 @@
 /// of its run into `status`; errors are exceptions, which main turns into a line and a status.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,11 @@ void add_no_lock(Command& command, Locking& locking);
 /// --set KEY=VALUE, which adds to overrides; example: what --help adds of one.
 void add_set(Command& command, std::vector<std::string>& overrides, const std::string& example = {});
 
-/// read_spec, which says of a key that is given twice on the command line which value is used: the last.
-Spec read_given_spec(const std::string& path, const std::vector<std::string>& overrides);
+/// read_spec, which says what is noted of the spec, and of a key that is given twice on the command line
+/// which value is used: the last. check: throws InputError for what the command refuses, before anything is
+/// said.
+Spec read_given_spec(const std::string& path, const std::vector<std::string>& overrides,
+                     const std::function<void(const Spec&)>& check = {});
 
 /// Throws InputError if one of the overrides is of a spec's [scatter] or [goal]; why: what is to be told.
 void refuse_scatter(const std::vector<std::string>& overrides, const std::string& why);

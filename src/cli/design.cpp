@@ -109,7 +109,11 @@ std::pair<double, std::string_view> step_of(const Variable& variable) {
 /// Whether a field's unit changes with a number of [hoop], so that its derivative is one of the pure number.
 bool changes_unit(const std::string& parameter, const Field& field) {
   const OwnUnit* own = find_own_unit(own_unit(field));
-  return (is_body_mass(parameter) || parameter == "hoop.diameter") && own && own->name != own->si;
+  const Scales one{.radius = 1.0, .gravity = 1.0, .mass = 1.0};
+  const Scales other{.radius = parameter == "hoop.diameter" ? 2.0 : 1.0,
+                     .gravity = 1.0,
+                     .mass = is_body_mass(parameter) ? 2.0 : 1.0};
+  return own && own->size(other) != own->size(one);
 }
 
 void print_gradients(Report& report, const FoundDesign& found) {
@@ -139,8 +143,12 @@ std::string command_of(const Question& question, const FoundDesign& found) {
   // Tolerances of [hoop] need the spec's file; the nominal hoop follows from its ratios.
   if (scatter.spreads.empty() || std::ranges::any_of(scatter.spreads, is_of_body)) return command;
   command += fmt::format(" --scatter --set samples={} --set scatter.seed={}", scatter.samples, scatter.seed);
-  for (const Spread& spread : scatter.spreads)
+  const std::vector<SameInSi> held = held_in_si(question.one);
+  for (Spread spread : scatter.spreads) {
+    // The found hoop's own units are not those of the nominal one.
+    if (!spread.percent) spread.width *= held_unit(held, member_of(spread.parameter), found.design);
     command += fmt::format(" --set 'scatter.{}={}'", spread.parameter, text_of(spread));
+  }
   for (const Goal& goal : question.one.goals)
     command += fmt::format(" --set 'goal.{}={}'", goal.field, text_of(goal));
   return command;
@@ -247,6 +255,12 @@ void print_miss(const Spec& spec, Report& report, const FoundDesigns& found) {
   say("     {}\n", command_of(question, nearest));
 }
 
+/// The value of a free parameter, in the SI if the hoops share it there.
+double in_si(const Question& question, std::size_t k, double value) {
+  const std::optional<SiUnit> si = si_unit(question.one, question.free[k].name);
+  return si ? value * si->size : value;
+}
+
 Json json_of(const Question& question, const FoundDesign& found) {
   const bool near = !found.cliff.empty();
   Json json{
@@ -260,7 +274,7 @@ Json json_of(const Question& question, const FoundDesign& found) {
        near ? Json{{"distance", found.cliff[0].distance}, {"kind", name_of(found.cliff[0].kind)}} : Json()},
       {"hop", command_of(question, found)}};
   for (std::size_t k = 0; k < question.free.size(); ++k)
-    json["parameters"][question.free[k].name] = found.free[k];
+    json["parameters"][question.free[k].name] = in_si(question, k, found.free[k]);
   for (std::size_t k = 0; k < question.objectives.size(); ++k)
     json["objectives"][question.objectives[k].name] = found.objectives[k];
   for (const Field* field : fields_of(question.one.scene))
@@ -268,27 +282,39 @@ Json json_of(const Question& question, const FoundDesign& found) {
       json["fields"][std::string(field->name)] = number_json(*field, found.outcome);
   for (const FieldGradient& gradient : found.gradients)
     for (std::size_t k = 0; k < question.free.size(); ++k)
-      json["gradients"][gradient.of][question.free[k].name] = gradient.by_free[k];
+      json["gradients"][gradient.of][question.free[k].name] = gradient.by_free[k] / in_si(question, k, 1.0);
   return json;
 }
 
 Json json_of(const Spec& spec, const Question& question, const FoundDesigns& found) {
   Json json{{"reached", found.reached}, {"evaluations", found.evaluations},
             {"seconds", found.seconds}, {"hypervolume", found.hypervolume},
-            {"missed", Json::object()}, {"designs", Json::array()}};
-  for (std::size_t k = 0; k < found.missed.size(); ++k) json["missed"][spec.goals[k].field] = found.missed[k];
+            {"missed", Json::object()}, {"units", Json::object()},
+            {"designs", Json::array()}};
+  for (std::size_t k = 0; k < found.missed.size(); ++k) {
+    const Goal& goal = spec.goals[k];
+    json["missed"][goal.field] = found.missed[k];
+    if (goal.unit_of_nominal > 0.0)
+      json["units"][goal.field] = find_own_unit(own_unit(*find_field(goal.field)))->si;
+  }
+  for (const FreeParameter& free : question.free)
+    if (const std::optional<SiUnit> si = si_unit(spec, free.name)) json["units"][free.name] = si->name;
   for (const FoundDesign& one : found.designs) json["designs"].push_back(json_of(question, one));
   return json;
 }
 
-/// The columns that design.points takes.
+/// The columns that design.points takes: what the hoops share in the SI, in the SI.
 std::string csv_of(const Question& question, const FoundDesigns& found) {
   std::vector<std::string> names;
-  for (const FreeParameter& parameter : question.free) names.push_back(parameter.name);
+  for (const FreeParameter& parameter : question.free) {
+    const std::optional<SiUnit> si = si_unit(question.one, parameter.name);
+    names.push_back(si ? fmt::format("{} [{}]", parameter.name, si->name) : parameter.name);
+  }
   std::string text = fmt::format("{}\n", fmt::join(names, ","));
   for (const FoundDesign& one : found.designs) {
     std::vector<std::string> cells;
-    for (const double value : one.free) cells.push_back(fmt::format("{}", value));
+    for (std::size_t k = 0; k < one.free.size(); ++k)
+      cells.push_back(fmt::format("{}", in_si(question, k, one.free[k])));
     text += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return text;

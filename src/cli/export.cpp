@@ -82,7 +82,10 @@ void choose_units(std::vector<Column>& columns, ShownUnits& units, const Spec& s
   Scales scales = nominal_scales(spec);
   for (Column& column : columns) {
     column.shown = shown_by(units, column, spec, scales);
-    column.held = is_held(spec, column.name);
+    const std::optional<SiUnit> si = si_unit(spec, column.name);
+    column.held = si.has_value();
+    // What the hoops share in the SI is read back as that, unless another unit is asked for.
+    if (si && column.shown.factor == 1.0) column.shown = {std::string(si->name), si->size};
   }
   units.refuse_unused();
   if (!mass_varies(spec) && !find_varying(spec, "hoop.diameter")) return;

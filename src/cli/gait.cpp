@@ -114,15 +114,18 @@ Json json_of(const Spec& spec, const Gaits* found, const Outcome& outcome) {
   return json;
 }
 
-int run(const GaitArguments& arguments) {
-  std::vector<std::string> overrides = arguments.overrides;
-  overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
-  refuse_scatter(overrides, "allowed: one nominal design");
-  Spec spec = read_given_spec(arguments.spec, overrides);
+void refuse_more_designs(const Spec& spec) {
   if (!spec.axes.empty() || !spec.points.empty())
     throw InputError(fmt::format(
         "{}: has several designs; allowed: one design, or leapmap sweep with [gait] for a map of gaits",
         origin_of(spec)));
+}
+
+int run(const GaitArguments& arguments) {
+  std::vector<std::string> overrides = arguments.overrides;
+  overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
+  refuse_scatter(overrides, "allowed: one nominal design");
+  Spec spec = read_given_spec(arguments.spec, overrides, refuse_more_designs);
   const bool slips = model_of(spec.scene).slips;
   if (slips && arguments.most_period != 0)
     throw InputError(

@@ -138,12 +138,13 @@ void print_phases(const Motion& motion) {
 void print_motor(const Motor& motor) {
   const std::string_view brakes = motor.only_brakes ? "; it only brakes" : "";
   if (motor.mass > 0.0)
-    say("Motor, for a total mass of {:g} kg: {:.4g} N m, at most {:.4g} W and {:.4g} rpm, {:.4g} J in "
-        "all{}.\n",
+    say("Motor until the lift-off, for a total mass of {:g} kg: {:.4g} N m, at most {:.4g} W and {:.4g} rpm, "
+        "{:.4g} J{}.\n",
         motor.mass, motor.torque, motor.power + 0.0, motor.spin, motor.work, brakes);
   else
-    say("Motor: at most {:.4g} rpm{}. With --mass: torque, power and energy in N m, W and J.\n", motor.spin,
-        brakes);
+    say("Motor until the lift-off: at most {:.4g} rpm{}. With --mass: torque, power and energy in N m, W and "
+        "J.\n",
+        motor.spin, brakes);
 }
 
 void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
@@ -281,17 +282,19 @@ void print_json(const Spec& spec, const Motion& motion, const Outcome& checked,
   say_json(json);
 }
 
-int run(const HopArguments& arguments) {
-  std::vector<std::string> overrides = arguments.overrides;
-  overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
-  const Spec spec = read_given_spec(arguments.spec, overrides);
+void refuse_several(const Spec& spec) {
   if (!spec.axes.empty())
     throw InputError(fmt::format("{}: {}{} is an axis; allowed: one number, for example --set {}={}",
                                  origin_of(spec), find_body_number(spec.axes[0].key) ? "" : "design.",
                                  spec.axes[0].key, spec.axes[0].key, spec.axes[0].values[0]));
   if (!spec.points.empty())
     throw InputError(fmt::format("{}: design.points is a list; allowed: one design", origin_of(spec)));
+}
 
+int run(const HopArguments& arguments) {
+  std::vector<std::string> overrides = arguments.overrides;
+  overrides.insert(overrides.end(), arguments.flags.begin(), arguments.flags.end());
+  const Spec spec = read_given_spec(arguments.spec, overrides, refuse_several);
   const std::array inputs{NamedPath{"SPEC", arguments.spec}};
   const std::array outputs{NamedPath{"--trace", arguments.trace, true}};
   refuse_same_files(inputs, outputs);

@@ -96,7 +96,7 @@ class MapScales {
   MapScales(const MapReader& map, const InfoArguments& arguments) {
     try {
       spec_ = spec_of(map, arguments.path);
-      shared = common_scales(*spec_), manufactured = scales_of_manufactured(*spec_, shared);
+      shared = common_scales(*spec_);
     } catch (const std::exception&) {
       if (!arguments.units.empty()) throw;
     }
@@ -115,7 +115,12 @@ class MapScales {
     return spec_ && is_held(*spec_, parameter) ? nominal_scales(*spec_) : shared;
   }
 
-  Scales shared{.radius = Outcome::none, .gravity = Outcome::none, .mass = 0.0}, manufactured = shared;
+  /// Of statistics, as far as the hoops made after a design share them.
+  Scales of_manufactured(const std::string& field, std::size_t design) const {
+    return spec_ ? scales_of_manufactured(*spec_, of(field, design)) : shared;
+  }
+
+  Scales shared{.radius = Outcome::none, .gravity = Outcome::none, .mass = 0.0};
 
  private:
   std::optional<Spec> spec_;
@@ -290,7 +295,8 @@ void print_fields(const MapReader& map, ShownUnits& units, const MapScales& scal
       const bool of_made = field && std::holds_alternative<OfMade>(field->source);
       for (const auto& [words, extreme] :
            {std::pair{"least", &summary.least}, std::pair{"most", &summary.most}}) {
-        units.scale(of_made ? scales.manufactured : scales.of(name, extreme->design));
+        units.scale(of_made ? scales.of_manufactured(name, extreme->design)
+                            : scales.of(name, extreme->design));
         const ShownUnit shown = !units.are_asked_for() || (!field && !listed)
                                     ? ShownUnit{map.unit(name) == "1" ? "" : printable(map.unit(name)), 1.0}
                                 : field ? units.of(*field)

@@ -41,7 +41,8 @@ std::vector<double> values_at(const Spec& spec, const std::string& at) {
                                    fmt::join(names, ",")));
     }
     try {
-      values[k] = parse_number(*find_option("", name), part.substr(equals + 1), scales_of(spec.scene));
+      const Scales scales = is_held(spec, name) ? nominal_scales(spec) : common_scales(spec);
+      values[k] = parse_number(*find_option("", name), part.substr(equals + 1), scales);
     } catch (const InputError& error) {
       throw InputError(fmt::format("--at {}: {}: {}", at, name, error.what()));
     }

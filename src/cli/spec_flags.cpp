@@ -44,7 +44,8 @@ void add_set(Command& command, std::vector<std::string>& overrides, const std::s
       .shown_as("KEY=VALUE");
 }
 
-Spec read_given_spec(const std::string& path, const std::vector<std::string>& overrides) {
+Spec read_given_spec(const std::string& path, const std::vector<std::string>& overrides,
+                     const std::function<void(const Spec&)>& check) {
   // "slope" of "design.slope=0.4"; of [hoop] with the weight's name.
   const auto key_of = [](const std::string& set) {
     const std::string name = set.substr(0, set.find('='));
@@ -54,6 +55,7 @@ Spec read_given_spec(const std::string& path, const std::vector<std::string>& ov
     return option && find_option("", option->key) == option ? std::string(option->key) : name;
   };
   Spec spec = read_spec(path, overrides);  // first, so that what is wrong is said alone
+  if (check) check(spec);
   for (const std::string& note : spec.notes) tell(note);
   std::vector<std::string> keys;
   for (const std::string& set : overrides) keys.push_back(key_of(set));

@@ -20,6 +20,7 @@
 #include "python/arguments.hpp"
 #include "python/calls.hpp"
 #include "python/results.hpp"
+#include "spec/spec_hoop.hpp"
 
 namespace leapmap::python {
 namespace {
@@ -135,9 +136,14 @@ class Problem {
       const bool follows = of_design && question_.designs.varies_body() && follows_from_body(*of_design);
       const double value =
           of_design ? question_.one.design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
-      if (!is_free && !follows && !of_each_hoop(parameter.name) && !std::isnan(value) &&
-          has(scene.friction, parameter.only_of))
-        numbers[py::str(std::string(parameter.name))] = value;
+      if (is_free || follows || of_each_hoop(parameter.name) || std::isnan(value) ||
+          !has(scene.friction, parameter.only_of))
+        continue;
+      const py::str name{std::string(parameter.name)};
+      if (const std::optional<SiUnit> si = si_unit(question_.one, std::string(parameter.name)))
+        numbers[name] = py::str(fmt::format("{} {}", value * si->size, si->name));
+      else
+        numbers[name] = value;
     }
     if (scene.clear_height_in_metres) numbers["clear_height"] = fmt::format("{} m", scene.clear_height);
     if (!scene.motor_in_flight) numbers[py::str(std::string(motor_switch))] = false;

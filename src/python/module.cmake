@@ -38,6 +38,8 @@ install(FILES ${package}/__init__.pyi DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
 install(DIRECTORY analysis/ DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap/analysis USE_SOURCE_PERMISSIONS
         PATTERN __pycache__ EXCLUDE PATTERN pictures EXCLUDE PATTERN "*.sh" EXCLUDE PATTERN rivals.py EXCLUDE
         PATTERN boost_rival.cpp EXCLUDE)
-if(LEAPMAP_EMCC)
-  install(FILES ${PROJECT_BINARY_DIR}/leapmap.wasm DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
+if(TARGET leapmap-page)
+  foreach(file leapmap.wasm leapmap-page.js leapmap-worker.js)
+    install(FILES ${PROJECT_BINARY_DIR}/${file} DESTINATION ${LEAPMAP_PYTHON_DIR}/leapmap)
+  endforeach()
 endif()

@@ -55,7 +55,8 @@ PointList read_points(const std::string& path, const std::string& origin, Scales
   PointList list;
   list.path = path;
   list.count = 0;
-  std::vector<const Option*> columns;  // null: the labels
+  std::vector<const Option*> columns;         // null: the labels
+  std::vector<std::optional<bool>> are_held;  // as the first line has them
   std::vector<std::string> units;
   for (const std::string& text : file.header()) {
     const auto [name, unit] = name_and_unit(text);
@@ -67,6 +68,7 @@ PointList read_points(const std::string& path, const std::string& origin, Scales
   }
   if (!columns.empty() && list.columns.empty())
     throw InputError(file.place() + ": no column is a parameter of a design; allowed: at least one");
+  are_held.resize(columns.size());
   std::vector<std::string> cells;
   while (file.next(cells)) {
     const std::string& place = file.place();
@@ -79,11 +81,18 @@ PointList read_points(const std::string& path, const std::string& origin, Scales
       try {
         const std::string text = cells[i] + units[i];
         const bool held = nominal && is_in_si(*columns[i], text);
+        if (are_held[i].value_or(held) != held)
+          throw InputError(
+              fmt::format("'{}' has {} unit, unlike the lines above; allowed: a unit in all "
+                          "lines or in none, best in the header",
+                          text, held ? "a" : "no"));
+        are_held[i] = held;
         if (held && std::ranges::find(in_si, column->key) == in_si.end()) in_si.push_back(column->key);
-        (column++)->values.push_back(parse_number(*columns[i], text, held ? *nominal : scales));
+        column->values.push_back(parse_number(*columns[i], text, held ? *nominal : scales));
       } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: column {} = {}", place, (column - 1)->key, error.what()));
+        throw InputError(fmt::format("{}: column {} = {}", place, column->key, error.what()));
       }
+      ++column;
     }
     ++list.count;
   }

@@ -361,9 +361,18 @@ void fill_nominal_units(const std::vector<Entry>& entries, Spec& spec) {
     if (!spec.hoop) refuse(entry, "has no effect, because there is no [hoop]", "with [hoop] in the spec");
     std::visit(Assign{entry, spec}, entry.option->slot);
   }
+  if (!spec.hoop) return;
   for (const Entry& entry : entries)
     if (const auto* slot = std::get_if<ParameterSlot>(&entry.option->slot))
-      if (spec.hoop && may_be_held(slot->member) && has_unit(entry)) hold(entry.key, spec);
+      if (may_be_held(slot->member) && has_unit(entry)) hold(entry.key, spec);
+  // A tolerance with a unit of what is not given: around 0, which is the same in every unit.
+  for (const Entry& entry : entries) {
+    if (!std::holds_alternative<SpreadSlot>(entry.option->slot) || find_body_number(entry.key)) continue;
+    const bool given = std::ranges::any_of(entries, [&](const Entry& other) {
+      return other.key == entry.key && std::holds_alternative<ParameterSlot>(other.option->slot);
+    });
+    if (!given && may_be_held(member_of(entry.key)) && has_unit(entry)) hold(entry.key, spec);
+  }
 }
 
 /// Puts every entry's value where it belongs. of_map: a resolved spec has units only where hoops differ in

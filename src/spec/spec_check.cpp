@@ -240,6 +240,14 @@ void check_spec(const Spec& spec) {
   if (spec.scene.settle > 0 && resolved_method(spec.numerics) != "exact")
     refuse(spec, "settle", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
            "with method = \"exact\"");
+  for (const std::string& name : spec.nominal_units)
+    if (const Option* option = find_option("design", name);
+        !spec.hoop || !option || !std::holds_alternative<ParameterSlot>(option->slot) ||
+        !may_be_held(std::get<ParameterSlot>(option->slot).member))
+      refuse(spec, "nominal_units",
+             spec.hoop ? fmt::format("'{}' has the same unit for every hoop", name)
+                       : "has no effect, because there is no [hoop]",
+             "drive_torque, resisting_torque, release_spin, with [hoop] in the spec");
   check_capabilities(spec);
   check_names(spec);
   check_gradients(spec);

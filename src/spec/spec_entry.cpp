@@ -70,20 +70,22 @@ std::optional<double> to_si(const Entry& entry, const toml::node& node) {
 
 namespace {
 
-bool has_unit(const OwnUnit& own, const toml::node& node) {
-  const auto any = [&](const auto& nodes, const auto& part) {
-    return std::any_of(nodes.begin(), nodes.end(), [&](auto&& one) { return has_unit(own, part(one)); });
-  };
-  if (const auto* table = node.as_table())
-    return any(*table, [](auto&& pair) -> const toml::node& { return pair.second; });
-  if (const auto* array = node.as_array())
-    return any(*array, [](const toml::node& one) -> const toml::node& { return one; });
-  const auto* text = node.as_string();
-  if (!text) return false;
-  try {
-    return number_in_si(text->get(), own).has_value();
-  } catch (const InputError&) {
-    return false;  // it is refused where it is read
+/// Counts the numbers of a value, or of an axis, a tolerance or a goal, that have a unit of the SI and that
+/// have none.
+void count_units(const OwnUnit& own, const toml::node& node, std::size_t& with, std::size_t& without) {
+  if (const auto* table = node.as_table()) {
+    for (const auto& [key, value] : *table)
+      if (key != "count" && key != "scale" && key != "is") count_units(own, value, with, without);
+  } else if (const auto* array = node.as_array()) {
+    for (const toml::node& value : *array) count_units(own, value, with, without);
+  } else if (const auto* text = node.as_string()) {
+    try {
+      ++(number_in_si(text->get(), own) ? with : without);
+    } catch (const InputError&) {
+      return;  // it is refused where it is read
+    }
+  } else {
+    ++without;
   }
 }
 
@@ -91,7 +93,11 @@ bool has_unit(const OwnUnit& own, const toml::node& node) {
 
 bool has_unit(const Entry& entry) {
   const OwnUnit* own = find_own_unit(entry.option->unit);
-  return own && has_unit(*own, *entry.node);
+  std::size_t with = 0, without = 0;
+  if (own) count_units(*own, *entry.node, with, without);
+  if (with > 0 && without > 0)
+    refuse(entry, "has a unit at some of its numbers only", "a unit at all of them or at none");
+  return with > 0;
 }
 
 std::optional<std::int64_t> to_whole(const toml::node& node) {

@@ -38,7 +38,7 @@ double to_number(const Entry& entry, const toml::node& node, std::string_view pa
 /// A text with a unit, in the SI unit of the option's own, if each hoop has its own; else nothing.
 std::optional<double> to_si(const Entry& entry, const toml::node& node);
 
-/// Whether one of its numbers is given with a unit of the SI.
+/// Whether its numbers are given with a unit of the SI. Throws InputError if only some are.
 bool has_unit(const Entry& entry);
 
 /// A whole number, also one written as 1e6.

@@ -201,24 +201,49 @@ void check_hoop(const Spec& spec) {
   check_ratios(spec);
 }
 
-std::vector<std::string> doubts_of_hoop(const Spec& spec) {
-  const Body& body = *spec.hoop;
+namespace {
+
+/// What is doubtful about one hoop, in words; empty: nothing.
+std::string doubt_of(const Body& body) {
   const double radius = 0.5 * body.diameter, square = radius * radius;
-  std::vector<std::string> doubts;
-  // Of a sphere of osmium.
-  constexpr double most_density = 22'600.0 * 4.0 / 3.0 * std::numbers::pi;
-  if (const double mass = reduce_checked(body).total_mass; mass > most_density * square * radius)
-    doubts.push_back(
-        fmt::format("{}: [hoop]: {:.4g} kg in a hoop of {:.4g} m is denser than any metal; grams "
-                    "are written \"... g\"",
-                    origin_of(spec), mass, body.diameter));
+  constexpr double osmium = 22'600.0;  // kg m-3
+  const double sphere = osmium * 4.0 / 3.0 * std::numbers::pi * square * radius;
+  if (const double mass = reduce_checked(body).total_mass; mass > sphere)
+    return fmt::format(
+        "{:.4g} kg in a hoop of {:.4g} m is more than a sphere of osmium of that diameter; "
+        "grams are written \"... g\"",
+        mass, body.diameter);
   constexpr double rounding = 1e-6;  // of what a drawing states
-  if (body.inertia > (1.0 + rounding) * body.mass * square && !find_varying(spec, "hoop.inertia"))
-    doubts.push_back(
-        fmt::format("{}: hoop.inertia = {:.4g} kg m2 is larger than that of a thin ring of this "
-                    "mass, {:.4g} kg m2",
-                    origin_of(spec), body.inertia, body.mass * square));
-  return doubts;
+  if (body.inertia > (1.0 + rounding) * body.mass * square)
+    return fmt::format(
+        "inertia = {:.4g} kg m2 is larger than that of a thin ring of its mass and diameter, "
+        "{:.4g} kg m2",
+        body.inertia, body.mass * square);
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_of_hoop(const Spec& spec) {
+  const auto note = [&](const std::string& where, const std::string& doubt) {
+    return std::vector{fmt::format("{}: [hoop]{}: {}", origin_of(spec), where, doubt)};
+  };
+  std::vector<const Axis*> varying;
+  for (const Axis& axis : spec.axes)
+    if (find_body_number(axis.key)) varying.push_back(&axis);
+  if (varying.empty()) {
+    const std::string doubt = doubt_of(*spec.hoop);
+    return doubt.empty() ? std::vector<std::string>{} : note("", doubt);
+  }
+  for (const Axis* axis : varying)
+    for (const double value : {std::ranges::min(axis->values), std::ranges::max(axis->values)}) {
+      Body body = *spec.hoop;
+      Design unused;
+      find_variable(axis->key, &body)->in(unused, body) = value;
+      if (const std::string doubt = doubt_of(body); !doubt.empty())
+        return note(fmt::format(" at {} = {:.4g}", axis->key, value), doubt);
+    }
+  return {};
 }
 
 Scales common_scales(const Spec& spec) {
@@ -266,6 +291,12 @@ std::vector<SameInSi> held_in_si(const Spec& spec) {
                             [&](const std::string& name) { return member_of(name) == one.parameter; }))
       held.push_back(one);
   return held;
+}
+
+std::optional<SiUnit> si_unit(const Spec& spec, const std::string& parameter) {
+  if (!is_held(spec, parameter)) return {};
+  const OwnUnit& own = *find_own_unit(find_option("", parameter)->unit);
+  return SiUnit{own.size(nominal_scales(spec)), own.si};
 }
 
 bool mass_varies(const Spec& spec) {

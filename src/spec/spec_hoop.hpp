@@ -5,7 +5,9 @@
 #include <toml++/toml.h>
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hoop/body.hpp"
@@ -49,6 +51,13 @@ void hold(const std::string& parameter, Spec& spec);
 /// Whether they do, and all the parameters that they share.
 bool is_held(const Spec& spec, const std::string& parameter);
 std::vector<SameInSi> held_in_si(const Spec& spec);
+/// The SI's unit of a parameter that the hoops share, and how many of it are one of the nominal hoop's; none
+/// of any other parameter.
+struct SiUnit {
+  double size;
+  std::string_view name;
+};
+std::optional<SiUnit> si_unit(const Spec& spec, const std::string& parameter);
 /// Whether masses of the body differ from design to design.
 bool mass_varies(const Spec& spec);
 /// Where masses of the body vary, no total mass is known.

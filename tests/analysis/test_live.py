@@ -121,6 +121,7 @@ def test_a_coarse_map_is_there_long_before_the_whole_one(live):
     assert np.median(ratios) < 0.5
 
 
+@pytest.mark.slow
 def test_what_is_dragged_past_is_not_what_stays(live):
     live.execute_script(
         """const offset = "input[type=range][data-parameter=offset_ratio]";
@@ -133,6 +134,7 @@ def test_what_is_dragged_past_is_not_what_stays(live):
     assert compare(live, np.random.default_rng(7), 12) >= 4
 
 
+@pytest.mark.slow
 def test_axes_can_be_any_two_parameters_with_bounds_of_ones_own(live):
     live.execute_script("document.getElementById('map').dataset.whole = 'false'")
     Select(live.find_element("id", "live-y")).select_by_value("release_angle")
@@ -217,6 +219,7 @@ def test_goals_dim_what_fails_and_the_best_left_is_shown(live):
     assert live.find_element("id", "goals-told").text == ""
 
 
+@pytest.mark.slow
 def test_cuts_go_through_the_design_pointed_at(live):
     assert live.find_element(
         "id", "cut-x").get_attribute("data-values") is None, "nothing is drawn before anybody asks"
@@ -274,6 +277,7 @@ def test_up_to_four_designs_are_pinned_and_their_csv_and_commands_are_leapmap_s(
         "return document.getElementById('map').toDataURL()") != marked, "the map marks what is pinned"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_how_many_jumps_hoops_make_is_a_field_once_more_than_one_is_followed(friction, live):
     option = ("return [...document.getElementById('field').options].find((o) => o.textContent === 'number "
@@ -318,6 +322,7 @@ def first_picture(browser, field, seconds=120):
     waited(browser, lambda b: b.execute_script(told, COARSE, field), seconds)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "friction, settle",
     [("sticking", 200), pytest.param("coulomb", 60, marks=pytest.mark.slow)])
@@ -389,6 +394,7 @@ def same_as_made(cells, told):
     return int(np.sum((told["yield"] > 0.02) & (told["yield"] < 0.98)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction, samples", [("sticking", 256),
                                                pytest.param("coulomb", 32, marks=pytest.mark.slow)])
 def test_the_yield_of_hoops_as_made_is_a_field_by_the_tolerances_and_goals_that_are_set(
@@ -454,6 +460,7 @@ def test_without_a_goal_the_yield_counts_hoops_that_jump_and_a_tolerance_changed
     assert "made=offset_ratio:normal:1:percent" in live.execute_script("return location.hash")
 
 
+@pytest.mark.slow
 def test_a_file_s_map_as_made_tells_a_hoop_of_ones_own_and_goes_live_with_its_tolerances_and_goals(
         browser, tmp_path):
     sweep(
@@ -583,6 +590,7 @@ def test_how_errors_grow_is_a_field_of_sequences(live):
     assert compared >= 3
 
 
+@pytest.mark.slow
 def test_cliffs_move_while_one_drags_and_no_drag_goes_unseen(live):
     """Each picture on the way has curves of its own, and they come however often the slider tells."""
     settled(live, what="cliffs")
@@ -603,6 +611,7 @@ def test_cliffs_move_while_one_drags_and_no_drag_goes_unseen(live):
     assert len({text for _, text in curves}) == len(curves)
 
 
+@pytest.mark.slow
 def test_the_animation_goes_frame_by_frame_and_is_saved_as_a_film(live):
     clock = live.find_element("id", "clock")
     live.execute_script(
@@ -618,6 +627,7 @@ def test_the_animation_goes_frame_by_frame_and_is_saved_as_a_film(live):
     waited(live, lambda b: int(b.find_element("id", "film").get_attribute("data-bytes") or 0) > 3000, 240)
 
 
+@pytest.mark.slow
 def test_a_link_to_the_paper_s_hoop_shows_the_hoop_first_on_a_phone(live, tmp_path):
     size = live.get_window_size()
     try:
@@ -636,6 +646,7 @@ def test_a_link_to_the_paper_s_hoop_shows_the_hoop_first_on_a_phone(live, tmp_pa
         live.set_window_size(size["width"], size["height"])
 
 
+@pytest.mark.slow
 def test_a_file_s_map_goes_live_where_it_is_and_back(browser, tmp_path):
     path = sweep(
         tmp_path,
@@ -660,6 +671,7 @@ def test_a_file_s_map_goes_live_where_it_is_and_back(browser, tmp_path):
     assert browser.execute_script("return window.explorer.map.axes[0].values.length") == 20
 
 
+@pytest.mark.slow
 def test_numbers_of_a_drawing_are_axes_and_tolerances_of_a_live_map(browser, tmp_path):
     """Begun from a file's map, whose weight has a name; what follows from the drawing cannot be turned."""
     laws = ('slope={normal="1 deg"}', 'hoop.slug.at={normal="0.5 mm"}', 'hoop.diameter={uniform="1 mm"}',
@@ -719,6 +731,7 @@ def test_numbers_of_a_drawing_are_axes_and_tolerances_of_a_live_map(browser, tmp
     assert "hoop.battery.mass" in offered() and "mass_ratio" not in offered()
 
 
+@pytest.mark.slow
 def test_a_wall_is_cleared_where_leapmap_tells(live):
     """In the table and on the map; without a wall no such quantity is offered."""
     offered = lambda: live.execute_script("""

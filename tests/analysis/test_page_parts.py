@@ -15,10 +15,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 from support.browser import agrees, numbers, opened, settled, told_by_leapmap, waited
-from support.program import PROGRAM, TOP, finished, scripted, sweep
+from support.program import PROGRAM, finished, scripted, sweep
 
 BUILD = Path(os.environ["LEAPMAP_BUILD"])
 ANGLES = ("slope", "release_angle")
@@ -123,6 +124,7 @@ def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, 
     waited(page, lambda b: "hoop=slope:" in b.execute_script("return location.hash"))
 
 
+@pytest.mark.slow
 def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(page, html, tmp_path):
     """120 mm, ring of 61 g with 1.9e-4 kg m2, a slug of 85 g at 47 mm, a battery of 12 g opposite at 30
     mm."""
@@ -167,6 +169,7 @@ def test_a_hoop_from_a_drawing_is_reduced_weighed_and_jumps_as_leapmap_tells(pag
     assert "steady jump" not in page.find_element("id", "value").text, "of a hoop that is not shown"
 
 
+@pytest.mark.slow
 def test_a_drawing_typed_in_gives_the_map_its_first_mass_and_tolerances_in_grams(page):
     page.execute_script("document.getElementById('drawing').open = true; "
                         "document.getElementById('tolerances').open = true")
@@ -204,6 +207,7 @@ def test_a_drawing_of_what_is_no_hoop_is_refused_and_changes_nothing(name, value
     assert numbers(page) == before
 
 
+@pytest.mark.slow
 def test_without_a_mass_there_are_no_newtons(page):
     show(page, [120, 60])
     assert "weights" in page.find_element("id", "numbers").text
@@ -221,6 +225,7 @@ def test_a_number_that_no_hoop_has_is_refused_and_changes_nothing(page):
         "#hoop-inputs input[data-parameter=offset_ratio]").get_attribute("aria-invalid") == "true"
 
 
+@pytest.mark.slow
 def test_derivatives_are_those_that_leapmap_stores(page, tmp_path):
     """The table's own numbers against a map's gradients, which are to rounding: a hoop without slip and one
     with."""
@@ -340,6 +345,7 @@ def test_an_address_that_asks_for_what_cannot_be_says_so(address, words, browser
     assert not browser.find_elements("css selector", "img")
 
 
+@pytest.mark.slow
 def test_cliffs_lie_where_what_becomes_of_a_hoop_changes(page):
     settled(page, what="cliffs")
     sides = page.execute_script("""const { map, solver } = window.explorer, [x, y] = map.axes, step = [x,
@@ -360,6 +366,7 @@ def test_cliffs_lie_where_what_becomes_of_a_hoop_changes(page):
     assert len(sides) > 100 and np.mean(sides) > 0.99
 
 
+@pytest.mark.slow
 def test_forces_are_drawn_at_the_contact_and_may_be_left_out(page):
     show(page, [87, 29])
     page.execute_script("document.getElementById('play').click()") if "pause" in page.find_element(
@@ -372,6 +379,7 @@ def test_forces_are_drawn_at_the_contact_and_may_be_left_out(page):
     assert pixels(page, "scene") == drawn
 
 
+@pytest.mark.slow
 def test_hoops_as_made_jump_along_on_a_live_map(page):
     show(page, [87, 29])
     page.find_element("id", "ghosts").click()
@@ -451,6 +459,7 @@ def test_units_are_switched_wherever_numbers_stand(page):
     assert ">mm<" not in saved(page, "map-svg")
 
 
+@pytest.mark.slow
 def test_a_file_s_map_has_its_axes_and_slices_in_the_address_and_goes_back_from_live(browser, tmp_path):
     path = sweep(
         tmp_path,
@@ -480,11 +489,13 @@ def test_a_file_s_map_has_its_axes_and_slices_in_the_address_and_goes_back_from_
     assert browser.execute_script(state) == before
 
 
+@pytest.mark.slow
 def test_a_picture_is_saved_as_png(page):
     page.find_element("id", "map-png").click()
     waited(page, lambda b: int(b.execute_script("return document.body.dataset.bytes ?? 0")) > 10000)
 
 
+@pytest.mark.slow
 def test_nothing_moves_when_numbers_change(page):
     """Controls stay where they are, whatever design is pointed at and while the hoop moves."""
     places = lambda: page.execute_script("""return ['field', 'map', 'map-png', 'filters', 'play', 'scrub',
@@ -552,6 +563,7 @@ def test_axe_finds_nothing_serious(tone, page, axe):
     assert found["passes"] > 15
 
 
+@pytest.mark.slow
 def test_one_hoop_has_one_answer_left_and_right(browser, html):
     """A hoop that is none of the map's designs, the paper's say, is told by its own numbers until one points
     at the map again."""
@@ -566,30 +578,7 @@ def test_one_hoop_has_one_answer_left_and_right(browser, html):
     assert float(browser.execute_script("return document.getElementById('readout').dataset.value")) == right
 
 
-SCALES = (TOP / "analysis/page/scales.js").read_text()
-
-
-def test_ticks_of_any_two_numbers_are_few_ascend_and_differ_in_their_texts(page):
-    """From neighbouring doubles to 1e300: the count of ticks once had no end."""
-    bad = page.execute_script(SCALES + """
-        const bad = [], seeded = (seed => () => (seed = (seed * 16807) % 2147483647) / 2147483647)(45);
-        const number = () => (seeded() < 0.5 ? -1 : 1) * 10 ** (seeded() * 600 - 300);
-        for (let i = 0; i < 20000; ++i) {
-          let low = number(), high = seeded() < 0.5 ? low * (1 + 2.3e-16 * (1 + 5 * seeded())) : number();
-          if (low > high) [low, high] = [high, low];
-          const ticks = linearTicks(low, high), texts = tickTexts(ticks);
-          if (!ticks.length || ticks.length > 12 || new Set(texts).size !== texts.length
-              || ticks.some((v, k) => !Number.isFinite(v) || (k > 0 &&
-                v <= ticks[k - 1]))) bad.push([low, high]);
-          if (low > 0 && logTicks(low, high).length > 60) bad.push(["log", low, high]);
-        }
-        return bad;""")
-    assert bad == []
-    assert page.execute_script(SCALES + "return tickTexts(logTicks(1, 1e7))") == [
-        "1", "10", "100", "1000", "10000", "10⁵", "10⁶", "10⁷"
-    ]
-
-
+@pytest.mark.slow
 def test_a_list_whose_values_differ_by_a_rounding_opens(browser, tmp_path):
     (tmp_path / "list.csv").write_text("slope\n0.3\n0.30000000000000004\n")
     path = sweep(tmp_path, f'[design]\npoints = "{tmp_path / "list.csv"}"\n')
@@ -598,3 +587,52 @@ def test_a_list_whose_values_differ_by_a_rounding_opens(browser, tmp_path):
     assert done.returncode == 0, done.stderr
     browser.get("about:blank")
     opened(browser, html)
+
+
+def test_goals_are_brushed_on_the_colour_bar_and_on_the_axes_of_all_designs(page):
+    def remaining():
+        told = page.find_element("id", "goals-told").text
+        return int(told.split(" of ")[0].replace(",", "")) if told else None
+
+    def goals():
+        return page.execute_script(
+            "return new URLSearchParams(location.hash.slice(1)).getAll('goal').map((g) => g.split(':'))")
+
+    bar = page.find_element("id", "bar-brush")
+    high = bar.size["height"]
+    ActionChains(page).move_to_element_with_offset(bar, 0, int(-0.4 * high)).click_and_hold().move_by_offset(
+        0, int(0.3 * high)).move_by_offset(0, int(0.2 * high)).release().perform()
+    waited(page, lambda b: len(goals()) == 2)
+    assert [(name, sign) for name, sign, _ in goals()] == [("jump_height", "least"), ("jump_height", "most")]
+    least, most = (float(bound) for _, _, bound in goals())
+    counted = page.execute_script(
+        "const { map } = window.explorer, { values } = map.fields.find((f) => f.name === 'jump_height'); "
+        "return values.filter((v) => v >= arguments[0] && v <= arguments[1]).length", least, most)
+    assert 0 < counted < 30000 and remaining() == counted
+    page.execute_script("document.getElementById('lines-part').open = true")
+    waited(page, lambda b: b.find_element("id", "lines").get_attribute("data-left") == str(counted))
+    axis = page.find_element("css selector", "#lines-brushes g.brush:nth-child(2) .overlay")
+    page.execute_script("arguments[0].scrollIntoView({ block: 'center' })", axis)
+    ActionChains(page).move_to_element_with_offset(axis, 0, int(-0.3 * axis.rect["height"])).click_and_hold(
+    ).move_by_offset(0, int(0.4 * axis.rect["height"])).move_by_offset(
+        0, int(0.3 * axis.rect["height"])).release().perform()
+    waited(page, lambda b: len(goals()) == 4 or [g for g in goals() if g[0] == "jump_time"])
+    assert any(name == "jump_time" for name, _, _ in goals())
+    assert remaining() < counted
+    waited(page, lambda b: b.find_element("id", "lines").get_attribute("data-left") == str(remaining()))
+    # a click beside a brush takes its goals away
+    page.execute_script("arguments[0].scrollIntoView({ block: 'center' })", bar)
+    ActionChains(page).move_to_element_with_offset(bar, 0, int(0.45 * high)).click().perform()
+    waited(page, lambda b: all(name != "jump_height" for name, _, _ in goals()))
+
+
+def test_the_tour_shows_each_part_in_turn_and_leaves_nothing_behind(page):
+    page.find_element("id", "tour-begin").click()
+    seen = []
+    for step in range(5):
+        assert page.find_element("id", "tour-title").text.startswith(f"{step + 1} of 5")
+        seen.append(page.find_element("css selector", ".toured").get_attribute("id"))
+        page.find_element("id", "tour-next").click()
+    assert len(set(seen)) == 5
+    assert not page.find_element("id", "tour").is_displayed()
+    assert page.find_elements("css selector", ".toured") == []

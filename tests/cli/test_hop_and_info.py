@@ -64,7 +64,8 @@ def test_a_driven_hoop_is_told_with_what_its_motor_must_have():
     assert motor["power"] == pytest.approx(motor["torque"] * motor["rpm"] * math.pi / 30)
     twice = json.loads(leapmap(*driven, "--mass", "0.2", "--json").stdout)["motor"]
     assert twice["torque"] == pytest.approx(2 * motor["torque"]) and twice["rpm"] == motor["rpm"]
-    assert "Motor, for a total mass of 0.1 kg: " in leapmap(*driven, "--mass", "100 g").stdout
+    weighed = leapmap(*driven, "--mass", "100 g").stdout
+    assert "Motor until the lift-off, for a total mass of 0.1 kg: " in weighed
     weighed, pure = leapmap("hop", "--mass", "0.1").stdout, leapmap("hop").stdout
     assert " N s, " in weighed and " J lost" in weighed and " N s" not in pure and " J " not in pure
     assert "motor" not in json.loads(leapmap("hop", "--json").stdout)

@@ -110,8 +110,10 @@ def test_extremes_of_hoops_of_different_masses_are_in_newtons_of_their_own(drawi
 def test_what_is_likely_a_slip_of_units_is_noted(drawing):
     fine = leapmap("hop", drawing, "--slope", "30deg")
     assert fine.returncode == 0 and fine.stderr == ""
-    for given, words in (("hoop.slug.mass=85", "85.07 kg in a hoop of 0.12 m is denser than any metal"),
-                         ("hoop.inertia=1.9", "1.9 kg m2 is larger than that of a thin ring of this mass")):
+    for given, words in (
+        ("hoop.slug.mass=85", "85.07 kg in a hoop of 0.12 m is more than a sphere of osmium of that "
+         "diameter"),
+        ("hoop.inertia=1.9", "1.9 kg m2 is larger than that of a thin ring of its mass and diameter")):
         noted = leapmap("hop", drawing, "--slope", "30deg", "--set", given)
         assert noted.returncode == 0 and words in noted.stderr and noted.stderr.count("\n") == 1, noted.stderr
 
@@ -215,11 +217,20 @@ def test_a_miss_is_told_in_the_unit_of_its_limit_where_hoops_differ_in_size(draw
 
 
 def test_derivatives_by_masses_and_sizes_are_of_the_number_they_are_told_in(drawing):
-    """The newtons of a force change with the mass, too, so that its derivative is told in weights."""
-    done = leapmap("design", drawing, "--set", 'slope="30 deg"', "--hoop.slug.mass",
-                   '{from="60 g",to="90 g"}', "--set", "maximize=jump_range", "--sample", 64)
-    line = next(line for line in done.stdout.splitlines() if "jump_range changes by" in line)
-    assert " R a gram of hoop.slug.mass" in line and "mm" not in line, line
+    """Newton seconds change with the mass, too, so that a derivative by it is told in the pure number;
+    millimetres change with the diameter only."""
+    def line_of(what, number, bounds):
+        done = leapmap("design", drawing, "--set", 'slope="30 deg"', f"--hoop.{number}", bounds, "--set",
+                       f"maximize={what}", "--sample", 64)
+        return next(line for line in done.stdout.splitlines() if f"{what} changes by" in line)
+
+    by_mass = line_of("jump_range", "slug.mass", '{from="60 g",to="90 g"}')
+    pure, millimetres = map(float, re.search(r"by [+]?([-\d.e]+) \(([-\d.e]+) mm\) a gram", by_mass).groups())
+    assert millimetres == pytest.approx(60 * pure, rel=1e-3)
+    by_size = line_of("jump_range", "diameter", '{from="115 mm",to="125 mm"}')
+    assert " R a millimetre of hoop.diameter" in by_size and "mm)" not in by_size, by_size
+    of_impulse = line_of("landing_impulse", "slug.mass", '{from="60 g",to="90 g"}')
+    assert "a gram of hoop.slug.mass" in of_impulse and "N s" not in of_impulse, of_impulse
 
 
 def test_statistics_of_hoops_that_scatter_in_size_have_no_millimetres(drawing, tmp_path):

@@ -162,16 +162,28 @@ class Hoop:
 
     def _in_own_units(self, name, given, with_mass):
         """A parameter given with a unit of the SI, in the units of each hoop: a power of the mass."""
-        scales = {"radius": self.parameters["radius"], "mass": 1.0} | (
+        scales = {"radius": self.parameters["radius"]} | (
             {"gravity": given["gravity"]} if "gravity" in given else {})
-        return _core.number(name, given[name], scales) * self.total_mass**with_mass
+        masses = np.asarray(self.total_mass)
+        if masses.size == 0:
+            return np.zeros(masses.shape)
+        # The lightest hoop has the largest number, and the heaviest the smallest: one in range is not enough.
+        light, _ = (_core.number(name, given[name], scales | {"mass": float(mass)})
+                    for mass in (masses.min(), masses.max()))
+        return light * (self.total_mass / masses.min())**with_mass
 
 
 def _held(given):
     """The parameters given with a unit of the SI, and the powers of mass and size in their own units."""
-    texts = {name: value for name, value in given.items() if isinstance(value, str)}
-    powers = {name: _core.powers_in_si(name, value) for name, value in texts.items()}
+    powers = {name: _powers(name, value) for name, value in given.items() if isinstance(value, str)}
     return {name: power for name, power in powers.items() if power is not None}
+
+
+def _powers(name, value):
+    try:
+        return _core.powers_in_si(name, value)
+    except (TypeError, ValueError):  # no number with a unit: refused where all parameters are read
+        return None
 
 
 def _rows(numbers):
