@@ -99,7 +99,7 @@ class Planes:
         if "design" in m.dims or len(m.dims) < 2:
             raise NotAMap(
                 f"{m.path}: has fewer than two axes; allowed: a map of a sweep over two axes, for example "
-                "slope and mass_ratio"
+                "slope and mass_ratio; charts cut draws one axis"
             )
         self.index = fixed_at(m, at)
         free = [n for n in m.dims if n not in self.index]

@@ -47,7 +47,12 @@ constexpr double check_tolerance = 1e-12;  // of the method that checks
 
 constexpr double in_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-std::string verdict(const Motion& motion, const Scene& scene, bool resists) {
+std::string verdict(const Motion& motion, const Spec& spec) {
+  const Scene& scene = spec.scene;
+  const bool resists = spec.design.resisting_torque > 0.0;
+  constexpr double rounding = 1e-12;
+  const double eccentricity =
+      spec.design.mass_ratio / (1.0 + spec.design.mass_ratio) * spec.design.offset_ratio;
   switch (motion.outcome.status) {
     case Status::jumped:
       return motion.outcome.spurious_first_jump == 1
@@ -55,7 +60,8 @@ std::string verdict(const Motion& motion, const Scene& scene, bool resists) {
                                scene.hop_height)
                  : "It jumps at its first lift-off.";
     case Status::no_jump:
-      return fmt::format("No jump within {} revolutions.", scene.runway);
+      return fmt::format("No jump within {} revolutions{}.", scene.runway,
+                         eccentricity < rounding ? ": its centre of mass is on the axis" : "");
     case Status::stalled:
       return resists ? "It is at rest: slope and motor push less than its resisting torque."
                      : "It is trapped: it rocks between two turning points indefinitely, or rests in an "
@@ -177,7 +183,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
       "height [2R]", "landing [s]");
   print_phases(motion);
   if (motion.outcome.phase_sequence != 0) say("\n{}", phase_letters(motion.outcome.phase_sequence));
-  say("\n{}\n", verdict(motion, spec.scene, spec.design.resisting_torque > 0.0));
+  say("\n{}\n", verdict(motion, spec));
   print_jump(spec, motion.outcome);
   if (spec.scene.settle > 0) say("{}\n", settled_line(motion.outcome, spec.scene.settle, units));
   say("{}\n", check_line(spec, motion, checked));

@@ -38,15 +38,15 @@ ShownUnits::ShownUnits(const std::string& text, const Scales& scales) : scales_(
   }
 }
 
-/// J and N.m measure the same: J is better for energies, N.m for torques.
+/// J and N.m measure the same: J is better for energies, and no torque is in J.
 ShownUnit ShownUnits::choose(std::string_view own, bool is_torque) {
   ShownUnit shown{own == "1" ? "" : std::string(own), 1.0};
   bool found = false, is_odd = true;
   for (std::size_t k = 0; k < units_.size(); ++k) {
     const auto factor = units_in_own(units_[k], own, scales_);
-    if (!factor) continue;
-    used_[k] = true;
     const bool odd = own == "(m + m_p) g R" && units_[k].ends_with('J') == is_torque;
+    if (!factor || (odd && is_torque)) continue;
+    used_[k] = true;
     if (found && (odd || !is_odd)) continue;
     found = true, is_odd = odd;
     shown = {units_[k], *factor};

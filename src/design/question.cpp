@@ -31,6 +31,9 @@ Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free,
            fmt::format("a field, or one of the free parameters, design.{} = {{ from, to }}", name));
   if (!has(spec.scene.friction, field->only_of))
     refuse(spec, fmt::format("{}: {} {}", key, name, no_use(spec.scene)), with_model(*field->only_of));
+  if (field->of_wall && !has(spec.scene, *field))
+    refuse(spec, fmt::format("{}: {} has no effect without a wall", key, name),
+           "with scene.clear_height, for example \"40 mm\"");
   const auto* code = std::get_if<Code>(&field->source);
   if (std::holds_alternative<Word>(field->source) || (code && !code->names.empty()))
     refuse(spec, fmt::format("{}: {} is a code and has no order", key, name),

@@ -59,6 +59,11 @@ PointList read_points(const std::string& path, const std::string& origin, Scales
   std::vector<std::optional<bool>> are_held;  // as the first line has them
   std::vector<std::string> units;
   for (const std::string& text : file.header()) {
+    if (file.header().size() == 1 && text.find(';') != text.npos)
+      throw InputError(
+          fmt::format("{}: has semicolons between its columns; allowed: commas, and points in "
+                      "numbers",
+                      file.place()));
     const auto [name, unit] = name_and_unit(text);
     columns.push_back(text == label_name ? nullptr : column_option(file.place(), name));
     units.push_back(unit.empty() ? "" : " " + unit);

@@ -289,10 +289,16 @@ void read_points_of(Spec& spec) {
     if (!has(spec.scene.friction, option.only_of))
       throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
                                    no_use(spec.scene), with_model(*option.only_of)));
+    if (spec.hoop && follows_from_body(member_of(option)))
+      throw InputError(
+          fmt::format("{}: column '{}': has no effect, because [hoop] in {} gives it; allowed: "
+                      "without the column, or without [hoop]",
+                      spec.points, column.key, origin_of(spec)));
     if (const double given = value_of(option, spec.design);
         !is_usual(given, value_of(option, Design{})) && !std::isnan(given))
       throw InputError(fmt::format(
-          "{}: {} = {} has no effect beside the column of that name in {}; allowed: one of the two",
+          "{}: {} = {} has no effect beside the column of that name in {}; allowed: without that key, or "
+          "without the column",
           origin_of(spec), column.key, given, spec.points));
   }
   check_hoop(spec);

@@ -34,8 +34,8 @@ export function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, 
   const radius = element("radius"), mass = element("mass"), table = element("numbers").tBodies[0],
     command = element("command");
   // source: where the design is from, "design" of the map, "paper" or "hoop" as typed, and which.
-  const now = { design: null, source: ["", ""], story: null, ghosts: [], time: 0, playing: false, last: 0,
-    frame: 0, timeAt: null, recording: false, haunting: 0 };
+  const now = { design: null, fixed: null, source: ["", ""], story: null, ghosts: [], time: 0,
+    playing: false, last: 0, frame: 0, timeAt: null, recording: false, haunting: 0 };
   const firstJumps = map.jumps;
   const weighed = map.mass ? 1000 * map.mass : "";  // g; "": unknown
   const kilograms = () => (mass.value === "" ? NaN : Number(mass.value) / 1000);
@@ -268,6 +268,15 @@ export function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, 
   const frame = (way) => stopAt(now.time + way * Number(element("speed").value) / 30);
   element("step-back").addEventListener("click", () => frame(-1));
   element("step-on").addEventListener("click", () => frame(1));
+  scene.addEventListener("keydown", (event) => {
+    if (!now.story) return;
+    const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (way) frame(way * (event.shiftKey ? 10 : 1));
+    else if (event.key === " ") play.click();
+    else if (event.key === "Home") stopAt(0);
+    else return;
+    event.preventDefault();
+  });
   element("film").addEventListener("click", async () => {
     if (!now.story) return;
     const film = element("film");
@@ -351,7 +360,7 @@ export function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, 
   /** goesOn: the hoop of the same place, on which a reader who stopped it wants to see the same moment. */
   const begin = (design, title, source, goesOn = false) => {
     const stopped = goesOn && now.story && !now.playing && now.time > 0, { time } = now;
-    Object.assign(now, { design, source });
+    Object.assign(now, { design, source, fixed: { ...map.fixed } });
     element("hop-title").textContent = title;
     solve();
     if (stopped && now.story) stopAt(time);
@@ -360,11 +369,11 @@ export function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, 
   };
   /** A hoop of numbers that were typed, of which only those that differ from the map's go into the address.
       */
-  const typed = (design, title = "One hoop: edited") =>
+  const typed = (design, title = "One hoop: edited", goesOn = false) =>
     begin(design, title,
     ["hoop", wordsOf(design, Object.keys(map.parameters)
     .filter((name) => name in solver.defaults && name !== "radius"
-    && (map.slips || !SLIPPING.includes(name))))]);
+    && (map.slips || !SLIPPING.includes(name))))], goesOn);
   const PAPERS = "One hoop: the paper's, from rest with its mass on top";
   // In a model that slips it is a hoop of numbers: the paper's has no friction to name.
   const paper = (goesOn = false) =>
@@ -437,12 +446,17 @@ export function hopPanel(map, solver, { ofItsOwn, otherUnits, pinned, followed, 
     title === PAPERS ? paper() : typed(now.design, title);
   };
   /** The scene is another, or something else is asked: the paper's hoop is in that scene, one of numbers has
-      its own but for the radius. */
+      its own but for the radius and for what has been turned since. */
   const follow = () => {
     const { source, design } = now, other = now.story && Object.keys(map.asked)
       .some((what) => what !== "jumps" && map.asked[what] !== now.asked[what]);
+    const turned = Object.keys(map.fixed)
+      .filter((name) => now.fixed && name !== "radius" && !Object.is(map.fixed[name], now.fixed[name]));
     if (source[0] === "paper" && (other || NO_LIVE_AXIS.some((name) => design[name] !== map.fixed[name])))
       paper(true);
+    else if (source[0] === "hoop" && turned.length > 0)
+      typed({ ...design, ...Object.fromEntries(turned.map((name) => [name, map.fixed[name]])) },
+        element("hop-title").textContent, true);
     else if (source[0] === "hoop" && (other || design.radius !== map.fixed.radius))
       begin(design, element("hop-title").textContent, source, true);
   };

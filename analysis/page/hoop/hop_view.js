@@ -65,6 +65,16 @@ function drawForces(context, design, motion, time, turned, px, scale) {
     length * Math.sign(force) * Math.sqrt(Math.abs(force));
   const arm = design.offset_ratio * R * design.mass_ratio / (1 + design.mass_ratio),
     onPlane = motion.phase[low] !== 3;
+  const labels = [];  // where there is one already
+  const label = (words, x, y) => {
+    const high = Math.max(11, 0.3 * R * scale);
+    context.font = `${high}px system-ui, "DejaVu Sans", sans-serif`;
+    // Beside the tip, or above or below whatever is there.
+    const free = [0, -1, 1, -2, 2].map((k) => y + k * high)
+      .find((at) => labels.every(([u, v]) => Math.abs(u - x) > high || Math.abs(v - at) >= high)) ?? y;
+    labels.push([x, free]);
+    context.fillText(words, x, free);
+  };
   const arrow = ([x0, y0], [dx, dy], tone, words) => {
     const size = Math.hypot(dx, dy) * scale;
     if (!(size > 2)) return;
@@ -82,8 +92,7 @@ function drawForces(context, design, motion, time, turned, px, scale) {
     context.lineTo(bx - head * u + 0.5 * head * v, by - head * v - 0.5 * head * u);
     context.closePath();
     context.fill();
-    context.font = `${Math.max(11, 0.3 * R * scale)}px system-ui, "DejaVu Sans", sans-serif`;
-    context.fillText(words, bx + 0.15 * R * scale, by);
+    label(words, bx + 0.15 * R * scale, by);
   };
   if (onPlane) {
     arrow([x, y], [0, along(motion.normal_force[low])], "fly", "N");

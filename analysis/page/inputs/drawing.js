@@ -3,6 +3,7 @@
 
 import { noteAddress } from "../state/address.js";
 import { element, notice, stepsOf } from "../dom.js";
+import { drawingPicture } from "./drawing_picture.js";
 import {
   NEW_WEIGHT, RATIOS, RING, WEIGHT, drawingAt, drawingOf, drawingWord, isDrawn, usesDrawing, usualName,
   wrongIn,
@@ -62,13 +63,21 @@ export function drawingPart(map, solver, changed) {
     stepsOf(made, () => Number(made.value) || 1);
     made.addEventListener("change", () => {
       part[name] = made.value === "" ? NaN : Number(made.value) * unit;
+      if (!wrongIn(now.typed)) picture(now.typed, solver.reduce(now.typed));
       take(now.typed);
     });
     return made;
   }
 
-  function show(drawing) {
-    now.typed = drawing;
+  const picture = drawingPicture((k, at, angle) => {
+    Object.assign(now.typed.weights[k], { at, angle });
+    show(now.typed);
+    take(now.typed);
+  });
+
+  function show(given) {
+    const drawing = now.typed = structuredClone(given);
+    picture(drawing, wrongIn(drawing) ? null : solver.reduce(drawing));
     const row = (label, rows, part, ...more) => {
       const line = document.createElement("fieldset"), name = document.createElement("legend");
       name.textContent = label;

@@ -146,7 +146,7 @@ export function liveControls(map, solver, changed) {
       const { label, unit } = map.parameters[name], [low, high] = LIVE_RANGES[name];
       const row = document.createElement("label"), words = document.createElement("span"),
         slider = document.createElement("input"), number = document.createElement("input");
-      words.textContent = withUnit(label.split(" [")[0], unit ? `[${unit}]` : "");
+      words.textContent = withUnit(label, unit ? `[${unit}]` : "");
       row.title = label;
       slider.type = "range";
       number.type = "number";
