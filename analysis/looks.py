@@ -22,6 +22,7 @@ PARAMETERS = {
     "mu_kinetic": ("kinetic friction coefficient", "μ kinetic", ""),
     "restitution": ("restitution", "restitution", ""),
 }
+SI_OF_HELD = {"drive_torque": "N m", "resisting_torque": "N m", "release_spin": "rad/s"}
 # status -> colour and words where there is no jump to draw
 STATUSES = {
     "no_jump": ("#d9d9d9", "no jump within the rolling limit"),
@@ -237,18 +238,28 @@ def listed(m):
     return of_hoop + [name for name in PARAMETERS if name in m.fields and name not in follow]
 
 
+_held = {}  # of the map read last: parameters that its hoops share in the SI, with the size of the map's unit
+
+
+def show_held(sizes):
+    """Has parameters shown in the SI, {name: how many of its unit are one of the map's}, and no others."""
+    _held.clear()
+    _held.update(sizes)
+
+
 def parameter(name):
     """A parameter's name on an axis, its symbol, its unit as shown; its own name for one that is unknown."""
     if body := _of_body(name):
         weight, (words, unit, _) = body
         return f"{words} of {weight}", f"{words} of {weight}", unit
-    return PARAMETERS.get(name, (name, name, ""))
+    label, symbol, unit = PARAMETERS.get(name, (name, name, ""))
+    return (label.split(" [")[0], symbol, SI_OF_HELD[name]) if name in _held else (label, symbol, unit)
 
 
 def factor(name):
     """How many of the unit as shown are one of the map's."""
     body = _of_body(name)
-    return body[1][2] if body else 180 / math.pi if is_angle(name) else 1.0
+    return body[1][2] if body else 180 / math.pi if is_angle(name) else _held.get(name, 1.0)
 
 
 def is_angle(name):
@@ -257,7 +268,7 @@ def is_angle(name):
 
 def as_shown(name, values):
     """A parameter's values in the unit they are shown in: angles in degrees, masses in grams."""
-    return np.degrees(values) if is_angle(name) else values * factor(name) if _of_body(name) else values
+    return np.degrees(values) if is_angle(name) else values if factor(name) == 1.0 else values * factor(name)
 
 
 def shown(name, value):

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 import h5py
 import numpy as np
 
+import looks
 from open_file import Refused, names_in, opened
 
 FORMAT_MAJOR = 1  # the newest format this reader knows
@@ -176,6 +177,22 @@ class Map:
         axis = list(self.dims).index("hoop.diameter")
         shape = [-1 if k == axis else 1 for k in range(len(self.dims))]
         return np.asarray(self.dims["hoop.diameter"]).reshape(shape) / 2
+
+    def held(self):
+        """Parameters that the hoops share in the SI, and how many of its unit are one of the nominal hoop's,
+        in which the map has them."""
+        names = self.spec().get("design", {}).get("nominal_units", [])
+        if not names:
+            return {}
+        first = lambda value: value["values"][0] if isinstance(value, dict) else value
+        try:
+            hoop, gravity = self.spec()["hoop"], self.numbers()["gravity"]
+            radius = float(first(hoop["diameter"])) / 2
+            mass = sum(float(first(part["mass"])) for part in (hoop, *hoop.get("weight", [])))
+        except (AttributeError, KeyError, IndexError, TypeError, ValueError):
+            raise NotAMap(f"{self.path}: is damaged: its spec says nothing of the nominal hoop") from None
+        sizes = {"N m": mass * gravity * radius, "rad/s": math.sqrt(gravity / radius)}
+        return {name: sizes[looks.SI_OF_HELD[name]] for name in names if name in looks.SI_OF_HELD}
 
     def masses(self):
         """Total masses of the designs [kg]: one number, an array that goes with a field, or None: unknown."""
@@ -382,6 +399,7 @@ def read_map(path, most_designs=math.inf):
     if not m.whole and not (isinstance(m.attributes["tiles_done"], np.integer)
                             and len(m.tile) == len(m.dims)):
         raise NotAMap(f"{m.path}: is damaged: it does not say which of its tiles are done")
+    looks.show_held(m.held())
     return m
 
 

@@ -115,6 +115,13 @@ class MapScales {
     return spec_ && is_held(*spec_, parameter) ? nominal_scales(*spec_) : shared;
   }
 
+  /// The unit of a parameter where none is asked for: the SI's if the hoops share it there, else the map's.
+  ShownUnit unasked(const std::string& parameter, std::string_view of_map) const {
+    if (spec_)
+      if (const std::optional<SiUnit> si = si_unit(*spec_, parameter))
+        return {std::string(si->name), si->size};
+    return {of_map == "1" ? "" : printable(std::string(of_map)), 1.0};
+  }
   /// Of statistics, as far as the hoops made after a design share them.
   Scales of_manufactured(const std::string& field, std::size_t design) const {
     return spec_ ? scales_of_manufactured(*spec_, of(field, design)) : shared;
@@ -128,10 +135,10 @@ class MapScales {
 
 /// A value of a dimension; a design's number whole.
 std::string coordinate(const MapReader::Dimension& dimension, std::size_t position, ShownUnits& units,
-                       const Scales& scales) {
+                       const Scales& scales, const ShownUnit& unasked) {
   if (dimension.values.empty()) return fmt::format("{}", position);
   units.scale(scales);
-  const ShownUnit shown = units.are_asked_for() ? units.of(dimension.name) : ShownUnit{};
+  const ShownUnit shown = units.are_asked_for() ? units.of(dimension.name) : unasked;
   return fmt::format("{:.6g}{}{}", dimension.values[position] * shown.factor, shown.unit.empty() ? "" : " ",
                      shown.unit);
 }
@@ -145,7 +152,8 @@ std::string place(const MapReader& map, const std::vector<std::string>& labels, 
     const auto& dimension = map.dimensions()[i];
     coordinates.push_back(
         fmt::format("{} {}", printable(dimension.name),
-                    coordinate(dimension, position[i], units, scales.of(dimension.name, design))));
+                    coordinate(dimension, position[i], units, scales.of(dimension.name, design),
+                               scales.unasked(dimension.name, "1"))));
   }
   if (design < labels.size()) coordinates.back() += fmt::format(" ({})", printable(labels[design]));
   return fmt::format("{}", fmt::join(coordinates, ", "));
@@ -262,9 +270,8 @@ void print_dimensions(const MapReader& map, ShownUnits& units, const MapScales& 
     }
     const auto [least, most] = std::ranges::minmax(dimension.values);
     units.scale(scales.of_all(dimension.name));
-    const ShownUnit shown = units.are_asked_for()
-                                ? units.of(dimension.name)
-                                : ShownUnit{dimension.unit == "1" ? "" : printable(dimension.unit), 1.0};
+    const ShownUnit shown =
+        units.are_asked_for() ? units.of(dimension.name) : scales.unasked(dimension.name, dimension.unit);
     say("  {:<16} {:>7} values from {:.6g} to {:.6g} {}\n", printable(dimension.name), dimension.size,
         least * shown.factor, most * shown.factor, shown.unit);
   }
@@ -298,7 +305,7 @@ void print_fields(const MapReader& map, ShownUnits& units, const MapScales& scal
         units.scale(of_made ? scales.of_manufactured(name, extreme->design)
                             : scales.of(name, extreme->design));
         const ShownUnit shown = !units.are_asked_for() || (!field && !listed)
-                                    ? ShownUnit{map.unit(name) == "1" ? "" : printable(map.unit(name)), 1.0}
+                                    ? scales.unasked(name, map.unit(name))
                                 : field ? units.of(*field)
                                         : units.of(name);
         const std::string beside = field ? units.beside(extreme->value, *field) : "";

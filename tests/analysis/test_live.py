@@ -8,6 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 from support.browser import agrees, numbers, opened, settled, told_by_leapmap, waited
@@ -237,6 +238,30 @@ def test_cuts_go_through_the_design_pointed_at(live):
     live.execute_script(
         "const { view } = window.explorer.view; view.index = [100, 80]; window.explorer.view.point()")
     assert live.execute_script("return document.getElementById('cut-x').toDataURL()") != before
+
+
+@pytest.mark.slow
+def test_a_cut_along_a_line_is_of_the_designs_between_its_ends(live):
+    live.execute_script("document.getElementById('cuts').open = true")
+    picked = live.execute_script("return window.explorer.view.view.picked")
+    live.find_element("id", "cut-line-draw").click()
+    assert live.find_element("id", "cut-line-hint").is_displayed()
+    canvas = live.find_element("id", "map")
+    live.execute_script("arguments[0].scrollIntoView({ block: 'center' })", canvas)
+    ActionChains(live).move_to_element_with_offset(canvas, -60, 60).click_and_hold().move_by_offset(
+        60, -30).move_by_offset(80, -60).release().perform()
+    a, b = live.execute_script("return window.explorer.view.view.line")
+    assert b[0] > a[0] and b[1] > a[1]
+    height = np.array(live.execute_script("return [...window.explorer.map.fields[0].values].map(String)"),
+                      float).reshape(200, 150)
+    steps = max(b[0] - a[0], b[1] - a[1])
+    places = [
+        tuple(math.floor(i + (j - i) * k / steps + 0.5) for i, j in zip(a, b)) for k in range(steps + 1)
+    ]
+    line = live.find_element("id", "cut-line")
+    assert line.is_displayed()
+    assert line.get_attribute("data-values") == str(np.isfinite([height[place] for place in places]).sum())
+    assert live.execute_script("return window.explorer.view.view.picked") == picked  # it was no click
 
 
 @pytest.mark.slow  # its twin is of one hoop, in test_page_parts.py

@@ -69,10 +69,11 @@ export function drawingPart(map, solver, changed) {
     return made;
   }
 
-  const picture = drawingPicture((k, at, angle) => {
+  const picture = drawingPicture((k, at, angle, isDone) => {
     Object.assign(now.typed.weights[k], { at, angle });
     show(now.typed);
-    take(now.typed);
+    // The first drawing takes sliders away: not from under the hand.
+    if (isDone || now.drawing) take(now.typed);
   });
 
   function show(given) {

@@ -4,7 +4,8 @@
 import { noteAddress } from "../state/address.js";
 import { element, notice, option, stepsOf } from "../dom.js";
 import {
-  RATIOS, drawingOf, drawnNames, drawnParameters, heldUnit, isDrawn, rangeOf, spanOf, spreadsOf, usesDrawing,
+  RATIOS, drawingOf, drawnNames, drawnParameters, heldUnit, isDrawn, partOf, rangeOf, spanOf, spreadsOf,
+  usesDrawing,
 } from "../state/drawn.js";
 import { liveAxis } from "../solver/live.js";
 import { LIVE_SHAPE } from "../solver/live_cliffs.js";
@@ -235,12 +236,17 @@ export function liveControls(map, solver, changed) {
     const held = (name) => heldUnit(solver, name, before, drawing);
     for (const name of before?.held ?? []) map.fixed[name] *= held(name);
     map.spreads = spreadsOf(solver, map.spreads, before, drawing);
-    map.axes.forEach((axis, k) => {
+    map.axes.forEach((axis) => {
       const unit = held(axis.name), { name, values: { length: count } } = axis;
       if (unit !== 1)
-        map.axes[k] = liveAxis(map, { name, from: axis.from * unit, to: axis.to * unit, count });
+        Object.assign(axis, liveAxis(map, { name, from: axis.from * unit, to: axis.to * unit, count }));
     });
     takeDrawing({ ...drawing, held: before?.held ?? [] });
+    // The hoop drawn is on its map.
+    map.axes.forEach(({ name, from, to }, k) => {
+      const [part, key] = isDrawn(name) ? partOf(drawing, name) : [{}, ""];
+      if (isDrawn(name) && !(part[key] >= from && part[key] <= to)) freeAxis(k, name);
+    });
     const ratio = map.axes.findIndex(({ name }) => RATIOS.includes(name));
     if (isFirst && weight && ratio >= 0 && !RATIOS.includes(map.axes[1 - ratio].name))
       freeAxis(ratio, `hoop.${weight.name}.mass`);

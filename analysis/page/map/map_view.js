@@ -27,7 +27,8 @@ export const DASHES = { fold: [4, 2], runway: [1, 2], turn: [5, 2, 1, 2], releas
 export function mapView(canvas, map, onPoint, onPick) {
   const shape = map.axes.map((a) => a.values.length);
   const strides = shape.map((_, k) => shape.slice(k + 1).reduce((a, b) => a * b, 1));
-  const view = { x: 0, y: 1, field: map.fields[0], index: shape.map((n) => Math.floor(n / 2)), picked: null };
+  const view = { x: 0, y: 1, field: map.fields[0], index: shape.map((n) => Math.floor(n / 2)), picked: null,
+    line: null };
   const status = map.codes.status, flags = map.codes.spurious_first_jump, cliffs = map.codes.cliffs;
   const background = document.createElement("canvas");  // all but the cursor
   let sx, sy, frame, box, chains, isCrisp, pixels;
@@ -359,6 +360,24 @@ export function mapView(canvas, map, onPoint, onPick) {
     });
   }
 
+  /** The line of a cut, from A to B. */
+  function paintLine(context) {
+    const ends = view.line.map((index) => [sx.centre(index[view.x]), sy.centre(index[view.y])]);
+    for (const [colour, width] of [["#ffffff", 4], ["#000000", 1.8]]) {
+      context.strokeStyle = context.fillStyle = String(colour);
+      context.lineWidth = Number(width) * frame.ratio;
+      context.beginPath();
+      for (const end of ends) context.lineTo(...end);
+      context.stroke();
+    }
+    context.font = `bold ${frame.font}px system-ui, "DejaVu Sans", sans-serif`;
+    context.strokeStyle = "#ffffff";
+    ends.forEach(([x, y], k) => {
+      context.strokeText("AB"[k], x + 0.4 * frame.font, y - 0.4 * frame.font);
+      context.fillText("AB"[k], x + 0.4 * frame.font, y - 0.4 * frame.font);
+    });
+  }
+
   function paintCursor() {
     if (!frame) return;
     const context = canvas.getContext("2d"), { font, ratio } = frame;
@@ -381,6 +400,7 @@ export function mapView(canvas, map, onPoint, onPick) {
     }
     cross(view.index, "#ffffff", 4);
     cross(view.index, "#000000", 1.6);
+    if (view.line) paintLine(context);
   }
 
   function pointAt(event) {
@@ -411,6 +431,25 @@ export function mapView(canvas, map, onPoint, onPick) {
   });
   new ResizeObserver(() => paint()).observe(canvas);
 
+  /** The next stretch that is dragged over the map is view.line, [from, to] as indices; drawn(): it is
+      another. */
+  function takeLine(drawn) {
+    const events = new AbortController(), { signal } = events;
+    const move = () => { view.line[1] = [...view.index]; paintCursor(); drawn(); };
+    canvas.style.touchAction = "none";
+    canvas.addEventListener("pointerdown", (event) => {
+      if (!pointAt(event)) return;
+      canvas.setPointerCapture(event.pointerId);
+      view.line = [[...view.index], [...view.index]];
+      canvas.addEventListener("pointermove", (other) => { if (pointAt(other)) move(); }, { signal });
+      canvas.addEventListener("pointerup",
+        () => { canvas.style.touchAction = ""; events.abort(); }, { signal });
+      // It is no click on a design.
+      canvas.addEventListener("click", (click) => click.stopImmediatePropagation(),
+        { capture: true, once: true });
+    }, { signal });
+  }
+
   return {
     /** Where the colour bar and its numbers are on the canvas [CSS pixels], or null while it is not shown. */
     bar() {
@@ -418,7 +457,7 @@ export function mapView(canvas, map, onPoint, onPick) {
       const { top, bottom, right, font, ratio } = frame, left = (right + 0.8 * font) / ratio;
       return { left, top: top / ratio, width: canvas.width / ratio - left, height: (bottom - top) / ratio };
     },
-    view, paint, paintOn, overlayCliffs, pick, point, showsPaper: () => paperPlace()
+    view, paint, paintOn, overlayCliffs, pick, point, takeLine, showsPaper: () => paperPlace()
       !== null, offset: (index) => index.reduce((sum, i, k) => sum + i * strides[k], 0),
     /** What the map's pixels are, for tests: the design whose codes each shows, and where its centre lies
         along the axes. */

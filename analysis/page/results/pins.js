@@ -31,7 +31,7 @@ export function pinsPart(map, solver, command, changed) {
         && new Set(pins.map(({ design }) => design[key])).size > (pins.length > 1 ? 1 : 0))
         .filter((key) => pins.some(({ design }) => Number.isFinite(design[key])));
     const head = document.createElement("tr");
-    head.append(cell("th", ""), ...pins.map((pin, i) => {
+    head.append(cell("th", "design"), ...pins.map((pin, i) => {
       const th = cell("th", ""), mark = cell("span", String(i + 1)), away = cell("button", "×");
       mark.className = "pin-mark";
       Object.assign(mark.style, { background: PIN_COLOURS[i], color: PIN_INKS[i] });
