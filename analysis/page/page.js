@@ -376,6 +376,7 @@ export function start(map, solver, teller) {
   });
   addressPart({
     write() {},
+    done() { view.paint(); legend(); },
     read(words) {
       const asked = addressed(map, words);
       if (asked.index || !(words.has("paper") || words.has("hoop"))) {

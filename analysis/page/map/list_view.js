@@ -1,5 +1,6 @@
 // A map of one dimension: a dot for each design, the field up and one of its parameters to the right.
 
+import { isReadingAddress } from "../state/address.js";
 import { clamped, fitted, isOfFirstJump, labelOf, paintAxes, pointing } from "./axes.js";
 import { scaleOf } from "../state/drawn.js";
 import { linearTicks, logTicks } from "./scales.js";
@@ -26,6 +27,7 @@ export function listView(canvas, map, onPoint, onPick) {
   }
 
   function paint() {
+    if (frame && isReadingAddress()) return;
     const fresh = fitted(canvas, 1.5);
     if (!fresh) return;
     frame = fresh;

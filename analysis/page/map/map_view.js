@@ -1,5 +1,6 @@
 // The map as an image: cells, isolines, cliffs, axes, and a cursor on the design pointed at.
 
+import { isReadingAddress } from "../state/address.js";
 import { clamped, fitted, isOfFirstJump, labelOf, paintAxes, pointing } from "./axes.js";
 import { crispPlane } from "./crisp.js";
 import { designAt } from "./described.js";
@@ -42,6 +43,7 @@ export function mapView(canvas, map, onPoint, onPick) {
   /** Everything but the cursor, at the screen's own resolution. rough: without isolines, of a map that is
       about to be another. */
   function paint(rough = false) {
+    if (frame && isReadingAddress()) return;
     const fresh = fitted(canvas, 7, 2);
     if (!fresh) return;
     frame = fresh;

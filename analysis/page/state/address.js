@@ -9,9 +9,11 @@ const ADDRESS_REST = 120;   // ms at least between two writings, of which browse
 export const address = { parts: [], steps: 0, at: 0, last: -Infinity, later: 0, reading: false, others: false,
   live: false };
 
+/** Whether the address is being read: what is drawn then is drawn once, at the end. */
+export const isReadingAddress = () => address.reading;
 export const addressWords = () => new URLSearchParams(location.hash.slice(1));
 
-/** A part of the page with write(words) and read(words). */
+/** A part of the page with write(words) and read(words) and, if it wants, done() once all have read. */
 export function addressPart(part) { address.parts.push(part); }
 
 /** Something else is seen: the address says so. What follows at once is undone with it. */
@@ -45,6 +47,7 @@ export function readAddress(first = false) {
   } finally {
     address.reading = false;
   }
+  for (const part of address.parts) part.done?.();
 }
 
 function showSteps() {
