@@ -2,8 +2,7 @@
 
 import { addressButtons, addressPart, addressWords, noteAddress, readAddress } from "./state/address.js";
 import { cutsPart } from "./map/cuts.js";
-import { decimalsOf } from "./solver/decode.js";
-import { applies, offerGrouped, optionOf, placeText } from "./map/described.js";
+import { applies, offerGrouped, optionOf } from "./map/described.js";
 import { element, notice, option } from "./dom.js";
 import { choicesOf, scaleOf } from "./state/drawn.js";
 import { saveButtons } from "./export/export.js";
@@ -11,22 +10,20 @@ import { barBrush } from "./goals/bar_brush.js";
 import { filtersPart } from "./goals/filters.js";
 import { linesPart } from "./goals/lines.js";
 import { hopPanel } from "./hoop/hop_panel.js";
+import { LIVE_SUBTITLE, showHeading } from "./heading.js";
 import { showLegend } from "./map/legend.js";
 import { addressed, askedOfFile } from "./links.js";
 import { listView } from "./map/list_view.js";
 import {
-  costEach, costOf, isAsMade, isCostly, liveEngine, liveMap, settleMap, toAsk, toldFields,
+  costEach, isAsMade, isCostly, liveEngine, liveMap, settleMap, toAsk,
 } from "./solver/live.js";
 import { liveControls, liveState, settlePart } from "./inputs/live_controls.js";
 import { madeTeller } from "./solver/made.js";
 import { mapView } from "./map/map_view.js";
-import { isSteady } from "./results/numbers.js";
+import { readoutPart } from "./results/readout.js";
 import { tolerancesPart } from "./inputs/tolerances.js";
 import { onTones } from "./state/tones.js";
-import { alsoAs, fieldLabel, inShownUnit, short, toldIn, unitsPart, withUnit } from "./state/units.js";
-const LIVE_SUBTITLE =
-  "Change any parameter: the map follows. Click a design to see it jump. The address stores the view.";
-
+import { fieldLabel, inShownUnit, short, unitsPart, withUnit } from "./state/units.js";
 const NOTHING_YET = { coarse: "false", whole: "false", cliffs: "false" };
 
 /** On a small screen the inputs are a sheet from below. */
@@ -87,109 +84,30 @@ export function start(map, solver, teller) {
   map.settle = Math.min(map.settle, element("settle").max);
   map.asked ??= askedOfFile(map);
   const canvas = element("map");
-  document.title = `${map.name}: leapmap explorer`;
-  element("title").textContent = map.title || map.name;
-  element("subtitle").textContent = map.live ? LIVE_SUBTITLE
-    : `${map.name}: ${map.designs.toLocaleString("en")} designs` +
-    (map.computed < 1 ? `, INCOMPLETE: ${(100 * map.computed).toFixed(0)} % of them computed` : "") +
-    `; ${map.about.join(", ")}`;
-  element("footer").textContent =
-    (map.live ? "Every number is computed by leapmap in this page"
-    : `Made by leapmap ${map.program}, which runs in this page as well. The map's numbers are rounded as ` +
-    `shown`) +
-    (map.method === "exact" ? "" : `; the map was solved by ${map.method}, the hoop by exact`) +
-    (map.left_out.length ? `; left out for size: ${map.left_out.join(", ")}` : "") +
-    (map.beyond_page?.length ? `; in the map's numbers, not in this page's: ${map.beyond_page.join(", ")}`
-    : "") +
-    (map.wall ? `; a wall of ${map.wall}, which the page's hoops do not have, is in the map's numbers` : "") +
-    (map.fields.some((f) => f.name === "agility")
-      ? `. Salto ${map.jumpers.Salto} m/s, galago ${map.jumpers.galago} m/s: ${map.jumpers_source}` : "")
-      + ".";
+  showHeading(map);
 
-  // what the readout tells; the hoop beside, if it is none of the map's; whether one points at the map
-  let said = "", own = null, points = false;
-  /** Of every quantity but the one shown a row, whether there is a number or none, so that nothing below
-      moves. */
-  const tellOthers = (textOf) => element("others")
-    .replaceChildren(...toldFields(map).filter((f) => f !== view.view.field && applies(map, f)).map((f) => {
-    const pair = document.createElement("div"), name = document.createElement("dt"),
-      value = document.createElement("dd");
-    name.textContent = f.label.split(":")[0];
-    value.textContent = textOf(f) || "–";
-    pair.append(name, value);
-    return pair;
-  }));
-  /** For who listens: what is told, once it has stood for a while. */
-  let speaking = 0;
-  const speak = () => {
-    clearTimeout(speaking);
-    speaking = setTimeout(() =>
-      { element("spoken").textContent = `${element("place").textContent}. ${element("value").textContent}`; },
-      600);
-  };
-  /** The height is that of the first jump: the steady one beside it, of the hoop that is shown. */
-  const steadyNote = ({ outcome, design }) =>
-    (view.view.field.name === "jump_height" && isSteady(outcome)
-    ? `steady jump ${toldIn(outcome.gait_height, "diameters", design)}` : "");
-  const tellOwn = () => {
-    const { outcome, title, design } = own, { field } = view.view, v = outcome[field.name];
-    said = "";
-    element("place").textContent = title;
-    const instead = v === undefined ? (map.asked.made ? "being solved" : "unknown")
-      : outcome.status === "jumped" ? "none" : outcome.status.replaceAll("_", " ");
-    element("value").textContent = [`${field.label}: ` +
-      (Number.isFinite(v) ? withUnit(short(v, 6), field.unit) + alsoAs(field, v, design) : instead),
-    steadyNote(own)].filter(Boolean).join("; ");
-    tellOthers((f) => (f.name === "candidates" ? String(outcome.candidates) : Number.isFinite(outcome[f.name])
-      ? toldIn(outcome[f.name], f.unit, design) : ""));
-    speak();
-    Object.assign(element("readout").dataset, { index: "", value: Number.isFinite(v) ? String(v) : "" });
-  };
+  let drawCuts = () => {}, filters = null, lines = null, bar = () => {};
+  const readout = readoutPart(map, { view: () => view, panel: () => chosen,
+    moved() { drawCuts(); lines?.point(); } });
   const chosen = hopPanel(map, solver, {
-    ofItsOwn(title, outcome, design) { own = { title, outcome, design }; points = false;
-      view.view.picked = null; view.paint(); tellOwn(); },
+    ofItsOwn(title, outcome, design) {
+      view.view.picked = null;
+      view.paint();
+      readout.showOwn({ title, outcome, design });
+    },
     otherUnits: () => tellUnits(),
     pinned: () => view.paint(),
     followed() { offerFields(); map.refresh?.(); },
     teller,
-    toldMore(outcome) { if (own) own.outcome = outcome; if (own && !points) tellOwn(); },
+    toldMore: readout.knowMore,
   });
-  let drawCuts = () => {}, filters = null, lines = null, bar = () => {};
-  const told = (index) => {
-    const at = view.offset(index), shown = view.view.field, key = `${index} ${shown.name}`;
-    if (key === said) return;  // the pointer moved inside a cell
-    said = key;
-    drawCuts();
-    lines?.point();
-    const status = map.codes.status?.meanings[map.codes.status.values[at]];
-    const number = (f) =>
-      (f.values[at] === f.values[at]
-      ? (map.live && f.log ? short(f.values[at], 6) : f.values[at].toFixed(decimalsOf(f.step))) : "");
-    const isSolving = (f) => map.live && costOf(f) && !number(f) && canvas.dataset.coarse !== "true";
-    const text = (f) =>
-      (number(f) ? withUnit(number(f), f.unit) + alsoAs(f, f.values[at], scaleOf(map, f)) : isSolving(f)
-      ? "being solved" : "none");
-    const spurious = map.codes.spurious_first_jump?.values[at] === 1;
-    const notes = status === "no_jump" && spurious
-      ? [`no jump: all lift-offs below ${toldIn(map.fixed.hop_height, "diameters", scaleOf(map))}`]
-      : [status === undefined || status === "jumped" ? "" : status.replaceAll("_", " "),
-        spurious ? "the first lift-off is below the threshold" : ""];
-    element("place").textContent = placeText(map, index);
-    const notesSaid = notes.filter((w) => w && !isSolving(shown))
-      .map((note) => (shown.made ? `nominal: ${note}` : note));
-    const steady = chosen.isOf(index) ? steadyNote(chosen.hoop()) : "";
-    element("value").textContent = [`${shown.label}: ${text(shown)}`, steady, ...notesSaid].filter(Boolean)
-      .join("; ");
-    tellOthers((f) => (number(f) ? alsoAs(f, f.values[at], scaleOf(map, f)).slice(3) || text(f) : ""));
-    speak();
-    const { dataset } = element("readout");
-    dataset.index = index.join(",");
-    dataset.value = number(shown);
-  };
-  const pointed = (index) => { points = true; told(index); };
-  const view = (map.columns ? listView : mapView)(canvas, map, pointed, (index, byHand) =>
-    { own = null; chosen.show(index, byHand); said = ""; told(index); });
-  canvas.addEventListener("pointerleave", () => { points = false; if (own) tellOwn(); });
+  const view = (map.columns ? listView : mapView)(canvas, map, readout.point, (index, byHand) => {
+    readout.forgetOwn();
+    chosen.show(index, byHand);
+    readout.anew();
+    readout.tell(index);
+  });
+  canvas.addEventListener("pointerleave", readout.leave);
 
   // Slope to the right and mass ratio up where there are both, as on the charts; never an axis of one value
   // if there are others.
@@ -224,7 +142,6 @@ export function start(map, solver, teller) {
   };
   offerFields();
   for (const select of Object.values(selects)) choices.forEach((a, k) => option(select, k, a.label));
-  const tellShown = () => (own && !points ? tellOwn() : told(view.view.index));
   map.wanted = () => [view.view.field, ...(filters?.fields() ?? []), ...(lines?.fields() ?? [])];
   map.hoopGoals = () => filters?.ofHoops() ?? [];
   /** Solves a live map anew if it has not the numbers of all that is wanted, or is still after some that are
@@ -244,7 +161,7 @@ export function start(map, solver, teller) {
     tellWanted();
     view.paint();
     legend();
-    tellShown();
+    readout.tellShown();
     drawCuts();
     filters?.tell();
   };
@@ -288,9 +205,13 @@ export function start(map, solver, teller) {
       const tell = () => { value.textContent =
         withUnit(short(inShownUnit(axis, axis.values[view.view.index[k]])), axis.unit);
         slider.setAttribute("aria-valuetext", value.textContent); };
-      slider.addEventListener("input",
-        () => { view.view.index[k] = Number(slider.value); tell(); view.paint(); told(view.view.index);
-        noteAddress(); });
+      slider.addEventListener("input", () => {
+        view.view.index[k] = Number(slider.value);
+        tell();
+        view.paint();
+        readout.tell(view.view.index);
+        noteAddress();
+      });
       tell();
       label.append(axis.label, slider, value);
       return [label];
@@ -309,7 +230,7 @@ export function start(map, solver, teller) {
   arrange();
   view.paint();
   legend();
-  told(view.view.index);
+  readout.tell(view.view.index);
   const pictureName = () => `${map.name.replace(/\.[^.]*$/, "")}_${view.view.field.name}`;
   saveButtons("map", canvas, pictureName, (like) => view.paintOn(like.getContext("2d")));
   element("cuts").hidden = Boolean(map.columns);
@@ -326,17 +247,22 @@ export function start(map, solver, teller) {
   }
   element("filters").hidden = Boolean(map.columns);
   const tolerances = map.live
-    ? tolerancesPart(map, () => { tellWanted(); filters.tell(); said = ""; tellShown(); chosen.haunt(); })
-    : null;
+    ? tolerancesPart(map, () => {
+      tellWanted();
+      filters.tell();
+      readout.anew();
+      readout.tellShown();
+      chosen.haunt();
+    }) : null;
   if (tolerances) addressPart(tolerances);
   if (filters) { addressPart(filters); addressPart(lines); }
   const tellUnits = () => {
-    said = "";
+    readout.anew();
     map.fields.forEach((f, k) => { optionOf(fieldSelect, k).textContent = fieldLabel(f, scaleOf(map, f)); });
     view.paint();
     filters?.tell();
     drawCuts();
-    tellShown();
+    readout.tellShown();
     chosen.retell();
     noteAddress();
   };
@@ -388,7 +314,7 @@ export function start(map, solver, teller) {
             (k === view.view.x || k === view.view.y ? i : slices[k]));
         arrange();
         view.paint();
-        told(view.view.index);
+        readout.tell(view.view.index);
       }
       // On a phone the hoop that a link is about comes first.
       document.body.classList.toggle("hoop-first", words.has("paper") || words.has("hoop"));
@@ -403,12 +329,12 @@ export function start(map, solver, teller) {
     view,
     /** After more of a live map is there. */
     repaint(rough) {
-      said = "";
+      readout.anew();
       view.paint(rough);
       if (rough && !isCostly(map.asked)) return;
       filters?.tell();
       legend();
-      tellShown();
+      readout.tellShown();
       drawCuts();
     },
     /** Another map is begun: a hoop that is none of it is told what is asked now. */

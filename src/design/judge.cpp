@@ -44,6 +44,25 @@ Request request_of_many(const Question& question) {
   return request_of(question.one, columns);
 }
 
+/// A solver that shares its designs among threads. Which designs are solved together does not hang on how
+/// many threads there are.
+Solver shared(const Request& request, int threads) {
+  static constexpr std::size_t block = 256;
+  std::vector<Solver> solvers;
+  for (int i = 0; i < threads; ++i) solvers.push_back(make_solver(request));
+  return
+      [solvers = std::move(solvers), threads](std::span<const Design> designs, std::span<Outcome> outcomes) {
+        std::atomic<std::size_t> next_solver{0};
+        parallel_for_each((designs.size() + block - 1) / block, threads, {}, [&] {
+          return [&, &solver = solvers[next_solver++]](std::size_t number) {
+            const std::size_t first = number * block, count = std::min(block, designs.size() - first);
+            solver(designs.subspan(first, count), outcomes.subspan(first, count));
+            return true;
+          };
+        });
+      };
+}
+
 std::uint64_t number_of(const Discrete& outcome) {
   const std::uint64_t codes = std::uint64_t{static_cast<std::uint8_t>(outcome.status)} |
                               std::uint64_t{outcome.jumps_on} << 8 |
@@ -64,7 +83,7 @@ Goal tightened(const Goal& goal, double tolerance) {
   return tight;
 }
 
-Bench::Bench(const Question& question, const std::shared_ptr<const SobolPoints>& points)
+Bench::Bench(const Question& question, const std::shared_ptr<const SobolPoints>& points, int threads)
     : question_(question), solver_(make_solver(request_of_nominal(question))) {
   std::vector<Goal> goals;
   for (const Goal& goal : question.one.goals)
@@ -72,7 +91,7 @@ Bench::Bench(const Question& question, const std::shared_ptr<const SobolPoints>&
   goals_ = goal_checks(goals);
   if (!points) return;
   const Request many = request_of_many(question);
-  scatter_.emplace(scatter_solver_of(many, points));
+  scatter_.emplace(scatter_solver_of(many, points, [&](const Request& one) { return shared(one, threads); }));
   columns_ = MadeColumns(statistics_of(many));
 }
 
@@ -161,7 +180,12 @@ void Judge::judge_values(std::span<const double> values, std::span<Verdict> verd
       return true;
     };
   };
-  if (blocks == 1)
+  if (blocks == 1 && makes_hoops()) {
+    if (!wide_) wide_ = std::make_unique<Bench>(question_, points_, threads_);
+    if (stop_requested_ && stop_requested_()) throw Stopped("the search was stopped");
+    wide_->judge(values, verdicts);
+    *evaluations_ += verdicts.size();
+  } else if (blocks == 1)
     work()(0);
   else
     parallel_for_each(blocks, threads_, stop_requested_, work);

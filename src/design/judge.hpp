@@ -40,7 +40,8 @@ Goal tightened(const Goal& goal, double tolerance);
 /// One thread's means of judging.
 class Bench {
  public:
-  Bench(const Question& question, const std::shared_ptr<const SobolPoints>& points);
+  /// threads: on which hoops made after one design are solved.
+  Bench(const Question& question, const std::shared_ptr<const SobolPoints>& points, int threads = 1);
   /// values: rows of the free parameters' values.
   void judge(std::span<const double> values, std::span<Verdict> verdicts);
 
@@ -92,6 +93,7 @@ class Judge {
   std::shared_ptr<const SobolPoints> points_;  // none if no goal and no objective is of hoops as made
   std::shared_ptr<std::atomic<std::size_t>> evaluations_ = std::make_shared<std::atomic<std::size_t>>(0);
   std::vector<std::unique_ptr<Bench>> benches_;  // one a thread, made when first needed
+  std::unique_ptr<Bench> wide_;                  // for few designs at a time: on all threads
   std::vector<double> values_;                   // of the places in hand
 };
 

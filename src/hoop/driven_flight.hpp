@@ -2,8 +2,8 @@
 /// Free flight with the motor on: a balanced rotor takes its reaction, so that the centre of mass flies its
 /// parabola and the angle is a quadratic in time, phi(t) = phi + w t + tau t^2 / (2 Ic).
 ///
-/// No apex and no landing can be missed: between two times y' changes its sign only where bounds of y'' and
-/// y''' allow it, and times are halved until they say whether.
+/// No apex and no landing can be missed: between two times y' changes its sign only where bounds of y'', y'''
+/// and y'''' allow it, and times are halved until they say whether.
 #pragma once
 
 #include <algorithm>
@@ -96,7 +96,10 @@ class DrivenFlight {
     const S half = S(0.5) * (to - from), middle = from + half;
     const auto y = at(middle);
     const S w = std::max(abs(spin_ + hoop_.aloft * from), abs(spin_ + hoop_.aloft * to));
-    const S jerk = hoop_.rho * w * (w * w + S(3) * abs(hoop_.aloft));  // of y''' the most
+    // Of y'''' and y''' the most; near a grazing lift-off y''' is far below what it is anywhere else.
+    const S torque = abs(hoop_.aloft),
+            snap = hoop_.rho * (w * w * (w * w + S(6) * torque) + S(3) * torque * torque),
+            jerk = std::min(hoop_.rho * w * (w * w + S(3) * torque), abs(y.jerk) + half * snap);
     if (!std::isfinite(y.rate) || !std::isfinite(jerk)) {
       flight_ = {std::numeric_limits<S>::quiet_NaN()};
       return true;  // nothing is known of it

@@ -113,10 +113,10 @@ Turned<T> turned_in_flight(const Hoop<T>& hoop, const T& spin, const T& t) {
 }
 
 /// y(t), dy/dt and y'', t after a lift-off at phi with any spin and with normal velocity v_n, zero but for a
-/// rebound.
+/// rebound; with the motor on y''' as well, else 0 in its place.
 template <class T>
 struct HeightAbovePlane {
-  T value, rate, acceleration;
+  T value, rate, acceleration, jerk;
 };
 template <class T>
 HeightAbovePlane<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, const T& spin, const T& t,
@@ -128,11 +128,14 @@ HeightAbovePlane<T> height_above_plane(const Hoop<T>& hoop, const Trig<T>& phi, 
           t * (normal_velocity - T(0.5) * hoop.cos_slope * t),
       normal_velocity - hoop.cos_slope * t +
           hoop.rho * turn_rate * (s * turned.trig.versine - c * turned.trig.sin),
-      hoop.rho * turn_rate * turn_rate * (s * turned.trig.sin - c * turned.trig.cos) - hoop.cos_slope};
+      hoop.rho * turn_rate * turn_rate * (s * turned.trig.sin - c * turned.trig.cos) - hoop.cos_slope, T(0)};
   if (!any_aloft(hoop)) return y;
   const T lift = hoop.rho * hoop.aloft;
+  const T sine = s * turned.trig.cos + c * turned.trig.sin,
+          cosine = c * turned.trig.cos - s * turned.trig.sin;
   y.value = y.value - T(0.5) * lift * s * t * t, y.rate = y.rate - lift * s * t;
-  y.acceleration = y.acceleration - lift * (s * turned.trig.cos + c * turned.trig.sin);
+  y.acceleration = y.acceleration - lift * sine;
+  y.jerk = turn_rate * (hoop.rho * turn_rate * turn_rate * sine - T(3) * lift * cosine);
   return y;
 }
 

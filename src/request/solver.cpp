@@ -215,14 +215,15 @@ GradientSolver make_gradient_solver(const Request& request) {
       };
 }
 
-ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points) {
+ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points,
+                                const std::function<Solver(const Request&)>& make) {
   return {request.scatter,
           request.hoop,
           request.held,
           std::move(points),
           request.goals,
           quantities_of(statistics_of(request)),
-          make_solver(request_of_sample(request))};
+          make(request_of_sample(request))};
 }
 
 Motion tell(const Design& design, const Request& request, double interval) {

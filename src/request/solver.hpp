@@ -24,8 +24,10 @@ Solver follow_up(const Request& request);
 /// The same with the derivatives among the columns, if any.
 GradientSolver make_gradient_solver(const Request& request);
 
-/// A solver for the request's statistics of manufactured hoops, after these points.
-ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points);
+/// A solver for the request's statistics of manufactured hoops, after these points. make: of what solves the
+/// hoops.
+ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points,
+                                const std::function<Solver(const Request&)>& make = make_solver);
 
 /// The motion of a design by the request's method, sampled every `interval` [s]; 0: not sampled.
 Motion tell(const Design& design, const Request& request, double interval);
