@@ -25,7 +25,8 @@ struct FieldGradient {
   std::vector<double> by_free{};  ///< those by the free parameters, in the spec's order
 };
 
-/// One design that the search found.
+/// One design that the search found. Of parameters in design.nominal_units, `free` and FieldGradient::by_free
+/// are in units of the nominal hoop, `design` and FieldGradient::by in its own.
 struct FoundDesign {
   Design design{};                   ///< its parameters
   std::vector<double> free{};        ///< its values of the free parameters, in the spec's order

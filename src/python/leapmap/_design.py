@@ -19,7 +19,9 @@ class Found:
     reached : bool
         False: no design reaches every goal, and the only one is the nearest miss.
     parameters, objectives : dict of ndarray
-        By name, one element for each design, in the parameter's or field's unit (angles in rad).
+        By name, one element for each design, in the parameter's or field's unit (angles in rad). Torques and
+        spins given in N m or rpm beside a hoop that varies are in units of the nominal hoop, whose free
+        numbers are at their lower bounds.
     outcomes : Outcomes
         Outcomes of the nominal designs.
     gradients : dict
@@ -32,7 +34,7 @@ class Found:
     yield_ : ndarray
         With tolerances, the fraction of manufactured hoops that reach every goal; otherwise NaN.
     missed : dict
-        {field of a goal: its value at the nearest miss}.
+        {field of a goal: its value at the nearest miss}, in SI units for a goal that is given in them.
     hypervolume : float
         Fraction of the rectangle between a front's ends that it dominates; otherwise NaN.
     evaluations : int
@@ -123,7 +125,7 @@ class DesignProblem:
     names : list of str
         Free parameters.
     bounds : list of tuple
-        Lower and upper bound of each.
+        Lower and upper bound of each, in the units of Found.parameters.
     objectives : list of str
         Objectives.
     fixed : dict
