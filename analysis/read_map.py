@@ -181,18 +181,19 @@ class Map:
     def held(self):
         """Parameters that the hoops share in the SI, and how many of its unit are one of the nominal hoop's,
         in which the map has them."""
-        names = self.spec().get("design", {}).get("nominal_units", [])
-        if not names:
-            return {}
         first = lambda value: value["values"][0] if isinstance(value, dict) else value
         try:
+            names = self.spec().get("design", {}).get("nominal_units", [])
+            if not names:
+                return {}
             hoop, gravity = self.spec()["hoop"], self.numbers()["gravity"]
             radius = float(first(hoop["diameter"])) / 2
             mass = sum(float(first(part["mass"])) for part in (hoop, *hoop.get("weight", [])))
-        except (AttributeError, KeyError, IndexError, TypeError, ValueError):
-            raise NotAMap(f"{self.path}: is damaged: its spec says nothing of the nominal hoop") from None
-        sizes = {"N m": mass * gravity * radius, "rad/s": math.sqrt(gravity / radius)}
-        return {name: sizes[looks.SI_OF_HELD[name]] for name in names if name in looks.SI_OF_HELD}
+            sizes = {"N m": mass * gravity * radius, "rad/s": math.sqrt(gravity / radius)}
+            return {name: sizes[looks.SI_OF_HELD[name]] for name in names}
+        except (AttributeError, KeyError, IndexError, TypeError, ValueError, ZeroDivisionError):
+            raise NotAMap(
+                f"{self.path}: is damaged: its spec names no hoop that nominal_units are of") from None
 
     def masses(self):
         """Total masses of the designs [kg]: one number, an array that goes with a field, or None: unknown."""

@@ -104,8 +104,8 @@ export function start(map, solver, teller) {
   const view = (map.columns ? listView : mapView)(canvas, map, readout.point, (index, byHand) => {
     readout.forgetOwn();
     chosen.show(index, byHand);
-    readout.anew();
-    readout.tell(index);
+    readout.invalidate();
+    readout.show(index);
   });
   canvas.addEventListener("pointerleave", readout.leave);
 
@@ -161,7 +161,7 @@ export function start(map, solver, teller) {
     tellWanted();
     view.paint();
     legend();
-    readout.tellShown();
+    readout.showCurrent();
     drawCuts();
     filters?.tell();
   };
@@ -209,7 +209,7 @@ export function start(map, solver, teller) {
         view.view.index[k] = Number(slider.value);
         tell();
         view.paint();
-        readout.tell(view.view.index);
+        readout.show(view.view.index);
         noteAddress();
       });
       tell();
@@ -230,7 +230,7 @@ export function start(map, solver, teller) {
   arrange();
   view.paint();
   legend();
-  readout.tell(view.view.index);
+  readout.show(view.view.index);
   const pictureName = () => `${map.name.replace(/\.[^.]*$/, "")}_${view.view.field.name}`;
   saveButtons("map", canvas, pictureName, (like) => view.paintOn(like.getContext("2d")));
   element("cuts").hidden = Boolean(map.columns);
@@ -242,7 +242,7 @@ export function start(map, solver, teller) {
   element("lines-part").hidden = Boolean(map.columns);
   if (filters) {
     bar = barBrush(view, filters);
-    lines = linesPart(map, view, filters);
+    lines = linesPart(map, view, filters, tellWanted);
     new ResizeObserver(bar).observe(canvas);
   }
   element("filters").hidden = Boolean(map.columns);
@@ -250,19 +250,19 @@ export function start(map, solver, teller) {
     ? tolerancesPart(map, () => {
       tellWanted();
       filters.tell();
-      readout.anew();
-      readout.tellShown();
+      readout.invalidate();
+      readout.showCurrent();
       chosen.haunt();
     }) : null;
   if (tolerances) addressPart(tolerances);
   if (filters) { addressPart(filters); addressPart(lines); }
   const tellUnits = () => {
-    readout.anew();
+    readout.invalidate();
     map.fields.forEach((f, k) => { optionOf(fieldSelect, k).textContent = fieldLabel(f, scaleOf(map, f)); });
     view.paint();
     filters?.tell();
     drawCuts();
-    readout.tellShown();
+    readout.showCurrent();
     chosen.retell();
     noteAddress();
   };
@@ -314,7 +314,7 @@ export function start(map, solver, teller) {
             (k === view.view.x || k === view.view.y ? i : slices[k]));
         arrange();
         view.paint();
-        readout.tell(view.view.index);
+        readout.show(view.view.index);
       }
       // On a phone the hoop that a link is about comes first.
       document.body.classList.toggle("hoop-first", words.has("paper") || words.has("hoop"));
@@ -329,12 +329,12 @@ export function start(map, solver, teller) {
     view,
     /** After more of a live map is there. */
     repaint(rough) {
-      readout.anew();
+      readout.invalidate();
       view.paint(rough);
       if (rough && !isCostly(map.asked)) return;
       filters?.tell();
       legend();
-      readout.tellShown();
+      readout.showCurrent();
       drawCuts();
     },
     /** Another map is begun: a hoop that is none of it is told what is asked now. */

@@ -623,6 +623,19 @@ def test_goals_are_brushed_on_the_colour_bar_and_on_the_axes_of_all_designs(page
     waited(page, lambda b: all(name != "jump_height" for name, _, _ in goals()))
 
 
+@pytest.mark.slow
+def test_an_axis_of_what_takes_many_jumps_has_it_solved(page):
+    page.execute_script("document.getElementById('lines-part').open = true")
+    waited(page, lambda b: b.find_element("id", "lines").get_attribute("data-left") == "30000")
+    page.execute_script("document.getElementById('map').dataset.whole = 'false'")
+    give(page, "#lines-add", "gait_height")
+    settled(page, 120)
+    solved = page.execute_script(
+        "const { values } = window.explorer.map.fields.find((f) => f.name === 'gait_height'); "
+        "return values.filter((v) => v === v).length")
+    assert solved > 1000
+
+
 def test_the_tour_shows_each_part_in_turn_and_leaves_nothing_behind(page):
     page.find_element("id", "tour-begin").click()
     seen = []

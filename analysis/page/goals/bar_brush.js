@@ -22,11 +22,11 @@ export function barBrush(view, goals) {
     const bar = view.bar();
     svg.attr("hidden", bar ? null : "");
     if (!bar) return;
+    if (event?.sourceEvent) return;  // the hand is on it
     height = bar.height;
     for (const side of ["left", "top", "width", "height"]) svg.style(side, `${bar[side]}px`);
     group.call(brush.extent([[0, 0], [bar.width, bar.height]]));
     const [least, most] = goals.range(field());
-    if (event?.sourceEvent) return;  // the hand is on it
     group.call(brush.move, least === -Infinity && most === Infinity ? null
       : [most, least].map((value) => height * (1 - field().place(value))));
   }

@@ -2,7 +2,7 @@
 
 import { noteAddress } from "../state/address.js";
 import { isOfFirstJump } from "../map/axes.js";
-import { applies } from "../map/described.js";
+import { applies, stridesOf } from "../map/described.js";
 import { element, notice, option, stepsOf } from "../dom.js";
 import { scaleOf } from "../state/drawn.js";
 import { jumping } from "../solver/made.js";
@@ -15,8 +15,7 @@ const LOWER_IS_BETTER = ["jump_time", "first_jump_time", "jump_distance", "energ
 /** How many steps along the axes each design is away from what one avoids: the nearest design that is `out`,
     or the nearest of `cliffs`, on either side. Infinity: there is neither. */
 function stepsToCliffs(map, cliffs, out) {
-  const lengths = map.axes.map(({ values }) => values.length),
-    strides = lengths.map((_, axis) => lengths.slice(axis + 1).reduce((a, b) => a * b, 1)),
+  const lengths = map.axes.map(({ values }) => values.length), strides = stridesOf(map),
     steps = Float64Array.from(cliffs, (_, k) => (out(k) ? 0 : Infinity));
   const isAt = (k, axis, end) => Math.floor(k / strides[axis]) % lengths[axis] === end;
   cliffs.forEach((bits, k) => strides.forEach((stride, axis) => {
@@ -90,6 +89,11 @@ export function filtersPart(map, view, changed, best) {
       `remain${inYield}${without}`;
   }
 
+  function drop(goal) {
+    goals.splice(goals.indexOf(goal), 1);
+    goal.item.remove();
+  }
+
   function row(asked = {}) {
     const item = document.createElement("li"), select = document.createElement("select"),
       sign = document.createElement("select"), number = document.createElement("input"),
@@ -123,7 +127,7 @@ export function filtersPart(map, view, changed, best) {
     stepsOf(number, () => factor() * (goal.field.high - goal.field.low || 1));
     number.addEventListener("input",
       () => { if (number.value !== "") { goal.bound = Number(number.value) / factor(); update(); } });
-    away.addEventListener("click", () => { goals.splice(goals.indexOf(goal), 1); item.remove(); update(); });
+    away.addEventListener("click", () => { drop(goal); update(); });
     item.append(select, sign, number, away);
     list.append(item);
     goal.item = item;
@@ -165,10 +169,7 @@ export function filtersPart(map, view, changed, best) {
     },
     /** Makes those the goals of a quantity, in round numbers; an infinite one is none. */
     setRange(field, least, most) {
-      for (const goal of goals.filter((each) => each.field === field)) {
-        goal.item.remove();
-        goals.splice(goals.indexOf(goal), 1);
-      }
+      goals.filter((each) => each.field === field).forEach(drop);
       const [factor] = shownIn(field.unit, scaleOf(map, field)),
         step = 10 ** (Math.floor(Math.log10(factor * (field.high - field.low) || 1)) - 2);
       for (const [sign, bound] of [["least", least], ["most", most]])

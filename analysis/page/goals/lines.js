@@ -1,14 +1,14 @@
 // Parallel coordinates: an axis with a histogram for each parameter that varies and for each quantity chosen,
 // and a line for each design, dark where it reaches every goal. A stretch of a quantity's axis, brushed, is a
-// goal. Designs are counted between neighbouring axes in BINS times BINS, so that a million are drawn as fast
-// as a thousand.
+// goal. Designs are counted between neighbouring axes in BINS times BINS: a million need no more lines than a
+// thousand.
 
 import { brushY } from "d3-brush";
 import { scaleLinear, scaleLog } from "d3-scale";
 import { event, select } from "d3-selection";
 
 import { element, option } from "../dom.js";
-import { applies } from "../map/described.js";
+import { applies, stridesOf } from "../map/described.js";
 import { linearTicks, logTicks, tickTexts } from "../map/scales.js";
 import { scaleOf } from "../state/drawn.js";
 import { noteAddress } from "../state/address.js";
@@ -20,9 +20,8 @@ const FIRST = ["jump_height", "jump_time", "jump_range", "landing_normal_speed"]
 
 /** What a design has on each of the map's axes: number(k) of axis i. */
 function parameterOf(map, i) {
-  const lengths = map.axes.map(({ values }) => values.length),
-    stride = lengths.slice(i + 1).reduce((a, b) => a * b, 1);
-  return (k) => map.axes[i].values[Math.floor(k / stride) % lengths[i]];
+  const { values } = map.axes[i], stride = stridesOf(map)[i];
+  return (k) => values[Math.floor(k / stride) % values.length];
 }
 
 const scaleAlong = ({ low, high, isLog }, range) =>
@@ -53,14 +52,16 @@ const linesOf = (text, most) => text.split(" ").reduce((lines, word) => {
     ? [...lines.slice(0, last), `${lines[last]} ${word}`] : [...lines, word];
 }, []);
 
-/** goals: with range(field) and setRange(field, least, most). Returns show(), for when numbers or goals are
+/** goals: with range(field) and setRange(field, least, most); chosen(): axes are of other quantities. Returns
+    show(), for when numbers or goals are
     others, point(), for when another design is pointed at, and the address's words. */
-export function linesPart(map, view, goals) {
+export function linesPart(map, view, goals, chosen) {
   const part = element("lines-part"), canvas = element("lines"), add = element("lines-add"),
     background = document.createElement("canvas"), svg = select("#lines-brushes"),
     count = map.fields[0].values.length;
   const fieldOf = (name) => map.fields.find((field) => field.name === name);
-  const first = FIRST.filter((name) => fieldOf(name)), now = { names: [...first], axes: [], frame: 0 };
+  const first = FIRST.filter((name) => fieldOf(name)), now = { names: [...first], axes: [], frame: 0,
+    isBrushing: false };
 
   /** The axes from left to right: what varies, then quantities that have numbers. */
   function axesNow() {
@@ -68,13 +69,13 @@ export function linesPart(map, view, goals) {
       .map(({ axis, i }) => ({
         name: axis.name, unit: axis.unit, factor: perUnit(axis.unit), isLog: axis.log,
         low: axis.values[0], high: axis.values.at(-1), number: parameterOf(map, i), field: null }));
-    const told = now.names.map(fieldOf).filter((field) => applies(map, field) && field.high > field.low)
+    const quantities = now.names.map(fieldOf).filter((field) => applies(map, field) && field.high > field.low)
       .map((field) => {
         const [factor, unit] = shownIn(field.unit, scaleOf(map, field));
         return { name: field.name, unit, factor, isLog: field.log, low: field.low, high: field.high,
           number: (k) => field.values[k], field };
       });
-    return [...varying, ...told];
+    return [...varying, ...quantities];
   }
 
   function offer() {
@@ -198,7 +199,7 @@ export function linesPart(map, view, goals) {
 
   /** A brush on every axis of a quantity, at the goals that it has. */
   function brushes({ ratio, top, bottom, at }) {
-    if (event?.sourceEvent && event.type === "brush") return;  // the hand is on one of them
+    if (now.isBrushing) return;  // the hand is on one of them
     const [y0, y1] = [top / ratio, bottom / ratio];
     const groups = svg.selectAll("g.brush").data(now.axes.map((axis, i) => ({ axis, i }))
       .filter(({ axis }) => axis.field));
@@ -206,8 +207,10 @@ export function linesPart(map, view, goals) {
     groups.enter().append("g").attr("class", "brush").merge(groups).each(function place({ axis, i }) {
       const { field } = axis, scale = scaleAlong(axis, [y1, y0]);
       const brush = brushY().extent([[at(i) / ratio - 12, y0], [at(i) / ratio + 12, y1]])
-        .on("brush end", () => {
-          if (!event.sourceEvent) return;
+        .on("start brush end", () => {
+          if (!event.sourceEvent) return;  // moved by this function
+          now.isBrushing = event.type !== "end";
+          if (event.type === "start") return;
           const [high, low] = event.selection ?? [y0, y1];
           goals.setRange(field, low < y1 ? scale.invert(low) : -Infinity,
             high > y0 ? scale.invert(high) : Infinity);
@@ -225,15 +228,19 @@ export function linesPart(map, view, goals) {
     now.frame = requestAnimationFrame(() => { now.frame = 0; paint(); });
   }
 
+  function changed() {
+    offer();
+    chosen();
+    show();
+    noteAddress();
+  }
   add.addEventListener("change", () => {
     const name = add.value;
     if (!name) return;
     now.names = now.names.includes(name) ? now.names.filter((each) => each !== name) : [...now.names, name];
-    offer();
-    show();
-    noteAddress();
+    changed();
   });
-  part.addEventListener("toggle", () => { offer(); show(); noteAddress(); });
+  part.addEventListener("toggle", changed);
   new ResizeObserver(show).observe(canvas);
   onTones(show);
 
@@ -245,6 +252,7 @@ export function linesPart(map, view, goals) {
       now.names = words.has("lines") ? words.get("lines").split(",").filter((name) => fieldOf(name))
         : [...first];
       offer();
+      chosen();
       show();
     },
   };

@@ -33,6 +33,7 @@ export function drawingPart(map, solver, changed) {
     notice(wrong ?? (beyond ? `This hoop's ${beyond.replace("_", " ")} is ${short(body[beyond])}, which is ` +
       `not between ${solver.ranges[beyond].map((v) => short(v)).join(" and ")}.` : ""));
     if (wrong || beyond) return;
+    picture(drawing, body);
     const before = now.drawing;
     now.drawing = structuredClone(drawing);  // typing goes on in the other
     tell(body);
@@ -63,7 +64,6 @@ export function drawingPart(map, solver, changed) {
     stepsOf(made, () => Number(made.value) || 1);
     made.addEventListener("change", () => {
       part[name] = made.value === "" ? NaN : Number(made.value) * unit;
-      if (!wrongIn(now.typed)) picture(now.typed, solver.reduce(now.typed));
       take(now.typed);
     });
     return made;

@@ -25,6 +25,10 @@ const parametersAt = (map, index) =>
 export const designAt = (map, index) => shapedBy(map,
   { ...map.fixed, ...Object.fromEntries(parametersAt(map, index).map(([row, value]) => [row.name, value])) });
 
+/** How many designs further the next along each axis of a grid is. */
+export const stridesOf = ({ axes }) =>
+  axes.map((_, k) => axes.slice(k + 1).reduce((product, { values }) => product * values.length, 1));
+
 export const placeText = (map, index) => (map.labels ? `${map.labels[index[0]]}: ` : "") +
   parametersAt(map, index).filter(([row]) => !map.columns || new Set(row.values).size > 1)
     .map(([row, value]) => `${row.symbol} ${withUnit(short(inShownUnit(row, value)), row.unit)}`).join(", ");

@@ -3,7 +3,7 @@
 import { isReadingAddress } from "../state/address.js";
 import { clamped, fitted, isOfFirstJump, labelOf, paintAxes, pointing } from "./axes.js";
 import { crispPlane } from "./crisp.js";
-import { designAt } from "./described.js";
+import { designAt, stridesOf } from "./described.js";
 import { RATIOS, isDrawn, scaleOf } from "../state/drawn.js";
 import { isolines, planeOf } from "./isolines.js";
 import { NO_LIVE_AXIS, SLIPPING } from "../state/ranges.js";
@@ -27,7 +27,7 @@ export const DASHES = { fold: [4, 2], runway: [1, 2], turn: [5, 2, 1, 2], releas
  */
 export function mapView(canvas, map, onPoint, onPick) {
   const shape = map.axes.map((a) => a.values.length);
-  const strides = shape.map((_, k) => shape.slice(k + 1).reduce((a, b) => a * b, 1));
+  const strides = stridesOf(map);
   const view = { x: 0, y: 1, field: map.fields[0], index: shape.map((n) => Math.floor(n / 2)), picked: null,
     line: null };
   const status = map.codes.status, flags = map.codes.spurious_first_jump, cliffs = map.codes.cliffs;

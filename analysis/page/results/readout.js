@@ -63,7 +63,7 @@ export function readoutPart(map, { view, panel, moved }) {
     return notes.filter(Boolean).map((note) => (field().made ? `nominal: ${note}` : note));
   }
 
-  function tell(index) {
+  function show(index) {
     const at = view().offset(index), shown = field(), key = `${index} ${shown.name}`;
     if (key === said) return;  // the pointer moved inside a cell
     said = key;
@@ -83,16 +83,16 @@ export function readoutPart(map, { view, panel, moved }) {
   }
 
   return {
-    tell,
-    /** What is told next is told, even if it has been. */
-    anew() { said = ""; },
+    show,
+    /** What is there is out of date: it is written anew next time, even for the same design. */
+    invalidate() { said = ""; },
     /** The pointer is on a design, or leaves the map. */
-    point(index) { points = true; tell(index); },
+    point(index) { points = true; show(index); },
     leave() { points = false; if (own) tellOwn(); },
     /** A hoop is shown that is none of the map's; more is known of it; one of the map's is shown instead. */
     showOwn(hoop) { own = hoop; points = false; tellOwn(); },
     knowMore(outcome) { if (own) own.outcome = outcome; if (own && !points) tellOwn(); },
     forgetOwn() { own = null; },
-    tellShown() { if (own && !points) tellOwn(); else tell(view().view.index); },
+    showCurrent() { if (own && !points) tellOwn(); else show(view().view.index); },
   };
 }
