@@ -27,7 +27,7 @@ import { tonesPart } from "./state/tones.js";
       : "compute the map here: every parameter a slider";
     toggle.addEventListener("click",
       () => { location.hash = live ? "" : liveFrom(data); location.reload(); });
-    if (live) startLive(data.for_live, module, solver);
-    else start(await readMap(), solver, madeTeller(module, element("worker").textContent));
+    if (live) await startLive(data.for_live, module, solver);
+    else await start(await readMap(), solver, madeTeller(module, element("worker").textContent));
   } catch (error) { complain(error); }
 })();

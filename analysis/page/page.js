@@ -38,24 +38,34 @@ export function sheetPart() {
   document.addEventListener("keydown", (event) => { if (event.key === "Escape") open(false); });
 }
 
+/** Lets the browser draw and listen between two pieces of work. */
+const aMoment = () => new Promise((goOn) => { setTimeout(goOn); });
+
 /** Starts with a map that is solved as one looks. */
-export function startLive(given, module, solver) {
+export async function startLive(given, module, solver) {
   const map = liveMap(given, solver, liveState(addressWords(), solver));
   const teller = madeTeller(module, element("worker").textContent);
   let page = null, settled = 0, again = false;
-  const engine = liveEngine(map, module, element("worker").textContent, (what) => {
+  const early = new Set();  // pictures that were there before the page was
+  const show = (what) => {
     const { dataset } = element("map");
-    if (what === "none" || what === "cleared") { Object.assign(dataset, NOTHING_YET);
-        page?.begun(what === "cleared"); return; }
+    if (what === "none" || what === "cleared") {
+      Object.assign(dataset, NOTHING_YET);
+      early.clear();
+      page?.begun(what === "cleared");
+      return;
+    }
+    if (!page) { early.add(what); return; }
     dataset.coarse = "true";
-    if (!page) page = start(map, solver, teller);  // which may begin anew, by what the address wants
-    if (what === "coarse discontinuities") page.view.overlayCliffs(); else page.repaint(what === "part");
+    if (what === "coarse discontinuities") page.view.overlayCliffs();
+    else if (what === "cliffs") page.showCurves(); else page.repaint(what === "part");
     Object.assign(dataset,
       { whole: String(what === "whole" || what === "cliffs"), cliffs: String(what === "cliffs"),
       generation: String(Number(dataset.generation ?? 0) + 1) });
     if (what === "cliffs") window.explorer.timing = engine.timing();
     if (what === "whole") { window.explorer.timing = engine.timing(); page.again(); noteAddress(); }
-  }, (share, left) => {
+  };
+  const engine = liveEngine(map, module, element("worker").textContent, show, (share, left) => {
     element("subtitle").textContent = Number.isNaN(share) ? "Solving has stopped" : share < 1
       ? `${(100 * share).toFixed(0)} % of the designs are solved; ` +
       `${left < 100 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} to go` : LIVE_SUBTITLE;
@@ -76,9 +86,12 @@ export function startLive(given, module, solver) {
   addressPart(settlePart(map));
   addressPart(controls);  // begins anew, by what is told above
   begin();
+  page = await start(map, solver, teller);  // which may begin anew, by what the address wants
+  if (early.size > 0) show(early.has("whole") ? "whole" : "part");
+  if (early.has("cliffs")) show("cliffs");
 }
 
-export function start(map, solver, teller) {
+export async function start(map, solver, teller) {
   Object.assign(map, { solver, defaults: solver.defaults });
   // Of a file's map a hoop of one's own is told what the map's designs are.
   map.settle = Math.min(map.settle, element("settle").max);
@@ -322,6 +335,7 @@ export function start(map, solver, teller) {
     },
   });
   window.explorer = { map, view, solver };
+  await aMoment();
   readAddress(true);
   addressButtons();
   noteAddress();
@@ -337,6 +351,8 @@ export function start(map, solver, teller) {
       readout.showCurrent();
       drawCuts();
     },
+    /** After the curves of a live map are there: of its numbers none is another. */
+    showCurves() { view.paint(); legend(); drawCuts(); },
     /** Another map is begun: a hoop that is none of it is told what is asked now. */
     begun(cleared) {
       if (cleared) this.repaint(true);

@@ -333,7 +333,7 @@ int run(const HopArguments& arguments) {
     print_table(spec, motion, check.outcome, motor);
     if (!arguments.units.empty()) say("{}", in_units);
     if (arguments.gradient) print_gradient(spec);
-    if (made) print_scatter(spec, *made);
+    if (made) print_scatter(spec, *made, arguments.units);
     if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
     print_hints(spec, made.has_value());
   }

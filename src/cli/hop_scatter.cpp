@@ -99,19 +99,18 @@ void print_spreads(const Spec& spec, const ScatterReport& report) {
                     : "No tolerance is tight enough: the nominal design misses a goal.");
 }
 
-void print_quantities(const Spec& spec, const ScatterReport& report) {
-  ShownUnits units("", scales_of_manufactured(spec, nominal_scales(spec)));
+void print_quantities(const Spec& spec, const ScatterReport& report, ShownUnits& units) {
   say("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "if it jumps", "mean", "deviation", "5 %", "50 %",
       "95 %");
   for (const MadeQuantity& told : report.quantities) {
     const Field& field = *find_field(told.field);
-    const std::string_view unit = field.unit;
-    say("{:<20}", unit == "1" ? told.field : fmt::format("{} [{}]", told.field, unit));
+    const ShownUnit shown = units.of(field);
+    say("{:<20}", shown.unit.empty() ? told.field : fmt::format("{} [{}]", told.field, shown.unit));
     for (const Estimate* estimate : {&told.mean, &told.sd, &told.q05, &told.q50, &told.q95})
-      say(" {:>12.5g}", estimate->value);
+      say(" {:>12.5g}", estimate->value * shown.factor);
     say("\n{:<20}", "  error");
     for (const Estimate* estimate : {&told.mean, &told.sd, &told.q05, &told.q50, &told.q95})
-      say(" {:>12.1e}", estimate->error);
+      say(" {:>12.1e}", estimate->error * shown.factor);
     say("\n");
     if (!spec.hoop || units.beside(told.mean.value, field).empty()) continue;
     say("{:<20}", "");
@@ -121,7 +120,7 @@ void print_quantities(const Spec& spec, const ScatterReport& report) {
   }
 }
 
-void print_histogram(const Spec& spec, const ScatterReport& report) {
+void print_histogram(const Spec& spec, const ScatterReport& report, ShownUnits& units) {
   constexpr std::size_t bins = 20;
   constexpr double widest = 50.0;
   const Histogram histogram = histogram_of(report, &Outcome::jump_height, bins);
@@ -134,13 +133,14 @@ void print_histogram(const Spec& spec, const ScatterReport& report) {
   const double unit = goal != spec.goals.end() && goal->unit_of_nominal > 0.0 ? goal->unit_of_nominal : 1.0;
   const double most = static_cast<double>(std::ranges::max(histogram.counts));
   const double width = (histogram.to - histogram.from) / static_cast<double>(bins);
-  say("\njump_height\n");
+  const ShownUnit shown = units.of(*find_field("jump_height"));
+  say("\njump_height{}\n", shown.unit.empty() ? "" : fmt::format(" [{}]", shown.unit));
   for (std::size_t i = 0; i < bins; ++i) {
     const double from = histogram.from + width * static_cast<double>(i), to = from + width;
     const auto within = [&](double bound) { return bound >= from && bound < to; };
     const bool marked =
         goal != spec.goals.end() && (within(goal->at_least / unit) || within(goal->at_most / unit));
-    say("{:>9.4f} {}{}\n", from, marked ? '>' : '|',
+    say("{:>9.4f} {}{}\n", from * shown.factor, marked ? '>' : '|',
         std::string(
             static_cast<std::size_t>(std::ceil(widest * static_cast<double>(histogram.counts[i]) / most)),
             '#'));
@@ -189,7 +189,8 @@ Json json_of(const Histogram& histogram) {
 
 }  // namespace
 
-void print_scatter(const Spec& spec, const ScatterReport& report) {
+void print_scatter(const Spec& spec, const ScatterReport& report, const std::string& unit_words) {
+  ShownUnits units(unit_words, scales_of_manufactured(spec, nominal_scales(spec)));
   say("\nManufactured: {} hoops in {} replicates, seed {}. Errors are standard errors.\n",
       grouped(report.samples), SobolPoints::replicates, spec.scatter.seed);
   print_spreads(spec, report);
@@ -200,8 +201,8 @@ void print_scatter(const Spec& spec, const ScatterReport& report) {
   say("{:<34} {}\n", "jumps", told(report.jumps));
   if (report.unsolved > 0.0)
     say("The method failed on {:.3g} % of the hoops, which the errors include.\n", 100.0 * report.unsolved);
-  print_quantities(spec, report);
-  print_histogram(spec, report);
+  print_quantities(spec, report, units);
+  print_histogram(spec, report, units);
   print_importance(spec, report);
 }
 

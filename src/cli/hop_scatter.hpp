@@ -8,7 +8,8 @@
 namespace leapmap::cli {
 
 /// Yield, goals, quantities, a histogram, and the influence of each tolerance.
-void print_scatter(const Spec& spec, const ScatterReport& report);
+/// unit_words: as of --units.
+void print_scatter(const Spec& spec, const ScatterReport& report, const std::string& unit_words);
 
 /// The same as JSON, histograms of height and time with it.
 Json scatter_json(const Spec& spec, const ScatterReport& report);

@@ -83,7 +83,7 @@ void print_made(const Spec& spec, const Scales& scales, ShownUnits& units) {
 
 /// The jump's height on this side of a cliff and beyond it: not every cliff costs any.
 std::string heights_beside(const Spec& spec, const std::vector<double>& here, const NearCliff& cliff,
-                           std::size_t axis) {
+                           std::size_t axis, ShownUnits& units) {
   constexpr double beside = 1e-9;
   const double way = cliff.at[axis] < here[axis] ? -1.0 : 1.0,
                step = way * beside * std::max(1.0, std::abs(cliff.at[axis]));
@@ -93,10 +93,12 @@ std::string heights_beside(const Spec& spec, const std::vector<double>& here, co
   const std::array<Design, 2> designs{designs_by.at(before), designs_by.at(beyond)};
   std::array<Outcome, 2> outcomes;
   make_solver(request_of(spec, {find_field("jump_height")}))(designs, outcomes);
-  const auto height = [](const Outcome& o) {
-    return std::isnan(o.jump_height) ? "none" : fmt::format("{:.4g}", o.jump_height);
+  const ShownUnit shown = units.of(*find_field("jump_height"));
+  const auto height = [&](const Outcome& o) {
+    return std::isnan(o.jump_height) ? "none" : fmt::format("{:.4g}", o.jump_height * shown.factor);
   };
-  return height(outcomes[0]) + " to " + height(outcomes[1]);
+  const std::string unit = shown.unit.empty() ? "" : " " + shown.unit;
+  return height(outcomes[0]) + " to " + height(outcomes[1]) + unit;
 }
 
 }  // namespace
@@ -142,6 +144,9 @@ void print_place(const Spec& original, const std::string& at, const std::string&
     const Option& option = *find_option("", original.axes[k].key);
     const std::string& key = original.axes[k].key;
     const double from_here = value - here[k];
+    if (const ShownUnit shown = units.of(key); !shown.unit.empty() && shown.unit != option.unit)
+      return fmt::format("{0} {1:.8g} {3} ({2:+.3g} {3})", key, value * shown.factor,
+                         from_here * shown.factor, shown.unit);
     if (option.unit != "rad") return fmt::format("{} {:.8g} ({:+.3g})", key, value, from_here);
     constexpr double degree = std::numbers::pi / 180.0;
     return fmt::format("{} {:.8g} ({:.6g} deg, {:+.3g} deg)", key, value, value / degree, from_here / degree);
@@ -151,7 +156,7 @@ void print_place(const Spec& original, const std::string& at, const std::string&
     for (const NearCliff& cliff : cliffs.along[k]) {
       none = false;
       say("  {:<46} {:<10} height {}, beyond: {}\n", place(k, cliff.at[k]), name_of(cliff.kind),
-          heights_beside(original, here, cliff, k), outcome_text(cliff.beyond));
+          heights_beside(original, here, cliff, k, units), outcome_text(cliff.beyond));
     }
   if (none) say("  none along any axis\n");
   if (cliffs.nearest.empty()) return;

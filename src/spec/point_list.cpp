@@ -13,6 +13,7 @@
 #include "spec/options.hpp"
 #include "spec/quantity.hpp"
 #include "spec/spec_hoop.hpp"
+#include "support/closest.hpp"
 #include "support/csv.hpp"
 
 namespace leapmap {
@@ -26,8 +27,10 @@ const Option* column_option(const std::string& place, std::string_view name) {
   if (found == parameters.end()) {
     std::vector<std::string_view> keys;
     for (const Option* parameter : parameters) keys.push_back(parameter->key);
-    throw InputError(fmt::format("{}: column '{}' is not a parameter of a design; allowed: {}, {}", place,
-                                 name, label_name, fmt::join(keys, ", ")));
+    throw InputError(
+        fmt::format("{}: column '{}' is not a parameter of a design{}; allowed: {}, {}, and with "
+                    "[hoop] its numbers, for example hoop.mass",
+                    place, name, did_you_mean(name, keys), label_name, fmt::join(keys, ", ")));
   }
   return *found;
 }

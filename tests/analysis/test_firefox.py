@@ -7,10 +7,12 @@ import time
 from pathlib import Path
 
 import json
+import numpy as np
 import pytest
 from support.browser import agrees
 from support.firefox import Firefox
 from support.program import leapmap, scripted, sweep
+from support.typed_hoops import random_hoop, told_of_typed, type_hoop
 
 MODULE = Path(os.environ["LEAPMAP_BUILD"]) / "leapmap.wasm"
 pytestmark = pytest.mark.slow  # its twins are those in chromium
@@ -61,3 +63,18 @@ def test_a_map_opens_and_a_design_of_it_jumps(firefox, tmp_path):
     assert firefox.execute_script("return document.getElementById('message').textContent") == ""
     numbers, told = shown(firefox)
     assert agrees(numbers, told) >= 9
+
+
+@pytest.mark.parametrize(("friction", "count"), [(False, 120), (True, 80)])
+def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, count, firefox, tmp_path):
+    assert scripted("explorer", "--module", MODULE, "-o", tmp_path / "live.html").returncode == 0
+    model = "coulomb" if friction else "sticking"
+    firefox.get("about:blank")
+    firefox.get((tmp_path / "live.html").as_uri() + f"#live&friction={model}")
+    wait(firefox, "!!window.explorer && document.getElementById('map').dataset.whole === 'true'")
+    random, jumped = np.random.default_rng(29), 0
+    for _ in range(count):
+        hoop = random_hoop(random, friction)
+        type_hoop(firefox, hoop)
+        jumped += told_of_typed(firefox, hoop)["status"] == "jumped"
+    assert jumped >= 0.4 * count

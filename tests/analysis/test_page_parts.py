@@ -6,7 +6,6 @@ import io
 import json
 import math
 import os
-import shlex
 import tarfile
 import urllib.request
 import xml.etree.ElementTree as ElementTree
@@ -20,9 +19,9 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 from support.browser import agrees, numbers, opened, settled, told_by_leapmap, waited
 from support.program import PROGRAM, finished, scripted, sweep
+from support.typed_hoops import random_hoop, told_of_typed, type_hoop
 
 BUILD = Path(os.environ["LEAPMAP_BUILD"])
-ANGLES = ("slope", "release_angle")
 AXE = ("https://registry.npmjs.org/axe-core/-/axe-core-4.14.1.tgz",
        "FHfa+lmNjQZfJz1q8wKqIDwC6DExcHt/pkjNQb09a3NPjCKg2rhu5qb2S4r76ASyFNNtuFooJpZe37OgudVGtQ==")
 
@@ -76,38 +75,9 @@ def test_every_number_of_random_hoops_typed_in_is_that_of_leapmap_hop(friction, 
         Select(page.find_element("id", "live-model")).select_by_value("coulomb")
     random, jumped, turned = np.random.default_rng(23), 0, 0
     for _ in range(count):
-        design = {
-            "slope": random.uniform(0.05, 0.85), "mass_ratio": random.uniform(0.2, 15),
-            "offset_ratio": random.uniform(0.1, 1), "inertia_factor": random.uniform(
-                0.5, 1), "release_angle": random.uniform(0, 2 * math.pi), "release_spin": random.choice([
-                    0, random.uniform(-2, 3)
-                ]), "drive_torque": random.choice([0, random.uniform(0, 0.2)]), "runway": random.uniform(
-                    2, 9), "hop_height": random.uniform(0, 0.1), "gravity": random.uniform(1.5, 25)
-        }
-        if friction:
-            design |= {
-                "mu_static": random.uniform(0.1, 1.2), "mu_kinetic": random.uniform(0.05, 0.1),
-                "restitution": random.uniform(0, 0.6), "rest_speed": random.uniform(1e-4, 0.05)
-            }
-        page.execute_script(
-            """for (const [name, text] of Object.entries(arguments[0])) {
-            const input = document.querySelector(`#hoop-inputs input[data-parameter=${name}]`);
-            input.value = text; input.dispatchEvent(new Event('change')); }""",
-            {name: repr(math.degrees(v) if name in ANGLES else float(v)) for name, v in design.items()})
-        assert page.find_element("id", "message").text == ""
-        told = told_by_leapmap(page)
-        settings = {
-            name: float(word)
-            for name, _, word in (setting.partition("=")
-                                  for setting in shlex.split(page.find_element("id", "command").text))
-            if name in design
-        }
-        for name, value in design.items():
-            if name in settings:
-                assert settings[name] == pytest.approx(value, rel=1e-14)
-                continue
-            assert told["design"][name] == pytest.approx(value, rel=1e-14, abs=1e-300), name
-        assert agrees(numbers(page), told) >= (9 if told["status"] == "jumped" else 1)
+        design = random_hoop(random, friction)
+        type_hoop(page, design)
+        told = told_of_typed(page, design)
         if told["status"] == "jumped":  # what is read is that number, in SI
             text = page.execute_script(
                 "return [...document.querySelectorAll('#numbers tr')].filter((r) => "

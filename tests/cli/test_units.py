@@ -107,6 +107,24 @@ def test_extremes_of_hoops_of_different_masses_are_in_newtons_of_their_own(drawi
     assert "values from 0.04 to 0.04 N.m" in asked, asked
 
 
+def test_units_are_those_asked_for_in_what_tolerances_do_and_beside_discontinuities(drawing, tmp_path):
+    hop = ("hop", drawing, "--slope", "30 deg", "--scatter", "--set",
+           'tolerances.hoop.slug.at={normal="1 mm"}')
+    scattered = leapmap(*hop, "--units", "mm ms").stdout
+    own = json.loads(leapmap(*hop, "--json").stdout)
+    mean = own["scatter"]["quantities"]["jump_height"]["mean"]["value"]
+    assert re.search(rf"^jump_height \[mm\] +{120 * mean:.5g} ", scattered, re.M), scattered
+    assert re.search(r"^jump_time \[ms\] +\d{3}", scattered, re.M), scattered
+    path = tmp_path / "m.h5"
+    assert leapmap("sweep", drawing, "--hoop.slug.mass", '{from="60 g",to="110 g",count=5}', "--set",
+                   'slope={from="15 deg",to="40 deg",count=5}', "-o", path).returncode == 0
+    at = leapmap("info", path, "--at", "hoop.slug.mass=85g,slope=30deg", "--units", "mm g").stdout
+    beside = re.search(r"hoop\.slug\.mass (\S+) g \(\+(\S+) g\)", at)
+    assert beside and float(beside[1]) == pytest.approx(85 + float(beside[2]), abs=0.01), at
+    assert re.search(r"threshold +height [\d.]+ to [\d.]+ mm", at), at
+    assert "kg" not in at.split("Nearest discontinuities")[1]
+
+
 def test_what_is_likely_a_slip_of_units_is_noted(drawing):
     fine = leapmap("hop", drawing, "--slope", "30deg")
     assert fine.returncode == 0 and fine.stderr == ""

@@ -203,6 +203,7 @@ export function liveEngine(map, module, workerText, onPicture, onProgress) {
   }
 
   function endCliffs(side) {
+    const { generation } = now;
     map.curves = cliffCurves(map, now.edges[side], side);
     map.roughCurves = side > 1;
     if (side > 1) {
@@ -211,8 +212,11 @@ export function liveEngine(map, module, workerText, onPicture, onProgress) {
       if (now.again) begin(); else if (now.left.every((left) => left === 0)) goOn();
       return;
     }
-    now.timing.crisp = performance.now() - now.begun;
-    onPicture("cliffs");
+    setTimeout(() => {  // the browser may listen first
+      if (generation !== now.generation) return;
+      now.timing.crisp = performance.now() - now.begun;
+      onPicture("cliffs");
+    });
   }
 
   function show(what) {
